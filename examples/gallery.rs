@@ -7,9 +7,7 @@ use ndarray::Array2;
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 use vibroimpact::Result;
-use vibroimpact::figure::{
-    AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Peak, Plot, Series, Stroke, Waterfall,
-};
+use vibroimpact::figure::{AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Plot, Series, Stroke, Waterfall};
 use vibroimpact::report::{Cell, Output, Page, Table};
 
 fn main() -> Result<()> {
@@ -163,12 +161,7 @@ fn waterfall(n: usize, level: bool) -> Result<Figure> {
     let (frequency, excitation, magnitude) = spectra(n, 801);
     let height = AxisSpec::new("Displacement amplitude", "m");
     let height = if level { height.db(1e-6).limits(26.0, f64::INFINITY) } else { height };
-    let mut picture = Waterfall::new(&frequency, &excitation, &magnitude, height)?.frequencies(0.0, 40.0);
-    for (row, e) in excitation.iter().enumerate().filter(|_| n <= 60) {
-        let line = (e / 50.0 * 800.0).round() as usize;
-        let at = Peak { frequency: frequency[line], excitation: *e, magnitude: magnitude[[row, line]] };
-        picture = picture.peak(at);
-    }
+    let picture = Waterfall::new(&frequency, &excitation, &magnitude, height)?.frequencies(0.0, 40.0);
     Ok(Figure::double("Spectra of the excited mass").height(105.0).panel(picture))
 }
 

@@ -1,6 +1,6 @@
 //! What an analysis of one record has to show.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::record::Finding;
 use crate::report::files::Files;
 use crate::report::words::About;
@@ -76,7 +76,7 @@ pub(crate) fn unwritten(error: serde_json::Error) -> Error {
 /// # Errors
 /// If the error is no refusal of a record.
 pub fn left_out(error: Error) -> Result<Finding> {
-    let ErrorKind::Refused(why) = error.kind() else { return Err(error) };
+    let Some(why) = error.refusal() else { return Err(error) };
     let found = Finding::caution("left-out").name("why", why.trim_end_matches('.'));
     Ok(if error.advice().is_empty() { found } else { found.name("hint", error.advice()) })
 }

@@ -1,7 +1,7 @@
 //! Figures and matrices as files.
 
 use super::{Drawing, Figure, Output};
-use crate::error::{ErrorKind, Result};
+use crate::error::Result;
 use crate::measure::waterfall::Waterfall;
 use crate::record::{Finding, Record};
 use crate::write::{Storage, Target};
@@ -78,14 +78,11 @@ pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>
     let binary = Storage { binary: true, ..Storage::default() };
     match text(Target::Uff, Storage::default()).or_else(|_| text(Target::Uff, binary)) {
         Ok(bytes) => files.push((format!("{name}.uff"), bytes)),
-        Err(error) => match error.kind() {
-            ErrorKind::Refused(why) => {
-                let finding =
-                    Finding::caution("uff-not-written").name("file", name).name("why", why.as_str());
-                return Ok((files, Some(finding)));
-            }
-            _ => return Err(error),
-        },
+        Err(error) => {
+            let Some(why) = error.refusal() else { return Err(error) };
+            let finding = Finding::caution("uff-not-written").name("file", name).name("why", why);
+            return Ok((files, Some(finding)));
+        }
     }
     Ok((files, None))
 }

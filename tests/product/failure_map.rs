@@ -245,7 +245,7 @@ fn estimators_are_right_or_refuse_at_their_borders() {
     let listed: HashSet<&str> = NEAR.iter().map(|n| n.method).collect();
     for name in listed {
         let cells = map.cells.iter().filter(|c| c.ours && c.method == name);
-        let [judged, beyond] = cells.fold([0; 2], |sum, c| [sum[0] + c.held[0], sum[1] + c.held[1]]);
+        let [judged, beyond] = cells.fold([0; 2], |sum, c| [sum[0] + c.stated[0], sum[1] + c.stated[1]]);
         println!("{name}: {beyond} of {judged} beyond");
         // Four cells of six records each at least.
         assert!(judged >= 24 && beyond <= limit(judged), "{name}: {beyond} of {judged}");

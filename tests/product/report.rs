@@ -5,7 +5,7 @@ use ndarray::Array2;
 use proptest::prelude::*;
 use resvg::usvg::{self, roxmltree};
 use vibroimpact::figure::{
-    AxisSpec, Drawing, Figure, Heatmap, Legend, Panel, Peak, Plot, Series, Shape, Stroke, Waterfall,
+    AxisSpec, Drawing, Figure, Heatmap, Legend, Panel, Plot, Series, Shape, Stroke, Waterfall,
 };
 use vibroimpact::report::{Output, Page, Table};
 
@@ -59,10 +59,8 @@ fn everything() -> Figure {
     let map = Plot::new(AxisSpec::frequency(), AxisSpec::new("Excitation", "Hz"))
         .title("(b) Map")
         .heatmap(Heatmap::new(&frequency, &excitation, &magnitude, level).unwrap());
-    let waterfall = Waterfall::new(&frequency, &excitation, &magnitude, AxisSpec::new("Displacement", "m"))
-        .unwrap()
-        .title("(c) Spectra")
-        .peak(Peak { frequency: 3.0, excitation: 3.0, magnitude: 1e-3 });
+    let waterfall =
+        Waterfall::new(&frequency, &excitation, &magnitude, AxisSpec::new("Displacement", "m")).unwrap();
     Figure::double("Everything").height(160.0).columns(2).panel(plot).panel(map).panel(waterfall)
 }
 

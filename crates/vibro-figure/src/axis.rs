@@ -92,6 +92,13 @@ pub(super) struct Extent {
 impl Extent {
     pub(super) const NONE: Extent = Extent { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
 
+    /// Range of these values on a scale.
+    pub(super) fn of(scale: Scale, values: impl IntoIterator<Item = f64>) -> Extent {
+        let mut extent = Extent::NONE;
+        extent.include(values.into_iter().map(|v| scale.of(v)));
+        extent
+    }
+
     /// Widens by values on the scale; what is not finite, or so large that a difference of two could
     /// overflow, is left out.
     pub(super) fn include(&mut self, values: impl IntoIterator<Item = f64>) {

@@ -26,24 +26,9 @@ pub(crate) const PALE: Rgb = Rgb(205, 205, 205);
 pub const WHITE: Rgb = Rgb(255, 255, 255);
 
 /// Every sixteenth colour of the map *viridis* (Smith, van der Walt and Firing 2015, released under CC0).
-const VIRIDIS: [[u8; 3]; 17] = [
-    [68, 1, 84],
-    [72, 24, 106],
-    [71, 45, 123],
-    [66, 64, 134],
-    [59, 82, 139],
-    [51, 99, 141],
-    [44, 114, 142],
-    [38, 129, 142],
-    [33, 144, 140],
-    [31, 159, 136],
-    [40, 174, 128],
-    [62, 188, 116],
-    [93, 201, 99],
-    [130, 211, 76],
-    [171, 220, 50],
-    [213, 226, 26],
-    [253, 231, 37],
+const VIRIDIS: [u32; 17] = [
+    0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26818e, 0x21908c, 0x1f9f88,
+    0x28ae80, 0x3ebc74, 0x5dc963, 0x82d34c, 0xabdc32, 0xd5e21a, 0xfde725,
 ];
 
 /// Perceptually uniform map from 0 (dark violet) to 1 (yellow); linear between the tabulated colours, within
@@ -52,9 +37,9 @@ pub(crate) fn viridis(fraction: f64) -> Rgb {
     let fraction = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
     let at = fraction * (VIRIDIS.len() - 1) as f64;
     let low = (at as usize).min(VIRIDIS.len() - 2);
-    let [from, to] = [VIRIDIS[low], VIRIDIS[low + 1]];
+    let [from, to] = [VIRIDIS[low], VIRIDIS[low + 1]].map(u32::to_be_bytes);
     let mix = |i: usize| mixed(from[i], to[i], at - low as f64);
-    Rgb(mix(0), mix(1), mix(2))
+    Rgb(mix(1), mix(2), mix(3))
 }
 
 impl Rgb {

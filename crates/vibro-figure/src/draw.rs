@@ -1,34 +1,20 @@
-//! From figures to pictures: layout, and the one writer of SVG.
-
-mod canvas;
-mod forms;
-mod frame;
-mod grid;
-mod legend;
-mod map;
-mod notes;
-mod plot;
-mod style;
-mod waterfall;
-
-pub(super) use canvas::Image;
-pub use canvas::escaped;
+//! From figures to pictures: the layout of the panels.
 
 use super::axis::Extent;
+use super::canvas::{self, Canvas};
 use super::figure::{Figure, Panel};
+use super::frame::Insets;
 use super::path::Rect;
+use super::plot::{self, Sheet};
 use super::png;
-use canvas::Canvas;
-use frame::Insets;
-use plot::Sheet;
 use vibro_record::Result;
 
 /// A drawn figure, at its size in print.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
-    name: String,
-    size: (f64, f64),
-    canvas: Canvas,
+    pub(super) name: String,
+    pub(super) size: (f64, f64),
+    pub(super) canvas: Canvas,
 }
 
 impl Drawing {
@@ -56,16 +42,6 @@ impl Drawing {
     pub fn png(&self, dpi: f64) -> Result<Vec<u8>> {
         png::rasterised(self, dpi)
     }
-
-    /// Cell images, which lie under everything else.
-    pub(super) fn images(&self) -> &[Image] {
-        &self.canvas.images
-    }
-
-    /// The picture without its cell images.
-    pub(super) fn lines_and_texts(&self) -> String {
-        canvas::document(self.size, &self.name, &[], &self.canvas.body)
-    }
 }
 
 /// White edge around everything.
@@ -81,21 +57,19 @@ pub(super) fn draw(figure: &Figure) -> Drawing {
     let mut canvas = Canvas::default();
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let mut sheets = sheets(figure, columns);
-    let mut layout = Layout::new(&sheets, columns, page, figure.square);
     // A legend that finds no place inside makes its frame smaller, which can cost another its place.
-    let mut moved = true;
-    while moved {
-        moved = false;
-        for (i, sheet) in sheets.iter_mut().enumerate() {
-            moved |= sheet.as_mut().is_some_and(|sheet| sheet.make_room(layout.frame(i)));
+    let layout = loop {
+        let layout = Layout::new(&sheets, columns, page);
+        let plots = sheets.iter_mut().enumerate().filter_map(|(i, sheet)| Some((i, sheet.as_mut()?)));
+        if plots.filter_map(|(i, sheet)| sheet.make_room(layout.frame(i)).then_some(())).count() == 0 {
+            break layout;
         }
-        layout = Layout::new(&sheets, columns, page, figure.square);
-    }
+    };
     for (i, (panel, sheet)) in figure.panels.iter().zip(&sheets).enumerate() {
         match (panel, sheet) {
             (Panel::Plot(_), Some(sheet)) => sheet.draw(&mut canvas, layout.frame(i)),
-            (Panel::Waterfall(waterfall), _) => waterfall::draw(&mut canvas, waterfall, layout.cell(i)),
-            (Panel::Grid(classes), _) => grid::draw(&mut canvas, classes, layout.cell(i)),
+            (Panel::Waterfall(waterfall), _) => waterfall.draw(&mut canvas, layout.cell(i)),
+            (Panel::Grid(grid), _) => grid.draw(&mut canvas, layout.cell(i)),
             (Panel::Plot(_), None) => {}
         }
     }
@@ -119,8 +93,7 @@ fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
     figure.panels.iter().enumerate().map(sheet).collect()
 }
 
-/// Frames in rows and columns, all of one size, with the room that the neediest panel of a row or column
-/// takes. Where they are to be square, what is left of the page lies around them.
+/// Frames in rows and columns, all of one size, with the room that the neediest panel of a row or column takes.
 struct Layout {
     page: Rect,
     columns: Vec<Insets>,
@@ -133,70 +106,50 @@ impl Layout {
     /// Distance between neighbouring panels.
     const BETWEEN: f64 = 9.0;
 
-    fn new(sheets: &[Option<Sheet<'_>>], columns: usize, page: Rect, square: bool) -> Layout {
+    fn new(sheets: &[Option<Sheet<'_>>], columns: usize, page: Rect) -> Layout {
         let rows = sheets.len().div_ceil(columns).max(1);
-        let empty = || Layout {
-            page,
-            columns: vec![Insets::default(); columns],
-            rows: vec![Insets::default(); rows],
-            size: (0.0, 0.0),
-        };
-        let mut layout = empty();
-        layout.fill(square);
+        let bare = |n: usize| vec![Insets::default(); n];
+        let mut layout = Layout::filling(page, bare(columns), bare(rows));
         // Ticks, hence the room for their numbers, and that of a legend depend on the size of the frame: thrice is enough.
         for _ in 0..3 {
-            let mut next = empty();
+            let (mut across, mut down) = (bare(columns), bare(rows));
             for (i, sheet) in sheets.iter().enumerate() {
                 let insets = sheet.as_ref().map_or_else(Insets::default, |sheet| sheet.insets(layout.size));
-                let (column, row) = (&mut next.columns[i % columns], &mut next.rows[i / columns]);
-                *column = column.wider(insets);
-                *row = row.wider(insets);
+                across[i % columns] = across[i % columns].wider(insets);
+                down[i / columns] = down[i / columns].wider(insets);
             }
-            next.fill(square);
-            layout = next;
+            layout = Layout::filling(page, across, down);
         }
         layout
     }
 
-    /// Makes the frames fill the page, or as large as squares can be in its middle.
-    fn fill(&mut self, square: bool) {
+    /// Makes the frames fill the page.
+    fn filling(page: Rect, columns: Vec<Insets>, rows: Vec<Insets>) -> Layout {
         let share = |whole: f64, taken: f64, n: usize| {
             ((whole - taken - Layout::BETWEEN * (n - 1) as f64) / n as f64).max(10.0)
         };
-        let (columns, rows) = (self.columns.len(), self.rows.len());
-        let w = share(self.page.w, self.columns.iter().map(|c| c.left + c.right).sum(), columns);
-        let h = share(self.page.h, self.rows.iter().map(|r| r.top + r.bottom).sum(), rows);
-        self.size = (w, h);
-        if square {
-            let side = w.min(h);
-            self.size = (side, side);
-            self.page.x += 0.5 * (w - side) * columns as f64;
-            self.page.y += 0.5 * (h - side) * rows as f64;
-        }
-    }
-
-    fn frame(&self, index: usize) -> Rect {
-        let (column, row) = (index % self.columns.len(), index / self.columns.len());
-        let ((w, h), between) = (self.size, Layout::BETWEEN);
-        let left: f64 = self.columns[..column].iter().map(|c| c.left + c.right + w + between).sum();
-        let above: f64 = self.rows[..row].iter().map(|r| r.top + r.bottom + h + between).sum();
-        Rect {
-            x: self.page.x + left + self.columns[column].left,
-            y: self.page.y + above + self.rows[row].top,
-            w,
-            h,
-        }
+        let w = share(page.w, columns.iter().map(|c| c.left + c.right).sum(), columns.len());
+        let h = share(page.h, rows.iter().map(|r| r.top + r.bottom).sum(), rows.len());
+        Layout { page, columns, rows, size: (w, h) }
     }
 
     /// Frame with the room around it.
     fn cell(&self, index: usize) -> Rect {
-        let frame = self.frame(index);
-        let (c, r) = (self.columns[index % self.columns.len()], self.rows[index / self.columns.len()]);
+        let Layout { page, columns, rows, size: (w, h) } = self;
+        let (column, row) = (index % columns.len(), index / columns.len());
+        let width = |c: &Insets| c.left + w + c.right;
+        let height = |r: &Insets| r.top + h + r.bottom;
         Rect {
-            x: frame.x - c.left,
-            y: frame.y - r.top,
-            w: frame.w + c.left + c.right,
-            h: frame.h + r.top + r.bottom,
+            x: page.x + columns[..column].iter().map(|c| width(c) + Layout::BETWEEN).sum::<f64>(),
+            y: page.y + rows[..row].iter().map(|r| height(r) + Layout::BETWEEN).sum::<f64>(),
+            w: width(&columns[column]),
+            h: height(&rows[row]),
         }
+    }
+
+    fn frame(&self, index: usize) -> Rect {
+        let (cell, (w, h)) = (self.cell(index), self.size);
+        let (column, row) = (index % self.columns.len(), index / self.columns.len());
+        Rect { x: cell.x + self.columns[column].left, y: cell.y + self.rows[row].top, w, h }
     }
 }

@@ -17,7 +17,7 @@ use super::waterfall::Waterfall;
 /// let drawing = Figure::single("Response of the passive mass").panel(plot).draw();
 /// assert!(drawing.svg().starts_with("<svg"));
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Figure {
     /// What the figure shows, in a few words. It is not drawn: it is the figure's name for readers that
     /// cannot see it, and stands over its caption on a page.
@@ -32,8 +32,6 @@ pub struct Figure {
     pub columns: usize,
     /// Whether the panels of a column have one abscissa, named under the lowest.
     pub shared_x: bool,
-    /// Whether all frames are square, so that axes of one span show circles as circles.
-    pub square: bool,
     /// Panels, row by row.
     pub panels: Vec<Panel>,
 }
@@ -50,7 +48,7 @@ pub enum Panel {
 }
 
 /// Series over two axes, on a map where wanted.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plot {
     /// Title over the frame; empty for none.
     pub title: String,
@@ -96,16 +94,7 @@ pub enum Legend {
 impl Figure {
     /// A figure as wide as one column of a journal, 86 mm × 62 mm.
     pub fn single(title: impl Into<String>) -> Figure {
-        Figure {
-            title: title.into(),
-            caption: String::new(),
-            width: 86.0,
-            height: 62.0,
-            columns: 1,
-            shared_x: false,
-            square: false,
-            panels: Vec::new(),
-        }
+        Figure { title: title.into(), width: 86.0, height: 62.0, columns: 1, ..Figure::default() }
     }
 
     /// A figure as wide as two columns of a journal, 178 mm × 90 mm.
@@ -137,12 +126,6 @@ impl Figure {
         self
     }
 
-    /// Makes all frames square.
-    pub fn square(mut self) -> Figure {
-        self.square = true;
-        self
-    }
-
     /// Adds a panel.
     pub fn panel(mut self, panel: impl Into<Panel>) -> Figure {
         self.panels.push(panel.into());
@@ -158,15 +141,7 @@ impl Figure {
 impl Plot {
     /// An empty plot over two axes.
     pub fn new(x: AxisSpec, y: AxisSpec) -> Plot {
-        Plot {
-            title: String::new(),
-            x,
-            y,
-            heatmap: None,
-            series: Vec::new(),
-            notes: Vec::new(),
-            legend: Legend::Auto,
-        }
+        Plot { x, y, ..Plot::default() }
     }
 
     /// Sets the title over the frame.

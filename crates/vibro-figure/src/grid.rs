@@ -1,6 +1,10 @@
 //! Grids of classes: named rows in groups, named columns, a colour and a letter a cell.
 
-use super::colour::Rgb;
+use super::canvas::{Anchor, Canvas, Pen};
+use super::colour::{GREY, Rgb, WHITE};
+use super::font;
+use super::path::Rect;
+use super::style::{FRAME, GAP, SMALL};
 
 /// What a cell can be.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,52 +17,47 @@ pub struct Kind {
     pub colour: Rgb,
 }
 
-/// One row.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Row {
-    /// Group that it belongs to; rows of one group stand together.
-    pub group: String,
-    /// Name.
-    pub name: String,
+struct Row {
+    group: String,
+    name: String,
     /// Kind of each cell by its index; empty for none.
-    pub cells: Vec<Option<usize>>,
+    cells: Vec<Option<usize>>,
 }
 
 /// A grid of classes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Grid {
-    /// Names of the columns.
-    pub columns: Vec<String>,
-    /// What cells can be.
-    pub kinds: Vec<Kind>,
-    /// Rows from the top.
-    pub rows: Vec<Row>,
+    columns: Vec<String>,
+    kinds: Vec<Kind>,
+    rows: Vec<Row>,
 }
 
+/// Size of names and letters.
+const SIZE: f64 = 7.4;
+
+/// Least size of the names of columns.
+const LEAST: f64 = 5.5;
+
 /// Height of a row, distance between groups, room for names of columns and the key, in points.
-pub(super) const ROW: f64 = 9.6;
-pub(super) const BETWEEN: f64 = 4.0;
-pub(super) const KEY: f64 = 16.0;
+const ROW: f64 = 9.6;
+const BETWEEN: f64 = 4.0;
+const KEY: f64 = 16.0;
 
 impl Grid {
-    /// A grid without rows.
+    /// A grid without rows: names of its columns, and what cells can be.
     pub fn new(columns: Vec<String>, kinds: Vec<Kind>) -> Grid {
         Grid { columns, kinds, rows: Vec::new() }
     }
 
-    /// Adds a row.
-    pub fn row(
-        mut self,
-        group: impl Into<String>,
-        name: impl Into<String>,
-        cells: Vec<Option<usize>>,
-    ) -> Grid {
-        self.rows.push(Row { group: group.into(), name: name.into(), cells });
+    /// Adds a row below: the group that it stands in with its neighbours, its name, the kind of each cell by its index.
+    pub fn row(mut self, group: &str, name: &str, cells: Vec<Option<usize>>) -> Grid {
+        self.rows.push(Row { group: group.to_owned(), name: name.to_owned(), cells });
         self
     }
 
     /// Names of the columns, cut into words that stand under each other.
-    pub(super) fn heads(&self) -> Vec<Vec<String>> {
+    fn heads(&self) -> Vec<Vec<String>> {
         self.columns
             .iter()
             .map(|name| name.split_inclusive([' ', '-', '–']).map(|w| w.trim().to_owned()).collect())
@@ -66,7 +65,7 @@ impl Grid {
     }
 
     /// Lines that the names of the columns take.
-    pub(super) fn lines(&self) -> usize {
+    fn lines(&self) -> usize {
         self.heads().iter().map(Vec::len).max().unwrap_or(0)
     }
 
@@ -75,5 +74,53 @@ impl Grid {
         let groups = self.rows.chunk_by(|a, b| a.group == b.group).count();
         let rows = (self.lines() + self.rows.len()) as f64 * ROW;
         (rows + groups.saturating_sub(1) as f64 * BETWEEN + KEY + 12.0) * 25.4 / 72.0
+    }
+
+    /// Draws names, cells and the key into `cell`.
+    pub(super) fn draw(&self, canvas: &mut Canvas, cell: Rect) {
+        let widest = |names: &mut dyn Iterator<Item = &String>| {
+            names.map(|name| font::width(name, SIZE)).fold(0.0, f64::max)
+        };
+        let groups = widest(&mut self.rows.iter().map(|r| &r.group)) + 2.0 * GAP;
+        let names = widest(&mut self.rows.iter().map(|r| &r.name)) + 2.0 * GAP;
+        let heads = self.heads();
+        let (left, top) = (cell.x + groups + names, cell.y + self.lines() as f64 * ROW + GAP);
+        let count = self.columns.len().max(1) as f64;
+        let width = ((cell.right() - left) / count).clamp(4.0, 60.0);
+        // All heads as large as the widest word lets them be.
+        let word = widest(&mut heads.iter().flatten());
+        let size = (SIZE * (width - 1.0) / word.max(1.0)).clamp(LEAST, SIZE);
+        for (i, words) in heads.iter().enumerate() {
+            let middle = left + (i as f64 + 0.5) * width;
+            for (k, word) in words.iter().rev().enumerate() {
+                let at = (middle, top - GAP - k as f64 * (ROW - 1.0));
+                canvas.label(&font::fit(word, size, width), at, size, Anchor::Middle);
+            }
+        }
+        let base = 0.5 * ROW + font::DIGIT_HEIGHT * SIZE / 2.0;
+        let mut y = top;
+        for group in self.rows.chunk_by(|a, b| a.group == b.group) {
+            canvas.label(&group[0].group, (cell.x, y + base), SIZE, Anchor::Start);
+            canvas.line((cell.x, y), (left + count * width, y), Pen::solid(GREY, 0.4));
+            for row in group {
+                canvas.label(&row.name, (left - GAP, y + base), SIZE, Anchor::End);
+                for (k, kind) in row.cells.iter().enumerate() {
+                    let Some(kind) = kind.and_then(|kind| self.kinds.get(kind)) else { continue };
+                    let area = Rect { x: left + k as f64 * width, y, w: width, h: ROW };
+                    canvas.rect(area, Some(kind.colour), Some(Pen::solid(WHITE, 0.6)));
+                    canvas.label(&kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
+                }
+                y += ROW;
+            }
+            y += BETWEEN;
+        }
+        let (mut x, y) = (cell.x + GAP, cell.bottom() - KEY + 4.0);
+        for kind in &self.kinds {
+            let area = Rect { x, y, w: 14.0, h: ROW };
+            canvas.rect(area, Some(kind.colour), Some(Pen { width: 0.4, ..FRAME }));
+            canvas.label(&kind.letter, (area.middle().0, y + base), SIZE, Anchor::Middle);
+            canvas.label(&kind.name, (area.right() + GAP, y + base), SMALL, Anchor::Start);
+            x = area.right() + 2.0 * GAP + font::width(&kind.name, SMALL) + 10.0;
+        }
     }
 }

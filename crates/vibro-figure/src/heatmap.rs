@@ -1,7 +1,11 @@
 //! Maps: a value over two axes, shown by colour.
 
-use super::axis::{Axis, AxisSpec, Extent, Scale};
+use super::axis::{Axis, AxisSpec, Extent, Room, Scale};
+use super::canvas::Canvas;
 use super::colour::{self, Rgb};
+use super::frame::{self, Place, Ruler, Side};
+use super::path::Rect;
+use super::style::{FRAME, GAP, LARGE, LEADING, TICK, TICKS};
 use ndarray::{Array2, ArrayRef2};
 use std::ops::Range;
 use vibro_record::{Error, Result};
@@ -16,12 +20,18 @@ pub struct Heatmap {
     x: Vec<f64>,
     y: Vec<f64>,
     values: Array2<f64>,
-    key: Key,
+    pub(super) key: Key,
 }
+
+/// Distance of a colour bar from the frame, and its width.
+const AWAY: f64 = 7.0;
+const WIDTH: f64 = 8.0;
+/// Cells of a map in a point of the page: 300 dots per inch are all that print shows.
+const CELLS: f64 = 300.0 / 72.0;
 
 /// What the colours mean.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Key {
+pub(super) enum Key {
     /// A quantity, on a colour bar.
     Quantity(AxisSpec),
     /// One of these classes, by its index.
@@ -47,21 +57,10 @@ impl Heatmap {
     }
 
     fn of(x: &[f64], y: &[f64], values: &ArrayRef2<f64>, key: Key) -> Result<Heatmap> {
-        if values.dim() != (y.len(), x.len()) {
-            let (rows, columns) = values.dim();
-            return Err(Error::usage(
-                format!("a map of {rows} × {columns} values"),
-                format!("{} × {}, one for each row and column position", y.len(), x.len()),
-            ));
-        }
+        fits("a map", values, y, x)?;
         ascending(x, "column positions of a map")?;
         ascending(y, "row positions of a map")?;
         Ok(Heatmap { x: x.to_vec(), y: y.to_vec(), values: values.to_owned(), key })
-    }
-
-    /// What the colours mean.
-    pub fn key(&self) -> &Key {
-        &self.key
     }
 
     /// Borders of all columns and of all rows, to find the limits of the axes.
@@ -76,9 +75,7 @@ impl Heatmap {
     /// Axis of the colour bar; `None` for classes, and where no value is finite.
     pub(super) fn colour_axis(&self) -> Option<Axis> {
         let Key::Quantity(spec) = &self.key else { return None };
-        let mut extent = Extent::NONE;
-        extent.include(self.values.iter().map(|v| spec.scale.of(*v)));
-        Axis::new(spec, extent, super::axis::Room::Tight)
+        Axis::new(spec, Extent::of(spec.scale, self.values.iter().copied()), Room::Tight)
     }
 
     /// Colour of a class.
@@ -109,6 +106,46 @@ impl Heatmap {
             }
         })
     }
+
+    /// Draws the cells that fill the frame.
+    pub(super) fn draw(&self, canvas: &mut Canvas, place: &Place<'_>) {
+        let count = |points: f64| (points * CELLS).ceil().max(1.0) as usize;
+        let cells = self.cells(place.x, place.y, count(place.frame.w), count(place.frame.h));
+        canvas.image(place.frame, &cells);
+    }
+}
+
+/// Room for the colour bar to the right of a frame of about this height.
+pub(super) fn bar_room(bar: &Axis, height: f64) -> f64 {
+    let numbers = frame::widest(&frame::upward(bar, height));
+    let name = if bar.title.is_empty() { 0.0 } else { GAP + 1.15 * LARGE };
+    AWAY + WIDTH + TICK + 2.0 + numbers + name
+}
+
+/// Draws the colour bar beside the frame.
+pub(super) fn draw_bar(canvas: &mut Canvas, bar: &Axis, frame: Rect) {
+    let place = Rect { x: frame.right() + AWAY, w: WIDTH, ..frame };
+    let shades = Array2::from_shape_fn((256, 1), |(i, _)| Some(colour::viridis(1.0 - i as f64 / 255.0)));
+    canvas.image(place, &shades);
+    let ticks = frame::upward(bar, frame.h);
+    let (from, to) = ((place.right(), place.bottom()), (place.right(), place.y));
+    let ruler = Ruler { axis: bar, ticks: &ticks, from, to };
+    canvas.lines(&ruler.marks((1.0, 0.0)), TICKS);
+    ruler.numbers(canvas, Side::Right, TICK + 1.5);
+    canvas.rect(place, None, Some(FRAME));
+    let x = place.right() + TICK + 1.0 + frame::widest(&ticks) + GAP + 0.85 * LARGE;
+    frame::along(canvas, &bar.title, x, frame, 2.0 * LEADING);
+}
+
+/// # Errors
+/// If there is not one value for each row and column.
+pub(super) fn fits(what: &str, values: &ArrayRef2<f64>, rows: &[f64], columns: &[f64]) -> Result<()> {
+    let ((down, across), expected) = (values.dim(), (rows.len(), columns.len()));
+    if (down, across) == expected {
+        return Ok(());
+    }
+    let expected = format!("{} × {}, one for each row and column", expected.0, expected.1);
+    Err(Error::usage(format!("{what} of {down} × {across} values"), expected))
 }
 
 /// # Errors
@@ -160,7 +197,6 @@ fn cover(positions: &[f64], axis: &Axis, count: usize) -> Vec<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::Room;
     use ndarray::array;
 
     fn axis(lo: f64, hi: f64) -> Axis {

@@ -7,21 +7,29 @@
 pub mod colour;
 
 mod axis;
+mod canvas;
 mod draw;
 mod figure;
 mod font;
+mod forms;
+mod frame;
 mod grid;
 mod heatmap;
+mod legend;
+mod notes;
 mod path;
+mod plot;
 mod png;
 mod series;
+mod style;
 mod ticks;
 mod waterfall;
 
 pub use axis::{AxisSpec, Scale};
-pub use draw::{Drawing, escaped};
+pub use canvas::escaped;
+pub use draw::Drawing;
 pub use figure::{Figure, Legend, Note, Panel, Plot};
-pub use grid::{Grid, Kind, Row};
-pub use heatmap::{Heatmap, Key};
+pub use grid::{Grid, Kind};
+pub use heatmap::Heatmap;
 pub use series::{Ink, Marker, Series, Shape, Stroke};
-pub use waterfall::{Peak, Waterfall};
+pub use waterfall::Waterfall;

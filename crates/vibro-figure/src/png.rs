@@ -3,7 +3,8 @@
 //! Only the bundled font is used and nothing of the time or the machine is written, so equal drawings give
 //! equal bytes everywhere.
 
-use super::draw::{Drawing, Image};
+use super::canvas::{self, Image};
+use super::draw::Drawing;
 use super::font;
 use resvg::tiny_skia::{Color, FilterQuality, Pixmap, PixmapPaint, Transform};
 use resvg::usvg;
@@ -15,8 +16,8 @@ use vibro_record::{Error, Result};
 /// If the drawing is too large for its pixels to be held.
 pub(super) fn rasterised(drawing: &Drawing, dpi: f64) -> Result<Vec<u8>> {
     let dpi = if dpi.is_nan() { 300.0 } else { dpi.clamp(30.0, 1200.0) };
-    let refused = |why: String| Error::refused(format!("the figure \"{}\" {why}", drawing.name()));
-    let (width, height) = drawing.size();
+    let refused = |why: String| Error::refused(format!("the figure \"{}\" {why}", drawing.name));
+    let (width, height) = drawing.size;
     let pixels = |mm: f64| (mm / 25.4 * dpi).round().max(1.0) as u32;
     let (across, down) = (pixels(width), pixels(height));
     let mut pixmap = Some((across, down))
@@ -28,7 +29,7 @@ pub(super) fn rasterised(drawing: &Drawing, dpi: f64) -> Result<Vec<u8>> {
         })?;
     pixmap.fill(Color::WHITE);
     let points = dpi as f32 / 72.0;
-    for Image { place, pixels } in drawing.images() {
+    for Image { place, pixels } in &drawing.canvas.images {
         let scale = |size: f64, cells: u32| size as f32 / cells as f32 * points;
         let (sx, sy) = (scale(place.w, pixels.width()), scale(place.h, pixels.height()));
         let transform =
@@ -38,7 +39,9 @@ pub(super) fn rasterised(drawing: &Drawing, dpi: f64) -> Result<Vec<u8>> {
     }
     let mut options = usvg::Options { font_family: font::NAME.to_owned(), ..usvg::Options::default() };
     options.fontdb_mut().load_font_data(font::BYTES.to_vec());
-    let tree = usvg::Tree::from_str(&drawing.lines_and_texts(), &options)
+    // Without the cell images, which lie under everything else.
+    let text = canvas::document(drawing.size, &drawing.name, &[], &drawing.canvas.body);
+    let tree = usvg::Tree::from_str(&text, &options)
         .map_err(|e| refused(format!("cannot be turned into pixels: {e}")))?;
     let transform =
         Transform::from_scale(across as f32 / tree.size().width(), down as f32 / tree.size().height());

@@ -5,7 +5,7 @@
 ///
 /// Lists of different lengths are drawn as far as the shortest reaches. A value that is missing (NaN), or has
 /// no place on its axis, breaks a line and leaves out a point.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
     /// Name in the legend, or beside a reference line; empty for none.
     pub name: String,
@@ -29,9 +29,10 @@ pub struct Series {
 }
 
 /// Form of a series.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Shape {
     /// Line through points, in their order.
+    #[default]
     Line,
     /// Markers with standard uncertainties as bars.
     Points,
@@ -112,17 +113,7 @@ impl Series {
         x: impl Into<Vec<f64>>,
         y: impl Into<Vec<f64>>,
     ) -> Series {
-        Series {
-            name: name.into(),
-            shape,
-            x: x.into(),
-            y: y.into(),
-            low: Vec::new(),
-            high: Vec::new(),
-            ink: Ink::Auto,
-            stroke: None,
-            marker: None,
-        }
+        Series { name: name.into(), shape, x: x.into(), y: y.into(), ..Series::default() }
     }
 
     /// Line through points, in the next dashes.
@@ -133,18 +124,16 @@ impl Series {
     /// Line of a phase in degrees between −180 and 180: broken where it goes round the circle, rather than
     /// drawn across the frame.
     pub fn phase(name: impl Into<String>, x: &[f64], degrees: &[f64]) -> Series {
-        let (mut at, mut shown) = (Vec::new(), Vec::new());
-        let mut before = f64::NAN;
+        let mut line = Series::line(name, [], []);
         for (x, phase) in x.iter().zip(degrees) {
-            if (phase - before).abs() > 180.0 {
-                at.push(*x);
-                shown.push(f64::NAN);
+            if line.y.last().is_some_and(|before| (phase - before).abs() > 180.0) {
+                line.x.push(*x);
+                line.y.push(f64::NAN);
             }
-            at.push(*x);
-            shown.push(*phase);
-            before = *phase;
+            line.x.push(*x);
+            line.y.push(*phase);
         }
-        Series::line(name, at, shown)
+        line
     }
 
     /// Markers in the next form, without bars.

@@ -1,49 +1,41 @@
 //! Spectra behind each other: frequency to the right, excitation frequency to the back, amplitude up.
 
-use super::axis::{Axis, AxisSpec, Extent, Room};
-use super::heatmap::ascending;
-use super::path::Point;
+use super::axis::{Axis, AxisSpec, Extent, Room, Scale};
+use super::canvas::{Anchor, Canvas, Pen, Text};
+use super::colour::{BLACK, WHITE};
+use super::font;
+use super::frame::{self, Ruler, Side, fitted};
+use super::heatmap::{ascending, fits};
+use super::path::{Point, Rect, thinned};
+use super::style::{DESCENT, FLOOR, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
 use ndarray::ArrayRef2;
-use vibro_record::{Error, Result};
+use vibro_record::Result;
+
+/// Room for numbers and a name at either side, before these are known.
+const SIDE: f64 = 34.0;
+
+/// How far a spectrum may be moved to have fewer points: a sixth of a dot at 300 dots per inch.
+const TOLERANCE: f64 = 0.04;
 
 /// A waterfall in the unit cube: frequency to the right, excitation to the back, magnitude up.
 #[derive(Debug, Clone)]
-pub(super) struct Cube {
-    pub x: Axis,
-    pub depth: Axis,
-    pub up: Axis,
+struct Cube {
+    x: Axis,
+    depth: Axis,
+    up: Axis,
     /// Depth of each spectrum, from front to back, and its line; NaN where it is missing.
-    pub spectra: Vec<(f64, Vec<Point>)>,
-    /// Depth of each peak, and its place over the front edge.
-    pub peaks: Vec<(f64, Point)>,
+    spectra: Vec<(f64, Vec<Point>)>,
 }
 
 /// Spectra in oblique projection with hidden lines, one for each excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waterfall {
-    /// Title; empty for none.
-    pub title: String,
     /// Axis to the right.
-    pub x: AxisSpec,
-    /// Axis to the back.
-    pub depth: AxisSpec,
+    x: AxisSpec,
     /// Axis upwards.
-    pub height: AxisSpec,
-    /// Peaks to be marked by a dot where they are not hidden.
-    pub peaks: Vec<Peak>,
+    height: AxisSpec,
     frequency: Vec<f64>,
     rows: Vec<(f64, Vec<f64>)>,
-}
-
-/// A peak of a spectrum.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Peak {
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Excitation frequency of its spectrum in Hz.
-    pub excitation: f64,
-    /// Magnitude in the unit of the spectra.
-    pub magnitude: f64,
 }
 
 impl Waterfall {
@@ -59,13 +51,7 @@ impl Waterfall {
         magnitude: &ArrayRef2<f64>,
         height: AxisSpec,
     ) -> Result<Waterfall> {
-        if magnitude.dim() != (excitation.len(), frequency.len()) {
-            let (rows, columns) = magnitude.dim();
-            return Err(Error::usage(
-                format!("a waterfall of {rows} spectra with {columns} lines"),
-                format!("{} spectra with {} lines, as its axes have", excitation.len(), frequency.len()),
-            ));
-        }
+        fits("a waterfall", magnitude, excitation, frequency)?;
         ascending(frequency, "line frequencies of a waterfall (Hz)")?;
         let mut rows: Vec<(f64, Vec<f64>)> = excitation
             .iter()
@@ -74,15 +60,7 @@ impl Waterfall {
             .map(|(e, row)| (*e, row.to_vec()))
             .collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(Waterfall {
-            title: String::new(),
-            x: AxisSpec::frequency(),
-            depth: AxisSpec::new("Excitation frequency", "Hz"),
-            height,
-            peaks: Vec::new(),
-            frequency: frequency.to_vec(),
-            rows,
-        })
+        Ok(Waterfall { x: AxisSpec::frequency(), height, frequency: frequency.to_vec(), rows })
     }
 
     /// Shows this range of frequencies (Hz) only.
@@ -91,29 +69,12 @@ impl Waterfall {
         self
     }
 
-    /// Sets the title.
-    pub fn title(mut self, title: impl Into<String>) -> Waterfall {
-        self.title = title.into();
-        self
-    }
-
-    /// Marks a peak.
-    pub fn peak(mut self, peak: Peak) -> Waterfall {
-        self.peaks.push(peak);
-        self
-    }
-
     /// Settles the axes and brings everything to their scale; `None` where there is nothing to show.
-    pub(super) fn cube(&self) -> Option<Cube> {
-        let extent = |spec: &AxisSpec, values: &mut dyn Iterator<Item = f64>| {
-            let mut extent = Extent::NONE;
-            extent.include(values.map(|v| spec.scale.of(v)));
-            extent
-        };
-        let x = Axis::new(&self.x, extent(&self.x, &mut self.frequency.iter().copied()), Room::Tight)?;
-        let depths = extent(&self.depth, &mut self.rows.iter().map(|r| r.0));
+    fn cube(&self) -> Option<Cube> {
+        let x = Axis::new(&self.x, Extent::of(self.x.scale, self.frequency.iter().copied()), Room::Tight)?;
+        let depths = Extent::of(Scale::Linear, self.rows.iter().map(|r| r.0));
         // Not on the axes, so that the outer spectra can be read.
-        let depth = Axis::new(&self.depth, depths, Room::Margin)?;
+        let depth = Axis::new(&AxisSpec::new("Excitation frequency", "Hz"), depths, Room::Margin)?;
         let shown = |axis: &Axis, value: f64| Some(axis.at(value)).filter(|at| (0.0..=1.0).contains(at));
         let rows: Vec<(f64, Vec<(f64, f64)>)> = self
             .rows
@@ -123,16 +84,122 @@ impl Waterfall {
                 Some((shown(&depth, *excitation)?, values.collect()))
             })
             .collect();
-        let mut heights = rows.iter().flat_map(|(_, row)| row.iter().map(|(_, v)| *v));
-        let up = Axis::new(&self.height, extent(&self.height, &mut heights), Room::Floor)?;
+        let heights = rows.iter().flat_map(|(_, row)| row.iter().map(|(_, v)| *v));
+        let up = Axis::new(&self.height, Extent::of(self.height.scale, heights), Room::Floor)?;
         // NaN stays NaN: a gap.
         let height = |value: f64| up.at(value).clamp(0.0, 1.0);
         let spectra =
             rows.iter().map(|(at, row)| (*at, row.iter().map(|(x, v)| (*x, height(*v))).collect())).collect();
-        let place =
-            |p: &Peak| Some((shown(&depth, p.excitation)?, (shown(&x, p.frequency)?, height(p.magnitude))));
-        let peaks = self.peaks.iter().filter_map(place).collect();
-        Some(Cube { x, depth, up, spectra, peaks })
+        Some(Cube { x, depth, up, spectra })
+    }
+
+    /// Draws it into a cell of the page.
+    pub(super) fn draw(&self, canvas: &mut Canvas, cell: Rect) {
+        let bottom = 2.0 * GAP + LEADING + 1.3 * LARGE;
+        let framed = |left: f64, right: f64| Rect {
+            x: cell.x + left,
+            y: cell.y + SMALL / 2.0,
+            w: (cell.w - left - right).max(20.0),
+            h: (cell.h - bottom - SMALL / 2.0).max(20.0),
+        };
+        let rough = framed(SIDE, SIDE);
+        let Some(cube) = self.cube() else {
+            canvas.rect(rough, None, Some(FRAME));
+            return canvas.label("no data", rough.middle(), LARGE, Anchor::Middle);
+        };
+        // With the numbers known, the room beside them is too, and that of the names beyond them.
+        let sheet = Sheet::new(&cube, rough);
+        let numbers = |axis: &Axis, length: f64| TICK + 2.0 + frame::widest(&frame::upward(axis, length));
+        let left = numbers(&cube.up, sheet.rise) + GAP + DESCENT + LARGE;
+        let right = numbers(&cube.depth, sheet.back.1) + 2.0 * GAP + LARGE;
+        let sheet = Sheet::new(&cube, framed(left, right));
+        sheet.draw_spectra(canvas);
+        sheet.draw_axes(canvas);
+    }
+}
+
+/// A cube in its frame.
+struct Sheet<'a> {
+    cube: &'a Cube,
+    frame: Rect,
+    /// Width of a spectrum.
+    along: f64,
+    /// Way of the back edge to the right and up.
+    back: Point,
+    /// Height of the amplitude axis.
+    rise: f64,
+}
+
+impl<'a> Sheet<'a> {
+    /// Fills the frame: where no spectrum reaches its top, all is drawn that much higher.
+    fn new(cube: &'a Cube, frame: Rect) -> Sheet<'a> {
+        let (w, h) = (frame.w, frame.h);
+        let tops =
+            cube.spectra.iter().flat_map(|(depth, line)| line.iter().map(move |p| 0.58 * depth + 0.42 * p.1));
+        let stretch = (1.0 / tops.fold(0.58, f64::max)).clamp(1.0, 1.6);
+        let back = (0.22 * w, 0.58 * h * stretch);
+        Sheet { cube, frame, along: 0.78 * w, back, rise: 0.42 * h * stretch }
+    }
+
+    fn at(&self, x: f64, depth: f64, up: f64) -> Point {
+        let right = x * self.along + depth * self.back.0;
+        (self.frame.x + right, self.frame.bottom() - depth * self.back.1 - up * self.rise)
+    }
+
+    /// Draws from back to front: each spectrum is white below its line and hides what stands behind it.
+    fn draw_spectra(&self, canvas: &mut Canvas) {
+        let ticks = frame::across(&self.cube.x, self.along);
+        let across = ticks.major.iter().map(|tick| self.cube.x.at_scaled(tick.at)).chain([0.0, 1.0]);
+        let floor = across.map(|x| vec![self.at(x, 0.0, 0.0), self.at(x, 1.0, 0.0)]);
+        let back = vec![self.at(0.0, 1.0, 0.0), self.at(1.0, 1.0, 0.0)];
+        canvas.lines(&floor.chain([back]).collect::<Vec<_>>(), FLOOR);
+        // The denser the spectra stand, the thinner they are.
+        let width = (0.25 * self.back.1 / self.cube.spectra.len() as f64).clamp(0.3, 0.6);
+        for (depth, line) in self.cube.spectra.iter().rev() {
+            for run in line.split(|p| p.1.is_nan()).filter(|run| run.len() > 1) {
+                let seen: Vec<Point> = run.iter().map(|p| self.at(p.0, *depth, p.1)).collect();
+                let seen = thinned(&seen, TOLERANCE);
+                let ends = [run[run.len() - 1], run[0]].map(|p| self.at(p.0, *depth, 0.0));
+                canvas.areas(&[[&seen[..], &ends].concat()], WHITE, None);
+                canvas.lines(&[seen], Pen::solid(BLACK, width));
+            }
+        }
+    }
+
+    fn draw_axes(&self, canvas: &mut Canvas) {
+        let Cube { x, depth, up, .. } = self.cube;
+        let (tx, ty) = (frame::across(x, self.along), frame::upward(up, self.rise));
+        let tz = frame::upward(depth, self.back.1);
+        let origin = self.at(0.0, 0.0, 0.0);
+        let [front, far, top] = [self.at(1.0, 0.0, 0.0), self.at(1.0, 1.0, 0.0), self.at(0.0, 0.0, 1.0)];
+        let axes = [
+            (Ruler { axis: x, ticks: &tx, from: origin, to: front }, (0.0, 1.0), Side::Below),
+            (Ruler { axis: depth, ticks: &tz, from: front, to: far }, (1.0, 0.0), Side::Right),
+            (Ruler { axis: up, ticks: &ty, from: origin, to: top }, (-1.0, 0.0), Side::Left),
+        ];
+        for (ruler, way, side) in axes {
+            canvas.line(ruler.from, ruler.to, FRAME);
+            canvas.lines(&ruler.marks(way), TICKS);
+            ruler.numbers(canvas, side, TICK + 2.0);
+        }
+        let (name, size) = fitted(&x.title, LARGE, self.along + 2.0 * LEADING);
+        let below = self.frame.bottom() + TICK + 2.0 + LEADING + 0.8 * LARGE;
+        canvas.label(&name, (self.frame.x + self.along / 2.0, below), size, Anchor::Middle);
+        // Along the axis to the back, clear of the lower right corners of its numbers.
+        let length = self.back.0.hypot(self.back.1).max(1.0);
+        let (right, rise) = (self.back.0 / length, self.back.1 / length);
+        let corner = (TICK + 2.0 + frame::widest(&tz)) * rise + font::DIGIT_HEIGHT * SMALL / 2.0 * right;
+        let off = corner + 2.0 * GAP + 0.75 * LARGE;
+        let (name, size) = fitted(&depth.title, LARGE, length + LEADING);
+        let middle = (f64::midpoint(front.0, far.0), f64::midpoint(front.1, far.1));
+        let (at, turn) = ((middle.0 + off * rise, middle.1 + off * right), rise.atan2(right).to_degrees());
+        let anchor = Anchor::Middle;
+        canvas.text(Text { words: &name, at, size, anchor, turn, colour: BLACK, halo: false });
+        // The name of the heights may be longer than their axis: it then goes on upwards.
+        let left = self.frame.x - TICK - 2.0 - frame::widest(&ty) - GAP - DESCENT;
+        let length = font::width(&up.title, LARGE).clamp(self.rise, self.frame.h.max(self.rise));
+        let beside = Rect { y: self.frame.bottom() - length, h: length, ..self.frame };
+        frame::along(canvas, &up.title, left, beside, 0.0);
     }
 }
 

@@ -3,7 +3,6 @@
 //! What people write by hand stands beside the toolkit's own methods, over the same random records of fixed seeds. Errors are root mean
 //! squares, so that they compare with the Cramér–Rao bound of the standard deviation.
 
-mod bound;
 mod damping;
 mod impacts;
 mod integration;
@@ -14,6 +13,7 @@ mod trial;
 
 use super::failure::Question;
 use super::{FailureMap, Family, Measured, Scene};
+use nalgebra::DMatrix;
 use vibro_record::{Spectrum, Sweep, SweepPoint};
 
 /// Every scene of the estimators, each method measured; `quick` takes fewer records.
@@ -36,7 +36,7 @@ pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> 
 /// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
 /// whose errors are as they state them pass in fewer than one of a hundred full maps.
 pub fn failures(quick: bool) -> FailureMap {
-    FailureMap::asked(Family::Estimators, questions(quick))
+    FailureMap::answered(Family::Estimators, questions(quick))
 }
 
 fn questions(quick: bool) -> Vec<Question> {
@@ -45,17 +45,32 @@ fn questions(quick: bool) -> Vec<Question> {
     parts.iter().flat_map(|part| part(quick)).collect()
 }
 
-/// A scene of estimators.
-fn scene([name, says, error_of, truth]: [&str; 4], bound: f64, methods: Vec<Measured>) -> Scene {
-    Scene {
-        name: name.to_owned(),
-        family: Family::Estimators,
-        says: says.to_owned(),
-        error_of: error_of.to_owned(),
-        truth: truth.to_owned(),
-        bound: Some(bound),
-        methods,
-    }
+/// A scene of estimators: its texts, the bound, and what the methods made of it.
+fn scene(texts: [&str; 4], bound: f64, methods: Vec<Measured>) -> Scene {
+    Scene { bound: Some(bound), methods, ..Scene::new(Family::Estimators, texts) }
+}
+
+/// Cramér–Rao bounds: standard deviations of unbiased estimates of the parameters `p` from the values of `model` with independent
+/// normal noise of standard deviation `noise`: roots of the diagonal of the inverse of Fisher's information (Kay 1993, eq. 3.33), whose slopes
+/// are central differences of `steps`. NaN where the information is singular.
+fn bounds(p: &[f64], steps: &[f64], noise: f64, model: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    let slopes: Vec<Vec<f64>> = (0..p.len())
+        .map(|i| {
+            let at = |by: f64| {
+                let mut moved = p.to_vec();
+                moved[i] += by;
+                model(&moved)
+            };
+            at(steps[i]).iter().zip(at(-steps[i])).map(|(a, b)| (a - b) / (2.0 * steps[i] * noise)).collect()
+        })
+        .collect();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    // Columns of length 1, so that units do not spoil the inversion.
+    let size: Vec<f64> = slopes.iter().map(|s| dot(s, s).sqrt()).collect();
+    let information =
+        DMatrix::from_fn(p.len(), p.len(), |i, j| dot(&slopes[i], &slopes[j]) / (size[i] * size[j]));
+    let inverse = information.cholesky().map(|c| c.inverse());
+    (0..p.len()).map(|i| inverse.as_ref().map_or(f64::NAN, |m| m[(i, i)].sqrt() / size[i])).collect()
 }
 
 /// A sweep of one point, with the magnitudes of its force's lines where it was measured, or a known frequency in Hz.
@@ -81,6 +96,7 @@ fn one_point(response: Spectrum, force: Option<Vec<f64>>, given: Option<f64>) ->
 mod tests {
     use super::*;
     use crate::{Cell, Outcome};
+    use std::f64::consts::TAU;
 
     #[test]
     fn the_limits_of_the_map_are_made_for_as_many_cells_as_it_has() {
@@ -91,7 +107,7 @@ mod tests {
     /// The whole map takes long: here the borders of one quantity stand for it.
     #[test]
     fn displacements_are_right_or_refused_at_their_borders() {
-        let map = FailureMap::asked(Family::Estimators, integration::borders(true));
+        let map = FailureMap::answered(Family::Estimators, integration::borders(true));
         assert_eq!(map.broken().collect::<Vec<_>>(), Vec::<&Cell>::new());
         // Neither a map of refusals nor a check that all methods pass.
         let count =
@@ -107,5 +123,18 @@ mod tests {
             assert!(scene.methods.iter().all(|m| m.time_ns > 0.0 && m.error.is_some() != m.failed));
             assert!(scene.methods.iter().any(|m| m.ours && !m.failed));
         }
+    }
+
+    /// A real sine of unknown amplitude, frequency and phase: Kay 1993, eq. 3.41.
+    #[test]
+    fn the_bound_of_a_sine_is_that_of_the_textbook() {
+        let (n, sigma) = (1000, 0.1);
+        let model = |p: &[f64]| (0..n).map(|i| p[0] * (TAU * p[1] * f64::from(i) + p[2]).cos()).collect();
+        let found = bounds(&[1.0, 0.1234, 0.5], &[1e-4, 1e-8, 1e-4], sigma, model);
+        let (eta, n) = (0.5 / (sigma * sigma), f64::from(n));
+        // The textbook leaves out the sums at twice the frequency: of the order 1/n.
+        let expected = (12.0 / (eta * n * (n * n - 1.0))).sqrt() / TAU;
+        assert!((found[1] / expected - 1.0).abs() < 5.0 / n, "{found:?} {expected}");
+        assert!((found[0] / (1.0 / (n * eta).sqrt()) - 1.0).abs() < 5.0 / n);
     }
 }

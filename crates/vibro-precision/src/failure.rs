@@ -3,6 +3,7 @@
 use super::Family;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use vibro_record::Error;
 
@@ -58,7 +59,7 @@ pub struct Cell {
     pub why: String,
     /// Of estimators the answers that were held to the uncertainty that they state, and those that lie beyond three of it.
     #[serde(skip)]
-    pub held: [usize; 2],
+    pub stated: [usize; 2],
 }
 
 /// What each method did at each border, border by border.
@@ -74,12 +75,12 @@ pub struct FailureMap {
 pub(crate) struct Found {
     pub outcome: Outcome,
     pub why: String,
-    pub held: [usize; 2],
+    pub stated: [usize; 2],
 }
 
 impl Found {
     pub fn new(outcome: Outcome, why: impl Into<String>) -> Found {
-        Found { outcome, why: why.into(), held: [0; 2] }
+        Found { outcome, why: why.into(), stated: [0; 2] }
     }
 
     /// Right where `kept`, wrong otherwise.
@@ -106,17 +107,18 @@ pub(crate) struct Question {
     pub ours: bool,
     pub border: &'static str,
     pub scene: String,
-    pub ask: Box<dyn FnOnce() -> Found + Send>,
+    pub answer: Box<dyn FnOnce() -> Found + Send>,
 }
 
 impl FailureMap {
     /// Asks every question, as many side by side as there are cores.
-    pub(crate) fn asked(family: Family, questions: Vec<Question>) -> FailureMap {
-        let cell = |Question { method, ours, border, scene, ask }: Question| {
+    pub(crate) fn answered(family: Family, questions: Vec<Question>) -> FailureMap {
+        let cell = |Question { method, ours, border, scene, answer }: Question| {
             let panicked = |_| Found::new(Outcome::Crashed, "it panicked, with its message printed");
-            let Found { outcome, why, held } = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(panicked);
+            let Found { outcome, why, stated } =
+                catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(panicked);
             let (method, border) = (method.to_owned(), border.to_owned());
-            Cell { family, method, ours, border, scene, outcome, why, held }
+            Cell { family, method, ours, border, scene, outcome, why, stated }
         };
         FailureMap { cells: questions.into_par_iter().map(cell).collect() }
     }
@@ -133,27 +135,21 @@ impl FailureMap {
 
     /// The map of each quantity, which its borders name before a colon, with that name; the whole where none does.
     pub fn parts(&self) -> Vec<(&str, FailureMap)> {
-        let mut parts: Vec<(&str, FailureMap)> = Vec::new();
-        for cell in &self.cells {
-            let (quantity, border) = cell.border.split_once(": ").unwrap_or(("", &cell.border));
-            let cell = Cell { border: border.to_owned(), ..cell.clone() };
-            match parts.last_mut() {
-                Some(part) if part.0 == quantity => part.1.cells.push(cell),
-                _ => parts.push((quantity, FailureMap { cells: vec![cell] })),
-            }
+        fn split(cell: &Cell) -> (&str, &str) {
+            cell.border.split_once(": ").unwrap_or(("", &cell.border))
         }
-        parts
+        let part = |cells: &[Cell]| {
+            let short = |cell: &Cell| Cell { border: split(cell).1.to_owned(), ..cell.clone() };
+            FailureMap { cells: cells.iter().map(short).collect() }
+        };
+        let parts = self.cells.chunk_by(|a, b| split(a).0 == split(b).0);
+        parts.map(|cells| (split(&cells[0]).0, part(cells))).collect()
     }
 
     /// Names of the methods, in the order in which they come.
     pub fn methods(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for cell in &self.cells {
-            if !names.contains(&cell.method.as_str()) {
-                names.push(&cell.method);
-            }
-        }
-        names
+        let mut known = HashSet::new();
+        self.cells.iter().map(|c| c.method.as_str()).filter(|name| known.insert(*name)).collect()
     }
 
     /// The cells of this library's methods that should not be: wrong, stalled or crashed.
@@ -169,16 +165,16 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_cell() {
-        let question = |scene: &str, ask: Box<dyn FnOnce() -> Found + Send>| Question {
+        let question = |scene: &str, answer: Box<dyn FnOnce() -> Found + Send>| Question {
             method: "one",
             ours: true,
             border: "panics",
             scene: scene.to_owned(),
-            ask,
+            answer,
         };
         let right = question("answers", Box::new(|| Found::new(Outcome::Right, "")));
         let wrong = question("panics", Box::new(|| panic!("on purpose")));
-        let map = FailureMap::asked(Family::Models, vec![right, wrong]);
+        let map = FailureMap::answered(Family::Models, vec![right, wrong]);
         let outcomes: Vec<_> = map.cells.iter().map(|c| c.outcome).collect();
         assert_eq!(outcomes, [Outcome::Right, Outcome::Crashed]);
         assert_eq!(map.broken().count(), 1);

@@ -1,6 +1,5 @@
 //! Models of the motion, on scenes with a known truth.
 
-mod ask;
 mod borders;
 mod check;
 mod ours;

@@ -136,15 +136,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("peer.json");
         let method = |name: &str, ours| Measured::new((name, ours), String::new(), 1e3, Ok(1e-9));
-        let scene = Scene {
-            name: "one".into(),
-            family: Family::Models,
-            says: String::new(),
-            error_of: String::new(),
-            truth: String::new(),
-            bound: None,
-            methods: vec![method("exact flights", true), method("Euler loop", false)],
-        };
+        let methods = vec![method("exact flights", true), method("Euler loop", false)];
+        let scene = Scene { methods, ..Scene::new(Family::Models, ["one", "", "", ""]) };
         let mut results = Results { scenes: vec![scene], ..Results::default() };
         let mut added = |name: &str| {
             let line = format!(r#"[{{"scene": "one", "method": "{name}", "error": 1e-12, "time_ns": 1.0}}]"#);

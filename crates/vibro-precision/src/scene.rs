@@ -54,16 +54,9 @@ impl Measured {
         time_ns: f64,
         answer: Result<f64, String>,
     ) -> Measured {
-        Measured {
-            method: method.to_owned(),
-            setting,
-            ours,
-            error: answer.as_ref().ok().copied(),
-            time_ns,
-            failed: answer.is_err(),
-            why: answer.err(),
-            front: false,
-        }
+        let (method, failed) = (method.to_owned(), answer.is_err());
+        let (error, why) = (answer.as_ref().ok().copied(), answer.err());
+        Measured { method, setting, ours, error, time_ns, failed, why, front: false }
     }
 }
 
@@ -90,6 +83,12 @@ pub struct Scene {
 const TIE: f64 = 1e-3;
 
 impl Scene {
+    /// A scene that no method has been run on: its name, what it is, what the error is, where the truth comes from.
+    pub(crate) fn new<S: Into<String>>(family: Family, texts: [S; 4]) -> Scene {
+        let [name, says, error_of, truth] = texts.map(Into::into);
+        Scene { name, family, says, error_of, truth, bound: None, methods: Vec::new() }
+    }
+
     /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
     ///
     /// Errors within a thousandth of each other are the same, and the faster of two is on the front. A setting of a model is the
@@ -152,9 +151,8 @@ mod tests {
         let method = |&(setting, error, time): &(&str, Option<f64>, f64)| {
             Measured::new(("", false), setting.to_owned(), time, error.ok_or_else(String::new))
         };
-        let [name, says, error_of, truth] = [const { String::new() }; 4];
         let methods = methods.iter().map(method).collect();
-        let mut scene = Scene { name, family, says, error_of, truth, bound: None, methods };
+        let mut scene = Scene { methods, ..Scene::new(family, [""; 4]) };
         scene.mark_front();
         scene.methods.iter().map(|m| m.front).collect()
     }

@@ -1,8 +1,7 @@
 //! Errors that say where, what was found, what was expected and what to try.
 //!
-//! Every fallible function of this crate returns [`Error`]. Its [`ErrorKind`] decides the exit code of
-//! the command: 1 where the data or the parameters do not allow an answer, 2 for wrong usage and for
-//! input that cannot be read.
+//! Every fallible function of this crate returns [`Error`]. What it is decides the exit code of the command: 1 where the data or the
+//! parameters do not allow an answer, 2 for wrong usage and for input that cannot be read.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -16,7 +15,15 @@ pub struct Error(Box<Inner>);
 
 #[derive(Debug)]
 struct Inner {
-    kind: ErrorKind,
+    kind: Kind,
+    /// Place in the input.
+    place: Place,
+    /// What stands there, what the system refused, or why there is no answer.
+    found: String,
+    /// What should stand there; empty where `found` says it all.
+    expected: String,
+    /// The line at fault with a caret under it, ready to print.
+    excerpt: String,
     /// What to try; empty where nothing would help.
     hint: String,
     /// Keys of the settings that the hint is about.
@@ -24,34 +31,14 @@ struct Inner {
 }
 
 /// The three ways in which a request fails.
-#[derive(Debug)]
-pub enum ErrorKind {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
     /// The operating system refused to open, read or write.
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What was being done: `open`, `read`, `write`, …
-        action: &'static str,
-        /// The system's own word.
-        source: std::io::Error,
-    },
+    Io,
     /// Input that cannot be read as what it should be, or wrong usage.
-    Input(Fault),
-    /// Readable input that does not support an answer, and why.
-    Refused(String),
-}
-
-/// Where input went wrong, and how.
-#[derive(Debug, Default, Clone, PartialEq)]
-pub struct Fault {
-    /// Place in the input.
-    pub place: Place,
-    /// What stands there.
-    pub found: String,
-    /// What should stand there; empty where `found` says it all.
-    pub expected: String,
-    /// The line at fault with a caret under it, ready to print.
-    pub excerpt: String,
+    Input,
+    /// Readable input that does not support an answer.
+    Refused,
 }
 
 /// A place in an input: as much of it as is known.
@@ -91,14 +78,14 @@ impl Place {
 }
 
 impl Error {
-    fn new(kind: ErrorKind) -> Self {
-        Error(Box::new(Inner { kind, hint: String::new(), settings: Vec::new() }))
+    fn new(kind: Kind, place: Place, found: String, expected: String) -> Self {
+        let (excerpt, hint, settings) = (String::new(), String::new(), Vec::new());
+        Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings }))
     }
 
     /// Input at `place` is not what it should be.
     pub fn input(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
-        let (found, expected) = (found.into(), expected.into());
-        Error::new(ErrorKind::Input(Fault { place, found, expected, excerpt: String::new() }))
+        Error::new(Kind::Input, place, found.into(), expected.into())
     }
 
     /// Wrong usage: no file is at fault.
@@ -108,12 +95,18 @@ impl Error {
 
     /// The data or the parameters do not allow an answer.
     pub fn refused(why: impl Into<String>) -> Self {
-        Error::new(ErrorKind::Refused(why.into()))
+        Error::new(Kind::Refused, Place::default(), why.into(), String::new())
     }
 
     /// The system refused `action` on `path`.
-    pub fn io(action: &'static str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
-        Error::new(ErrorKind::Io { path: path.as_ref().to_owned(), action, source })
+    // By value, as `map_err` hands it out.
+    #[allow(clippy::needless_pass_by_value)]
+    pub fn io(action: &str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        let source = source.to_string();
+        // Without Rust's ` (os error 2)`.
+        let plain = source.split(" (os error").next().unwrap_or_default().to_lowercase();
+        let found = format!("cannot {action} {}: {plain}", path.as_ref().display());
+        Error::new(Kind::Io, Place::default(), found, String::new())
     }
 
     /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
@@ -129,8 +122,14 @@ impl Error {
 
     /// The text of the error with settings named as `typed` says, such as `low_pass` as `--low-pass`.
     pub fn spoken(&self, typed: impl Fn(&str) -> String) -> String {
-        let named: Vec<String> = self.settings().iter().map(|key| typed(key)).collect();
-        if named.is_empty() { format!("{self:#}") } else { format!("{self:#} ({})", named.join(", ")) }
+        let Inner { place, found, expected, excerpt, hint, settings, .. } = &*self.0;
+        let part = |before: &str, text: &str, after: &str| {
+            if text.is_empty() { String::new() } else { [before, text, after].concat() }
+        };
+        let settings: Vec<String> = settings.iter().map(|key| typed(key)).collect();
+        let what = part("", &place.to_string(), ": ") + found + &part("; expected ", expected, "");
+        let advice = part("\n  try: ", hint, "") + &part(" (", &settings.join(", "), ")");
+        what + &part("\n", excerpt, "") + &advice
     }
 
     /// Adds what to try.
@@ -144,11 +143,9 @@ impl Error {
         &self.0.hint
     }
 
-    fn fault(&mut self) -> Option<&mut Fault> {
-        match &mut self.0.kind {
-            ErrorKind::Input(fault) => Some(fault),
-            _ => None,
-        }
+    /// What is known of input, to be completed; nothing of other errors.
+    fn fault(&mut self) -> Option<&mut Inner> {
+        Some(&mut *self.0).filter(|inner| inner.kind == Kind::Input)
     }
 
     /// Adds to what was found, in brackets.
@@ -174,14 +171,9 @@ impl Error {
             let width = source[start..end].trim_end().chars().count().max(1);
             fault.place.line = Some(number);
             fault.place.column = Some(before as u64 + 1);
-            let gutter = number.to_string().len();
-            fault.excerpt = format!(
-                "{:gutter$} |\n{number} | {text}\n{:gutter$} | {}{}",
-                "",
-                "",
-                " ".repeat(before),
-                "^".repeat(width)
-            );
+            let gutter = " ".repeat(number.to_string().len());
+            let caret = " ".repeat(before) + &"^".repeat(width);
+            fault.excerpt = format!("{gutter} |\n{number} | {text}\n{gutter} | {caret}");
         }
         self
     }
@@ -206,20 +198,20 @@ impl Error {
 
     /// Names the record that an answer was refused of.
     pub fn of_record(mut self, name: &str) -> Self {
-        if let ErrorKind::Refused(why) = &mut self.0.kind {
-            *why = format!("{name}: {why}");
+        if self.0.kind == Kind::Refused {
+            self.0.found = format!("{name}: {}", self.0.found);
         }
         self
     }
 
-    /// The kind, for matching.
-    pub fn kind(&self) -> &ErrorKind {
-        &self.0.kind
+    /// Why the data or the parameters do not allow an answer; nothing where it is another error.
+    pub fn refusal(&self) -> Option<&str> {
+        (self.0.kind == Kind::Refused).then_some(self.0.found.as_str())
     }
 
     /// Exit code of the command: 1 no answer possible, 2 unreadable input or wrong usage.
     pub fn exit_code(&self) -> u8 {
-        if matches!(self.0.kind, ErrorKind::Refused(_)) { 1 } else { 2 }
+        if self.0.kind == Kind::Refused { 1 } else { 2 }
     }
 }
 
@@ -242,50 +234,11 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Inner { kind, hint, settings } = &*self.0;
-        match kind {
-            ErrorKind::Io { path, action, source } => {
-                write!(f, "cannot {action} {}: {}", path.display(), plain_io(source))?;
-            }
-            ErrorKind::Input(fault) => {
-                if fault.place != Place::default() {
-                    write!(f, "{}: ", fault.place)?;
-                }
-                f.write_str(&fault.found)?;
-                if !fault.expected.is_empty() {
-                    write!(f, "; expected {}", fault.expected)?;
-                }
-                if !fault.excerpt.is_empty() {
-                    write!(f, "\n{}", fault.excerpt)?;
-                }
-            }
-            ErrorKind::Refused(why) => f.write_str(why)?,
-        }
-        if !hint.is_empty() {
-            write!(f, "\n  try: {hint}")?;
-            // The alternate form leaves the settings to who has other names for them.
-            if !settings.is_empty() && !f.alternate() {
-                write!(f, " ({})", settings.join(", "))?;
-            }
-        }
-        Ok(())
+        f.write_str(&self.spoken(str::to_owned))
     }
 }
 
-/// The system's message without Rust's ` (os error 2)`.
-fn plain_io(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
-}
-
-impl std::error::Error for Error {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match &self.0.kind {
-            ErrorKind::Io { source, .. } => Some(source),
-            _ => None,
-        }
-    }
-}
+impl std::error::Error for Error {}
 
 #[cfg(test)]
 mod tests {

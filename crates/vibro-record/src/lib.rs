@@ -6,9 +6,7 @@
 
 mod axis;
 mod error;
-mod estimate;
 mod finding;
-mod frf;
 mod meta;
 mod spectrum;
 mod sweep;
@@ -18,12 +16,10 @@ pub mod units;
 mod window;
 
 pub use axis::{Axis, AxisKind, Grid};
-pub use error::{Error, ErrorKind, Fault, Place, Result};
-pub use estimate::Estimate;
-pub use finding::{Fact, Finding, Severity};
-pub use frf::{Frf, FrfKind};
+pub use error::{Error, Place, Result};
+pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, FROM_BLOWS, Meta, Step};
-pub use spectrum::{Scaling, Spectrum, Values};
+pub use spectrum::{Frf, FrfKind, Scaling, Spectrum, Values};
 pub use sweep::{Direction, Sweep, SweepPoint};
 pub use trace::Trace;
 pub use traces::{Stream, Traces, find_channel};

@@ -53,15 +53,9 @@ pub struct Meta {
 impl Meta {
     /// Meta data of a record in `unit`, which is taken to be SI already (see [`Unit::si`]).
     pub fn new(name: impl Into<String>, unit: Unit) -> Meta {
-        Meta {
-            name: name.into(),
-            quantity: unit.quantity(),
-            unit,
-            declared_n: None,
-            notes: Vec::new(),
-            findings: Vec::new(),
-            history: Vec::new(),
-        }
+        let (name, quantity) = (name.into(), unit.quantity());
+        let (notes, findings, history) = Default::default();
+        Meta { name, quantity, unit, declared_n: None, notes, findings, history }
     }
 
     /// Adds a finding, once.

@@ -263,20 +263,18 @@ fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
 
 /// The sampling rate and the start that all traces have.
 fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
-    let mut clocks = Vec::new();
-    for trace in traces {
-        let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
+    let rate_of = |trace: &Trace| {
+        trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
             let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
-            return Err(Error::input(place(path), found, "samples at even distances in time")
+            Error::input(place(path), found, "samples at even distances in time")
                 .hint("state the sampling rate")
-                .setting("rate"));
-        };
-        clocks.push((trace, rate, trace.axis.start()));
-    }
-    let Some(&(first, rate, start)) = clocks.first() else {
-        return Err(Error::input(place(path), "no channel", "at least one"));
+                .setting("rate")
+        })
     };
-    for (trace, own, begin) in clocks {
+    let first = traces.first().ok_or_else(|| Error::input(place(path), "no channel", "at least one"))?;
+    let (rate, start) = (rate_of(first)?, first.axis.start());
+    for trace in traces {
+        let (own, begin) = (rate_of(trace)?, trace.axis.start());
         let of = [first, trace];
         if (own / rate - 1.0).abs() * frames as f64 > APART {
             return Err(apart(path, of, &format!("a rate of {rate} Hz"), &format!("{own} Hz")));

@@ -26,19 +26,17 @@ pub enum Window {
     FlatTop,
 }
 
-impl Window {
-    /// Name, as in JSON and in `campaign.toml`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Window::Rectangular => "rectangular",
-            Window::Hann => "hann",
-            Window::Hamming => "hamming",
-            Window::Blackman => "blackman",
-            Window::BlackmanHarris => "blackman-harris",
-            Window::FlatTop => "flat-top",
-        }
-    }
+/// Name and cosine coefficients of each window, in the order of the variants.
+const TABLE: [(&str, &[f64]); 6] = [
+    ("rectangular", &[1.0]),
+    ("hann", &[0.5, 0.5]),
+    ("hamming", &[0.54, 0.46]),
+    ("blackman", &[0.42, 0.5, 0.08]),
+    ("blackman-harris", &[0.358_75, 0.488_29, 0.141_28, 0.011_68]),
+    ("flat-top", &[0.215_578_95, 0.416_631_58, 0.277_263_158, 0.083_578_947, 0.006_947_368]),
+];
 
+impl Window {
     /// Every window.
     pub const ALL: [Window; 6] = [
         Window::Rectangular,
@@ -49,30 +47,25 @@ impl Window {
         Window::FlatTop,
     ];
 
+    /// Name, as in JSON and in `campaign.toml`.
+    pub fn name(self) -> &'static str {
+        TABLE[self as usize].0
+    }
+
     /// The window with this name, in the spellings analysers use; case, blanks, `-` and `_` do not count.
     pub fn from_name(name: &str) -> Option<Window> {
         let key: String = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
-        Some(match key.as_str() {
-            "none" | "rectangular" | "rect" | "boxcar" | "uniform" => Window::Rectangular,
-            "hann" | "hanning" => Window::Hann,
-            "hamming" => Window::Hamming,
-            "blackman" => Window::Blackman,
-            "blackmanharris" => Window::BlackmanHarris,
-            "flattop" => Window::FlatTop,
-            _ => return None,
-        })
+        let key = match key.as_str() {
+            "none" | "rect" | "boxcar" | "uniform" => "rectangular",
+            "hanning" => "hann",
+            key => key,
+        };
+        Window::ALL.into_iter().find(|window| window.name().replace('-', "") == key)
     }
 
     /// Cosine coefficients a₀, a₁, … of w(n) = Σ (−1)ᵏ aₖ cos(2πkn/N).
     pub fn coefficients(self) -> &'static [f64] {
-        match self {
-            Window::Rectangular => &[1.0],
-            Window::Hann => &[0.5, 0.5],
-            Window::Hamming => &[0.54, 0.46],
-            Window::Blackman => &[0.42, 0.5, 0.08],
-            Window::BlackmanHarris => &[0.358_75, 0.488_29, 0.141_28, 0.011_68],
-            Window::FlatTop => &[0.215_578_95, 0.416_631_58, 0.277_263_158, 0.083_578_947, 0.006_947_368],
-        }
+        TABLE[self as usize].1
     }
 
     /// Mean of the samples: the factor by which a sine's line is too small before correction.

@@ -41,7 +41,7 @@ fn grid(map: &FailureMap, title: String) -> Figure {
             let outcome = cell.map_or(Outcome::NotAsked, |c| c.outcome);
             OUTCOMES.iter().position(|o| o.0 == outcome)
         };
-        grid = grid.row(&row[0].border, typeset(&row[0].scene), methods.iter().map(of).collect());
+        grid = grid.row(&row[0].border, &typeset(&row[0].scene), methods.iter().map(of).collect());
     }
     let height = grid.height();
     Figure::double(title).height(height).panel(grid).caption(

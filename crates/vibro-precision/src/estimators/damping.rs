@@ -1,8 +1,7 @@
 //! Damping ratio from a frequency response function.
 
-use super::bound::bounds;
 use super::trial::{Answer, Case, Kind, Method, measured, questions};
-use super::{rivals, scene};
+use super::{bounds, rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
 use num_complex::Complex64;
@@ -16,10 +15,10 @@ const OWN: f64 = 100.0;
 const ZETA: f64 = 0.0018;
 
 const METHODS: [Method<Measured>; 4] = [
-    Method::rival("half power, lines", |m| rivals::half_power(&m.frequency, &m.values, false)),
-    Method::rival("half power, between", |m| rivals::half_power(&m.frequency, &m.values, true)),
-    Method::rival("circle", |m| rivals::circle(&m.frequency, &m.values)),
-    Method::own("rational fit", rational),
+    Method::Rival("half power, lines", |m| rivals::half_power(&m.frequency, &m.values, false)),
+    Method::Rival("half power, between", |m| rivals::half_power(&m.frequency, &m.values, true)),
+    Method::Rival("circle", |m| rivals::circle(&m.frequency, &m.values)),
+    Method::Own("rational fit", rational),
 ];
 
 /// The strongest mode's ζ, as `vibro modal` gives it.
@@ -100,7 +99,8 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
 pub(crate) fn borders(quick: bool) -> Vec<Question> {
     // Modes on lines of 0.5 Hz up to 300 Hz, of which the first is asked for, changed after they were made.
     let changed = |name: &str, modes: Vec<Pole>, change: fn(&mut Measured)| {
-        Kind::changed(name, 21_000, move |noise| case(&modes, (1.0, 300.0, 0.5), 0.01, noise), change)
+        Kind::new(name, 21_000, move |noise: &mut Noise| case(&modes, (1.0, 300.0, 0.5), 0.01, noise))
+            .changed(change)
     };
     let plain = |name: &str, modes: &[Pole]| changed(name, modes.to_vec(), |_| ());
     let one = |name, change| changed(name, vec![mode(100.0, 0.01)], change);

@@ -1,8 +1,7 @@
 //! Impacts of a contact trace: how often, and when.
 
-use super::bound::bounds;
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
-use super::{rivals, scene};
+use super::{bounds, rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
 use std::f64::consts::TAU;
@@ -24,7 +23,7 @@ fn pulse(x: f64) -> f64 {
 const LONG: f64 = 120.0;
 
 /// How a train of impacts is made.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Train {
     /// Number of impacts, and those that are missing.
     count: usize,
@@ -38,15 +37,10 @@ struct Train {
     ringing: f64,
 }
 
-const PLAIN: Train = Train {
-    count: 60,
-    missing: Vec::new(),
-    noise: 0.01,
-    heights: 0.0,
-    jitter: 0.0,
-    first: 1.0,
-    ringing: 0.0,
-};
+/// An even train of 60 impacts in noise of 1 %.
+fn plain() -> Train {
+    Train { count: 60, noise: 0.01, first: 1.0, ..Train::default() }
+}
 
 impl Train {
     /// The trace, the samples at which impacts stand, and the interval in samples.
@@ -86,9 +80,9 @@ fn onset_bound(noise: f64) -> f64 {
 }
 
 const RATES: [Method<Trace>; 3] = [
-    Method::rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
-    Method::rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
-    Method::own("onset fit", |t| {
+    Method::Rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
+    Method::Rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
+    Method::Own("onset fit", |t| {
         let found = impacts(t, &ImpactsOptions::default())?;
         Ok(Answer::found(&found.frequency, &found.findings))
     }),
@@ -103,11 +97,11 @@ fn middle(times: &[f64]) -> f64 {
 }
 
 const TIMES: [Method<Trace>; 3] = [
-    Method::rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
-    Method::rival("threshold, between", |t| {
+    Method::Rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
+    Method::Rival("threshold, between", |t| {
         middle(&rivals::passages(&t.values, rivals::half(&t.values))) / RATE
     }),
-    Method::own("fit of the average", |t| {
+    Method::Own("fit of the average", |t| {
         let found = impacts(t, &ImpactsOptions::default())?;
         let std = found.onset_std.map(|s| s * f64::sqrt(2.0));
         Ok(Answer { value: middle(&found.times), std, doubt: None })
@@ -117,18 +111,18 @@ const TIMES: [Method<Trace>; 3] = [
 /// The scenes of impacts.
 pub fn scenes(quick: bool) -> Vec<Scene> {
     let settings = [
-        ("even", PLAIN),
-        ("2 of 60 missing", Train { missing: vec![20, 41], ..PLAIN }),
-        ("ringing of 60 %", Train { ringing: 0.6, ..PLAIN }),
-        ("first 5 times the rest", Train { first: 5.0, ..PLAIN }),
-        ("heights vary", Train { heights: 0.4, ..PLAIN }),
-        ("noise of 10 %", Train { noise: 0.1, ..PLAIN }),
+        ("even", plain()),
+        ("2 of 60 missing", Train { missing: vec![20, 41], ..plain() }),
+        ("ringing of 60 %", Train { ringing: 0.6, ..plain() }),
+        ("first 5 times the rest", Train { first: 5.0, ..plain() }),
+        ("heights vary", Train { heights: 0.4, ..plain() }),
+        ("noise of 10 %", Train { noise: 0.1, ..plain() }),
     ]
     .map(|(name, train)| Kind::new(name, 30_000, train.rate()));
     let noises = [0.1, 0.03, 0.01, 0.003, 0.001].map(|sigma| {
         let bound = f64::sqrt(2.0) * onset_bound(sigma) / RATE;
         Kind::new(format!("noise of {} %", 100.0 * sigma), 31_000, move |noise: &mut Noise| {
-            let (data, at, _) = Train { count: COUNT, noise: sigma, jitter: 0.01, ..PLAIN }.made(noise);
+            let (data, at, _) = Train { count: COUNT, noise: sigma, jitter: 0.01, ..plain() }.made(noise);
             Case { data, truth: middle(&at) / RATE, unit: bound, tolerance: 1.0 / RATE }
         })
     });
@@ -162,26 +156,26 @@ fn scattered(count: usize) -> Vec<usize> {
 /// What methods for impacts do at their borders.
 pub(crate) fn borders(quick: bool) -> Vec<Question> {
     let kind = |name: &str, train: Train| Kind::new(name, 32_000, train.rate());
-    let ringing =
-        [0.3, 0.6, 0.9].map(|r| kind(&format!("ringing of {} %", 100.0 * r), Train { ringing: r, ..PLAIN }));
+    let ringing = [0.3, 0.6, 0.9]
+        .map(|r| kind(&format!("ringing of {} %", 100.0 * r), Train { ringing: r, ..plain() }));
     let counts = [
-        kind("2 of 60 missing", Train { missing: vec![20, 41], ..PLAIN }),
-        kind("20 of 60 missing", Train { missing: scattered(20), ..PLAIN }),
-        kind("40 of 60 missing", Train { missing: scattered(40), ..PLAIN }),
-        kind("two impacts", Train { count: 2, ..PLAIN }),
-        kind("one impact", Train { count: 1, ..PLAIN }),
-        kind("no impact", Train { count: 0, ..PLAIN }),
+        kind("2 of 60 missing", Train { missing: vec![20, 41], ..plain() }),
+        kind("20 of 60 missing", Train { missing: scattered(20), ..plain() }),
+        kind("40 of 60 missing", Train { missing: scattered(40), ..plain() }),
+        kind("two impacts", Train { count: 2, ..plain() }),
+        kind("one impact", Train { count: 1, ..plain() }),
+        kind("no impact", Train { count: 0, ..plain() }),
     ];
     let heights = [
-        kind("first 5 times the rest", Train { first: 5.0, ..PLAIN }),
-        kind("first 50 times the rest", Train { first: 50.0, ..PLAIN }),
-        kind("heights vary by 1 : 3", Train { heights: 0.4, ..PLAIN }),
-        kind("heights vary by 1 : 20", Train { heights: 1.0, ..PLAIN }),
+        kind("first 5 times the rest", Train { first: 5.0, ..plain() }),
+        kind("first 50 times the rest", Train { first: 50.0, ..plain() }),
+        kind("heights vary by 1 : 3", Train { heights: 0.4, ..plain() }),
+        kind("heights vary by 1 : 20", Train { heights: 1.0, ..plain() }),
     ];
     let noise = [0.1, 0.3, 1.0, 3.0]
-        .map(|n| kind(&format!("noise of {} % of the height", 100.0 * n), Train { noise: n, ..PLAIN }));
+        .map(|n| kind(&format!("noise of {} % of the height", 100.0 * n), Train { noise: n, ..plain() }));
     let uneven = [0.02, 0.1, 0.3]
-        .map(|jitter| kind(&format!("onsets scatter by {} %", 100.0 * jitter), Train { jitter, ..PLAIN }));
+        .map(|jitter| kind(&format!("onsets scatter by {} %", 100.0 * jitter), Train { jitter, ..plain() }));
     let changes: [Change<Trace>; 8] = [
         ("three spikes in front", |t| [20, 50, 110].into_iter().for_each(|i| t.values[i] = 0.9)),
         ("pulses point downwards", |t| each(t, |_, v| -v)),
@@ -195,7 +189,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("one sample missing", |t| t.values[300] = f64::NAN),
         ("all equal", |t| t.values.fill(0.25)),
     ];
-    let faults = changes.map(|(name, change)| Kind::changed(name, 32_000, PLAIN.rate(), change));
+    let faults = changes.map(|(name, change)| Kind::new(name, 32_000, plain().rate()).changed(change));
     let mut all = questions("impact rate: ringing", &RATES, ringing, quick);
     all.extend(questions("impact rate: missing", &RATES, counts, quick));
     all.extend(questions("impact rate: heights", &RATES, heights, quick));
@@ -223,7 +217,7 @@ mod tests {
 
     fn in_noise(cases: u64) {
         for sigma in [0.1, 0.12, 0.15, 0.2] {
-            let make = Train { noise: sigma, ..PLAIN }.rate();
+            let make = Train { noise: sigma, ..plain() }.rate();
             let (mut right, mut withheld, mut refused) = (0, 0, 0);
             for seed in 30_000..30_000 + cases {
                 let case = make(&mut Noise::new(seed));

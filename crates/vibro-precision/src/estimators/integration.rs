@@ -24,19 +24,19 @@ struct Vibration {
 }
 
 const METHODS: [Method<Vibration>; 6] = [
-    Method::rival("division, largest line", |v| divided(v).into_iter().skip(1).fold(0.0, f64::max)),
-    Method::rival("division, line at f", |v| {
+    Method::Rival("division, largest line", |v| divided(v).into_iter().skip(1).fold(0.0, f64::max)),
+    Method::Rival("division, line at f", |v| {
         divided(v)[(v.frequency / rivals::spacing(&v.velocity)).round() as usize]
     }),
-    Method::rival("sum, half the swing", |v| rivals::half_swing(&rivals::sums(&v.velocity))),
-    Method::rival("sum, detrended", |v| {
+    Method::Rival("sum, half the swing", |v| rivals::half_swing(&rivals::sums(&v.velocity))),
+    Method::Rival("sum, detrended", |v| {
         let mean = rivals::mean(&v.velocity.values);
         let values = v.velocity.values.iter().map(|x| x - mean).collect();
         let moved = rivals::detrended(&rivals::sums(&Trace { values, ..v.velocity.clone() }));
         (2.0 * rivals::mean(&moved.iter().map(|x| x * x).collect::<Vec<_>>())).sqrt()
     }),
-    Method::own("lines, cut-off", with_cut_off),
-    Method::own("in time, high-pass", filtered),
+    Method::Own("lines, cut-off", with_cut_off),
+    Method::Own("in time, high-pass", filtered),
 ];
 
 /// The lines, each divided by its angular frequency as an analyser does.
@@ -104,12 +104,8 @@ impl Made {
                 size * (sine + level + drift * i as f64 / n as f64) + sigma * noise.normal()
             };
             let velocity = trace("laser", "m/s", 1.0 / RATE, (0..n).map(value).collect());
-            Case {
-                data: Vibration { velocity, frequency },
-                truth: AMPLITUDE,
-                unit: AMPLITUDE,
-                tolerance: 0.05 * AMPLITUDE,
-            }
+            let data = Vibration { velocity, frequency };
+            Case { data, truth: AMPLITUDE, unit: AMPLITUDE, tolerance: 0.05 * AMPLITUDE }
         })
     }
 }

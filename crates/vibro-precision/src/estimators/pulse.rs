@@ -1,8 +1,7 @@
 //! Damping ratio of a contact from the pulse of its force.
 
-use super::bound::bounds;
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
-use super::{rivals, scene};
+use super::{bounds, rivals, scene};
 use crate::Scene;
 use crate::failure::Question;
 use std::f64::consts::{PI, TAU};
@@ -22,22 +21,22 @@ struct Pulse {
 }
 
 const BY_HAND: Method<Pulse> =
-    Method::rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
+    Method::Rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
 
-const WHOLE: Method<Pulse> = Method::own("whole pulse", |p| {
+const WHOLE: Method<Pulse> = Method::Own("whole pulse", |p| {
     let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
     Ok(Answer::found(&found.xi, &found.findings))
 });
 
 /// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
-const TWO_TIMES: Method<Pulse> = Method::own("two times", |p| {
+const TWO_TIMES: Method<Pulse> = Method::Own("two times", |p| {
     let [peak, end, std] = p.times;
     let found = two_times(peak, end, Some(std), None)?;
     Ok(Answer::found(&found.xi, &found.findings))
 });
 
 /// The same from a spreadsheet, which asks for no domain.
-const FORMULA: Method<Pulse> = Method::rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
+const FORMULA: Method<Pulse> = Method::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 
 const METHODS: [Method<Pulse>; 2] = [BY_HAND, WHOLE];
 const FOUR: [Method<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
@@ -82,16 +81,10 @@ fn pulses(xi: f64, samples: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Pulse
         let values = shape.iter().map(|v| 3.0 * (v + part * height * noise.normal())).collect();
         let std = 0.005 * length;
         let peak = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| k.time_to_peak()).unwrap_or(0.0);
-        Case {
-            data: Pulse {
-                trace: trace("bit", "m/s²", dt, values),
-                instrument: Instrument::Flat,
-                times: [peak + std * noise.normal(), length + std * noise.normal(), std],
-            },
-            truth: xi,
-            unit: 1.0,
-            tolerance: 0.02,
-        }
+        let times = [peak + std * noise.normal(), length + std * noise.normal(), std];
+        let trace = trace("bit", "m/s²", dt, values);
+        let data = Pulse { trace, instrument: Instrument::Flat, times };
+        Case { data, truth: xi, unit: 1.0, tolerance: 0.02 }
     }
 }
 
@@ -176,7 +169,8 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("one sample missing", |p| p.trace.values[100] = f64::NAN),
         ("all equal", |p| p.trace.values.fill(1.0)),
     ];
-    let faults = changes.map(|(name, change)| Kind::changed(name, 51_000, pulses(0.2, 40.0, 0.01), change));
+    let faults =
+        changes.map(|(name, change)| Kind::new(name, 51_000, pulses(0.2, 40.0, 0.01)).changed(change));
     let mut all = questions("contact ξ: ρ → 1/2", &FOUR, light, quick);
     all.extend(questions("contact ξ: ρ → 0", &FOUR, heavy, quick));
     all.extend(questions("contact ξ: noise", &METHODS, noise, quick));

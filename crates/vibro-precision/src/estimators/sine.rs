@@ -1,10 +1,9 @@
 //! Frequency and amplitude of sines in noise.
 
-use super::bound::bounds;
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
-use super::{one_point, rivals, scene};
-use crate::Scene;
+use super::{bounds, one_point, rivals, scene};
 use crate::failure::Question;
+use crate::{Measured, Scene};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::excitation::{Excitation, excitations};
@@ -51,24 +50,24 @@ fn hertz(trace: &Trace, window: Window, place: fn(&[f64]) -> f64) -> f64 {
 }
 
 const FREQUENCY: [Method<Trace>; 5] = [
-    Method::rival("zero crossings", |t| {
+    Method::Rival("zero crossings", |t| {
         RATE * rivals::mean_rate(&rivals::passages(&t.values, rivals::mean(&t.values)))
     }),
-    Method::rival("largest line", |t| hertz(t, Window::Rectangular, |l| rivals::largest(l) as f64)),
-    Method::rival("parabola", |t| hertz(t, Window::Hann, |l| rivals::parabola(l, rivals::largest(l)))),
-    Method::own("three lines, Hann", |t| three_lines(t, |e| (e.frequency, e.std))),
-    Method::own("least squares", |t| {
+    Method::Rival("largest line", |t| hertz(t, Window::Rectangular, |l| rivals::largest(l) as f64)),
+    Method::Rival("parabola", |t| hertz(t, Window::Hann, |l| rivals::parabola(l, rivals::largest(l)))),
+    Method::Own("three lines, Hann", |t| three_lines(t, |e| (e.frequency, e.std))),
+    Method::Own("least squares", |t| {
         sine(t, None).map(|s| Answer::found(&s.tones[0].frequency, &s.findings))
     }),
 ];
 
 const AMPLITUDE: [Method<Trace>; 6] = [
-    Method::rival("half the swing", |t| rivals::half_swing(&t.values)),
-    Method::rival("line, no window", |t| highest(t, Window::Rectangular)),
-    Method::rival("line, Hann", |t| highest(t, Window::Hann)),
-    Method::rival("line, flat top", |t| highest(t, Window::FlatTop)),
-    Method::own("three lines, Hann", |t| three_lines(t, |e| (e.force.unwrap_or(f64::NAN), e.force_std))),
-    Method::own("least squares", |t| {
+    Method::Rival("half the swing", |t| rivals::half_swing(&t.values)),
+    Method::Rival("line, no window", |t| highest(t, Window::Rectangular)),
+    Method::Rival("line, Hann", |t| highest(t, Window::Hann)),
+    Method::Rival("line, flat top", |t| highest(t, Window::FlatTop)),
+    Method::Own("three lines, Hann", |t| three_lines(t, |e| (e.force.unwrap_or(f64::NAN), e.force_std))),
+    Method::Own("least squares", |t| {
         sine(t, None).map(|s| Answer::found(&s.tones[0].amplitude, &s.findings))
     }),
 ];
@@ -79,13 +78,13 @@ fn highest(trace: &Trace, window: Window) -> f64 {
 
 /// The weaker of two sines.
 const WEAKER: [Method<Trace>; 3] = [
-    Method::rival("second line", |t| {
+    Method::Rival("second line", |t| {
         hertz(t, Window::Rectangular, |l| rivals::second(l).map_or(f64::NAN, |k| k as f64))
     }),
-    Method::rival("parabola, Hann", |t| {
+    Method::Rival("parabola, Hann", |t| {
         hertz(t, Window::Hann, |l| rivals::second(l).map_or(f64::NAN, |k| rivals::parabola(l, k)))
     }),
-    Method::own("least squares", |t| {
+    Method::Own("least squares", |t| {
         let found = tones(t, 2)?;
         let tone =
             found.tones.get(1).ok_or_else(|| Error::refused("no second tone stands out of the noise"))?;
@@ -122,37 +121,6 @@ fn pair(apart: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
     }
 }
 
-/// Where the truth comes from.
-const TRUTH: &str = "the sine that was written into the record";
-
-/// The scenes of sines.
-const SCENES: [[&str; 4]; 4] = [
-    [
-        "sine-noise",
-        "The frequency of one sine between two lines of a record of 1024 samples, from a signal as strong as the noise (0 dB) to one of 80 dB.",
-        "frequency: error (rms) over its Cramér–Rao bound",
-        TRUTH,
-    ],
-    [
-        "sine-length",
-        "The frequency of one sine, 40 dB above the noise, at 1024 samples a second, from 64 to 16 384 samples; the bound is that of the longest record.",
-        "frequency: error (rms), Hz",
-        TRUTH,
-    ],
-    [
-        "sine-amplitude",
-        "The amplitude of one sine on a line, a quarter of a line off and half-way between two, 60 dB above the noise.",
-        "amplitude: relative error (rms)",
-        TRUTH,
-    ],
-    [
-        "two-sines",
-        "The frequency of the weaker of two sines, of half the other's amplitude and 34 dB above the noise, from 0.7 to 16 lines beside it.",
-        "frequency: error (rms) over its Cramér–Rao bound",
-        TRUTH,
-    ],
-];
-
 /// Every scene of sines, measured.
 pub fn scenes(quick: bool) -> Vec<Scene> {
     let noise = [0.0, 20.0, 40.0, 60.0, 80.0]
@@ -168,8 +136,31 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
     });
     let pairs = [0.7, 1.0, 1.5, 2.0, 4.0, 16.0]
         .map(|apart| Kind::new(format!("{apart} lines apart"), 4_000, pair(apart)));
-    let [in_noise, of_length, of_amplitude, of_two] = SCENES;
+    let in_noise = [
+        "sine-noise",
+        "The frequency of one sine between two lines of a record of 1024 samples, from a signal as strong as the noise (0 dB) to one of 80 dB.",
+        "frequency: error (rms) over its Cramér–Rao bound",
+    ];
+    let of_length = [
+        "sine-length",
+        "The frequency of one sine, 40 dB above the noise, at 1024 samples a second, from 64 to 16 384 samples; the bound is that of the longest record.",
+        "frequency: error (rms), Hz",
+    ];
+    let of_amplitude = [
+        "sine-amplitude",
+        "The amplitude of one sine on a line, a quarter of a line off and half-way between two, 60 dB above the noise.",
+        "amplitude: relative error (rms)",
+    ];
+    let of_two = [
+        "two-sines",
+        "The frequency of the weaker of two sines, of half the other's amplitude and 34 dB above the noise, from 0.7 to 16 lines beside it.",
+        "frequency: error (rms) over its Cramér–Rao bound",
+    ];
     let (longest, amplitude) = (bound(16_384, 40.0) * RATE / 16_384.0, sigma(60.0) * (2.0 / N as f64).sqrt());
+    // All are known by what was written into the record.
+    let scene = |[name, says, error_of]: [&str; 3], bound: f64, methods: Vec<Measured>| {
+        scene([name, says, error_of, "the sine that was written into the record"], bound, methods)
+    };
     vec![
         scene(in_noise, 1.0, measured(&FREQUENCY, &noise, quick)),
         scene(of_length, longest, measured(&FREQUENCY, &length, quick)),
@@ -204,7 +195,8 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("8 samples", |t| t.values.truncate(8)),
         ("all zero", |t| t.values.fill(0.0)),
     ];
-    let changed = changes.map(|(name, change)| Kind::changed(name, 11_000, anywhere(N, 40.0, 1.0), change));
+    let changed =
+        changes.map(|(name, change)| Kind::new(name, 11_000, anywhere(N, 40.0, 1.0)).changed(change));
     let faults = std::iter::once(at("level 1000 times the amplitude", N, 40.3, 1e3)).chain(changed);
     let beside =
         [0.3, 0.7, 1.0, 2.0, 4.0].map(|apart| Kind::new(format!("{apart} lines apart"), 13_000, pair(apart)));

@@ -28,38 +28,28 @@ impl Answer {
     }
 }
 
-/// A way to get a number from a record.
-pub struct Method<D: 'static> {
-    /// Name in charts.
-    pub name: &'static str,
-    way: Way<D>,
-}
-
-enum Way<D: 'static> {
-    Own(fn(&D) -> Result<Answer>),
-    Rival(fn(&D) -> f64),
+/// A way to get a number from a record, by its name in charts.
+pub enum Method<D: 'static> {
+    /// One of this library's.
+    Own(&'static str, fn(&D) -> Result<Answer>),
+    /// What is written by hand: a number without a word, not a number where it finds none.
+    Rival(&'static str, fn(&D) -> f64),
 }
 
 impl<D> Method<D> {
-    /// One of this library's.
-    pub const fn own(name: &'static str, way: fn(&D) -> Result<Answer>) -> Method<D> {
-        Method { name, way: Way::Own(way) }
-    }
-
-    /// What is written by hand: a number without a word, not a number where it finds none.
-    pub const fn rival(name: &'static str, way: fn(&D) -> f64) -> Method<D> {
-        Method { name, way: Way::Rival(way) }
-    }
-
-    fn ours(&self) -> bool {
-        matches!(self.way, Way::Own(_))
+    /// Its name, and whether it is one of this library's.
+    fn name(&self) -> (&'static str, bool) {
+        match *self {
+            Method::Own(name, _) => (name, true),
+            Method::Rival(name, _) => (name, false),
+        }
     }
 
     /// The answer to a record, or why there is none.
     fn answer(&self, record: &D) -> std::result::Result<Answer, String> {
-        let answer = match self.way {
-            Way::Own(way) => way(record).map_err(|error| Found::from(error).why)?,
-            Way::Rival(way) => Answer { value: way(record), std: None, doubt: None },
+        let answer = match self {
+            Method::Own(_, way) => way(record).map_err(|error| Found::from(error).why)?,
+            Method::Rival(_, way) => Answer { value: way(record), std: None, doubt: None },
         };
         if answer.value.is_finite() { Ok(answer) } else { Err("it gives no number".to_owned()) }
     }
@@ -102,12 +92,8 @@ impl<D: 'static> Kind<D> {
     }
 
     /// The same, each record changed after it was made.
-    pub fn changed(
-        name: &str,
-        seed: u64,
-        make: impl Fn(&mut Noise) -> Case<D> + Send + Sync + 'static,
-        change: impl Fn(&mut D) + Send + Sync + 'static,
-    ) -> Kind<D> {
+    pub fn changed(self, change: impl Fn(&mut D) + Send + Sync + 'static) -> Kind<D> {
+        let Kind { name, seed, make } = self;
         Kind::new(name, seed, move |noise| {
             let mut case = make(noise);
             change(&mut case.data);
@@ -161,8 +147,7 @@ pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: 
         } else {
             Ok((squares.iter().sum::<f64>() / n as f64).sqrt())
         };
-        let name = (method.name, method.ours());
-        Measured { why, ..Measured::new(name, setting.name.clone(), median(&mut times), answer) }
+        Measured { why, ..Measured::new(method.name(), setting.name.clone(), median(&mut times), answer) }
     };
     methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
 }
@@ -183,12 +168,10 @@ pub fn questions<D: Send + 'static>(
     kinds: impl IntoIterator<Item = Kind<D>>,
     quick: bool,
 ) -> Vec<Question> {
-    let question = |method: &'static Method<D>, kind: Arc<Kind<D>>| Question {
-        method: method.name,
-        ours: method.ours(),
-        border,
-        scene: kind.name.clone(),
-        ask: Box::new(move || asked(method, &kind, quick)),
+    let question = |method: &'static Method<D>, kind: Arc<Kind<D>>| {
+        let ((method_name, ours), scene) = (method.name(), kind.name.clone());
+        let answer = Box::new(move || judged(method, &kind, quick));
+        Question { method: method_name, ours, border, scene, answer }
     };
     let kinds = kinds.into_iter().map(Arc::new);
     kinds.flat_map(|k| methods.iter().map(move |m| question(m, Arc::clone(&k)))).collect()
@@ -208,36 +191,30 @@ fn off(answer: &Answer, truth: f64, tolerance: f64) -> std::result::Result<f64, 
     }
 }
 
-fn asked<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found {
+fn judged<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found {
     let trials = TRIALS[usize::from(quick)];
-    let (mut right, mut wrong, mut worst) = (0, 0, 0.0_f64);
-    let (mut refusal, mut held) = (None, [0; 2]);
-    for number in 0..trials {
+    // How far off each answer is, and whether it states an uncertainty.
+    let one = |number: usize| {
         let Case { data, truth, tolerance, .. } = kind.case(number);
-        let stated = method.answer(&data).and_then(|a| Ok((off(&a, truth, tolerance)?, a.std.is_some())));
-        match stated {
-            Ok((off, states)) => {
-                let beyond = usize::from(off > 1.0);
-                (right, wrong, worst) = (right + 1 - beyond, wrong + beyond, worst.max(off));
-                held = [held[0] + usize::from(states), held[1] + beyond * usize::from(states)];
-            }
-            Err(why) => refusal = refusal.or(Some(why)),
-        }
-    }
+        method.answer(&data).and_then(|a| Ok((off(&a, truth, tolerance)?, a.std.is_some())))
+    };
+    let answers: Vec<_> = (0..trials).map(one).collect();
+    let count =
+        |which: fn(f64, bool) -> bool| answers.iter().flatten().filter(|(o, s)| which(*o, *s)).count();
+    let (right, wrong) = (count(|off, _| off <= 1.0), count(|off, _| off > 1.0));
+    let stated = [count(|_, states| states), count(|off, states| states && off > 1.0)];
+    let worst = answers.iter().flatten().map(|a| a.0).fold(0.0, f64::max);
+    let allowed = "what they state or is allowed";
     let found = if WITHIN * worst > FAR || wrong > OUTLIERS[usize::from(quick)] {
-        let why = format!(
-            "{wrong} of {trials} answers beyond what they state or is allowed, the worst {worst:.3} times"
-        );
+        let why = format!("{wrong} of {trials} answers beyond {allowed}, the worst {worst:.3} times");
         Found::new(Outcome::Wrong, why)
     } else if 2 * right >= trials {
-        Found::new(
-            Outcome::Right,
-            format!("{right} of {trials} answers within what they state or is allowed"),
-        )
+        Found::new(Outcome::Right, format!("{right} of {trials} answers within {allowed}"))
     } else {
+        let refusal = answers.into_iter().find_map(std::result::Result::err);
         Found::new(Outcome::Refused, refusal.unwrap_or_else(|| "too few answers are right".to_owned()))
     };
-    Found { held, ..found }
+    Found { stated, ..found }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::check;
 use super::rivals::{self as by, Method};
 use super::scenes::{at, grazing_task, task_c};
-use super::task::{Task, Told};
+use super::task::{Log, Task};
 use super::truth::{motion, settled};
 use crate::failure::{Found, Question};
 use crate::{FailureMap, Family, Outcome};
@@ -18,12 +18,12 @@ struct Border {
     name: &'static str,
     scene: String,
     task: Task,
-    asks: Asks,
+    goal: Goal,
 }
 
 /// What is asked of a method.
 #[derive(Clone, Copy, PartialEq)]
-enum Asks {
+enum Goal {
     /// The impacts and rests of the motion.
     Motion,
     /// The same, of methods that have a contact.
@@ -85,8 +85,7 @@ fn chatter(restitution: f64) -> Task {
 /// Restitution up to which the first chatter ends in rest, by halving: with more the masses are let go while they still bounce.
 fn onset() -> f64 {
     // The first release is at a quarter of a second whatever R is, the next chatter begins behind 0.4 s.
-    let rests =
-        |r| motion(&Task { until: 0.3, ..chatter(r) }, None).is_ok_and(|told| !told.sticks.is_empty());
+    let rests = |r| motion(&Task { until: 0.3, ..chatter(r) }, None).is_ok_and(|log| !log.sticks.is_empty());
     let (mut low, mut high) = (0.7, 0.9);
     for _ in 0..20 {
         let middle = f64::midpoint(low, high);
@@ -99,11 +98,11 @@ fn onset() -> f64 {
 fn borders(quick: bool) -> Result<Vec<Border>> {
     let thesis = Rig::thesis();
     let mut all = Vec::new();
-    let mut add = |name, scene: String, task, asks| all.push(Border { name, scene, task, asks });
+    let mut add = |name, scene: String, task, goal| all.push(Border { name, scene, task, goal });
     for depth in [1e-3, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-6, -1e-3] {
         let (task, time) = grazing_task(depth, 1)?;
         let words = if depth > 0.0 { "reached" } else { "missed" };
-        add("grazing", format!("{words} by {}", quantity(depth.abs(), "m", 1)), task, Asks::First(time));
+        add("grazing", format!("{words} by {}", quantity(depth.abs(), "m", 1)), task, Goal::First(time));
     }
     // The forced motion alone reaches the gap up to a factor 1 + ε.
     let plain = six_cycles(thesis);
@@ -111,12 +110,12 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
     for excess in [1e-3, 1e-9, -1e-9, -1e-3] {
         let task = Task { force: thesis.gap / unit * (1.0 + excess), ..plain };
         let sign = if excess > 0.0 { '+' } else { '−' };
-        add("grazing orbit", format!("amplitude over gap 1 {sign} {:.0e}", excess.abs()), task, Asks::Orbits);
+        add("grazing orbit", format!("amplitude over gap 1 {sign} {:.0e}", excess.abs()), task, Goal::Orbits);
     }
     for (name, restitution) in
         [("0", 0.0), ("1e-9", 1e-9), ("0.01", 0.01), ("0.99", 0.99), ("1 − 1e-6", 1.0 - 1e-6), ("1", 1.0)]
     {
-        add("restitution", format!("R {name}"), six_cycles(Rig { restitution, ..thesis }), Asks::Motion);
+        add("restitution", format!("R {name}"), six_cycles(Rig { restitution, ..thesis }), Goal::Motion);
     }
     for (name, part) in
         [("none", 0.0), ("1e-9 of critical", 1e-9), ("critical", 1.0), ("100 times critical", 100.0)]
@@ -125,19 +124,19 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
         let rig = Rig { c1: critical(thesis.m1, thesis.k1), c2: critical(thesis.m2, thesis.k2), ..thesis };
         // Enough force to reach across the gap.
         let task = Task { force: 0.5 * (1.0 + 20.0 * part), ..six_cycles(rig) };
-        add("damping", name.to_owned(), task, Asks::Motion);
+        add("damping", name.to_owned(), task, Goal::Motion);
     }
     for gap in [1e-6, 1e-12, 0.0, -1e-12, -1e-6, -5e-4] {
-        add("gap", quantity(gap, "m", 1), six_cycles(Rig { gap, ..thesis }), Asks::Motion);
+        add("gap", quantity(gap, "m", 1), six_cycles(Rig { gap, ..thesis }), Goal::Motion);
     }
     for ratio in [1e-3, 1e-1, 1e1, 1e3] {
         let scale = ratio * thesis.m1 / thesis.m2;
         let rig = Rig { m2: thesis.m2 * scale, k2: thesis.k2 * scale, c2: thesis.c2 * scale, ..thesis };
-        add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), six_cycles(rig), Asks::Motion);
+        add("mass ratio", format!("m₂/m₁ {ratio:.0e}"), six_cycles(rig), Goal::Motion);
     }
     // 0.07 to 7 % of the period in contact.
     for stiffness in [1e8, 1e5, 1e4] {
-        add("soft contact", format!("{stiffness:.0e} N/m"), Task { stiffness, ..plain }, Asks::Contact);
+        add("soft contact", format!("{stiffness:.0e} N/m"), Task { stiffness, ..plain }, Goal::Contact);
     }
     let pair = ((thesis.k1 + thesis.k2) / (thesis.m1 + thesis.m2)).sqrt() / TAU;
     let [first, second] = thesis.natural_frequencies();
@@ -145,37 +144,35 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
         for (dampers, c) in [("", 0.1), (", no dampers", 0.0)] {
             let rig = Rig { c1: c, c2: c, ..thesis };
             let task = Task { frequency, until: 6.0 / frequency, ..six_cycles(rig) };
-            add("resonance", format!("{name}{dampers}"), task, Asks::Motion);
+            add("resonance", format!("{name}{dampers}"), task, Goal::Motion);
         }
     }
     for restitution in [0.3, 0.7, 0.9, 0.95] {
-        add("chatter", format!("R {restitution}"), chatter(restitution), Asks::Motion);
+        add("chatter", format!("R {restitution}"), chatter(restitution), Goal::Motion);
     }
     let onset = onset();
     for (sign, beside) in [('−', -1e-3), ('+', 1e-3)] {
         let scene = format!("R {onset:.4} {sign} 1e-3, where rest begins");
-        add("chatter", scene, chatter(onset + beside), Asks::Motion);
+        add("chatter", scene, chatter(onset + beside), Goal::Motion);
     }
     for cycles in if quick { &[1e3][..] } else { &[1e4, 1e6] } {
         let task = Task { until: cycles / plain.frequency, most: 200_000_000, ..plain };
-        add("long runs", format!("{cycles:.0e} cycles"), task, Asks::Speed);
+        add("long runs", format!("{cycles:.0e} cycles"), task, Goal::Speed);
     }
     Ok(all)
 }
 
 /// What would be told rightly at a border, with impacts at once or with a contact; nothing where it is not known.
-fn truth(border: &Border, soft: bool) -> Option<Told> {
+fn truth(border: &Border, soft: bool) -> Option<Log> {
     let task = &border.task;
     let contact = soft.then(|| task.spring());
-    let impacts =
-        |impact: Option<(f64, f64)>| Told { impacts: impact.into_iter().collect(), ..Told::default() };
-    match border.asks {
+    match border.goal {
         // No damper of a contact stops a rebound altogether.
         _ if soft && task.rig.restitution == 0.0 => None,
-        Asks::Motion | Asks::Contact => motion(task, contact).ok(),
-        Asks::Speed => Some(impacts(Some((0.0, settled(task, contact, check::SETTLED).ok()??.speed())))),
-        Asks::First(time) => Some(impacts(time.map(|t| (t, 0.0)))),
-        Asks::Orbits => None,
+        Goal::Motion | Goal::Contact => motion(task, contact).ok(),
+        Goal::Speed => Some(Log::of([(0.0, settled(task, contact, check::SETTLED).ok()??.speed())])),
+        Goal::First(time) => Some(Log::of(time.map(|t| (t, 0.0)))),
+        Goal::Orbits => None,
     }
 }
 
@@ -195,47 +192,47 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
                 ours: method.ours,
                 border: border.name,
                 scene: border.scene.clone(),
-                ask: Box::new(move || {
+                answer: Box::new(move || {
                     let truth = own.1[usize::from(*can == Can::FollowSoft)].as_ref();
-                    asked(method, *setting, *can, &own.0, truth).unwrap_or_else(|fault| fault)
+                    judged(method, *setting, *can, &own.0, truth).unwrap_or_else(|fault| fault)
                 }),
             });
         }
     }
-    Ok(FailureMap::asked(Family::Models, questions))
+    Ok(FailureMap::answered(Family::Models, questions))
 }
 
 /// What a method makes of a border.
-fn asked(
+fn judged(
     method: &Method,
     setting: f64,
     can: Can,
     border: &Border,
-    truth: Option<&Told>,
+    truth: Option<&Log>,
 ) -> std::result::Result<Found, Found> {
     let task = &border.task;
     let not_asked = |why: &str| Ok(Found::new(Outcome::NotAsked, why));
-    match (can, border.asks) {
-        (Can::Orbits | Can::Follow, Asks::Contact)
-        | (Can::Orbits | Can::SoftOrbits, Asks::First(_))
-        | (Can::Follow | Can::FollowSoft, Asks::Orbits) => {
+    match (can, border.goal) {
+        (Can::Orbits | Can::Follow, Goal::Contact)
+        | (Can::Orbits | Can::SoftOrbits, Goal::First(_))
+        | (Can::Follow | Can::FollowSoft, Goal::Orbits) => {
             return not_asked("it answers another question");
         }
-        (_, Asks::Speed) if !method.ours && task.until * task.frequency > LONG => {
+        (_, Goal::Speed) if !method.ours && task.until * task.frequency > LONG => {
             return not_asked("it would take minutes; fewer cycles are asked of it");
         }
-        (Can::Orbits, Asks::Motion | Asks::Orbits) => return check::closed_form(task),
+        (Can::Orbits, Goal::Motion | Goal::Orbits) => return check::closed_form(task),
         (Can::SoftOrbits, _) => return check::corrected(task),
         _ => {}
     }
-    let told = (method.follow)(task, setting)?;
+    let log = (method.follow)(task, setting)?;
     let Some(truth) = truth else {
         return not_asked("no truth: there is no such motion, or it does not settle");
     };
-    Ok(match border.asks {
-        Asks::First(_) => check::first(&told, truth, task),
-        Asks::Speed => check::speed(&told, truth),
-        _ => check::motion(&told, truth, task),
+    Ok(match border.goal {
+        Goal::First(_) => check::first(&log, truth, task),
+        Goal::Speed => check::speed(&log, truth),
+        _ => check::motion(&log, truth, task),
     })
 }
 
@@ -249,27 +246,27 @@ mod tests {
     fn exact_motions_are_exact_wherever_they_answer() {
         let (mut compared, mut refused) = ([0; 2], Vec::new());
         for border in borders(true).unwrap() {
-            if !matches!(border.asks, Asks::Motion | Asks::Contact) {
+            if !matches!(border.goal, Goal::Motion | Goal::Contact) {
                 continue;
             }
             let place = format!("{} {}", border.name, border.scene);
             for (which, method) in [by::FLIGHTS, by::KELVIN_VOIGT].into_iter().enumerate() {
-                let Ok(told) = (method.follow)(&border.task, 0.0) else {
+                let Ok(log) = (method.follow)(&border.task, 0.0) else {
                     refused.push((which, place.clone()));
                     continue;
                 };
                 let truth = truth(&border, which == 1).unwrap();
                 // Impacts slower than 1e-3 m/s are told apart by what each method calls rest.
-                let fast = |t: &Told| {
+                let fast = |t: &Log| {
                     t.impacts
                         .iter()
                         .copied()
                         .filter(|i| i.1 > 1e-3 && i.0 < border.task.until - 1e-6)
                         .collect::<Vec<_>>()
                 };
-                let (fast_told, fast_truth) = (fast(&told), fast(&truth));
-                assert_eq!(fast_told.len(), fast_truth.len(), "{place}");
-                for (a, b) in fast_told.iter().zip(&fast_truth) {
+                let (fast_log, fast_truth) = (fast(&log), fast(&truth));
+                assert_eq!(fast_log.len(), fast_truth.len(), "{place}");
+                for (a, b) in fast_log.iter().zip(&fast_truth) {
                     // The truth's own 2e-13 s (its tests), enlarged tenfold by impacts that are nearly missed.
                     assert!((a.0 - b.0).abs() < 1e-11, "{place}: {a:?} {b:?}");
                     // In that time accelerations, up to 1e3 m/s² behind a contact, change a speed by 1e-8 m/s.
@@ -277,13 +274,13 @@ mod tests {
                     compared[which] += 1;
                 }
                 assert_eq!(
-                    told.sticks.len(),
+                    log.sticks.len(),
                     truth.sticks.len(),
                     "{place}: {:?} {:?}",
-                    told.sticks,
+                    log.sticks,
                     truth.sticks
                 );
-                for (a, b) in told.sticks.iter().zip(&truth.sticks) {
+                for (a, b) in log.sticks.iter().zip(&truth.sticks) {
                     // The truth's own 1e-10 s at the ends of a chatter (its tests), and what the dampers' rates c/m change in what
                     // it leaves to a series, up to 1e-6 s.
                     let rig = border.task.rig;
@@ -300,15 +297,15 @@ mod tests {
 
     #[test]
     fn a_method_that_misses_an_impact_is_wrong_and_one_without_a_truth_is_not_asked() {
-        let border = borders(true).unwrap().into_iter().find(|b| b.asks == Asks::Motion).unwrap();
+        let border = borders(true).unwrap().into_iter().find(|b| b.goal == Goal::Motion).unwrap();
         let truth = truth(&border, false);
         let without = |t: &Task, _: f64| {
-            let mut told = ours::flights(t)?;
-            told.impacts.remove(1);
-            Ok(told)
+            let mut log = ours::flights(t)?;
+            log.impacts.remove(1);
+            Ok(log)
         };
-        let outcome = |method: &Method, truth: Option<&Told>| {
-            asked(method, 0.0, Can::Follow, &border, truth).unwrap().outcome
+        let outcome = |method: &Method, truth: Option<&Log>| {
+            judged(method, 0.0, Can::Follow, &border, truth).unwrap().outcome
         };
         assert_eq!(outcome(&Method { follow: without, ..by::FLIGHTS }, truth.as_ref()), Outcome::Wrong);
         assert_eq!(outcome(&by::FLIGHTS, truth.as_ref()), Outcome::Right);

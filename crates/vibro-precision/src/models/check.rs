@@ -1,7 +1,7 @@
 //! Answers against the truth.
 
 use super::ours::soft_forms;
-use super::task::{Task, Told};
+use super::task::{Log, Task};
 use super::truth::{Repeats, repeats, settled};
 use crate::Outcome;
 use crate::failure::Found;
@@ -22,41 +22,41 @@ const CLOSES: f64 = 1e-8;
 const NEAR: f64 = 1e-4;
 /// Impacts and rests of either list one by one in their order: every impact that is not slow, within [`ALLOWED`] of a cycle and of the fastest approach
 /// speed; every rest that lasts longer than twice that part of a cycle, begun and ended within it.
-pub fn motion(told: &Told, truth: &Told, task: &Task) -> Found {
+pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     let off = ALLOWED * task.cycle();
     let seen = task.until - 2.0 * off;
     let speed = ALLOWED * truth.impacts.iter().map(|i| i.1).fold(SLOW, f64::max);
     // Written so that what is not a number counts, and is like nothing.
     let counts = |i: &(f64, f64)| !(i.0 >= seen || i.1 <= SLOW);
-    let alike = |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs() <= off && (a.1 - b.1).abs() <= speed;
+    let close = |a: &(f64, f64), b: &(f64, f64)| (a.0 - b.0).abs() <= off && (a.1 - b.1).abs() <= speed;
     let lasts = |s: &[f64; 2]| !(s[0] >= seen || s[1] - s[0] <= 2.0 * off);
     let same = |a: &[f64; 2], b: &[f64; 2]| {
         (a[0] - b[0]).abs() <= off && (a[1].min(seen) - b[1].min(seen)).abs() <= off
     };
-    let impacts = in_order(&truth.impacts, &told.impacts, counts, alike);
-    let rests = in_order(&truth.sticks, &told.sticks, lasts, same);
+    let impacts = in_order(&truth.impacts, &log.impacts, counts, close);
+    let rests = in_order(&truth.sticks, &log.sticks, lasts, same);
     match (impacts, rests) {
-        (Ok(n), Ok(m)) => Found::new(
-            Outcome::Right,
-            format!("{n} impacts within {off:.0e} s and {speed:.0e} m/s, {m} rests"),
-        ),
+        (Ok(n), Ok(m)) => {
+            let why = format!("{n} impacts within {off:.0e} s and {speed:.0e} m/s, {m} rests");
+            Found::new(Outcome::Right, why)
+        }
         (Err(why), _) => Found::new(Outcome::Wrong, format!("impacts (s, m/s): {why}")),
         (_, Err(why)) => Found::new(Outcome::Wrong, format!("rests (s): {why}")),
     }
 }
 
-/// How many of `truth` and `told`, each in its order, are `alike`; nothing that `counts` may be left over in either, what does not
+/// How many of `truth` and `log`, each in its order, are `close`; nothing that `counts` may be left over in either, what does not
 /// count may be in a pair or not.
 fn in_order<T: Debug>(
     truth: &[T],
-    told: &[T],
+    log: &[T],
     counts: impl Fn(&T) -> bool,
-    alike: impl Fn(&T, &T) -> bool,
+    close: impl Fn(&T, &T) -> bool,
 ) -> Result<usize, String> {
     let (mut i, mut j, mut pairs) = (0, 0, 0);
     loop {
-        match (truth.get(i), told.get(j)) {
-            (Some(a), Some(b)) if alike(a, b) => (i, j, pairs) = (i + 1, j + 1, pairs + 1),
+        match (truth.get(i), log.get(j)) {
+            (Some(a), Some(b)) if close(a, b) => (i, j, pairs) = (i + 1, j + 1, pairs + 1),
             (Some(a), _) if !counts(a) => i += 1,
             (_, Some(b)) if !counts(b) => j += 1,
             (None, None) => return Ok(pairs),
@@ -69,19 +69,19 @@ fn in_order<T: Debug>(
 }
 
 /// The first impact, at the time of the truth or never.
-pub fn first(told: &Told, truth: &Told, task: &Task) -> Found {
-    let [told, truth] = [told, truth].map(|motion| motion.impacts.first().map(|i| i.0));
-    let kept = match (told, truth) {
-        (Some(told), Some(truth)) => (told - truth).abs() <= ALLOWED * task.cycle(),
-        (told, truth) => told.is_none() && truth.is_none(),
+pub fn first(log: &Log, truth: &Log, task: &Task) -> Found {
+    let [log, truth] = [log, truth].map(|motion| motion.impacts.first().map(|i| i.0));
+    let kept = match (log, truth) {
+        (Some(log), Some(truth)) => (log - truth).abs() <= ALLOWED * task.cycle(),
+        (log, truth) => log.is_none() && truth.is_none(),
     };
-    Found::right_if(kept, format!("time of the first impact in s: told {told:?}, true {truth:?}"))
+    Found::right_if(kept, format!("time of the first impact in s: told {log:?}, true {truth:?}"))
 }
 
 /// The last approach speed of a motion against that of the one that repeats.
-pub fn speed(told: &Told, truth: &Told) -> Found {
-    let [told, truth] = [told, truth].map(|motion| motion.impacts.last().map_or(f64::NAN, |i| i.1));
-    let error = (told / truth - 1.0).abs();
+pub fn speed(log: &Log, truth: &Log) -> Found {
+    let [log, truth] = [log, truth].map(|motion| motion.impacts.last().map_or(f64::NAN, |i| i.1));
+    let error = (log / truth - 1.0).abs();
     Found::right_if(error <= ALLOWED, format!("approach speed {error:.0e} off, allowed {ALLOWED:.0e}"))
 }
 
@@ -92,8 +92,8 @@ pub fn closed_form(task: &Task) -> Result<Found, Found> {
     judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>())
 }
 
-fn judged(task: &Task, told: &[&Orbit]) -> Result<Found, Found> {
-    for orbit in told.iter().filter(|o| o.approach_velocity > SLOW) {
+fn judged(task: &Task, log: &[&Orbit]) -> Result<Found, Found> {
+    for orbit in log.iter().filter(|o| o.approach_velocity > SLOW) {
         let (speed, admissible) = (orbit.approach_velocity, orbit.validity.admissible);
         let motion = repeats(task, None, orbit.period(), &rigid(orbit));
         let repeated = motion.is_some_and(|one| one.off(speed, orbit.force_phase) < CLOSES);
@@ -104,12 +104,12 @@ fn judged(task: &Task, told: &[&Orbit]) -> Result<Found, Found> {
     }
     let settled = settled(task, None, SETTLED)?;
     let among = |one: &Repeats| {
-        let stable = told.iter().filter(|o| o.validity.admissible && o.validity.stable != Some(false));
+        let stable = log.iter().filter(|o| o.validity.admissible && o.validity.stable != Some(false));
         stable.map(|o| one.off(o.approach_velocity, o.force_phase)).any(|off| off < NEAR)
     };
     Ok(match settled {
         Some(one) => Found::right_if(among(&one), format!("the motion settles at {:.6e} m/s", one.speed())),
-        None => Found::new(Outcome::Right, format!("{} orbits are as they say", told.len())),
+        None => Found::new(Outcome::Right, format!("{} orbits are as they say", log.len())),
     })
 }
 
@@ -167,7 +167,7 @@ mod tests {
         let task = Task { force, start: [-1e-3, 0.0, 0.0, 0.0], ..task };
         let found = orbits(&task.rig, task.force, task.frequency).unwrap().orbits;
         let [first, second] = &found[..] else { panic!("{}", found.len()) };
-        let outcome = |told: &[&Orbit]| judged(&task, told).unwrap().outcome;
+        let outcome = |log: &[&Orbit]| judged(&task, log).unwrap().outcome;
         assert_eq!(outcome(&[first, second]), Outcome::Right);
         assert_eq!(outcome(&[]), Outcome::Wrong);
         for change in
@@ -199,10 +199,10 @@ mod tests {
         let task = task_b(1.0);
         let truth = truth::motion(&task, None).unwrap();
         assert_eq!(motion(&truth, &truth, &task).outcome, Outcome::Right);
-        let changed = |change: &dyn Fn(&mut Told)| {
-            let mut told = truth.clone();
-            change(&mut told);
-            motion(&told, &truth, &task).outcome
+        let changed = |change: &dyn Fn(&mut Log)| {
+            let mut log = truth.clone();
+            change(&mut log);
+            motion(&log, &truth, &task).outcome
         };
         let cycle = task.cycle();
         assert_eq!(changed(&|t| t.impacts[2].0 += 0.5 * ALLOWED * cycle), Outcome::Right);
@@ -212,10 +212,8 @@ mod tests {
         // A phantom beside a true one, one for two, another speed, and what is no number.
         let phantom = (truth.impacts[2].0 + 0.1 * ALLOWED * cycle, truth.impacts[2].1);
         assert_eq!(changed(&|t| t.impacts.insert(3, phantom)), Outcome::Wrong);
-        let doubled = Told {
-            impacts: [&truth.impacts[..3], &[phantom], &truth.impacts[3..]].concat(),
-            ..truth.clone()
-        };
+        let doubled =
+            Log { impacts: [&truth.impacts[..3], &[phantom], &truth.impacts[3..]].concat(), ..truth.clone() };
         assert_eq!(motion(&truth, &doubled, &task).outcome, Outcome::Wrong);
         let fastest = truth.impacts.iter().map(|i| i.1).fold(0.0, f64::max);
         assert_eq!(changed(&|t| t.impacts[2].1 += 0.5 * ALLOWED * fastest), Outcome::Right);
@@ -228,9 +226,8 @@ mod tests {
     fn a_rest_that_is_not_told_is_invented_or_ends_at_another_time_is_wrong() {
         let task = task_b(1.0);
         let off = ALLOWED * task.cycle();
-        let rests = |sticks: &[[f64; 2]]| Told { sticks: sticks.to_vec(), ..Told::default() };
-        let judged =
-            |told: &[[f64; 2]], truth: &[[f64; 2]]| motion(&rests(told), &rests(truth), &task).outcome;
+        let rests = |sticks: &[[f64; 2]]| Log { sticks: sticks.to_vec(), ..Log::default() };
+        let judged = |log: &[[f64; 2]], truth: &[[f64; 2]]| motion(&rests(log), &rests(truth), &task).outcome;
         assert_eq!(judged(&[], &[[0.5, 0.6]]), Outcome::Wrong);
         assert_eq!(judged(&[[0.5, 0.6]], &[]), Outcome::Wrong);
         assert_eq!(judged(&[[0.5, 0.6 + 0.5 * off]], &[[0.5, 0.6]]), Outcome::Right);

@@ -1,6 +1,6 @@
 //! The library's own methods on a task.
 
-use super::task::{Spring, Task, Told};
+use super::task::{Log, Spring, Task};
 use crate::failure::Found;
 use vibro_model::contact::conversion::damping_ratio;
 use vibro_model::{
@@ -18,52 +18,50 @@ fn start(task: &Task) -> State {
 }
 
 /// Event by event on exact flights.
-pub fn flights(task: &Task) -> Result<Told, Found> {
-    let mut told = Told::default();
+pub fn flights(task: &Task) -> Result<Log, Found> {
+    let mut log = Log::default();
     Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?
-        .advance(task.until, &mut |piece| told.take(&piece))?;
-    Ok(told)
+        .advance(task.until, &mut |piece| log.take(&piece))?;
+    Ok(log)
 }
 
 /// As [`flights`], the frequency changing at the task's rate in steps whose phase deviates by up to `deviation` (rad).
-pub fn swept(task: &Task, deviation: f64) -> Result<Told, Found> {
+pub fn swept(task: &Task, deviation: f64) -> Result<Log, Found> {
     let mut motion = Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?;
-    let mut told = Told::default();
-    Chirp { rate: task.rate, deviation }.advance(&mut motion, task.until, &mut |piece| told.take(&piece))?;
-    Ok(told)
+    let mut log = Log::default();
+    Chirp { rate: task.rate, deviation }.advance(&mut motion, task.until, &mut |piece| log.take(&piece))?;
+    Ok(log)
 }
 
 /// Event by event with a contact of spring and damper.
-pub fn kelvin_voigt(task: &Task) -> Result<Told, Found> {
+pub fn kelvin_voigt(task: &Task) -> Result<Log, Found> {
     damping_ratio(task.rig.restitution)?;
     let Spring { stiffness, damping, .. } = task.spring();
     let law = Law::KelvinVoigt { stiffness, damping };
     let mut motion = Compliant::new(&task.rig, &Excitation::Sine(sine(task)), law, start(task), task.phase)?;
-    let mut told = Told::default();
+    let mut log = Log::default();
     // A contact that gives way is told when it is over: the motion is followed for longer, and what began too late left out.
     motion.advance(task.until + 3.0 * task.cycle(), &mut |piece| {
         if let Event::Impact(impact) = piece.event
             && impact.time < task.until
         {
-            told.take(&piece);
-            told.sticks.extend(task.spring().rest(impact.time, piece.start + piece.duration));
+            log.take(&piece);
+            log.sticks.extend(task.spring().rest(impact.time, piece.start + piece.duration));
         }
     })?;
-    Ok(told)
+    Ok(log)
 }
 
 /// The motion with one impact a cycle in closed form, told by its impact.
-pub fn closed_form(task: &Task) -> Result<Told, Found> {
+pub fn closed_form(task: &Task) -> Result<Log, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
-    let impacts = found.orbits.iter().map(|o| (0.0, o.approach_velocity)).take(1).collect();
-    Ok(Told { impacts, ..Told::default() })
+    Ok(Log::of(found.orbits.iter().take(1).map(|o| (0.0, o.approach_velocity))))
 }
 
 /// The same with the contact that the task has.
-pub fn soft_form(task: &Task) -> Result<Told, Found> {
+pub fn soft_form(task: &Task) -> Result<Log, Found> {
     let (_, soft, _) = soft_forms(task)?;
-    let impacts = soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity)).collect();
-    Ok(Told { impacts, ..Told::default() })
+    Ok(Log::of(soft.iter().take(1).flatten().map(|o| (0.0, o.approach_velocity))))
 }
 
 /// All orbits, their corrections, and the contact that these are for.
@@ -75,18 +73,18 @@ pub fn soft_forms(task: &Task) -> Result<(Orbits, Vec<Option<Softened>>, Complia
 }
 
 /// Closed forms at `n` frequencies of a sweep, each at the time at which the sweep comes to it.
-pub fn standing(task: &Task, n: f64) -> Result<Told, Found> {
-    let mut told = Told::default();
+pub fn standing(task: &Task, n: f64) -> Result<Log, Found> {
+    let mut log = Log::default();
     for i in 0..n as u32 {
         let time = task.until * f64::from(i) / (n - 1.0);
         let frequency = task.frequency + task.rate * time;
         let found = orbits(&task.rig, task.force, frequency)?;
-        told.impacts.extend(found.orbits.first().map(|o| (time, o.approach_velocity)));
+        log.impacts.extend(found.orbits.first().map(|o| (time, o.approach_velocity)));
     }
-    Ok(told)
+    Ok(log)
 }
 
-impl Told {
+impl Log {
     fn take(&mut self, piece: &Piece<'_>) {
         let end = piece.start + piece.duration;
         match piece.event {

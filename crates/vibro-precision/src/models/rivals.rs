@@ -2,25 +2,24 @@
 
 #[cfg(feature = "diffsol")]
 mod diffsol;
-mod loops;
 mod stages;
 mod stepper;
 
 use super::ours;
-use super::task::{Task, Told};
+use super::task::{Log, Task};
 use crate::failure::Found;
 #[cfg(feature = "diffsol")]
 use diffsol::{
     Diffsol::{Bdf, Tsit45},
     followed,
 };
-use loops::{classical, euler, marched, moreau};
 use stages::through;
 pub use stages::{Course, Locate, events};
 pub use stepper::Kind;
 use stepper::Kind::{Dop853, Rk4, Rk45};
 #[cfg(test)]
 pub use stepper::Stepper;
+use stepper::{classical, euler, marched, moreau};
 
 /// A way to follow a motion.
 #[derive(Clone, Copy)]
@@ -35,7 +34,7 @@ pub struct Method {
     pub follow: Follow,
 }
 
-type Follow = fn(&Task, f64) -> Result<Told, Found>;
+type Follow = fn(&Task, f64) -> Result<Log, Found>;
 type Setting = Option<[&'static str; 2]>;
 
 const STEPS: Setting = Some(["", " steps a cycle"]);
@@ -102,20 +101,20 @@ pub const TSIT45_TOUCH: Method = Method { follow: |t, r| followed(t, Some(t.spri
 pub const BDF_TOUCH: Method =
     Method::rival("diffsol BDF, sign test", TOLERANCE, |t, r| followed(t, Some(t.spring()), Bdf(r)));
 
-fn ends(task: &Task, kind: Kind) -> Result<Told, Found> {
+fn ends(task: &Task, kind: Kind) -> Result<Log, Found> {
     events(task, None, kind, Locate::Ends)
 }
 
-fn dense(task: &Task, kind: Kind) -> Result<Told, Found> {
+fn dense(task: &Task, kind: Kind) -> Result<Log, Found> {
     events(task, None, kind, Locate::Dense)
 }
 
-fn touch(task: &Task, kind: Kind) -> Result<Told, Found> {
+fn touch(task: &Task, kind: Kind) -> Result<Log, Found> {
     events(task, Some(task.spring()), kind, Locate::Dense)
 }
 
 /// A spring of stiffness `k` (N/m) in place of the impact.
-fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Told, Found> {
+fn stiff(task: &Task, k: f64, tolerance: f64) -> Result<Log, Found> {
     through(&Task { stiffness: k, ..*task }, Rk45(tolerance))
 }
 

@@ -1,21 +1,69 @@
 //! Scenes of models: what is asked, of which methods with which settings, and what is true.
 
-use super::ask::{Ask, Asked, Verdict};
-use super::rivals::{self as by, Kind, Locate, events};
-use super::task::{Task, Told};
+use super::rivals::{self as by, Kind, Locate, Method, events};
+use super::task::{Log, Task};
 use super::{ours, truth};
-use crate::Scene;
+use crate::failure::Found;
+use crate::scene::{median, timed};
+use crate::{Family, Measured, Scene};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result};
 
+/// What a judge says of the motions that are told: their error, or why there is none.
+type Verdict = std::result::Result<f64, String>;
+type Judge = dyn Fn(&[Log]) -> Verdict;
+
+/// A method with its settings.
+type Run = (Method, &'static [f64]);
+
+/// A scene before it is measured.
+struct Setup {
+    scene: Scene,
+    /// Motions that are followed one after another; the time of one answer is the mean.
+    tasks: Vec<Task>,
+    methods: Vec<Run>,
+    judge: Box<Judge>,
+}
+
+/// Repeats of an answer: in full, and quick.
+const REPEATS: [usize; 2] = [15, 3];
+
+impl Setup {
+    /// Name, what it is, what the error is and where the truth comes from; tasks, methods and the judge.
+    fn new(
+        texts: [String; 4],
+        tasks: Vec<Task>,
+        methods: Vec<Run>,
+        judge: impl Fn(&[Log]) -> Verdict + 'static,
+    ) -> Setup {
+        Setup { scene: Scene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) }
+    }
+
+    /// Runs, times and judges every method; `quick` with the first half of its settings.
+    fn measured(self, quick: bool) -> Scene {
+        let one = |method: &Method, setting: f64| {
+            let follow = || self.tasks.iter().map(|task| (method.follow)(task, setting)).collect();
+            let (log, time) = timed(REPEATS[usize::from(quick)], quick, follow);
+            let fault = |f: Found| format!("{}: {}", f.outcome.name(), f.why);
+            let log: std::result::Result<Vec<_>, Found> = log;
+            let answer = log.map_err(fault).and_then(|log| (self.judge)(&log));
+            let (name, setting) = ((method.name, method.ours), method.words(setting));
+            Measured::new(name, setting, time / self.tasks.len() as f64, answer)
+        };
+        let of = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
+        let methods = self.methods.iter().flat_map(|(m, all)| all[..of(all)].iter().map(|s| one(m, *s)));
+        Scene { methods: methods.collect(), ..self.scene }
+    }
+}
+
 /// Every scene of the models, each method measured; `quick` takes fewer settings, repeats and scenes.
 pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
     let mut found = Vec::new();
-    let mut add = |ask: Ask| {
-        progress(&ask.name);
-        found.push(ask.measured(quick));
+    let mut add = |setup: Setup| {
+        progress(&setup.scene.name);
+        found.push(setup.measured(quick));
     };
     add(scene_b(2.0)?);
     add(scene_b(100.0)?);
@@ -35,10 +83,10 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
 const ONE: &[f64] = &[0.0];
 
 /// Fixed steps, as far as they go within a second.
-const LOOPS: [Asked; 3] =
+const LOOPS: [Run; 3] =
     [(by::EULER, &[100.0, 1e3, 1e4]), (by::RK4_LOOP, &[100.0, 1e3, 1e4]), (by::MOREAU, &[100.0, 1e3, 1e4])];
 /// Methods that locate impacts.
-const EVENTS: &[Asked] = &[
+const EVENTS: &[Run] = &[
     (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]),
     (by::RK45_DENSE, &[1e-3, 1e-6, 1e-9, 1e-12]),
     (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12, 1e-14]),
@@ -69,7 +117,7 @@ pub(super) fn task_b(until: f64) -> Task {
     Task::sine(rig, 0.5, at(&rig, 2.1), until)
 }
 
-fn scene_b(seconds: f64) -> Result<Ask> {
+fn scene_b(seconds: f64) -> Result<Setup> {
     let task = task_b(seconds);
     let golden = GOLDEN_B.iter().filter(|g| g.1 < seconds);
     let count = golden.clone().next_back().map_or(0, |g| g.0);
@@ -81,36 +129,35 @@ fn scene_b(seconds: f64) -> Result<Ask> {
     }
     // No time is known better than to its rounding.
     let least = f64::EPSILON * seconds / 2.0;
-    let judge = move |told: &[Told]| -> Verdict {
+    let judge = move |log: &[Log]| -> Verdict {
         let last = truth[count - 1][0] + 0.5 * task.cycle();
-        let times: Vec<f64> = told[0].impacts.iter().map(|i| i.0).filter(|t| *t < last).collect();
+        let times: Vec<f64> = log[0].impacts.iter().map(|i| i.0).filter(|t| *t < last).collect();
         if times.len() != count {
             let n = times.len();
             return Err(format!("{n} impacts up to {last:.2} s instead of {count}: not the same motion"));
         }
         Ok(times.iter().zip(&truth).map(|(t, [time, off])| (t - time).abs() - off).fold(least, f64::max))
     };
-    Ok(Ask {
-        name: format!("scene B, {seconds} s"),
-        says: format!(
+    let texts = [
+        format!("scene B, {seconds} s"),
+        format!(
             "From rest under 0.5 N at ν 2.1, every impact crossed at speed: the times of the impacts up to {seconds} s."
         ),
-        error_of: "largest error of an impact time (s)",
-        truth: format!(
+        "largest error of an impact time (s)".to_owned(),
+        format!(
             "impacts 1, 2, 3, 22 and 1098: Newton's method on the equations of motion with 40 digits; all others: integration of \
-             order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
+     order 8 to 1e-13, beyond {FOLLOWED:.0e} s; smaller errors than {least:.0e} s, the rounding of the time, are told as that"
         ),
-        tasks: vec![task],
-        methods: [
-            &[(by::FLIGHTS, ONE)],
-            &LOOPS[..],
-            &[(by::RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
-            EVENTS,
-            &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
-        ]
-        .concat(),
-        judge: Box::new(judge),
-    })
+    ];
+    let methods = [
+        &[(by::FLIGHTS, ONE)],
+        &LOOPS[..],
+        &[(by::RK4_ENDS, &[30.0, 100.0, 300.0, 1e3])],
+        EVENTS,
+        &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
+    ]
+    .concat();
+    Ok(Setup::new(texts, vec![task], methods, judge))
 }
 
 /// Starts in each direction of a grazing motion.
@@ -140,15 +187,15 @@ pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64
     Ok((task, time))
 }
 
-fn grazing(depth: f64) -> Result<Ask> {
+fn grazing(depth: f64) -> Result<Setup> {
     let starts =
         [depth, -depth].into_iter().flat_map(|d| (0..STARTS).map(move |start| grazing_task(d, start)));
     let (tasks, truth): (Vec<Task>, Vec<Option<f64>>) =
         starts.collect::<Result<Vec<_>>>()?.into_iter().unzip();
-    let judge = move |told: &[Told]| -> Verdict {
+    let judge = move |log: &[Log]| -> Verdict {
         let (mut missed, mut invented, mut errors) = (0, 0, Vec::new());
-        for (told, truth) in told.iter().zip(&truth) {
-            match (told.impacts.first(), truth) {
+        for (log, truth) in log.iter().zip(&truth) {
+            match (log.impacts.first(), truth) {
                 (Some(found), Some(truth)) => errors.push((found.0 - truth).abs().max(1e-17)),
                 (None, Some(_)) => missed += 1,
                 (Some(_), None) => invented += 1,
@@ -160,20 +207,19 @@ fn grazing(depth: f64) -> Result<Ask> {
                 "{missed} of {STARTS} impacts are not seen, {invented} of {STARTS} seen that are none"
             ));
         }
-        Ok(crate::scene::median(&mut errors))
+        Ok(median(&mut errors))
     };
-    Ok(Ask {
-        name: format!("grazing {depth:.0e} m"),
-        says: format!(
+    let texts = [
+        format!("grazing {depth:.0e} m"),
+        format!(
             "A motion that reaches {depth:.0e} m into the other mass, and one that misses it by as much, each from {STARTS} starts: is \
-             the impact seen, and when?"
+     the impact seen, and when?"
         ),
-        error_of: "median error of the impact's time (s)",
-        truth: "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
-        tasks,
-        methods: [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat(),
-        judge: Box::new(judge),
-    })
+        "median error of the impact's time (s)".to_owned(),
+        "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
+    ];
+    let methods = [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat();
+    Ok(Setup::new(texts, tasks, methods, judge))
 }
 
 /// End of the first chatter of scene C, release, and end of the second chatter in s, by arithmetic with 40 digits.
@@ -191,9 +237,9 @@ pub(super) fn task_c() -> Task {
     }
 }
 
-fn scene_c() -> Ask {
-    let judge = |told: &[Told]| -> Verdict {
-        let Told { impacts, sticks } = &told[0];
+fn scene_c() -> Setup {
+    let judge = |log: &[Log]| -> Verdict {
+        let Log { impacts, sticks } = &log[0];
         let [first, second, ..] = sticks[..] else {
             let (n, m) = (impacts.len(), sticks.len());
             return Err(format!("{n} impacts, and {m} times at rest against each other instead of 2"));
@@ -201,28 +247,22 @@ fn scene_c() -> Ask {
         let found = [first[0], first[1], second[0]];
         Ok(found.iter().zip(&GOLDEN_C).map(|(f, g)| (f - g).abs()).fold(1e-17, f64::max))
     };
-    Ask {
-        name: "scene C".to_owned(),
-        says: "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
-               and of the release. Methods with events let the masses rest below the speed that their tolerance resolves."
-            .to_owned(),
-        error_of: "largest error of the three times (s)",
-        truth: "arithmetic with 40 digits".to_owned(),
-        tasks: vec![task_c()],
-        methods: [
-            &[
-                (by::FLIGHTS, ONE),
-                (by::EULER, &[1e3, 1e4, 1e5]),
-                (by::RK4_LOOP, &[1e3, 1e4, 1e5]),
-                (by::MOREAU, &[1e3, 1e4, 1e5]),
-                (by::RK45_RESTLESS, &[1e-6]),
-                (by::RK4_ENDS, &[100.0, 1e3]),
-            ],
-            EVENTS,
-        ]
-        .concat(),
-        judge: Box::new(judge),
-    }
+    let texts = [
+        "scene C",
+        "Pressed together by their springs, the masses chatter to rest, are released and chatter again: the times of both ends \
+         and of the release. Methods with events let the masses rest below the speed that their tolerance resolves.",
+        "largest error of the three times (s)",
+        "arithmetic with 40 digits",
+    ];
+    let first = [
+        (by::FLIGHTS, ONE),
+        (by::EULER, &[1e3, 1e4, 1e5]),
+        (by::RK4_LOOP, &[1e3, 1e4, 1e5]),
+        (by::MOREAU, &[1e3, 1e4, 1e5]),
+        (by::RK45_RESTLESS, &[1e-6]),
+        (by::RK4_ENDS, &[100.0, 1e3]),
+    ];
+    Setup::new(texts.map(str::to_owned), vec![task_c()], [&first, EVENTS].concat(), judge)
 }
 
 /// Stiffness in N/m of contacts, and cycles until the motion is read: the slowest multiplier of the rigid orbit, 0.970, is then below
@@ -232,15 +272,15 @@ const SOFT_CONTACTS: [(f64, f64); 3] = [(1e8, 1250.0), (1e6, 1250.0), (1e4, 3000
 /// Impacts whose mean speed is read.
 const READ: usize = 16;
 
-fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
+fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
     let task = task_b(0.0);
     let task = Task { stiffness, until: cycles * task.cycle(), most: 100_000_000, ..task };
     let share = Compliance::new(&task.rig, stiffness, None)?.duration * task.frequency;
     let truth = truth::settled(&task, Some(task.spring()), 2000.0)?
         .ok_or_else(|| Error::refused("the motion with the soft contact does not settle"))?
         .speed();
-    let judge = move |told: &[Told]| -> Verdict {
-        let impacts = &told[0].impacts;
+    let judge = move |log: &[Log]| -> Verdict {
+        let impacts = &log[0].impacts;
         let last = &impacts[impacts.len().saturating_sub(READ)..];
         if last.is_empty() {
             return Err("no impacts".to_owned());
@@ -250,32 +290,31 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Ask> {
         let grows = "the steps are too long: it grows beyond all bounds";
         if error < 100.0 { Ok(error.max(1e-16)) } else { Err(grows.to_owned()) }
     };
-    Ok(Ask {
-        name: format!("soft contact {stiffness:.0e} N m⁻¹"),
-        says: format!(
+    let texts = [
+        format!("soft contact {stiffness:.0e} N m⁻¹"),
+        format!(
             "Spring and damper in the contact, {:.2} % of the period in contact: the approach speed once the motion has settled \
-             ({cycles} cycles).",
+     ({cycles} cycles).",
             100.0 * share
         ),
-        error_of: "relative error of the settled approach speed",
-        truth: "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
-        tasks: vec![task],
-        methods: vec![
-            (by::CLOSED, ONE),
-            (by::SOFT, ONE),
-            (by::RIGID, ONE),
-            (by::KELVIN_VOIGT, ONE),
-            (by::RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
-            (by::RK4_THROUGH, &[1e3, 1e4]),
-            (by::RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
-            (by::DOP853_TOUCH, &[1e-6, 1e-9, 1e-12]),
-            #[cfg(feature = "diffsol")]
-            (by::TSIT45_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
-            #[cfg(feature = "diffsol")]
-            (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
-        ],
-        judge: Box::new(judge),
-    })
+        "relative error of the settled approach speed".to_owned(),
+        "the motion that repeats, by Newton's method on integration of order 8 to 1e-13".to_owned(),
+    ];
+    let methods = vec![
+        (by::CLOSED, ONE),
+        (by::SOFT, ONE),
+        (by::RIGID, ONE),
+        (by::KELVIN_VOIGT, ONE),
+        (by::RK45_THROUGH, &[1e-3, 1e-6, 1e-9]),
+        (by::RK4_THROUGH, &[1e3, 1e4]),
+        (by::RK45_TOUCH, &[1e-3, 1e-6, 1e-9, 1e-12]),
+        (by::DOP853_TOUCH, &[1e-6, 1e-9, 1e-12]),
+        #[cfg(feature = "diffsol")]
+        (by::TSIT45_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+        #[cfg(feature = "diffsol")]
+        (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
+    ];
+    Ok(Setup::new(texts, vec![task], methods, judge))
 }
 
 /// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no method can follow the motion,
@@ -298,8 +337,8 @@ fn irregular(x1: f64, cycles: f64) -> Task {
 }
 
 /// Mean and standard deviation of the approach speeds.
-fn statistics(told: &Told) -> [f64; 2] {
-    moments(told.impacts.iter().filter(|i| i.0 > SETTLE / WINDOW.2).map(|i| i.1))
+fn statistics(log: &Log) -> [f64; 2] {
+    moments(log.impacts.iter().filter(|i| i.0 > SETTLE / WINDOW.2).map(|i| i.1))
 }
 
 fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
@@ -317,13 +356,13 @@ fn irregular_truth() -> Result<Vec<[f64; 2]>> {
     (0..OTHERS).into_par_iter().map(one).collect()
 }
 
-fn chaos() -> Result<Ask> {
+fn chaos() -> Result<Setup> {
     let runs = irregular_truth()?;
     let truth = [0, 1].map(|i| moments(runs.iter().map(|run| run[i])));
     // Standard error of what a method reads, relative, that of the truth included.
     let scatter = truth.map(|[mean, std]| std / mean * (1.0 + 1.0 / OTHERS as f64).sqrt());
-    let judge = move |told: &[Told]| -> Verdict {
-        let found = statistics(&told[0]);
+    let judge = move |log: &[Log]| -> Verdict {
+        let found = statistics(&log[0]);
         let off = [0, 1].map(|i| (found[i] / truth[i][0] - 1.0).abs());
         // Not a number is no statistics either.
         if let Some(i) = (0..2).find(|i| off[*i].is_nan() || off[*i] > ALLOWED * scatter[*i]) {
@@ -337,29 +376,26 @@ fn chaos() -> Result<Ask> {
     };
     let (restitution, force, frequency) = WINDOW;
     let [mean, std] = scatter.map(|s| 100.0 * s);
-    Ok(Ask {
-        name: "chaotic window".to_owned(),
-        says: format!(
+    let texts = [
+        "chaotic window".to_owned(),
+        format!(
             "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
-             approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
-             them; beyond {ALLOWED} of them it is another motion."
+     approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
+     them; beyond {ALLOWED} of them it is another motion."
         ),
-        error_of: "larger relative error of mean and deviation",
-        truth: format!(
-            "order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"
-        ),
-        tasks: vec![irregular(0.0, CYCLES)],
-        methods: vec![
-            (by::FLIGHTS, ONE),
-            (by::EULER, &[100.0, 1e3]),
-            (by::RK4_LOOP, &[100.0, 1e3]),
-            (by::MOREAU, &[100.0, 1e3]),
-            (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
-            (by::DOP853_DENSE, &[1e-6, 1e-9]),
-            (by::ROUGH_SPRING, &[1e6]),
-        ],
-        judge: Box::new(judge),
-    })
+        "larger relative error of mean and deviation".to_owned(),
+        format!("order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"),
+    ];
+    let methods = vec![
+        (by::FLIGHTS, ONE),
+        (by::EULER, &[100.0, 1e3]),
+        (by::RK4_LOOP, &[100.0, 1e3]),
+        (by::MOREAU, &[100.0, 1e3]),
+        (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
+        (by::DOP853_DENSE, &[1e-6, 1e-9]),
+        (by::ROUGH_SPRING, &[1e6]),
+    ];
+    Ok(Setup::new(texts, vec![irregular(0.0, CYCLES)], methods, judge))
 }
 
 /// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which its start is still felt.
@@ -368,34 +404,33 @@ const TO: f64 = 10.8;
 const RATE: f64 = 0.02;
 const BEGUN: f64 = 5.0;
 
-fn slow_sweep() -> Result<Ask> {
+fn slow_sweep() -> Result<Setup> {
     let task = Task { rate: RATE, ..Task::sine(Rig::thesis(), 0.5, FROM, (TO - FROM) / RATE) };
-    let largest = |told: &Told| told.impacts.iter().filter(|i| i.0 > BEGUN).map(|i| i.1).fold(0.0, f64::max);
+    let largest = |log: &Log| log.impacts.iter().filter(|i| i.0 > BEGUN).map(|i| i.1).fold(0.0, f64::max);
     let truth = largest(&events(&task, None, Kind::Dop853(1e-13), Locate::Dense)?);
     let apart = (largest(&ours::swept(&task, 1e-7)?) / truth - 1.0).abs();
-    let judge = move |told: &[Told]| -> Verdict {
-        let speed = largest(&told[0]);
+    let judge = move |log: &[Log]| -> Verdict {
+        let speed = largest(&log[0]);
         if speed > 0.0 { Ok((speed / truth - 1.0).abs().max(apart)) } else { Err("no impacts".to_owned()) }
     };
-    Ok(Ask {
-        name: "slow sweep".to_owned(),
-        says: format!(
+    let texts = [
+        "slow sweep".to_owned(),
+        format!(
             "Up from {FROM} to {TO} Hz at {RATE} Hz/s, over the peak of the motion with one impact a cycle: the largest approach speed."
         ),
-        error_of: "relative error of the largest approach speed",
-        truth: format!(
+        "relative error of the largest approach speed".to_owned(),
+        format!(
             "order 8 with located events, tolerance 1e-13; exact flights in fine steps differ from it by {apart:.0e}, so smaller errors are told as \
-             that"
+     that"
         ),
-        tasks: vec![task],
-        methods: [
-            &[(by::STANDING, &[11.0, 61.0][..]), (by::SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
-            &LOOPS[..],
-            &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
-        ]
-        .concat(),
-        judge: Box::new(judge),
-    })
+    ];
+    let methods = [
+        &[(by::STANDING, &[11.0, 61.0][..]), (by::SWEPT, &[0.1, 1e-2, 1e-3, 1e-4, 1e-5])],
+        &LOOPS[..],
+        &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
+    ]
+    .concat();
+    Ok(Setup::new(texts, vec![task], methods, judge))
 }
 
 #[cfg(test)]
@@ -410,20 +445,20 @@ mod tests {
             for (number, time) in GOLDEN_B.into_iter().filter(|g| g.1 < until) {
                 assert!((truth.impacts[number - 1].0 - time).abs() < FOLLOWED, "{number}");
             }
-            let ask = scene_b(until).unwrap();
-            let told = ours::flights(&task).unwrap();
-            assert!((ask.judge)(std::slice::from_ref(&told)).unwrap() < 1e-13);
+            let setup = scene_b(until).unwrap();
+            let log = ours::flights(&task).unwrap();
+            assert!((setup.judge)(std::slice::from_ref(&log)).unwrap() < 1e-13);
             // One that no golden number tells.
-            let mut late = told;
+            let mut late = log;
             late.impacts[10].0 += 1e-6;
-            assert!(((ask.judge)(&[late]).unwrap() - 1e-6).abs() < 2.0 * FOLLOWED);
+            assert!(((setup.judge)(&[late]).unwrap() - 1e-6).abs() < 2.0 * FOLLOWED);
         }
     }
 
     #[test]
     fn the_window_stays_irregular() {
-        let told = ours::flights(&irregular(0.0, 20_000.0)).unwrap();
-        let mut last: Vec<f64> = told.impacts.iter().rev().take(1000).map(|i| i.1).collect();
+        let log = ours::flights(&irregular(0.0, 20_000.0)).unwrap();
+        let mut last: Vec<f64> = log.impacts.iter().rev().take(1000).map(|i| i.1).collect();
         last.sort_by(f64::total_cmp);
         // What repeats after fewer than 500 impacts has every speed at least twice.
         last.dedup_by(|a, b| (*a - *b).abs() < 1e-9);

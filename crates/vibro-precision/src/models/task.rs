@@ -33,14 +33,19 @@ pub struct Task {
 
 /// What a method tells of a motion.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Told {
+pub struct Log {
     /// Time in s and approach speed in m/s of each impact.
     pub impacts: Vec<(f64, f64)>,
     /// Times in s at which the masses come to rest against each other and part again; the last may be infinite.
     pub sticks: Vec<[f64; 2]>,
 }
 
-impl Told {
+impl Log {
+    /// Impacts without rests.
+    pub fn of(impacts: impl IntoIterator<Item = (f64, f64)>) -> Log {
+        Log { impacts: impacts.into_iter().collect(), sticks: Vec::new() }
+    }
+
     /// The last rest ends.
     pub fn release(&mut self, time: f64) {
         if let Some(rest) = self.sticks.last_mut() {

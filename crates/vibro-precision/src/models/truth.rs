@@ -1,7 +1,7 @@
 //! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event, and Newton's method.
 
 use super::rivals::{Course, Kind, Locate, events};
-use super::task::{Spring, Task, Told};
+use super::task::{Log, Spring, Task};
 use crate::failure::Found;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::{PI, TAU};
@@ -23,7 +23,7 @@ const AT_ONCE: f64 = 1e-6;
 const NEARLY: f64 = 1e-3;
 
 /// The motion of a task with impacts at once, or with a contact.
-pub fn motion(task: &Task, contact: Option<Spring>) -> Result<Told, Found> {
+pub fn motion(task: &Task, contact: Option<Spring>) -> Result<Log, Found> {
     events(&Task { rests: true, most: u64::MAX, ..*task }, contact, KIND, Locate::Summed)
 }
 
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn impacts_of_scene_b_are_those_of_arithmetic_with_40_digits() {
-        let told = motion(&task_b(2.0), None).unwrap();
+        let log = motion(&task_b(2.0), None).unwrap();
         let speeds = [
             0.078_330_829_224_466_23,
             0.147_727_906_853_932_83,
@@ -142,7 +142,7 @@ mod tests {
             0.283_306_967_791_457_3,
         ];
         for ((number, time), speed) in GOLDEN_B.into_iter().zip(speeds) {
-            let found = told.impacts[number - 1];
+            let found = log.impacts[number - 1];
             // A few roundings (1e-15) in each of 512 steps a cycle over 22 cycles, all to one side: 1e-11 rad of the cycle, 2e-13 s; five times
             // that.
             assert!((found.0 - time).abs() < 1e-12, "{number}: {:e}", found.0 - time);
@@ -152,8 +152,8 @@ mod tests {
 
     #[test]
     fn chatter_rest_and_release_of_scene_c_are_those_of_arithmetic_with_40_digits() {
-        let told = motion(&task_c(), None).unwrap();
-        let found = [told.sticks[0][0], told.sticks[0][1], told.sticks[1][0]];
+        let log = motion(&task_c(), None).unwrap();
+        let found = [log.sticks[0][0], log.sticks[0][1], log.sticks[1][0]];
         for (found, golden) in found.iter().zip(GOLDEN_C) {
             // The series leaves out what the pressing acceleration changes in the 2w/(a(1 − R)) = 7e-7/a s after the last rebound.
             assert!((found - golden).abs() < 1e-10, "{found} {golden}");

@@ -13,20 +13,14 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// Digits of exponents.
+pub(super) const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
 /// `10ⁿ` in superscript digits.
 pub fn power_of_ten(exponent: i32) -> String {
-    let mut text = String::from("10");
-    for c in exponent.to_string().chars() {
-        text.push(match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4'..='9' => char::from_u32(c as u32 - '4' as u32 + '⁴' as u32).unwrap_or(c),
-            _ => '⁰',
-        });
-    }
-    text
+    let raised =
+        |c: char| RAISED.chars().zip('0'..='9').find(|(_, digit)| *digit == c).map_or('⁻', |(r, _)| r);
+    "10".chars().chain(exponent.to_string().chars().map(raised)).collect()
 }
 
 /// A text whose numbers are written as programs write them, with powers of ten and true minus signs: `1e-9 m` becomes `10⁻⁹ m`.
@@ -98,18 +92,10 @@ pub fn estimate(value: f64, std: Option<f64>) -> String {
         // No number of a measurement has more digits.
         return format!("{} ± {}", significant(value, DIGITS as usize), significant(std, 2));
     }
-    if (-3..=3).contains(&exponent) {
-        let places = 1 - decade(std, 2);
-        return format!("{} ± {}", rounded(value, places), rounded(std, places));
-    }
-    let scale = 10f64.powi(-exponent);
+    let scale = if (-3..=3).contains(&exponent) { 1.0 } else { 10f64.powi(-exponent) };
     let places = 1 - decade(std * scale, 2);
-    format!(
-        "({} ± {})×{}",
-        rounded(value * scale, places),
-        rounded(std * scale, places),
-        power_of_ten(exponent)
-    )
+    let both = format!("{} ± {}", rounded(value * scale, places), rounded(std * scale, places));
+    if scale == 1.0 { both } else { format!("({both})×{}", power_of_ten(exponent)) }
 }
 
 /// Decimals that show `value` to `digits` significant digits, none of them a trailing zero.
@@ -201,26 +187,13 @@ pub fn labelled(label: &str, unit: &str) -> String {
     }
 }
 
+/// A unit whose quotient in brackets, if it is one of time, is written as a product.
 fn unbracketed(unit: &str) -> String {
-    let product = || {
-        let (before, rest) = unit.split_once('(')?;
-        let (quotient, after) = rest.split_once(')')?;
-        let (over, under) = quotient.split_once('/')?;
-        let (symbol, power) = match under.strip_suffix(['²', '³']) {
-            Some(symbol) => (symbol, &under[symbol.len()..]),
-            None => (under, "¹"),
-        };
-        let plain = symbol.chars().all(char::is_alphabetic);
-        // A square of the whole is one of its parts.
-        let (square, power, after) = match (after.strip_prefix('²'), power) {
-            (Some(after), "¹") => ("²", "²", after),
-            (Some(after), "²") => ("²", "⁴", after),
-            (Some(_), _) => return None,
-            (None, power) => ("", power, after),
-        };
-        plain.then(|| format!("{before}{over}{square} {symbol}⁻{power}{after}"))
-    };
-    product().unwrap_or_else(|| unit.to_owned())
+    const PRODUCTS: [(&str, &str); 4] =
+        [("/s)²", "² s⁻²"), ("/s²)²", "² s⁻⁴"), ("/s)", " s⁻¹"), ("/s²)", " s⁻²")];
+    let product = PRODUCTS.iter().find(|(quotient, _)| unit.contains(quotient));
+    product
+        .map_or(unit.to_owned(), |(quotient, product)| unit.replacen('(', "", 1).replace(quotient, product))
 }
 
 /// Rounds to `places` decimals, or to tens, hundreds, … where negative.

@@ -5,19 +5,17 @@
 //! writes `m/s-2` may mean either power.
 
 use super::Dimension;
+use super::notation::RAISED;
 
-/// Symbols with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether a prefix may stand before them.
+/// Symbols of a unit with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether a prefix may stand before them.
 const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
     ("m", [1, 0, 0, 0, 0, 0], 1.0, true),
-    ("s", [0, 0, 1, 0, 0, 0], 1.0, true),
-    ("sec", [0, 0, 1, 0, 0, 0], 1.0, true),
+    ("s sec", [0, 0, 1, 0, 0, 0], 1.0, true),
     ("Sec", [0, 0, 1, 0, 0, 0], 1.0, false),
     ("min", [0, 0, 1, 0, 0, 0], 60.0, false),
-    ("kg", [0, 1, 0, 0, 0, 0], 1.0, false),
-    ("Kg", [0, 1, 0, 0, 0, 0], 1.0, false),
+    ("kg Kg", [0, 1, 0, 0, 0, 0], 1.0, false),
     ("g", [1, 0, -2, 0, 0, 0], 9.806_65, true),
-    ("gn", [1, 0, -2, 0, 0, 0], 9.806_65, false),
-    ("g_n", [1, 0, -2, 0, 0, 0], 9.806_65, false),
+    ("gn g_n", [1, 0, -2, 0, 0, 0], 9.806_65, false),
     ("N", [1, 1, -2, 0, 0, 0], 1.0, true),
     ("lbf", [1, 1, -2, 0, 0, 0], 4.448_221_615_260_5, false),
     ("Pa", [-1, 1, -2, 0, 0, 0], 1.0, true),
@@ -30,30 +28,26 @@ const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
     ("cps", [0, 0, -1, 0, 0, 0], 1.0, false),
     ("rpm", [0, 0, -1, 0, 0, 0], 1.0 / 60.0, false),
     ("K", [0, 0, 0, 0, 1, 0], 1.0, false),
-    ("in", [1, 0, 0, 0, 0, 0], 0.0254, false),
-    ("inch", [1, 0, 0, 0, 0, 0], 0.0254, false),
+    ("in inch", [1, 0, 0, 0, 0, 0], 0.0254, false),
     ("ips", [1, 0, -1, 0, 0, 0], 0.0254, false),
     ("mil", [1, 0, 0, 0, 0, 0], 2.54e-5, false),
     ("ft", [1, 0, 0, 0, 0, 0], 0.3048, false),
     ("rad", [0, 0, 0, 0, 0, 1], 1.0, false),
-    ("deg", [0, 0, 0, 0, 0, 1], std::f64::consts::PI / 180.0, false),
-    ("°", [0, 0, 0, 0, 0, 1], std::f64::consts::PI / 180.0, false),
+    ("deg °", [0, 0, 0, 0, 0, 1], std::f64::consts::PI / 180.0, false),
     ("%", [0, 0, 0, 0, 0, 0], 0.01, false),
 ];
 
-const PREFIXES: &[(char, f64)] = &[
-    ('p', 1e-12),
-    ('n', 1e-9),
-    ('u', 1e-6),
-    ('µ', 1e-6),
-    ('μ', 1e-6),
-    ('m', 1e-3),
-    ('c', 1e-2),
-    ('d', 1e-1),
-    ('k', 1e3),
-    ('K', 1e3),
-    ('M', 1e6),
-    ('G', 1e9),
+/// Letters of a prefix, and its factor.
+const PREFIXES: &[(&str, f64)] = &[
+    ("p", 1e-12),
+    ("n", 1e-9),
+    ("uµμ", 1e-6),
+    ("m", 1e-3),
+    ("c", 1e-2),
+    ("d", 1e-1),
+    ("kK", 1e3),
+    ("M", 1e6),
+    ("G", 1e9),
 ];
 
 /// Brackets and roots of a text at most.
@@ -177,7 +171,6 @@ impl<'a> Reader<'a> {
 
     /// Exponent in halves: 2 where none is written.
     fn power(&mut self) -> Option<i8> {
-        const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
         let text = if self.one(&['^']).is_some() {
             let bracket = self.one(&['(']).is_some();
             let text = self.take(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
@@ -206,15 +199,14 @@ fn root(inner: Parsed) -> Option<Parsed> {
 }
 
 fn symbol(name: &str) -> Option<Parsed> {
-    let find = |name: &str| SYMBOLS.iter().find(|s| s.0 == name);
-    if let Some(s) = find(name) {
-        return Some((Dimension(s.1.map(|e| 2 * e)), s.2));
-    }
-    let mut rest = name.chars();
-    let first = rest.next()?;
-    let (_, scale) = PREFIXES.iter().find(|p| p.0 == first)?;
-    let s = find(rest.as_str()).filter(|s| s.3)?;
-    Some((Dimension(s.1.map(|e| 2 * e)), s.2 * scale))
+    let find = |name: &str| SYMBOLS.iter().find(|s| s.0.split(' ').any(|symbol| symbol == name));
+    let prefixed = || {
+        let first = name.chars().next()?;
+        let (_, scale) = PREFIXES.iter().find(|p| p.0.contains(first))?;
+        Some((find(&name[first.len_utf8()..]).filter(|s| s.3)?, *scale))
+    };
+    let ((_, exponents, factor, _), scale) = find(name).map(|s| (s, 1.0)).or_else(prefixed)?;
+    Some((Dimension(exponents.map(|e| 2 * e)), factor * scale))
 }
 
 /// Spelling of a dimension without a name: base units with exponents, e.g. `m²·s⁻³`.
@@ -226,8 +218,7 @@ pub(crate) fn spell(dimension: Dimension) -> String {
         .filter(|(_, e)| *e != 0)
         .map(|(name, e)| match e {
             2 => (*name).to_owned(),
-            e if e % 2 == 0 => format!("{name}^{}", e / 2),
-            e => format!("{name}^{:.1}", f64::from(e) / 2.0),
+            e => format!("{name}^{}", f64::from(e) / 2.0),
         })
         .collect();
     if parts.is_empty() { "1".to_owned() } else { parts.join("·") }

@@ -2,7 +2,7 @@
 //!
 //! It compares the signs of the root function at the ends of its steps.
 
-use super::super::task::{Spring, Task, Told};
+use super::super::task::{Log, Spring, Task};
 use super::stages::{Course, Guard, Locate, Stage, System};
 use super::stepper::{FLOOR, Kind, first_step};
 use crate::Outcome;
@@ -32,7 +32,7 @@ impl From<DiffsolError> for Found {
 }
 
 /// Follows the motion with impacts at once, or with a contact.
-pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Told, Found> {
+pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log, Found> {
     let (Diffsol::Tsit45(relative) | Diffsol::Bdf(relative)) = how;
     let course = Course::new(task, spring, Kind::Rk45(relative), Locate::Ends);
     let (system, stage, first) = (course.system, Cell::new(course.stage), course.y);
@@ -71,7 +71,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
     mut now: Course<'_>,
     mut solver: impl OdeSolverMethod<'a, E>,
     stage: &Cell<Stage>,
-) -> Result<Told, Found> {
+) -> Result<Log, Found> {
     let (system, task) = (now.system, now.system.task);
     let mut left = task.most;
     solver.set_stop_time(task.until)?;
@@ -109,7 +109,7 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
             *state.h = state.h.min(task.cycle() / 8.0);
         }
     }
-    Ok(now.told)
+    Ok(now.log)
 }
 
 fn four(y: &[f64]) -> [f64; 4] {
@@ -155,9 +155,9 @@ mod tests {
         let (task, omega) = mirrored(0.7, FRAC_PI_2 + 3.5 * PI);
         for how in [Diffsol::Tsit45(1e-6), Diffsol::Tsit45(1e-9), Diffsol::Tsit45(1e-12), Diffsol::Bdf(1e-9)]
         {
-            let told = followed(&task, None, how).unwrap();
-            assert_eq!(told.impacts.len(), 4, "{how:?}");
-            for (n, (time, approach)) in told.impacts.iter().enumerate() {
+            let log = followed(&task, None, how).unwrap();
+            assert_eq!(log.impacts.len(), 4, "{how:?}");
+            for (n, (time, approach)) in log.impacts.iter().enumerate() {
                 let speed = 2.0 * omega * START * 0.7_f64.powi(n as i32);
                 // At an impact without acceleration an error turns round and shrinks by R, as the speed does.
                 let off = allowed(how, omega);
@@ -192,9 +192,9 @@ mod tests {
         }
         assert_eq!(touches.len(), 3);
         for how in [Diffsol::Tsit45(1e-9), Diffsol::Tsit45(1e-12), Diffsol::Bdf(1e-9)] {
-            let told = followed(&task, Some(spring), how).unwrap();
-            assert_eq!(told.impacts.len(), 3, "{how:?}");
-            for (n, (found, truth)) in told.impacts.iter().zip(&touches).enumerate() {
+            let log = followed(&task, Some(spring), how).unwrap();
+            assert_eq!(log.impacts.len(), 3, "{how:?}");
+            for (n, (found, truth)) in log.impacts.iter().zip(&touches).enumerate() {
                 // In contact (Ωz, z′) does not grow: a contact makes (ωz, z′) larger by Ω/ω at most.
                 let off = allowed(how, omega) * (stiff / omega).powi(n as i32);
                 assert!((found.0 - truth.0).abs() < off / (omega * truth.1), "{how:?}: {found:?} {truth:?}");

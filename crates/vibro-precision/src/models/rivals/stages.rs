@@ -1,6 +1,6 @@
 //! Integration from event to event: each impact, end of a contact or release is located, and the integration begins anew behind it.
 
-use super::super::task::{Spring, Task, Told};
+use super::super::task::{Log, Spring, Task};
 use super::stepper::{Kind, Stepper, rk4};
 use crate::failure::Found;
 
@@ -89,7 +89,7 @@ pub struct Course<'a> {
     sticks: f64,
     /// Steps that it may still take.
     left: u64,
-    pub told: Told,
+    pub log: Log,
     pub t: f64,
     pub(super) y: [f64; 4],
     pub(super) stage: Stage,
@@ -105,7 +105,7 @@ impl<'a> Course<'a> {
             locate,
             sticks: if task.rests { (0.02 * kind.relative()).sqrt() } else { f64::NEG_INFINITY },
             left: task.most,
-            told: Told::default(),
+            log: Log::default(),
             t: 0.0,
             y: task.start,
             stage: Stage::Apart,
@@ -143,8 +143,8 @@ impl<'a> Course<'a> {
 
     /// A contact since the last impact that lasts up to a time (s) is told as rest if it was long enough.
     fn rested(&mut self, until: f64) {
-        let last = self.told.impacts.last();
-        self.told.sticks.extend(self.system.spring.zip(last).and_then(|(c, from)| c.rest(from.0, until)));
+        let last = self.log.impacts.last();
+        self.log.sticks.extend(self.system.spring.zip(last).and_then(|(c, from)| c.rest(from.0, until)));
     }
 
     /// Whether the masses meet where this stage ends.
@@ -158,12 +158,12 @@ impl<'a> Course<'a> {
         self.t = t;
         self.stage = match (self.stage, which) {
             (Stage::Apart, _) if spring.is_some() => {
-                self.told.impacts.push((t, y[1] - y[3]));
+                self.log.impacts.push((t, y[1] - y[3]));
                 Stage::Touching
             }
             (Stage::Apart, _) => {
                 let approach = task.collide(&mut y);
-                self.told.impacts.push((t, approach));
+                self.log.impacts.push((t, approach));
                 let (rig, hold) = (&task.rig, task.hold(t, &y));
                 if approach < self.sticks && hold > 0.0 {
                     let v = (rig.m1 * y[1] + rig.m2 * y[3]) / (rig.m1 + rig.m2);
@@ -174,14 +174,14 @@ impl<'a> Course<'a> {
                         y = rk4(&|t: f64, y: &[f64; 4]| self.system.rate(Stage::Together, t, y), t, &y, left);
                         self.t += left;
                     }
-                    self.told.sticks.push([self.t, f64::INFINITY]);
+                    self.log.sticks.push([self.t, f64::INFINITY]);
                     Stage::Together
                 } else {
                     Stage::Apart
                 }
             }
             (Stage::Together, _) => {
-                self.told.release(t);
+                self.log.release(t);
                 // The gap opens like the cube of time: a ten-thousandth of a cycle passes unwatched, until it is more than rounding.
                 let short = 1e-4 * task.cycle();
                 y[0] = y[2] + task.rig.gap;
@@ -201,7 +201,7 @@ impl<'a> Course<'a> {
 }
 
 /// Follows the motion with impacts at once, or with a contact.
-pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Result<Told, Found> {
+pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Result<Log, Found> {
     let mut course = Course::new(task, spring, kind, locate);
     while let Some((which, t, y)) = course.next()? {
         course.meet(which, t, y);
@@ -209,16 +209,16 @@ pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -
     if !course.apart() {
         course.rested(f64::INFINITY);
     }
-    Ok(course.told)
+    Ok(course.log)
 }
 
 /// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control; touches are read off
 /// afterwards.
-pub fn through(task: &Task, kind: Kind) -> Result<Told, Found> {
+pub fn through(task: &Task, kind: Kind) -> Result<Log, Found> {
     let spring = task.spring();
     let force = |y: &[f64; 4]| if task.gap(y) < 0.0 { spring.bound(task, y).max(0.0) } else { 0.0 };
     let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, force(y));
-    let (mut told, mut touch, mut left) = (Told::default(), None, task.most);
+    let (mut log, mut touch, mut left) = (Log::default(), None, task.most);
     let mut stepper = Stepper::new(kind, task, f, 0.0, task.start);
     let (mut t, mut gap) = (0.0, task.gap(&task.start));
     while t < task.until {
@@ -231,17 +231,17 @@ pub fn through(task: &Task, kind: Kind) -> Result<Told, Found> {
             && let Some(at) = step.crossing(f, gap, |_, y| task.gap(y))
         {
             let y = step.at(f, at);
-            told.impacts.push((step.start + at, y[1] - y[3]));
+            log.impacts.push((step.start + at, y[1] - y[3]));
             touch = Some(step.start + at);
         }
         t = step.start + step.duration;
         let after = task.gap(&step.end);
         if after > 0.0 {
             let parts = step.crossing(f, -gap, |_, y| -task.gap(y)).map_or(t, |at| step.start + at);
-            told.sticks.extend(touch.take().and_then(|from| spring.rest(from, parts)));
+            log.sticks.extend(touch.take().and_then(|from| spring.rest(from, parts)));
         }
         gap = after;
     }
-    told.sticks.extend(touch.and_then(|from| spring.rest(from, f64::INFINITY)));
-    Ok(told)
+    log.sticks.extend(touch.and_then(|from| spring.rest(from, f64::INFINITY)));
+    Ok(log)
 }

@@ -70,11 +70,6 @@ impl Canvas {
         self.shape(&path(parts, false), None, Some(pen));
     }
 
-    /// The sides of a rectangle.
-    pub fn outline(&mut self, r: Rect, pen: Pen) {
-        self.shape(&path(&[r.corners()], true), None, Some(pen));
-    }
-
     /// One straight line.
     pub fn line(&mut self, a: Point, b: Point, pen: Pen) {
         self.lines(&[vec![a, b]], pen);
@@ -85,9 +80,9 @@ impl Canvas {
         self.shape(&path(parts, true), Some(fill), outline);
     }
 
-    /// A filled rectangle.
-    pub fn rect(&mut self, r: Rect, fill: Rgb, outline: Option<Pen>) {
-        self.areas(&[r.corners()], fill, outline);
+    /// A rectangle.
+    pub fn rect(&mut self, r: Rect, fill: Option<Rgb>, outline: Option<Pen>) {
+        self.shape(&path(&[r.corners()], true), fill, outline);
     }
 
     /// Circles of one radius.
@@ -217,18 +212,11 @@ fn path(parts: &[Vec<Point>], closed: bool) -> String {
     let mut data = String::new();
     for part in parts.iter().filter(|p| p.len() >= 2) {
         let mut before = None;
-        for &(x, y) in part {
-            let now = (hundredths(x), hundredths(y));
-            match before {
-                None => {
-                    data.push('M');
-                    pair(&mut data, now.0, now.1);
-                }
-                Some((x, y)) if (x, y) == now => continue,
-                Some((x, y)) => {
-                    data.push('l');
-                    pair(&mut data, now.0 - x, now.1 - y);
-                }
+        for now in part.iter().map(|&(x, y)| (hundredths(x), hundredths(y))) {
+            let (step, (x, y)) = before.map_or(('M', (0, 0)), |at| ('l', at));
+            if before != Some(now) {
+                data.push(step);
+                pair(&mut data, now.0 - x, now.1 - y);
             }
             before = Some(now);
         }
@@ -260,16 +248,10 @@ fn decimal(value: f64) -> String {
 
 /// A count of hundredths as a decimal without needless zeros.
 fn number(out: &mut String, hundredths: i64) {
-    if hundredths < 0 {
-        out.push('-');
-    }
-    let (whole, part) = (hundredths.unsigned_abs() / 100, hundredths.unsigned_abs() % 100);
-    if whole > 0 || part == 0 {
-        let _ = write!(out, "{whole}");
-    }
-    if part > 0 {
-        let _ = if part % 10 == 0 { write!(out, ".{}", part / 10) } else { write!(out, ".{part:02}") };
-    }
+    let text = (hundredths as f64 / 100.0).to_string();
+    let (sign, size) = text.split_at(usize::from(hundredths < 0));
+    out.push_str(sign);
+    out.push_str(if size.starts_with("0.") { &size[1..] } else { size });
 }
 
 #[cfg(test)]

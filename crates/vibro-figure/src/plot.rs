@@ -3,13 +3,12 @@
 use super::canvas::{Anchor, Canvas};
 use super::forms::{self, Form};
 use super::frame::{self, Insets, Place, fitted};
+use super::heatmap::{self, Heatmap};
 use super::legend::KeyList;
-use super::map;
 use super::notes::{self, Clutter};
 use super::style::{self, FRAME, GAP, LARGE, LEADING, Look, SMALL, TICK};
 use crate::axis::{Axis, Extent, Room};
 use crate::figure::{Legend, Plot};
-use crate::heatmap::Heatmap;
 use crate::path::Rect;
 use crate::series::Shape;
 use vibro_record::units::notation::labelled;
@@ -79,7 +78,7 @@ impl<'a> Sheet<'a> {
         let bare = Insets { left: 2.5 * LARGE, bottom: 2.5 * LARGE, top: SMALL, right: GAP };
         let mut insets = self.axes.as_ref().map_or(bare, |(x, y)| frame::insets(x, y, size, self.named_x));
         if let Some(bar) = &self.bar {
-            insets.right = insets.right.max(map::room(bar, size.1));
+            insets.right = insets.right.max(heatmap::bar_room(bar, size.1));
         }
         if self.plot.heatmap.is_some() {
             insets.left += TICK;
@@ -111,7 +110,7 @@ impl<'a> Sheet<'a> {
         self.draw_title(canvas, frame);
         let Some(place) = self.place(frame) else { return self.draw_nothing(canvas, frame) };
         if let Some(map) = &self.plot.heatmap {
-            map::draw_cells(canvas, map, &place);
+            map.draw(canvas, &place);
         }
         let forms = self.forms(&place);
         for form in &forms {
@@ -119,25 +118,25 @@ impl<'a> Sheet<'a> {
         }
         frame::draw(canvas, &place, self.named_x, self.plot.heatmap.is_some());
         if let Some(bar) = &self.bar {
-            map::draw_bar(canvas, bar, frame);
+            heatmap::draw_bar(canvas, bar, frame);
         }
         let mut clutter = Clutter::of(&forms);
-        match self.names {
-            Legend::Auto => {
-                if let Some(free) = self.free_place(&place, &clutter) {
-                    self.keys.draw(canvas, free, 0.0);
-                    clutter.add_box(free);
-                }
-            }
+        // The place of the names, and the width of their rows where they stand in rows.
+        let names = match self.names {
+            Legend::Auto => self.free_place(&place, &clutter).map(|free| (free, 0.0)),
             Legend::Right => {
                 let (w, h) = self.keys.column(BESIDE * frame.w);
-                self.keys.draw(canvas, Rect { x: frame.right() + LEADING, y: frame.y, w, h }, 0.0);
+                Some((Rect { x: frame.right() + LEADING, y: frame.y, w, h }, 0.0))
             }
             Legend::Above => {
                 let h = self.keys.rows(frame.w);
-                self.keys.draw(canvas, Rect { y: frame.y - h - 2.0, h, ..frame }, frame.w);
+                Some((Rect { y: frame.y - h - 2.0, h, ..frame }, frame.w))
             }
-            Legend::Hidden => {}
+            Legend::Hidden => None,
+        };
+        if let Some((area, row)) = names {
+            self.keys.draw(canvas, area, row);
+            clutter.add_box(area);
         }
         notes::name_lines(canvas, &self.plot.series, &place, &mut clutter);
         notes::write_notes(canvas, &self.plot.notes, &place, &mut clutter);
@@ -179,7 +178,7 @@ impl<'a> Sheet<'a> {
 
     /// An empty frame that says so.
     fn draw_nothing(&self, canvas: &mut Canvas, frame: Rect) {
-        canvas.outline(frame, FRAME);
+        canvas.rect(frame, None, Some(FRAME));
         let (x, y) = frame.middle();
         canvas.label("no data", (x, y), LARGE, Anchor::Middle);
         let plot = self.plot;

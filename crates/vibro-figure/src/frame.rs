@@ -173,7 +173,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
         [below.marks((0.0, -1.0)), left.marks((1.0, 0.0)), opposite].concat()
     };
     canvas.lines(&marks, TICKS);
-    canvas.outline(frame, FRAME);
+    canvas.rect(frame, None, Some(FRAME));
     let away = GAP + if outside { TICK - 1.0 } else { 0.0 };
     left.numbers(canvas, Side::Left, away);
     let beside = frame.x - away - widest(&ty) - GAP - DESCENT;

@@ -17,6 +17,8 @@ const DESCENT: f64 = 0.16;
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     area: Rect,
+    /// Whether they read upwards.
+    upright: bool,
     /// Where a leader ends; `None` where the words need none.
     leader: Option<(Point, Point)>,
     /// How much is covered there, with small costs for distance.
@@ -36,16 +38,14 @@ pub(super) fn name_lines(canvas: &mut Canvas, series: &[Series], place: &Place<'
             continue;
         }
         let along = beside(&series.name, if upright { at.0 } else { at.1 }, upright, frame, clutter);
-        if let Some(spot) = along.filter(|spot| spot.cost < 1.0) {
-            write(canvas, &series.name, spot, upright, GREY, clutter);
-            continue;
-        }
-        let (right, down) = if upright { (0.0, frame.h) } else { (frame.w, 0.0) };
-        let parts = (0..20).map(|i| 0.05 + 0.045 * f64::from(i));
-        let aside = parts.map(|part| (at.0 + part * right, at.1 + part * down));
-        if let Some(spot) = best(aside.filter_map(|at| around(&series.name, at, 0.0, frame, clutter))) {
-            write(canvas, &series.name, spot, false, GREY, clutter);
-        }
+        let aside = || {
+            let (right, down) = if upright { (0.0, frame.h) } else { (frame.w, 0.0) };
+            let parts = (0..20).map(|i| 0.05 + 0.045 * f64::from(i));
+            let places = parts.map(|part| (at.0 + part * right, at.1 + part * down));
+            best(places.filter_map(|at| around(&series.name, at, 0.0, frame, clutter)))
+        };
+        let spot = along.filter(|spot| spot.cost < 1.0).or_else(aside);
+        write(canvas, &series.name, spot, GREY, clutter);
     }
 }
 
@@ -59,16 +59,16 @@ pub(super) fn write_notes(canvas: &mut Canvas, notes: &[Note], place: &Place<'_>
         clutter.add_box(Rect::around(*at, MARKER));
     }
     for (note, at) in points {
-        if let Some(spot) = around(&note.text, at, MARKER, place.frame, clutter) {
-            write(canvas, &note.text, spot, false, BLACK, clutter);
-        }
+        let spot = around(&note.text, at, MARKER, place.frame, clutter);
+        write(canvas, &note.text, spot, BLACK, clutter);
     }
 }
 
-fn write(canvas: &mut Canvas, text: &str, spot: Spot, upright: bool, colour: Rgb, clutter: &mut Clutter) {
-    let area = spot.area;
+/// Writes a text in its place, where it has one.
+fn write(canvas: &mut Canvas, text: &str, spot: Option<Spot>, colour: Rgb, clutter: &mut Clutter) {
+    let Some(Spot { area, upright, leader, .. }) = spot else { return };
     clutter.add_box(area);
-    if let Some((from, to)) = spot.leader {
+    if let Some((from, to)) = leader {
         canvas.line(from, to, LEADER);
     }
     let (at, turn) = if upright {
@@ -97,7 +97,7 @@ fn beside(name: &str, line: f64, upright: bool, frame: Rect, clutter: &Clutter) 
         };
         let outside = if frame.holds(area) { 0.0 } else { 1e5 };
         let cost = outside + clutter.under(area.grown(0.7)) + 0.1 * part.min(1.1 - part);
-        Spot { area, leader: None, cost }
+        Spot { area, upright, leader: None, cost }
     }))
 }
 
@@ -127,7 +127,7 @@ fn around(text: &str, at: Point, taken: f64, frame: Rect, clutter: &Clutter) -> 
         let crossed = leader.map_or(0, |_| clutter.crossed(from(taken + 1.8), near));
         let outside = if frame.holds(area) { 0.0 } else { 1e5 };
         let cost = outside + 3.0 * clutter.under(area.grown(1.0)) + 60.0 * crossed as f64 + distance;
-        Spot { area, leader, cost }
+        Spot { area, upright: false, leader, cost }
     }))
 }
 

@@ -46,7 +46,7 @@ impl KeyList {
                 entries.push(entry);
             }
         }
-        if let Some(Key::Classes(names)) = map.map(Heatmap::key) {
+        if let Some(Key::Classes(names)) = map.map(|map| &map.key) {
             entries.extend(names.iter().enumerate().map(|(i, name)| {
                 let colour = Heatmap::class_colour(i);
                 let pen = Pen::solid(colour, OUTLINE);
