@@ -33,16 +33,14 @@ mod entry;
 mod fit;
 mod locate;
 mod parameter;
-mod prediction;
 mod reading;
 mod value;
 
 pub use channel::{one as channel, several as channels};
-pub use compute::{Compute, Drive};
+pub use compute::{Compute, Drive, Follows, ModelEntry};
 pub use entry::Entry;
 pub use fit::FitEntry;
 pub use parameter::Parameter;
-pub use prediction::{Follows, ModelEntry};
 pub use reading::{Channel, Decimal, Reading, above_zero};
 pub use value::{LowPass, Word, two, word};
 
@@ -88,9 +86,6 @@ pub struct Campaign {
     text: String,
 }
 
-/// Keys at the top that are no section of records.
-const KEYS: [&str; 9] = ["name", "made_by", "out", "rig", "excitation", "contact", "model", "fit", "compute"];
-
 /// Tables that a rig file has beside the rig's keys.
 const SCENE: [&str; 3] = ["excitation", "contact", "buffer"];
 
@@ -124,8 +119,8 @@ impl Campaign {
     }
 
     fn parse(path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
-        let mut campaign = Campaign { path: path.to_owned(), text, ..Campaign::default() };
-        let table = campaign.table()?;
+        let complaint = |e: &toml::de::Error| locate::toml_error(path, &text, e, sections);
+        let table = DeTable::parse(&text).map_err(|e| complaint(&e))?.into_inner();
         let of_rig = |key: &&str| Rig::KEYS.contains(key);
         let keys: Vec<&str> = table.keys().map(|key| key.get_ref().as_ref()).collect();
         if keys.iter().any(of_rig) && keys.iter().all(|key| of_rig(key) || SCENE.contains(key)) {
@@ -137,20 +132,12 @@ impl Campaign {
                 ),
             ));
         }
-        let known = [&KEYS[..], sections].concat();
-        if let Some(key) = table.keys().find(|key| !known.contains(&key.get_ref().as_ref())) {
-            return Err(locate::unknown(path, &campaign.text, key, &known));
-        }
-        let own: DeTable<'_> = table
-            .iter()
-            .filter(|(key, _)| KEYS.contains(&key.get_ref().as_ref()))
-            .map(|(key, value)| (key.clone(), value.clone()))
-            .collect();
-        let asked = table.len() - own.len();
-        let own = Spanned::new(0..0, DeValue::Table(own));
-        let head = Campaign::deserialize(own.into_deserializer());
-        let head = head.map_err(|e| locate::toml_error(path, &campaign.text, &e, &[]))?;
-        campaign = Campaign { sections: asked, path: campaign.path, text: campaign.text, ..head };
+        let of_records = |key: &str| sections.contains(&key);
+        let (records, head): (DeTable<'_>, DeTable<'_>) =
+            table.into_iter().partition(|(key, _)| of_records(key.get_ref()));
+        let (sections, head) = (records.len(), Spanned::new(0..0, DeValue::Table(head)));
+        let head = Campaign::deserialize(head.into_deserializer()).map_err(|e| complaint(&e))?;
+        let campaign = Campaign { sections, path: path.to_owned(), text, ..head };
         campaign.check()?;
         Ok(campaign)
     }

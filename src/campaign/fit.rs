@@ -1,6 +1,7 @@
 //! What is to be found from the responses.
 
 use super::Parameter;
+use super::compute::Fault;
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -29,41 +30,28 @@ pub struct FitEntry {
 const MOST_STARTS: usize = 1000;
 
 impl FitEntry {
-    /// Asks for these parameters.
-    ///
-    /// # Errors
-    /// If one stands there twice, or is a mass without a prior.
-    pub fn ask(&mut self, parameters: Vec<Parameter>) -> Result<()> {
-        self.parameters = parameters;
-        self.usable()
-    }
-
     /// That nothing in it is impossible.
     ///
     /// # Errors
     /// With the key that is, and why.
-    pub(crate) fn usable(&self) -> Result<()> {
+    pub fn usable(&self) -> Result<()> {
         let expected = "each parameter once, masses with a prior, and values as docs/campaign.md has them";
         self.check().map_err(|(key, why)| Error::usage(format!("fit of {key}: {why}"), expected))
     }
 
     /// The key that holds an impossible value, and why.
-    pub(crate) fn check(&self) -> std::result::Result<(), (&'static str, String)> {
-        let mut seen = Vec::new();
-        for parameter in &self.parameters {
-            if seen.contains(parameter) {
-                return Err(("parameters", format!("{} is named twice", parameter.name())));
-            }
-            seen.push(*parameter);
+    pub(super) fn check(&self) -> std::result::Result<(), Fault> {
+        for (i, parameter) in self.parameters.iter().enumerate() {
             let name = parameter.name();
+            if self.parameters[..i].contains(parameter) {
+                return Err(("parameters", format!("{name} is named twice")));
+            }
             if parameter.is_mass() && !self.prior.contains_key(parameter) {
-                return Err((
-                    "parameters",
-                    format!(
-                        "{name} is fitted without a prior, while motion tells only the ratios of force, stiffness and damping to the masses: weigh \
-                         it and give `prior.{name} = [kg, standard uncertainty]` in [fit]"
-                    ),
-                ));
+                let why = "while motion tells only the ratios of force, stiffness and damping to the masses: weigh it and give";
+                let why = format!(
+                    "{name} is fitted without a prior, {why} `prior.{name} = [kg, standard uncertainty]` in [fit]"
+                );
+                return Err(("parameters", why));
             }
         }
         if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
@@ -75,20 +63,14 @@ impl FitEntry {
             }
         }
         for (parameter, [value, std]) in &self.prior {
-            let name = parameter.name();
+            let (name, (low, high)) = (parameter.name(), self.range(*parameter));
+            let prior = format!("the prior of {name} is {value}");
             if !(value.is_finite() && std.is_finite() && *std > 0.0) {
-                let found = format!("the prior of {name} is {value} with a standard uncertainty of {std}");
-                return Err((
-                    name,
-                    format!("{found}, which is not above 0: leave it out of the fit to hold it"),
-                ));
+                let why = "which is not above 0: leave it out of the fit to keep it fixed";
+                return Err((name, format!("{prior} with a standard uncertainty of {std}, {why}")));
             }
-            let (low, high) = self.range(*parameter);
             if !(*value > low && *value < high) {
-                return Err((
-                    name,
-                    format!("the prior of {name} is {value}, outside its bounds {low} to {high}"),
-                ));
+                return Err((name, format!("{prior}, outside its bounds {low} to {high}")));
             }
         }
         for (parameter, [low, high]) in &self.bounds {

@@ -8,7 +8,6 @@
 
 mod answer;
 mod compliance;
-mod coordinate;
 mod data;
 mod findings;
 mod hold_out;

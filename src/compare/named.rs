@@ -23,24 +23,35 @@ pub struct Named<T> {
 /// The scatter from cycle to cycle counts as the uncertainty of a point, so that irregular stretches are not full of peaks.
 pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     let sides = [(&swept.up, Direction::Up), (&swept.down, Direction::Down)];
-    let mut curves: Vec<Found> = sides
-        .into_iter()
-        .filter(|(points, _)| points.len() > 2)
-        .flat_map(|(points, direction)| [1, 2].map(|mass| Found::on(points, mass, direction)))
-        .collect();
-    let mut named: Vec<NamedCurve<'_>> = curves
-        .iter_mut()
-        .map(|c| NamedCurve {
-            mass: c.mass,
-            direction: c.direction,
-            curve: c.curve.clone(),
-            jumps: &mut c.jumps,
-            resonances: &mut c.resonances,
+    let curves = sides.into_iter().filter(|(points, _)| points.len() > 2).flat_map(|(points, direction)| {
+        [1, 2].map(|mass| {
+            let read = |p: &Point| match mass {
+                1 => (p.frequency, p.x1, p.x1_scatter),
+                _ => (p.frequency, p.x2, p.x2_scatter),
+            };
+            (mass, direction, points.iter().map(read).collect::<Vec<_>>())
+        })
+    });
+    let mut found: Vec<_> = curves
+        .map(|(mass, direction, mut curve)| {
+            let [f, a, std] = columns(&curve);
+            let jumps = jumps(&f, &a, &std, direction);
+            curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let [f, a, std] = columns(&curve);
+            let resonances = resonances(&f, &a, &std, &jumps, Some(mass));
+            (mass, direction, curve, jumps, resonances)
         })
         .collect();
-    name_modes(&mut named);
+    let named = found.iter_mut().map(|(mass, direction, curve, jumps, resonances)| NamedCurve {
+        mass: *mass,
+        direction: *direction,
+        curve: std::mem::take(curve),
+        jumps,
+        resonances,
+    });
+    name_modes(&mut named.collect::<Vec<_>>());
     let mut all = (Vec::new(), Vec::new());
-    for Found { mass, direction, resonances, jumps, .. } in curves {
+    for (mass, direction, _, jumps, resonances) in found {
         let tops = resonances.into_iter().filter(|r| r.kind != ResonanceKind::Minimum);
         all.0.extend(tops.map(|found| Named { mass, direction, found }));
         all.1.extend(jumps.into_iter().map(|found| Named { mass, direction, found }));
@@ -48,36 +59,9 @@ pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     all
 }
 
-/// One mass in one direction.
-struct Found {
-    mass: u8,
-    direction: Direction,
-    curve: Vec<(f64, f64, f64)>,
-    jumps: Vec<Jump>,
-    resonances: Vec<Resonance>,
-}
-
-impl Found {
-    fn on(points: &[Point], mass: u8, direction: Direction) -> Found {
-        let read = |p: &Point| match mass {
-            1 => (p.frequency, p.x1, p.x1_scatter),
-            _ => (p.frequency, p.x2, p.x2_scatter),
-        };
-        let mut curve: Vec<_> = points.iter().map(read).collect();
-        let columns = |curve: &[(f64, f64, f64)]| -> [Vec<f64>; 3] {
-            [
-                curve.iter().map(|p| p.0).collect(),
-                curve.iter().map(|p| p.1).collect(),
-                curve.iter().map(|p| p.2).collect(),
-            ]
-        };
-        let [f, a, std] = columns(&curve);
-        let jumps = jumps(&f, &a, &std, direction);
-        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let [f, a, std] = columns(&curve);
-        let resonances = resonances(&f, &a, &std, &jumps, Some(mass));
-        Found { mass, direction, curve, jumps, resonances }
-    }
+fn columns(curve: &[(f64, f64, f64)]) -> [Vec<f64>; 3] {
+    let of = |value: fn(&(f64, f64, f64)) -> f64| curve.iter().map(value).collect();
+    [of(|p| p.0), of(|p| p.1), of(|p| p.2)]
 }
 
 #[cfg(test)]

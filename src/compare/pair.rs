@@ -1,12 +1,11 @@
 //! Measured amplitudes and their predictions, point by point.
 
 use super::course::{Course, Swept};
-use super::prediction::{Kind, Motion, Prediction};
+use super::prediction::{Kind, Motion, all_motions};
 use super::simulated::{Simulated, simulated};
 use crate::error::Result;
 use crate::measure::Estimate;
 use crate::measure::response::ResponsePoint;
-use crate::model::Observable;
 use crate::model::ladder::Model;
 use crate::record::Direction;
 use serde::Serialize;
@@ -49,17 +48,9 @@ impl Course<'_> {
     pub fn pairs(&self, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
         let Course { rig, law, model, pace } = *self;
         let Swept { response, mass, direction, ref forcing } = *sweep;
-        let mut points: Vec<&ResponsePoint> = response.points.iter().collect();
-        points.sort_by(|a, b| a.excitation.total_cmp(&b.excitation));
-        let driven = |p: &&ResponsePoint| (p.excitation, forcing.of(p));
-        let closed = Prediction::at(rig, points.iter().map(driven).collect(), Observable::Fundamental)?;
-        let mut motions = closed.motions;
-        if direction == Direction::Down {
-            points.reverse();
-            motions.reverse();
-        }
-        let passed: Vec<(f64, f64)> = points.iter().map(driven).collect();
-        let simulated = simulated(rig, law, &passed, pace);
+        let points = sweep.points();
+        let driven: Vec<(f64, f64)> = points.iter().map(|p| (p.excitation, forcing.of(p))).collect();
+        let (motions, simulated) = (all_motions(rig, &driven)?, simulated(rig, law, &driven, pace));
         let of = usize::from(mass) - 1;
         let pair = |((point, motions), simulated): ((&&ResponsePoint, &Vec<Motion>), &Result<Simulated>)| {
             let simulated = simulated.as_ref().ok();

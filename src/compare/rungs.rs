@@ -1,7 +1,7 @@
 //! Which models of the ladder a sweep needs, and where.
 
 use super::simulated::Pace;
-use crate::campaign::{Campaign, Follows};
+use crate::campaign::ModelEntry;
 use crate::error::Result;
 use crate::model::ladder::{self, Choice, Model, Need, Question, Stretch, choose_over};
 use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
@@ -9,38 +9,12 @@ use crate::record::{Direction, Finding};
 use serde::Serialize;
 
 /// How predictions are made.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Predicting {
-    /// The model; `None` where the ladder is to choose.
-    pub model: Option<Follows>,
+    /// The model, what is tolerated, and the pace.
+    pub model: ModelEntry,
     /// What is known of the contact.
     pub contact: Option<ContactKeys>,
-    /// Relative change that does not matter.
-    pub tolerance: f64,
-    /// How long the rig stays at each point.
-    pub pace: Pace,
-}
-
-impl Default for Predicting {
-    /// The ladder chooses at 2 %; nothing is known of the contact.
-    fn default() -> Predicting {
-        Predicting { model: None, contact: None, tolerance: 0.02, pace: Pace::default() }
-    }
-}
-
-impl From<&Campaign> for Predicting {
-    fn from(campaign: &Campaign) -> Predicting {
-        let (entry, usual) = (campaign.model, Predicting::default());
-        Predicting {
-            model: entry.name,
-            contact: campaign.contact,
-            tolerance: entry.tolerance.unwrap_or(usual.tolerance),
-            pace: Pace {
-                settle: entry.settle.unwrap_or(usual.pace.settle),
-                measure: entry.measure.unwrap_or(usual.pace.measure),
-            },
-        }
-    }
 }
 
 /// The choice of a model for sweeps in one direction at one force.
@@ -75,7 +49,7 @@ pub fn rungs(
 ) -> Result<Rungs> {
     let scene = predicting.scene(rig, force, low);
     let question = Question {
-        tolerance: predicting.tolerance,
+        tolerance: predicting.model.tolerance,
         history: Some(direction),
         ..Question::new(Observable::Fundamental)
     };
@@ -93,6 +67,11 @@ pub fn rungs(
 }
 
 impl Predicting {
+    /// How long the rig stays at each point.
+    pub fn pace(&self) -> Pace {
+        Pace { settle: self.model.settle, measure: self.model.measure }
+    }
+
     fn scene(&self, rig: &Rig, force: f64, frequency: f64) -> Scene {
         let excitation = Some(Excitation::Sine(Sine { force, frequency }));
         Scene { rig: *rig, excitation, contact: self.contact, buffer: None }
@@ -100,11 +79,11 @@ impl Predicting {
 
     /// The model of all sweeps: the one named, else the highest one chosen for any stretch; rigid contacts for the rungs below and where none
     /// can be chosen.
-    pub fn model(&self, asked: &[Rungs]) -> Model {
-        if let Some(named) = self.model {
+    pub fn model(&self, choices: &[Rungs]) -> Model {
+        if let Some(named) = self.model.name {
             return named.model();
         }
-        let highest = asked.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
+        let highest = choices.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
         let known = |of: fn(&ContactKeys) -> Option<f64>| self.contact.as_ref().and_then(of);
         let curved = known(|c| c.exponent).is_some_and(|n| n != 1.0);
         match highest {
@@ -130,6 +109,7 @@ impl Predicting {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::Follows;
 
     #[test]
     fn a_soft_contact_asks_for_a_richer_model_than_a_stiff_one() {
@@ -168,7 +148,8 @@ mod tests {
         // Between 1e4 N/m, in contact for 7 % of the cycle, and 1e9 N/m the answer moves by more than the 2 % that do not matter.
         assert!(found.finding.as_ref().is_some_and(|f| f.get("part").unwrap() > 0.02), "{found:?}");
         assert_eq!(Predicting::default().model(&[found]), Model::Restitution);
-        let named = Predicting { model: Some(Follows::KelvinVoigt), ..Predicting::default() };
+        let model = ModelEntry { name: Some(Follows::KelvinVoigt), ..ModelEntry::default() };
+        let named = Predicting { model, ..Predicting::default() };
         assert!(named.law(&rig, named.model(&[])).unwrap_err().to_string().contains("contact.stiffness"));
     }
 }

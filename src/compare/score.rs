@@ -41,15 +41,14 @@ pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
     let squares: Vec<f64> = pairs.iter().filter_map(|p| p.residual).map(|r| r * r).collect();
     let deviations = pairs.iter().filter_map(|p| Some((p.deviation()?, p.frequency)));
     let largest = deviations.clone().max_by(|a, b| a.0.total_cmp(&b.0));
-    let mut relative: Vec<f64> = deviations.map(|d| d.0).collect();
-    relative.sort_by(f64::total_cmp);
+    let relative: Vec<f64> = deviations.map(|d| d.0).collect();
     let n = squares.len();
     Score {
         sweep: sweep.to_owned(),
         n,
         without: pairs.len() - n,
         faint: n - relative.len(),
-        median_relative: median(&relative),
+        median_relative: median(relative),
         max_relative: largest.map(|l| l.0),
         max_at: largest.map(|l| l.1),
         rms: (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt()),

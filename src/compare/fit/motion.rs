@@ -8,7 +8,6 @@ use super::data::{Data, Reading, Step};
 use super::problem::{Problem, shown};
 use super::setting::Setting;
 use crate::error::Result;
-use crate::model::Observable;
 use rayon::prelude::*;
 
 /// Motions of all steps.
@@ -44,7 +43,7 @@ pub(crate) fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Mot
             .collect();
         let simulated = simulated_briefly(&setting.rig, &points, pace);
         let one = |((i, (frequency, force)), simulated): ((&usize, &(f64, f64)), &Result<_>)| {
-            let motions = motions(&setting.rig, *force, *frequency, Observable::Fundamental)?;
+            let motions = motions(&setting.rig, *force, *frequency)?;
             let history = simulated.as_ref().ok().and_then(|simulated| reached(simulated, &motions));
             let step = &data.steps[*i];
             let seen = motions.iter().filter(|m| m.is_seen());
@@ -100,15 +99,10 @@ pub(crate) fn without_outliers(
         for ((step, _), r) in problem.used().zip(problem.at(&[])) {
             away[step] = Some(away[step].unwrap_or(0.0).max(r.abs()));
         }
-        let mut sorted: Vec<f64> = away.iter().flatten().copied().collect();
-        sorted.sort_by(f64::total_cmp);
-        let limit = FAR * (median(&sorted).unwrap_or(0.0) / MEDIAN).max(1.0);
-        let farthest =
-            (0..away.len()).max_by(|a, b| away[*a].unwrap_or(0.0).total_cmp(&away[*b].unwrap_or(0.0)));
-        match farthest.filter(|i| away[*i].is_some_and(|a| a > limit)) {
-            Some(i) => kinds[i] = None,
-            None => break,
-        }
+        let limit = FAR * (median(away.iter().flatten().copied()).unwrap_or(0.0) / MEDIAN).max(1.0);
+        let far = away.iter().enumerate().filter_map(|(i, away)| Some((i, away.filter(|a| *a > limit)?)));
+        let Some((farthest, _)) = far.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        kinds[farthest] = None;
     }
     kinds
 }

@@ -1,5 +1,6 @@
 //! Weighted residuals of the steps whose motion is known.
 
+use super::super::forcing::range;
 use super::super::prediction::Kind;
 use super::data::{Data, Reading, Step};
 use super::setting::Setting;
@@ -65,14 +66,10 @@ impl Problem<'_> {
 
     /// Turns coordinates below 0 of unknowns without an upper bound into those above with the same value; says which were turned.
     pub fn fold(&self, u: &mut [f64]) -> Vec<bool> {
-        let one = |(unknown, u): (&Unknown, &mut f64)| {
-            let below = unknown.coordinate.high.is_infinite() && *u < 0.0;
-            if below {
-                *u = -*u;
-            }
-            below
-        };
-        self.unknowns.iter().zip(u).map(one).collect()
+        let is_below = |(k, u): (&Unknown, &f64)| k.coordinate.high.is_infinite() && *u < 0.0;
+        let below: Vec<bool> = self.unknowns.iter().zip(u.iter()).map(is_below).collect();
+        u.iter_mut().zip(&below).filter(|(_, below)| **below).for_each(|(u, _)| *u = -*u);
+        below
     }
 
     /// Whether `n` amplitudes and the priors can determine the unknowns.
@@ -113,21 +110,18 @@ impl Problem<'_> {
         let errors = |(step, kind): (&Step, &Option<Kind>)| {
             let Some(kind) = *kind else { return SharedErrors::default() };
             let force = self.data.force_at(&setting, step);
-            let column = |std: f64, shows: &dyn Fn(f64) -> [f64; 2]| {
+            let column = |std: f64, slopes: [f64; 2]| {
                 let mut column = vec![0.0; 2];
-                if std > 0.0 {
-                    let slopes = slopes(shows);
-                    for (mass, reading) in shown(step, Some(kind)) {
-                        column[mass] = slopes[mass] * std / reading.std;
-                    }
+                for (mass, reading) in shown(step, Some(kind)) {
+                    column[mass] = slopes[mass] * std / reading.std;
                 }
                 column
             };
+            let by_frequency = slopes(|by| setting.shows(kind, force, step.frequency * by));
+            let by_force = slopes(|by| setting.shows(kind, force * by, step.frequency));
             SharedErrors::new(&[
-                column(step.frequency_std / step.frequency, &|by| {
-                    setting.shows(kind, force, step.frequency * by)
-                }),
-                column(step.force_std / step.force, &|by| setting.shows(kind, force * by, step.frequency)),
+                column(step.frequency_std / step.frequency, by_frequency),
+                column(step.force_std / step.force, by_force),
             ])
         };
         self.step_errors = self.data.steps.iter().zip(&self.kinds).map(errors).collect();
@@ -137,26 +131,20 @@ impl Problem<'_> {
     /// Change of each residual by one standard uncertainty of the calibrations: of each mass' factor, of its slope, 1 at the ends of the
     /// frequencies, and of the force where it is not looked for. That moves gap and amplitudes alike, and no amplitude tells it.
     fn calibration_columns(&self, setting: &Setting) -> Vec<Vec<f64>> {
-        let std = self.data.calibration;
+        let (std, mut columns) = (self.data.calibration, Vec::new());
         if std == 0.0 {
-            return Vec::new();
+            return columns;
         }
-        let frequencies = self.data.steps.iter().map(|s| s.frequency);
-        let (low, high) =
-            frequencies.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), f| (l.min(f), h.max(f)));
+        let (low, high) = range(self.data.steps.iter().map(|s| s.frequency));
         let along = |f: f64| if high > low { (2.0 * f - low - high) / (high - low) } else { 0.0 };
-        let column = |mass: usize, sloped: bool| {
-            self.whitened(|step, kind| {
+        for (mass, sloped) in [(0, false), (1, false), (0, true), (1, true)] {
+            columns.push(self.whitened(|step, kind| {
                 let mut error = [0.0; 2];
-                error[mass] = self.data.shows(setting, kind, step)[mass]
-                    * std
-                    * if sloped { along(step.frequency) } else { 1.0 };
+                let part = std * if sloped { along(step.frequency) } else { 1.0 };
+                error[mass] = self.data.shows(setting, kind, step)[mass] * part;
                 error
-            })
-        };
-        let mut columns = [(0, false), (1, false), (0, true), (1, true)]
-            .map(|(mass, sloped)| column(mass, sloped))
-            .to_vec();
+            }));
+        }
         if self.unknowns.iter().all(|u| u.parameter != Parameter::Force) {
             columns.push(self.whitened(|step, kind| {
                 let force = self.data.force_at(setting, step);
@@ -188,9 +176,7 @@ impl Problem<'_> {
             let shows = shows(step, kind);
             [0, 1].map(|mass: usize| step.readings[mass].as_ref().map_or(0.0, |r| r.amplitude) - shows[mass])
         });
-        for r in &mut all {
-            *r /= widened;
-        }
+        all.iter_mut().for_each(|r| *r /= widened);
         self.calibrations.whiten(&mut all, widened);
         all
     }

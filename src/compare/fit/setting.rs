@@ -13,12 +13,26 @@ pub struct Setting {
 }
 
 impl Setting {
-    pub fn get(&self, parameter: Parameter) -> f64 {
-        parameter.of(&self.rig, self.force)
+    fn place(&mut self, parameter: Parameter) -> &mut f64 {
+        match parameter {
+            Parameter::Force => &mut self.force,
+            Parameter::Restitution => &mut self.rig.restitution,
+            Parameter::C1 => &mut self.rig.c1,
+            Parameter::C2 => &mut self.rig.c2,
+            Parameter::Gap => &mut self.rig.gap,
+            Parameter::K1 => &mut self.rig.k1,
+            Parameter::K2 => &mut self.rig.k2,
+            Parameter::M1 => &mut self.rig.m1,
+            Parameter::M2 => &mut self.rig.m2,
+        }
+    }
+
+    pub fn get(mut self, parameter: Parameter) -> f64 {
+        *self.place(parameter)
     }
 
     pub fn with(mut self, parameter: Parameter, value: f64) -> Setting {
-        parameter.set(&mut self.rig, &mut self.force, value);
+        *self.place(parameter) = value;
         self
     }
 
@@ -29,6 +43,23 @@ impl Setting {
             Kind::Impacting => shown(&self.rig, &sine).map_or([f64::NAN; 2], |s| s.amplitude),
             Kind::Free => Steady::new(&self.rig, &sine).map_or([f64::NAN; 2], |s| [s.amplitude(), 0.0]),
             Kind::Pattern | Kind::Irregular => [f64::NAN; 2],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_parameter_has_its_place() {
+        let setting = Setting { rig: Rig::thesis(), force: 0.1 };
+        for parameter in Parameter::ALL {
+            let changed = setting.with(parameter, 0.25);
+            for other in Parameter::ALL {
+                let expected = if other == parameter { 0.25 } else { setting.get(other) };
+                assert_eq!(changed.get(other), expected, "{parameter:?} {other:?}");
+            }
         }
     }
 }
