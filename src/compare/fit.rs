@@ -87,21 +87,12 @@ fn found(
     let starts = entry.starts.unwrap_or(STARTS);
     let (rigid, ends) = identify(&problem, starts)?;
     let corrected = contact.map(|stiffness| corrected(&rigid, stiffness)).transpose()?;
-    let soft = corrected.as_ref().map(|soft| {
-        Problem::new(&soft.data, base, problem.unknowns.clone())
-            .settle(&soft.u)
-            .map(|found| (found, soft.lost))
-    });
-    let soft = soft.transpose()?;
-    let rungs = rungs(&rigid, soft.as_ref().map(|soft| &soft.0), responses);
+    let soft = corrected.as_ref().map(|soft| problem.with(&soft.data).settle(&soft.u)).transpose()?;
+    let rungs = rungs(&rigid, soft.as_ref(), responses);
     let agreeing = agreeing(&ends, &rigid)?;
-    let (settled, lost) = soft.map_or((rigid, None), |(settled, lost)| (settled, Some(lost)));
-    let answer = Answer::new(settled, lost)?;
-    let doubts = answer.doubts();
-    let mut fit = answer.fit(base, doubts.first().map(|doubt| doubt.code));
-    (fit.starts, fit.agreeing, fit.rungs) = (starts, agreeing, rungs);
-    let rest = answer.cautions(&fit, entry);
-    fit.findings = doubts.into_iter().chain(rest).collect();
+    let answer = Answer::new(soft.unwrap_or(rigid), corrected.as_ref().map(|soft| soft.lost))?;
+    let mut fit = Fit { starts, agreeing, rungs, ..answer.fit(base) };
+    fit.findings.extend(answer.cautions(&fit, entry));
     Ok(fit)
 }
 
@@ -112,10 +103,10 @@ fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Ve
     let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
     let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();
     let found: Vec<Result<Settled<'a>>> = reached.par_iter().map(|end| problem.settle(&end.u)).collect();
-    let end = |(found, end): (&Result<Settled<'a>>, &End)| {
-        Some(vec![found.as_ref().ok()?.least.minimum.parameters.clone(); end.starts])
-    };
-    let ends = found.iter().zip(&reached).filter_map(end).flatten().collect();
+    let settled =
+        found.iter().zip(&reached).filter_map(|(found, end)| Some((found.as_ref().ok()?, end.starts)));
+    let ends =
+        settled.flat_map(|(found, starts)| vec![found.least.minimum.parameters.clone(); starts]).collect();
     let (mut best, mut idle) = (nearest(found)?, 0);
     for turn in 0..TURNS {
         if idle == IDLE {
@@ -132,17 +123,11 @@ fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Ve
 
 /// The answer that explains most; the first refusal where there is none.
 fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
-    let (mut best, mut refusal) = (None::<Settled<'_>>, None);
-    for one in found {
-        match one {
-            Ok(one) if best.as_ref().is_none_or(|best| one.unexplained < best.unexplained) => {
-                best = Some(one);
-            }
-            Ok(_) => {}
-            Err(error) => refusal = refusal.or(Some(error)),
-        }
-    }
-    best.ok_or_else(|| refusal.unwrap_or_else(|| Error::refused("no start led to an answer")))
+    let mut refusals = Vec::new();
+    let answers = found.into_iter().filter_map(|one| one.map_err(|refusal| refusals.push(refusal)).ok());
+    let best = answers.reduce(|best, one| if one.unexplained < best.unexplained { one } else { best });
+    let refused = || Error::refused("no start led to an answer");
+    best.ok_or_else(|| refusals.into_iter().next().unwrap_or_else(refused))
 }
 
 /// How many starts ended within one standard uncertainty of the answer in every parameter.

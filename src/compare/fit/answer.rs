@@ -141,29 +141,30 @@ impl<'a> Answer<'a> {
 const METHOD: &str = "least squares of both masses and directions by the closed form";
 
 impl Answer<'_> {
-    /// The result, but for starts, rungs and findings.
-    pub fn fit(&self, base: &Setting, doubt: Option<&'static str>) -> Fit {
+    /// The result, but for starts, rungs and cautions.
+    pub fn fit(&self, base: &Setting) -> Fit {
         let (least, setting) = (&self.settled.least, self.settled.setting());
         let (problem, n) = (&least.problem, least.minimum.parameters.len());
+        let (data, used) = (problem.data, problem.used().collect::<Vec<_>>());
         let row = |i: usize| (0..n).map(|j| self.uncertainty.correlation(i, j)).collect();
-        let used: Vec<(usize, usize)> = problem.used().collect();
-        let stated = if problem.data.guessed { 1.0 } else { problem.scale.sqrt() };
+        let stated = if data.guessed { 1.0 } else { problem.scale.sqrt() };
         let points = used.iter().zip(&least.minimum.residuals).filter_map(|((i, mass), residual)| {
-            let step = &problem.data.steps[*i];
+            let step = &data.steps[*i];
             let (kind, reading) = (problem.kinds[*i]?, step.readings[*mass].as_ref()?);
-            let (sweep, direction) = &problem.data.sweeps[reading.sweep];
+            let (sweep, direction) = data.sweeps[reading.sweep].clone();
             Some(FitPoint {
-                sweep: sweep.clone(),
+                sweep,
                 mass: *mass as u8 + 1,
-                direction: *direction,
+                direction,
                 frequency: step.frequency,
                 motion: kind,
                 measured: reading.amplitude * reading.compliance,
-                fitted: problem.data.shows(&setting, kind, step)[*mass] * reading.compliance,
+                fitted: data.shows(&setting, kind, step)[*mass] * reading.compliance,
                 residual: *residual * stated,
             })
         });
-        let (far, wavering) = (self.settled.far, self.settled.wavering);
+        let (far, wavering, findings) = (self.settled.far, self.settled.wavering, self.doubts());
+        let doubt = findings.first().map(|doubt| doubt.code);
         Fit {
             parameters: (0..n).map(|i| self.fitted(base, i, doubt.is_some())).collect(),
             correlations: (0..n).map(row).collect(),
@@ -171,8 +172,8 @@ impl Answer<'_> {
             force: setting.force,
             n: used.len(),
             left_out: LeftOut {
-                faint: problem.data.faint(),
-                other_motion: (problem.data.clear() - used.len()).saturating_sub(wavering + far),
+                faint: data.faint(),
+                other_motion: (data.clear() - used.len()).saturating_sub(wavering + far),
                 far,
                 wavering,
                 soft: self.lost.unwrap_or(0),
@@ -186,7 +187,7 @@ impl Answer<'_> {
             rungs: Vec::new(),
             points: points.collect(),
             doubt,
-            findings: Vec::new(),
+            findings,
         }
     }
 
@@ -195,23 +196,19 @@ impl Answer<'_> {
         let (problem, u) = (&self.settled.least.problem, self.settled.least.minimum.parameters[i]);
         let Unknown { parameter, coordinate, prior } = problem.unknowns[i];
         let reason = if in_doubt { Some(Unidentified::InDoubt) } else { self.uncertainty.unidentified[i] };
-        let std = self.std(i);
+        let (value, std, identifiable) =
+            (self.settled.setting().get(parameter), self.std(i), reason.is_none());
         // The profile of its parameter is nearer to the truth than the slopes at the least.
         let profile = self.profile.as_ref().filter(|p| p.parameter == parameter);
         let profiled = profile.and_then(|p| Some([p.interval[0]?, p.interval[1]?]));
         let sloped = || coordinate.interval(u, NORMAL * self.uncertainty.std(i));
+        let (unit, n) = (parameter.unit(), problem.rows().0);
         Fitted {
             parameter,
-            estimate: Estimate::new(
-                self.settled.setting().get(parameter),
-                reason.is_none().then_some(std),
-                parameter.unit(),
-                problem.rows().0,
-                METHOD,
-            ),
+            estimate: Estimate::new(value, identifiable.then_some(std), unit, n, METHOD),
             start: base.get(parameter),
-            interval: reason.is_none().then(|| profiled.unwrap_or_else(sloped)),
-            identifiable: reason.is_none(),
+            interval: identifiable.then(|| profiled.unwrap_or_else(sloped)),
+            identifiable,
             reason,
             prior,
             // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
@@ -222,7 +219,7 @@ impl Answer<'_> {
     /// Standard uncertainty of a parameter in its unit.
     pub fn std(&self, i: usize) -> f64 {
         let least = &self.settled.least;
-        self.uncertainty.std(i)
-            * least.problem.unknowns[i].coordinate.slope(least.minimum.parameters[i]).abs()
+        let slope = least.problem.unknowns[i].coordinate.slope(least.minimum.parameters[i]);
+        self.uncertainty.std(i) * slope.abs()
     }
 }

@@ -49,7 +49,7 @@ fn corrected_from(answer: &Settled<'_>, from: &Setting, stiffness: f64) -> Resul
     let problem = &answer.least.problem;
     let mut now = without(problem, problem.data, from, stiffness)?;
     for _ in 0..ROUNDS {
-        let settled = Problem::new(&now.data, &problem.base, problem.unknowns.clone()).settle(&now.u)?;
+        let settled = problem.with(&now.data).settle(&now.u)?;
         let next = without(problem, &now.data, &settled.setting(), stiffness)?;
         let still = change(&now.data, &next.data) <= STILL;
         now = next;

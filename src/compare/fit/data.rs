@@ -24,6 +24,15 @@ pub struct Reading {
     pub compliance: f64,
 }
 
+impl Reading {
+    /// ln (measured/predicted), e^20 at most: a motion that shows nothing, or does not exist, is as far as can be.
+    pub fn log_ratio(&self, predicted: f64) -> f64 {
+        const FARTHEST: f64 = 20.0;
+        let ratio = (self.amplitude / predicted).ln();
+        if ratio.is_finite() { ratio.clamp(-FARTHEST, FARTHEST) } else { FARTHEST }
+    }
+}
+
 /// One step of a sweep: both masses where they were measured under the very same force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {

@@ -3,9 +3,9 @@
 use super::super::forcing::median;
 use super::super::pair::reached;
 use super::super::prediction::{Kind, Motion, motions};
-use super::super::simulated::{Pace, simulated_briefly};
+use super::super::simulated::{Pace, Simulated, simulated_briefly};
 use super::data::{Data, Reading, Step};
-use super::problem::{Problem, shown};
+use super::problem::Problem;
 use super::setting::Setting;
 use crate::error::Result;
 use rayon::prelude::*;
@@ -21,48 +21,37 @@ pub struct Motions {
     pub simulated: Vec<Option<[f64; 2]>>,
 }
 
-impl Motions {
-    /// Amplitudes that motions of the closed form show.
-    pub fn amplitudes(&self, data: &Data) -> usize {
-        data.steps.iter().zip(&self.kinds).map(|(step, kind)| shown(step, *kind).count()).sum()
-    }
-}
-
 /// The motion of each step, as a sweep simulated through all steps of its sequence reaches it; `None` where that is none of the closed
 /// form. Where the measured amplitudes lie nearer to another stable motion, it is that one: on which of several a sweep settles may hang on
 /// less than can be known.
 ///
 /// # Errors
 /// If the rig is impossible.
-pub(crate) fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
-    type One = (usize, [Option<Kind>; 2], Option<[f64; 2]>);
-    let sequence = |sequence: &Vec<usize>| -> Result<Vec<One>> {
-        let points: Vec<(f64, f64)> = sequence
-            .iter()
-            .map(|i| (data.steps[*i].frequency, data.force_at(setting, &data.steps[*i])))
-            .collect();
+pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
+    let sequence = |sequence: &Vec<usize>| -> Result<Vec<_>> {
+        let steps = sequence.iter().map(|i| &data.steps[*i]);
+        let points: Vec<(f64, f64)> = steps.map(|s| (s.frequency, data.force_at(setting, s))).collect();
         let simulated = simulated_briefly(&setting.rig, &points, pace);
-        let one = |((i, (frequency, force)), simulated): ((&usize, &(f64, f64)), &Result<_>)| {
+        let one = |((i, (frequency, force)), simulated): ((&usize, &(f64, f64)), Result<Simulated>)| {
+            let (step, simulated) = (&data.steps[*i], simulated.ok());
             let motions = motions(&setting.rig, *force, *frequency)?;
-            let history = simulated.as_ref().ok().and_then(|simulated| reached(simulated, &motions));
-            let step = &data.steps[*i];
+            let history = simulated.as_ref().and_then(|simulated| reached(simulated, &motions));
             let seen = motions.iter().filter(|m| m.is_seen());
             let nearest = seen.min_by(|a, b| away(step, a).total_cmp(&away(step, b)));
-            let kind = history.and(nearest).map(|m| m.kind);
             // A mass that moves is not free; of two impacting motions the closed form of a fit is the upper one.
             let upper = motions.first().filter(|m| m.kind == Kind::Impacting);
-            let kind = kind.filter(|kind| match kind {
+            let kind = history.and(nearest).map(|m| m.kind).filter(|kind| match kind {
                 Kind::Free => step.readings[1].as_ref().is_none_or(|r| r.upper_limit.is_some()),
                 _ => upper.is_some_and(Motion::is_seen),
             });
-            Ok((*i, [kind, history.map(|m| m.kind)], simulated.as_ref().ok().map(|s| s.amplitude)))
+            Ok((*i, kind, history.map(|m| m.kind), simulated.map(|s| s.amplitude)))
         };
-        sequence.iter().zip(&points).zip(&simulated).map(one).collect()
+        sequence.iter().zip(&points).zip(simulated).map(one).collect()
     };
     let all: Vec<_> = data.sequences.par_iter().map(sequence).collect::<Result<_>>()?;
     let n = data.steps.len();
     let mut motions = Motions { kinds: vec![None; n], history: vec![None; n], simulated: vec![None; n] };
-    for (i, [kind, history], simulated) in all.into_iter().flatten() {
+    for (i, kind, history, simulated) in all.into_iter().flatten() {
         (motions.kinds[i], motions.history[i], motions.simulated[i]) = (kind, history, simulated);
     }
     Ok(motions)
@@ -70,7 +59,7 @@ pub(crate) fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Mot
 
 /// Sum of |ln (measured/predicted)|; a mass that rests where it was seen to move is as far as can be.
 fn away(step: &Step, motion: &Motion) -> f64 {
-    let moves = |(mass, reading): (usize, &Reading)| (reading.amplitude / motion.amplitude[mass]).ln().abs();
+    let moves = |(mass, reading): (usize, &Reading)| reading.log_ratio(motion.amplitude[mass]).abs();
     let faint = (0..2).filter_map(|mass| Some((mass, step.readings[mass].as_ref()?.upper_limit?)));
     let above: f64 = faint.map(|(mass, limit)| (motion.amplitude[mass] / limit).ln().max(0.0)).sum();
     step.clear().map(moves).sum::<f64>() + above
@@ -87,11 +76,7 @@ const OUTLIERS: f64 = 0.25;
 ///
 /// They are left out one after the other, the farthest first, since it moves what the points share. Where the points scatter more than they
 /// should, by the median, that counts for a standard deviation.
-pub(crate) fn without_outliers(
-    data: &Data,
-    setting: &Setting,
-    mut kinds: Vec<Option<Kind>>,
-) -> Vec<Option<Kind>> {
+pub fn without_outliers(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
     for _ in 0..(OUTLIERS * kinds.len() as f64) as usize {
         let mut problem = Problem::new(data, setting, Vec::new()).of(kinds.clone());
         problem.weigh(&[]);

@@ -46,7 +46,12 @@ impl<'a> Problem<'a> {
 
     /// The same with these motions; weights are still to be taken.
     pub fn of(&self, kinds: Vec<Option<Kind>>) -> Problem<'a> {
-        Problem { kinds, ..Problem::new(self.data, &self.base, self.unknowns.clone()) }
+        Problem { kinds, ..self.with(self.data) }
+    }
+
+    /// The same of other points, whose motions are not known yet.
+    pub fn with<'b>(&self, data: &'b Data) -> Problem<'b> {
+        Problem::new(data, &self.base, self.unknowns.clone())
     }
 }
 

@@ -50,27 +50,24 @@ pub struct End {
 impl Problem<'_> {
     /// Follows `starts` starting points, the first from the base itself; gives where they ended, each place once, the cheapest first.
     pub fn search(&self, starts: usize) -> Vec<End> {
-        let place = |i| {
-            let u = self.spread(i);
-            (self.cost(&u), u)
+        let ranked = |places: Vec<Vec<f64>>| {
+            let mut costs: Vec<_> = places.into_par_iter().map(|u| (self.cost(&u), u)).collect();
+            costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            costs
         };
-        let mut screened: Vec<(f64, Vec<f64>)> =
-            (1..=SCREENED * (starts - 1)).into_par_iter().map(place).collect();
-        screened.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let screened = ranked((1..=SCREENED * (starts - 1)).map(|i| self.spread(i)).collect());
         let mut all = vec![self.coordinates(&self.base)];
         all.extend(screened.into_iter().take(starts - 1).map(|s| s.1));
-        let one = |u: &Vec<f64>| {
-            let u = self.follow(u);
-            (self.cost(&u), End { u, starts: 1 })
-        };
-        let mut ends: Vec<(f64, End)> = all.par_iter().map(one).collect();
-        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ends.dedup_by(|b, a| {
+        let mut ends: Vec<(f64, End)> = Vec::new();
+        for (cost, u) in ranked(all.par_iter().map(|u| self.follow(u)).collect()) {
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_PLACE * a.abs().max(b.abs());
-            let same = (a.0 - b.0).abs() <= SAME_COST && a.1.u.iter().zip(&b.1.u).all(near);
-            a.1.starts += if same { b.1.starts } else { 0 };
-            same
-        });
+            match ends.last_mut() {
+                Some((least, end)) if cost - *least <= SAME_COST && end.u.iter().zip(&u).all(near) => {
+                    end.starts += 1
+                }
+                _ => ends.push((cost, End { u, starts: 1 })),
+            }
+        }
         ends.into_iter().map(|end| end.1).collect()
     }
 
@@ -177,14 +174,8 @@ impl Problem<'_> {
 }
 
 /// The digits of `i` behind the point, in reverse.
-fn radical_inverse(mut i: usize, base: usize) -> f64 {
-    let (mut digit, mut sum) = (1.0, 0.0);
-    while i > 0 {
-        digit /= base as f64;
-        sum += digit * (i % base) as f64;
-        i /= base;
-    }
-    sum
+fn radical_inverse(i: usize, base: usize) -> f64 {
+    if i == 0 { 0.0 } else { ((i % base) as f64 + radical_inverse(i / base, base)) / base as f64 }
 }
 
 /// Σ min (z², 1) of a step's points over all the finer κ, where these amplitudes are predicted.
@@ -199,11 +190,7 @@ fn prior(unknown: &Unknown, setting: &Setting) -> f64 {
     unknown.prior.map_or(0.0, |[value, std]| (setting.get(unknown.parameter) - value) / (WIDE * std))
 }
 
-/// z of a point; a motion that shows nothing, or does not exist, is as far as can be.
+/// z of a point.
 fn away(reading: &Reading, shows: f64, part: f64, calibration: f64) -> f64 {
-    /// e^20 is beyond any amplitude.
-    const FARTHEST: f64 = 20.0;
-    let r = (reading.amplitude / shows).ln();
-    let r = if r.is_finite() { r.clamp(-FARTHEST, FARTHEST) } else { FARTHEST };
-    r / part.hypot(WIDE * (reading.std / reading.amplitude).hypot(calibration))
+    reading.log_ratio(shows) / part.hypot(WIDE * (reading.std / reading.amplitude).hypot(calibration))
 }

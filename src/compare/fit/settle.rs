@@ -65,45 +65,40 @@ impl<'a> Problem<'a> {
         let brief = Pace { settle: pace.settle.min(BRIEF.settle), measure: pace.measure.min(BRIEF.measure) };
         let mut u = start.to_vec();
         for part in FINE {
-            let now = motions(&u, brief)?;
-            self.enough(now.amplitudes(data))?;
-            u = self.of(now.kinds).approached(part, u);
+            let now = self.of(motions(&u, brief)?.kinds);
+            self.enough(now.rows().0)?;
+            u = now.approached(part, u);
         }
-        let mut wavering = vec![false; data.steps.len()];
-        let steady = |kinds: Vec<Option<Kind>>, wavering: &[bool]| -> Vec<Option<Kind>> {
-            kinds.into_iter().zip(wavering).map(|(kind, out)| kind.filter(|_| !out)).collect()
+        let n = data.steps.len();
+        let mut wavering = vec![false; n];
+        let without = |kinds: &mut Vec<Option<Kind>>, wavering: &[bool]| {
+            kinds.iter_mut().zip(wavering).filter(|(_, out)| **out).for_each(|(kind, _)| *kind = None);
         };
-        let kept = |now: &Motions, u: &[f64], wavering: &[bool]| {
-            steady(without_outliers(data, &self.setting(u), now.kinds.clone()), wavering)
-        };
-        let mut kinds = kept(&motions(&u, pace)?, &u, &wavering);
+        let mut kinds = without_outliers(data, &self.setting(&u), motions(&u, pace)?.kinds);
         let mut round = 0;
         loop {
             round += 1;
             let least = self.of(kinds.clone()).least(&u)?;
             u.clone_from(&least.minimum.parameters);
             let now = motions(&u, pace)?;
-            let next = kept(&now, &u, &wavering);
+            let mut next = without_outliers(data, &self.setting(&u), now.kinds.clone());
+            without(&mut next, &wavering);
             let agreed = next == kinds;
             if agreed || round == MOST {
-                let of = |out: &dyn Fn(usize) -> usize| (0..data.steps.len()).map(out).sum();
+                let outlier = |i: &usize| kinds[*i].is_none() && !wavering[*i];
                 return Ok(Settled {
-                    wavering: of(&|i| if wavering[i] { data.steps[i].clear().count() } else { 0 }),
-                    far: of(&|i| {
-                        let left_out = kinds[i].is_none() && !wavering[i];
-                        if left_out { shown(&data.steps[i], now.kinds[i]).count() } else { 0 }
-                    }),
+                    wavering: (0..n).filter(|i| wavering[*i]).map(|i| data.steps[i].clear().count()).sum(),
+                    far: (0..n).filter(outlier).map(|i| shown(&data.steps[i], now.kinds[i]).count()).sum(),
                     agreed,
                     unexplained: least.problem.left_over(&u, &now),
                     least,
                 });
             }
-            if round >= ROUNDS {
-                for ((out, a), b) in wavering.iter_mut().zip(&kinds).zip(&next) {
-                    *out |= a != b;
-                }
+            for (i, out) in wavering.iter_mut().enumerate().filter(|_| round >= ROUNDS) {
+                *out |= kinds[i] != next[i];
             }
-            kinds = steady(next, &wavering);
+            without(&mut next, &wavering);
+            kinds = next;
         }
     }
 
@@ -113,21 +108,21 @@ impl<'a> Problem<'a> {
     /// If there are fewer points than parameters.
     pub fn least(mut self, start: &[f64]) -> Result<Least<'a>> {
         self.enough(self.rows().0)?;
+        let mut rescaled = 0;
         let mut u = start.to_vec();
-        for _ in 0..2 {
+        loop {
             self.weigh(&u);
             let minimum = self.solve(&u)?;
             let (reduced, whiteness) = self.goodness(&minimum.residuals);
+            if rescaled == 2 {
+                return Ok(Least { problem: self, minimum, reduced, whiteness });
+            }
             let least = if self.data.guessed && self.freedom() > 0 { f64::MIN_POSITIVE } else { 1.0 };
             // A scale that the residuals had to tell is itself uncertain.
             let widened = if reduced > least { student(self.freedom()).unwrap_or(1.0) } else { 1.0 };
             self.scale = reduced.max(least) * (widened * whiteness.inflation).powi(2);
-            u = minimum.parameters;
+            (u, rescaled) = (minimum.parameters, rescaled + 1);
         }
-        self.weigh(&u);
-        let minimum = self.solve(&u)?;
-        let (reduced, whiteness) = self.goodness(&minimum.residuals);
-        Ok(Least { problem: self, minimum, reduced, whiteness })
     }
 
     /// How far all points lie from what was simulated, or nearer from the motion they are taken for.
@@ -146,7 +141,6 @@ impl<'a> Problem<'a> {
     pub fn goodness(&self, residuals: &[f64]) -> (f64, Whiteness) {
         let (data, priors) = residuals.split_at(self.rows().0.min(residuals.len()));
         let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-        let all = if self.freedom() == 0 { f64::NAN } else { self.scale * sum(data) + sum(priors) };
         let mut rows: Vec<Vec<f64>> = vec![Vec::new(); self.data.sweeps.len()];
         for ((step, mass), r) in self.used().zip(data) {
             if let Some(reading) = &self.data.steps[step].readings[mass] {
@@ -154,7 +148,8 @@ impl<'a> Problem<'a> {
             }
         }
         let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-        (all / self.freedom() as f64, Whiteness::of(&rows))
+        let freedom = if self.freedom() == 0 { f64::NAN } else { self.freedom() as f64 };
+        ((self.scale * sum(data) + sum(priors)) / freedom, Whiteness::of(&rows))
     }
 }
 

@@ -3,7 +3,6 @@
 use super::super::prediction::Kind;
 use super::problem::Problem;
 use super::settle::Least;
-use super::unknown::Unknown;
 use crate::campaign::Parameter;
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector, SVD};
@@ -71,32 +70,31 @@ impl Uncertainty {
     /// If the singular values cannot be found.
     pub fn new(least: &Least<'_>) -> Result<Uncertainty> {
         let (problem, u) = (&least.problem, &least.minimum.parameters);
-        let setting = problem.setting(u);
-        let n = u.len();
+        let (setting, n) = (problem.setting(u), u.len());
         let mut jacobian = least.minimum.jacobian.clone();
         let sides: Vec<Option<f64>> = (0..n).map(|i| side(problem, u, i, &mut jacobian)).collect();
         // d ln θ/du.
-        let rate = |(unknown, u): (&Unknown, &f64)| {
-            let rate = unknown.coordinate.slope(*u) / setting.get(unknown.parameter).abs();
+        let rates = DVector::from_fn(n, |i, _| {
+            let unknown = &problem.unknowns[i];
+            let rate = unknown.coordinate.slope(u[i]) / setting.get(unknown.parameter).abs();
             if rate.is_finite() && rate > 0.0 { rate } else { f64::MIN_POSITIVE.sqrt() }
-        };
-        let rates: Vec<f64> = problem.unknowns.iter().zip(u).map(rate).collect();
-        let scaled = DMatrix::from_fn(jacobian.nrows().max(n), n, |row, i| {
-            if row < jacobian.nrows() { jacobian[(row, i)] / rates[i] } else { 0.0 }
         });
+        let mut scaled = jacobian.clone().resize_vertically(jacobian.nrows().max(n), 0.0);
+        for (mut column, rate) in scaled.column_iter_mut().zip(&rates) {
+            column /= *rate;
+        }
         let unfound = || Error::refused("the singular values of the fit were not found");
         if scaled.iter().any(|v| !v.is_finite()) {
             return Err(unfound());
         }
         // With an iteration limit, since the algorithm has no bound of its own.
         let svd = SVD::try_new(scaled, false, true, f64::EPSILON, 10_000).ok_or_else(unfound)?;
-        let v = svd.v_t.ok_or_else(unfound)?;
         let floor = (svd.singular_values.max() * RESOLVED).max(1e-12);
-        let s: Vec<f64> = svd.singular_values.iter().map(|s| s.max(floor)).collect();
-        let covariance = DMatrix::from_fn(n, n, |i, j| {
-            let sum: f64 = s.iter().enumerate().map(|(k, s)| v[(k, i)] * v[(k, j)] / (s * s)).sum();
-            sum / (rates[i] * rates[j])
-        });
+        let mut v = svd.v_t.ok_or_else(unfound)?;
+        for (mut row, s) in v.row_iter_mut().zip(&svd.singular_values) {
+            row /= s.max(floor);
+        }
+        let covariance = v.tr_mul(&v).component_div(&(&rates * rates.transpose()));
         // A step of Gauss and Newton over its standard deviation.
         let step = -(&covariance * jacobian.tr_mul(&DVector::from_column_slice(&least.minimum.residuals)));
         let limit = |i: usize| {
@@ -120,13 +118,10 @@ impl Uncertainty {
         let parameter = problem.unknowns[i].parameter;
         let is_loose = |i: usize| {
             let coordinate = problem.unknowns[i].coordinate;
-            let part = if coordinate.high.is_finite() {
-                let [low, high] = coordinate.interval(u[i], NORMAL * self.std(i));
-                (high - low) / (coordinate.high - coordinate.low)
-            } else {
-                self.relative[i]
-            };
-            part > LOOSE
+            let [low, high] = coordinate.interval(u[i], NORMAL * self.std(i));
+            let bounded =
+                coordinate.high.is_finite().then(|| (high - low) / (coordinate.high - coordinate.low));
+            bounded.unwrap_or(self.relative[i]) > LOOSE
         };
         if !is_loose(i) && self.limits[i].is_none() {
             return None;
