@@ -26,34 +26,24 @@ const OTHER: f64 = 0.05;
 impl Answer<'_> {
     /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
     pub fn doubts(&self) -> Vec<Finding> {
-        let (least, settled) = (&self.settled.least, &self.settled);
-        let problem = &least.problem;
-        let mut found = self.contradictions();
-        let n = problem.rows().0;
-        let many = |part: usize| part as f64 > LOST * (n + part) as f64;
-        if let Some(lost) = self.lost.filter(|lost| many(*lost)) {
-            found.push(Finding::doubt("contact-too-long").count("lost", lost).count("n", n + lost));
-        }
-        if many(settled.far) {
-            found.push(
-                Finding::doubt("many-outliers").count("outliers", settled.far).count("n", n + settled.far),
-            );
-        }
-        let correlated = least.whiteness.rejected();
-        let guessed = problem.data.guessed;
-        if !guessed && least.reduced > POOR && (least.beyond_chance() || correlated) {
-            found.push(Finding::doubt("lack-of-fit").number("ratio", least.reduced.sqrt()));
-        }
-        if (guessed || least.reduced > 1.0) && student(problem.freedom()).is_none() {
-            found.push(Finding::doubt("too-few-residuals").count("freedom", problem.freedom()));
-        }
-        if !settled.agreed {
-            found.push(Finding::doubt("motions-not-settled"));
-        }
-        if !least.minimum.converged {
-            found.push(Finding::doubt("least-squares-not-reached"));
-        }
-        found
+        let (least, settled, problem) = (&self.settled.least, &self.settled, &self.settled.least.problem);
+        let (n, freedom, guessed) = (problem.rows().0, problem.freedom(), problem.data.guessed);
+        let many = |code, key, part: usize| {
+            let many = part as f64 > LOST * (n + part) as f64;
+            many.then(|| Finding::doubt(code).count(key, part).count("n", n + part))
+        };
+        let poor = least.reduced > POOR && (least.beyond_chance() || least.whiteness.rejected());
+        let scaled = guessed || least.reduced > 1.0;
+        let of_all = [
+            many("contact-too-long", "lost", self.lost.unwrap_or(0)),
+            many("many-outliers", "outliers", settled.far),
+            (!guessed && poor).then(|| Finding::doubt("lack-of-fit").number("ratio", least.reduced.sqrt())),
+            (scaled && student(freedom).is_none())
+                .then(|| Finding::doubt("too-few-residuals").count("freedom", freedom)),
+            (!settled.agreed).then(|| Finding::doubt("motions-not-settled")),
+            (!least.minimum.converged).then(|| Finding::doubt("least-squares-not-reached")),
+        ];
+        self.contradictions().into_iter().chain(of_all.into_iter().flatten()).collect()
     }
 
     /// Priors and bounds that the points contradict, and a least sum of squares that lies elsewhere.
@@ -62,20 +52,20 @@ impl Answer<'_> {
         let mut found = Vec::new();
         for (i, unknown) in problem.unknowns.iter().enumerate() {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
+            let pulled = |code, deviations| Finding::doubt(code).about(name).number("deviations", deviations);
             if let Some([known, std]) = unknown.prior {
                 // The answer lies (s² − p²)/s² of the way from the prior, of uncertainty s, to what the points alone say, p being its own:
                 // over √(s² − p²), that is the distance of both over their uncertainties.
                 let taken = (std * std - self.std(i).powi(2)).max(TAKEN * std * std).sqrt();
                 let deviations = (setting.get(unknown.parameter) - known).abs() / taken;
                 if deviations > APART {
-                    let pull =
-                        Finding::doubt("prior-contradicted").about(name).number("deviations", deviations);
-                    found.push(pull.number("prior", known).number("std", std).name("unit", unit));
+                    let prior = pulled("prior-contradicted", deviations).number("prior", known);
+                    found.push(prior.number("std", std).name("unit", unit));
                 }
             }
             if let Some(limit) = self.uncertainty.limits[i].filter(|limit| limit.pull > PULLED) {
-                let pull = Finding::doubt("bound-contradicted").about(name).number("deviations", limit.pull);
-                found.push(pull.number("bound", limit.value).name("unit", unit));
+                let bound = pulled("bound-contradicted", limit.pull).number("bound", limit.value);
+                found.push(bound.name("unit", unit));
             }
         }
         if let Some(profile) = self.profile.as_ref().filter(|p| p.fall() > FALL) {
@@ -88,7 +78,8 @@ impl Answer<'_> {
     /// All findings but the doubts of the whole answer.
     pub fn cautions(&self, fit: &Fit, entry: &FitEntry) -> Vec<Finding> {
         let (least, data) = (&self.settled.least, self.settled.least.problem.data);
-        let sound = fit.doubt.is_none();
+        let (whiteness, ratio, sound) =
+            (&least.whiteness, fit.reduced_chi_squared.sqrt(), fit.doubt.is_none());
         let mut found = Vec::new();
         if entry.calibration.is_none() {
             found.push(Finding::caution("calibration-assumed").number("part", data.calibration));
@@ -105,69 +96,58 @@ impl Answer<'_> {
                 found.push(Finding::caution("force-differs-from-stated").number("ratio", ratio));
             }
         }
-        if let (Some(rung), Some(own)) = (fit.rungs.iter().find(|r| r.chosen), fit.rungs.last())
-            && rung.model != own.model
-        {
-            let other = Finding::caution("simpler-model-predicts-as-well").name("model", rung.model.name());
-            found.push(other.name("fitted", own.model.name()));
-        }
-        if data.guessed {
-            let part = GUESS * fit.reduced_chi_squared.sqrt();
-            found.push(Finding::caution("amplitude-std-from-residuals").number("part", part));
-        } else {
-            if data.without_std > 0 {
-                found.push(Finding::caution("amplitude-std-assumed").count("n", data.without_std));
-            }
-            if fit.reduced_chi_squared.is_nan() {
-                found.push(Finding::caution("no-degrees-of-freedom"));
-            } else if sound && least.beyond_chance() {
-                let ratio = fit.reduced_chi_squared.sqrt();
-                found.push(Finding::caution("residuals-larger-than-stated").number("ratio", ratio));
-            }
-        }
-        if sound && least.whiteness.rejected() {
-            let inflation = least.whiteness.inflation;
-            found.push(Finding::caution("residuals-correlated").number("inflation", inflation));
-        }
-        if sound && self.lost.is_none() {
-            found.push(Finding::caution("rigid-impacts-assumed"));
-        }
+        let chosen = fit.rungs.iter().find(|r| r.chosen).zip(fit.rungs.last());
         let left = fit.left_out;
-        if left.clear() > 0 {
-            let out = Finding::caution("amplitudes-left-out").count("n", left.clear());
-            let out = out.count("all", fit.n + left.clear()).count("other", left.other_motion);
-            found.push(out.count("far", left.far + left.wavering).count("soft", left.soft));
-        }
-        if fit.agreeing * 2 < fit.starts {
-            let few = Finding::caution("few-starts-agree").count("agreeing", fit.agreeing);
-            found.push(few.count("starts", fit.starts));
-        }
-        let unused = |p: &&Parameter| !entry.parameters.contains(p);
-        for parameter in entry.prior.keys().chain(entry.bounds.keys()).filter(unused) {
-            found.push(Finding::caution("prior-or-bounds-unused").about(parameter.name()));
-        }
+        let stated = !data.guessed;
+        let of_all = [
+            chosen.filter(|(rung, own)| rung.model != own.model).map(|(rung, own)| {
+                let other =
+                    Finding::caution("simpler-model-predicts-as-well").name("model", rung.model.name());
+                other.name("fitted", own.model.name())
+            }),
+            data.guessed
+                .then(|| Finding::caution("amplitude-std-from-residuals").number("part", GUESS * ratio)),
+            (stated && data.without_std > 0)
+                .then(|| Finding::caution("amplitude-std-assumed").count("n", data.without_std)),
+            (stated && ratio.is_nan()).then(|| Finding::caution("no-degrees-of-freedom")),
+            (stated && sound && least.beyond_chance())
+                .then(|| Finding::caution("residuals-larger-than-stated").number("ratio", ratio)),
+            (sound && whiteness.rejected())
+                .then(|| Finding::caution("residuals-correlated").number("inflation", whiteness.inflation)),
+            (sound && self.lost.is_none()).then(|| Finding::caution("rigid-impacts-assumed")),
+            (left.clear() > 0).then(|| {
+                let out = Finding::caution("amplitudes-left-out").count("n", left.clear());
+                let out = out.count("all", fit.n + left.clear()).count("other", left.other_motion);
+                out.count("far", left.far + left.wavering).count("soft", left.soft)
+            }),
+            (fit.agreeing * 2 < fit.starts).then(|| {
+                let few = Finding::caution("few-starts-agree").count("agreeing", fit.agreeing);
+                few.count("starts", fit.starts)
+            }),
+        ];
+        found.extend(of_all.into_iter().flatten());
+        let unused = entry.prior.keys().chain(entry.bounds.keys()).filter(|p| !entry.parameters.contains(p));
+        found.extend(unused.map(|p| Finding::caution("prior-or-bounds-unused").about(p.name())));
         found
     }
 
     /// Why the parameter number `i` is not identifiable; `None` where the whole answer is in doubt.
     fn unidentified(&self, fit: &Fit, i: usize, reason: Unidentified) -> Option<Finding> {
+        let parameter = fit.parameters[i].parameter;
         let finding = match reason {
             Unidentified::InDoubt => return None,
             Unidentified::NeedsImpacts => Finding::doubt("parameter-needs-impacts"),
             Unidentified::AtLimit => {
                 let limit = self.uncertainty.limits[i]?.value;
-                Finding::doubt("parameter-at-limit")
-                    .number("limit", limit)
-                    .name("unit", fit.parameters[i].parameter.unit())
+                Finding::doubt("parameter-at-limit").number("limit", limit).name("unit", parameter.unit())
             }
             Unidentified::Combination => {
-                let tied = |j: &usize| *j != i && self.uncertainty.is_tied(i, *j);
-                let others = (0..fit.parameters.len()).filter(tied);
-                let others: Vec<&str> = others.map(|j| fit.parameters[j].parameter.name()).collect();
+                let tied = (0..fit.parameters.len()).filter(|j| *j != i && self.uncertainty.is_tied(i, *j));
+                let others: Vec<&str> = tied.map(|j| fit.parameters[j].parameter.name()).collect();
                 Finding::doubt("parameter-in-combination").name("others", others.join(", "))
             }
             Unidentified::TooUncertain => Finding::doubt("parameter-too-uncertain"),
         };
-        Some(finding.about(fit.parameters[i].parameter.name()))
+        Some(finding.about(parameter.name()))
     }
 }

@@ -72,7 +72,7 @@ impl Uncertainty {
         let (problem, u) = (&least.problem, &least.minimum.parameters);
         let (setting, n) = (problem.setting(u), u.len());
         let mut jacobian = least.minimum.jacobian.clone();
-        let sides: Vec<Option<f64>> = (0..n).map(|i| side(problem, u, i, &mut jacobian)).collect();
+        let sides: Vec<Option<(f64, f64)>> = (0..n).map(|i| side(problem, u, i, &mut jacobian)).collect();
         // d ln θ/du.
         let rates = DVector::from_fn(n, |i, _| {
             let unknown = &problem.unknowns[i];
@@ -98,9 +98,7 @@ impl Uncertainty {
         // A step of Gauss and Newton over its standard deviation.
         let step = -(&covariance * jacobian.tr_mul(&DVector::from_column_slice(&least.minimum.residuals)));
         let limit = |i: usize| {
-            let (outwards, coordinate) = (sides[i]?, problem.unknowns[i].coordinate);
-            let bound = if outwards < 0.0 { coordinate.low } else { coordinate.high };
-            let value = if bound.is_finite() { bound } else { problem.unknowns[i].limits(&problem.base)[1] };
+            let (outwards, value) = sides[i]?;
             Some(Limit { value, pull: outwards * step[i] / covariance[(i, i)].sqrt() })
         };
         let mut found = Uncertainty {
@@ -162,25 +160,26 @@ impl Uncertainty {
     }
 }
 
-/// The way outwards, 1 or −1, where the parameter number `i` lies at a limit. Beyond it nothing changes any more, so its column of the
-/// Jacobian becomes that from the limit inwards.
-fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<f64> {
-    let unknown = &problem.unknowns[i];
-    let [least, most] = unknown.limits(&problem.base).map(|v| unknown.coordinate.of(v));
-    let span = AT_LIMIT * (1.0 + u[i].abs());
-    let (limit, outwards) = if u[i] <= least + span {
-        (least, -1.0)
+/// The way outwards, 1 or −1, and the bound where the parameter number `i` lies at a limit. Beyond it nothing changes any more, so its column
+/// of the Jacobian becomes that from the limit inwards.
+fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<(f64, f64)> {
+    let (unknown, span) = (&problem.unknowns[i], AT_LIMIT * (1.0 + u[i].abs()));
+    let (coordinate, limits) = (unknown.coordinate, unknown.limits(&problem.base));
+    let [least, most] = limits.map(|v| coordinate.of(v));
+    let highest = if coordinate.high.is_finite() { coordinate.high } else { limits[1] };
+    let (limit, outwards, bound) = if u[i] <= least + span {
+        (least, -1.0, coordinate.low)
     } else if u[i] >= most - span {
-        (most, 1.0)
+        (most, 1.0, highest)
     } else {
         return None;
     };
     let h = -outwards * INWARDS * limit.abs().max(AT_LIMIT);
-    let at = |v: f64| {
-        let mut u = u.to_vec();
-        u[i] = v;
-        DVector::from_vec(problem.at(&u))
+    let mut moved = u.to_vec();
+    let mut at = |v: f64| {
+        moved[i] = v;
+        DVector::from_vec(problem.at(&moved))
     };
     jacobian.set_column(i, &((at(limit + h) - at(limit)) / h));
-    Some(outwards)
+    Some((outwards, bound))
 }
