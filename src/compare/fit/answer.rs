@@ -1,6 +1,7 @@
 //! What a fit says of the rig.
 
 use super::super::prediction::Kind;
+use super::data::Step;
 use super::hold_out::Rung;
 use super::profile::{Profile, profile};
 use super::setting::Setting;
@@ -172,7 +173,7 @@ impl Answer<'_> {
             force: setting.force,
             n: used.len(),
             left_out: LeftOut {
-                faint: data.faint(),
+                faint: data.steps.iter().flat_map(Step::faint).count(),
                 other_motion: (data.clear() - used.len()).saturating_sub(wavering + far),
                 far,
                 wavering,

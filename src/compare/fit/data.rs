@@ -51,9 +51,13 @@ pub struct Step {
 impl Step {
     /// Amplitudes above the noise floor, with the index of their mass.
     pub fn clear(&self) -> impl Iterator<Item = (usize, &Reading)> {
-        (0..2)
-            .filter_map(|mass| Some((mass, self.readings[mass].as_ref()?)))
-            .filter(|(_, reading)| reading.upper_limit.is_none())
+        let readings = (0..2).filter_map(|mass| Some((mass, self.readings[mass].as_ref()?)));
+        readings.filter(|(_, reading)| reading.upper_limit.is_none())
+    }
+
+    /// Upper limits of those below it, with the index of their mass.
+    pub fn faint(&self) -> impl Iterator<Item = (usize, f64)> {
+        (0..2).filter_map(|mass| Some((mass, self.readings[mass].as_ref()?.upper_limit?)))
     }
 }
 
@@ -136,11 +140,6 @@ impl Data {
     /// Amplitudes above the noise floor.
     pub fn clear(&self) -> usize {
         self.steps.iter().flat_map(Step::clear).count()
-    }
-
-    /// Amplitudes below the noise floor.
-    pub fn faint(&self) -> usize {
-        self.steps.iter().flat_map(|s| s.readings.iter().flatten()).count() - self.clear()
     }
 
     /// Adds a sweep: beside the other mass, where that passed the very same steps. `relative` is the standard uncertainty of amplitudes

@@ -59,10 +59,9 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
 
 /// Sum of |ln (measured/predicted)|; a mass that rests where it was seen to move is as far as can be.
 fn away(step: &Step, motion: &Motion) -> f64 {
+    let above = |(mass, limit): (usize, f64)| (motion.amplitude[mass] / limit).ln().max(0.0);
     let moves = |(mass, reading): (usize, &Reading)| reading.log_ratio(motion.amplitude[mass]).abs();
-    let faint = (0..2).filter_map(|mass| Some((mass, step.readings[mass].as_ref()?.upper_limit?)));
-    let above: f64 = faint.map(|(mass, limit)| (motion.amplitude[mass] / limit).ln().max(0.0)).sum();
-    step.clear().map(moves).sum::<f64>() + above
+    step.clear().map(moves).sum::<f64>() + step.faint().map(above).sum::<f64>()
 }
 
 /// A step farther from its motion than so many standard deviations is an outlier: noise alone takes one of a million there.

@@ -7,7 +7,7 @@
 //! (1987), 7).
 
 use super::super::prediction::Kind;
-use super::data::{Data, Reading, Step};
+use super::data::{Data, Step};
 use super::problem::Problem;
 use super::setting::Setting;
 use super::unknown::Unknown;
@@ -124,12 +124,10 @@ impl Problem<'_> {
         let residuals = |u: &[f64], r: &mut [f64]| {
             let setting = self.setting(u);
             let points = self.data.steps.iter().zip(&self.kinds).flat_map(|(step, kind)| {
-                let shows = kind.map(|kind| self.data.shows(&setting, kind, step));
-                step.clear().map(move |(mass, reading)| {
-                    let z =
-                        shows.map_or(0.0, |shows| away(reading, shows[mass], part, self.data.calibration));
-                    (z * z).ln_1p().sqrt().copysign(z)
-                })
+                let shows = kind.map_or([f64::NAN; 2], |kind| self.data.shows(&setting, kind, step));
+                let counts = f64::from(u8::from(kind.is_some()));
+                let z = distances(self.data, step, shows, part);
+                z.map(move |z| counts * (z * z).ln_1p().sqrt().copysign(z))
             });
             let priors = self.unknowns.iter().map(|unknown| prior(unknown, &setting));
             r.iter_mut().zip(points.chain(priors)).for_each(|(r, value)| *r = value);
@@ -156,19 +154,12 @@ impl Problem<'_> {
     fn nearest(&self, setting: &Setting, step: &Step, part: f64) -> (Kind, f64) {
         let [impacting, free] =
             [Kind::Impacting, Kind::Free].map(|kind| self.data.shows(setting, kind, step));
-        let costs = |shows: [f64; 2]| -> f64 {
-            let z =
-                |(mass, reading): (usize, &Reading)| away(reading, shows[mass], part, self.data.calibration);
-            step.clear().map(|point| z(point).powi(2).ln_1p()).sum()
-        };
         // A mass in the noise speaks against impacts; without weight in the sum, since it is the same for all parameters.
-        let silent = (0..2).any(|mass| {
-            let limit = step.readings[mass].as_ref().and_then(|r| r.upper_limit);
-            limit.is_some_and(|limit| impacting[mass] > 2.0 * limit)
-        });
+        let silent = step.faint().any(|(mass, limit)| impacting[mass] > 2.0 * limit);
         // No sharp border while the parameters are wrong.
         let clears = free[0] < REACH * setting.rig.gap;
-        let (impacting, free) = (costs(impacting), costs(free));
+        let [impacting, free] = [impacting, free]
+            .map(|shows| distances(self.data, step, shows, part).map(|z| z.powi(2).ln_1p()).sum::<f64>());
         if silent || clears && free < impacting { (Kind::Free, free) } else { (Kind::Impacting, impacting) }
     }
 }
@@ -178,19 +169,14 @@ fn radical_inverse(i: usize, base: usize) -> f64 {
     if i == 0 { 0.0 } else { ((i % base) as f64 + radical_inverse(i / base, base)) / base as f64 }
 }
 
-/// Σ min (z², 1) of a step's points over all the finer κ, where these amplitudes are predicted.
-pub fn unexplained(data: &Data, step: &Step, shows: [f64; 2]) -> f64 {
-    let z = |(mass, reading): (usize, &Reading), part: f64| {
-        away(reading, shows[mass], part, data.calibration).powi(2).min(1.0)
-    };
-    FINE.iter().flat_map(|part| step.clear().map(|point| z(point, *part))).sum()
-}
-
 fn prior(unknown: &Unknown, setting: &Setting) -> f64 {
     unknown.prior.map_or(0.0, |[value, std]| (setting.get(unknown.parameter) - value) / (WIDE * std))
 }
 
-/// z of a point.
-fn away(reading: &Reading, shows: f64, part: f64, calibration: f64) -> f64 {
-    reading.log_ratio(shows) / part.hypot(WIDE * (reading.std / reading.amplitude).hypot(calibration))
+/// z of a step's points, where these amplitudes are predicted.
+pub fn distances(data: &Data, step: &Step, shows: [f64; 2], part: f64) -> impl Iterator<Item = f64> {
+    step.clear().map(move |(mass, reading)| {
+        let own = WIDE * (reading.std / reading.amplitude).hypot(data.calibration);
+        reading.log_ratio(shows[mass]) / part.hypot(own)
+    })
 }

@@ -5,7 +5,7 @@ use super::super::simulated::Pace;
 use super::data::Step;
 use super::motion::{Motions, assigned, without_outliers};
 use super::problem::{Problem, shown};
-use super::search::{FINE, unexplained};
+use super::search::{FINE, distances};
 use super::setting::Setting;
 use crate::error::Result;
 use crate::math::Minimum;
@@ -66,7 +66,7 @@ impl<'a> Problem<'a> {
         let mut u = start.to_vec();
         for part in FINE {
             let now = self.of(motions(&u, brief)?.kinds);
-            self.enough(now.rows().0)?;
+            now.enough()?;
             u = now.approached(part, u);
         }
         let n = data.steps.len();
@@ -107,7 +107,7 @@ impl<'a> Problem<'a> {
     /// # Errors
     /// If there are fewer points than parameters.
     pub fn least(mut self, start: &[f64]) -> Result<Least<'a>> {
-        self.enough(self.rows().0)?;
+        self.enough()?;
         let mut rescaled = 0;
         let mut u = start.to_vec();
         loop {
@@ -125,11 +125,14 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// How far all points lie from what was simulated, or nearer from the motion they are taken for.
+    /// How far all points lie from what was simulated, or nearer from the motion they are taken for: Σ min (z², 1) over all κ.
     fn left_over(&self, u: &[f64], motions: &Motions) -> f64 {
         let (data, setting) = (self.data, self.setting(u));
         let one = |((step, kind), simulated): ((&Step, &Option<Kind>), &Option<[f64; 2]>)| {
-            let far = |shows: [f64; 2]| unexplained(data, step, shows);
+            let far = |shows: [f64; 2]| -> f64 {
+                let z = FINE.iter().flat_map(|part| distances(data, step, shows, *part));
+                z.map(|z| z.powi(2).min(1.0)).sum()
+            };
             let taken = kind.map_or(f64::INFINITY, |kind| far(data.shows(&setting, kind, step)));
             taken.min(far(simulated.unwrap_or([0.0; 2])))
         };
