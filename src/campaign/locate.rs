@@ -1,13 +1,16 @@
 //! Errors of TOML with their place, a caret, and the nearest key that exists.
 
 use crate::error::{Error, Place};
+use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ops::Range;
 use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// The parser's complaint as ours.
 ///
 /// `beside` are keys that are known, too.
-pub(crate) fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&str]) -> Error {
+pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&str]) -> Error {
     let (span, message) = (error.span().unwrap_or(0..0), error.message());
     let line = line_at(text, span.start);
     let complaint = |found: &str, expected: &str, hint: String| {
@@ -70,11 +73,16 @@ fn line_at(text: &str, at: usize) -> &str {
     text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim()
 }
 
+/// The keys of a table that stands there.
+pub fn keys<T: DeserializeOwned>(table: DeTable<'_>, span: Range<usize>) -> Result<T, toml::de::Error> {
+    T::deserialize(Spanned::new(span, DeValue::Table(table)).into_deserializer())
+}
+
 /// Where a key stands in a table or in one of its tables.
-pub fn find(table: &toml::de::DeTable<'_>, key: &str) -> Option<Range<usize>> {
+pub fn find(table: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
     table.iter().find_map(|(name, value)| match value.get_ref() {
         _ if name.get_ref() == key => Some(name.span().start..value.span().end),
-        toml::de::DeValue::Table(inner) => find(inner, key),
+        DeValue::Table(inner) => find(inner, key),
         _ => None,
     })
 }
@@ -99,7 +107,7 @@ mod tests {
     #[test]
     fn a_key_is_found_in_the_table_that_has_it() {
         let text = "b = 1\n[x]\n  a = 2\n";
-        let table = toml::de::DeTable::parse(text).unwrap();
+        let table = DeTable::parse(text).unwrap();
         assert_eq!(find(table.get_ref(), "a").map(|span| &text[span]), Some("a = 2"));
         assert_eq!(find(table.get_ref(), "c"), None);
     }

@@ -1,7 +1,7 @@
-//! Values that a campaign and a command line write alike: names, a low-pass or none, two numbers.
+//! Values that a campaign and a command line write alike: names, channels, a low-pass or none, two numbers.
 
-use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
+use serde::{Deserialize, Deserializer};
 
 /// A value by its name, as a campaign writes it between quotes.
 ///
@@ -58,4 +58,37 @@ impl LowPass {
 pub enum Word {
     /// `none`.
     None,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a channel by its name between quotes, or by its number from 1")]
+enum Channel {
+    Name(String),
+    Number(u32),
+}
+
+impl Channel {
+    /// As readers take it.
+    fn text(self) -> String {
+        match self {
+            Channel::Name(name) => name,
+            Channel::Number(number) => number.to_string(),
+        }
+    }
+}
+
+/// A channel: by name, or by number from 1.
+///
+/// # Errors
+/// If it is neither a name nor a number.
+pub fn channel<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
+    Channel::deserialize(from).map(|channel| Some(channel.text()))
+}
+
+/// Channels, likewise.
+///
+/// # Errors
+/// If one is neither a name nor a number.
+pub fn channels<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
+    Vec::<Channel>::deserialize(from).map(|all| all.into_iter().map(Channel::text).collect())
 }
