@@ -84,28 +84,18 @@ impl Forcing {
             Forcing::Constant(force) => return *force,
             Forcing::Measured(points) => points,
         };
-        let above = points.partition_point(|p| p.0 < frequency);
-        let before = above.checked_sub(1).and_then(|i| points.get(i));
-        match (before, points.get(above)) {
-            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (frequency - a.0) / (b.0 - a.0),
-            (Some(only), None) | (None, Some(only)) => only.1,
-            (None, None) => f64::NAN,
+        match points.split_at(points.partition_point(|p| p.0 < frequency)) {
+            ([.., a], [b, ..]) => a.1 + (b.1 - a.1) * (frequency - a.0) / (b.0 - a.0),
+            ([.., only], []) | ([], [only, ..]) => only.1,
+            ([], []) => f64::NAN,
         }
     }
 
-    /// Force in N of a point of the sweep.
-    pub fn of(&self, point: &ResponsePoint) -> f64 {
+    /// Force in N of a point of the sweep, and its standard uncertainty: 0 where it is stated, taken from other points, or not known.
+    pub(super) fn of(&self, point: &ResponsePoint) -> (f64, f64) {
         match (self, point.force) {
-            (Forcing::Measured(_), Some(force)) => force,
-            _ => self.at(point.excitation),
-        }
-    }
-
-    /// Standard uncertainty in N of that; 0 where it is stated, taken from other points, or not known.
-    pub(crate) fn std_of(&self, point: &ResponsePoint) -> f64 {
-        match self {
-            Forcing::Measured(_) => point.force.and(point.force_std).unwrap_or(0.0),
-            Forcing::Constant(_) => 0.0,
+            (Forcing::Measured(_), Some(force)) => (force, point.force_std.unwrap_or(0.0)),
+            _ => (self.at(point.excitation), 0.0),
         }
     }
 

@@ -49,7 +49,7 @@ impl Course<'_> {
         let Course { rig, law, model, pace } = *self;
         let Swept { response, mass, direction, ref forcing } = *sweep;
         let points = sweep.points();
-        let driven: Vec<(f64, f64)> = points.iter().map(|p| (p.excitation, forcing.of(p))).collect();
+        let driven: Vec<(f64, f64)> = points.iter().map(|p| (p.excitation, forcing.of(p).0)).collect();
         let (motions, simulated) = (all_motions(rig, &driven)?, simulated(rig, law, &driven, pace));
         let of = usize::from(mass) - 1;
         let pair = |((point, motions), simulated): ((&&ResponsePoint, &Vec<Motion>), &Result<Simulated>)| {
@@ -62,7 +62,7 @@ impl Course<'_> {
                 mass,
                 direction,
                 frequency: point.excitation,
-                force: forcing.of(point),
+                force: forcing.of(point).0,
                 measured: point.amplitude.clone(),
                 upper_limit: point.upper_limit,
                 predicted,

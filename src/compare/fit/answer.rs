@@ -149,21 +149,21 @@ impl Answer<'_> {
         let (data, used) = (problem.data, problem.used().collect::<Vec<_>>());
         let row = |i: usize| (0..n).map(|j| self.uncertainty.correlation(i, j)).collect();
         let stated = if data.guessed { 1.0 } else { problem.scale.sqrt() };
-        let points = used.iter().zip(&least.minimum.residuals).filter_map(|((i, mass), residual)| {
-            let step = &data.steps[*i];
-            let (kind, reading) = (problem.kinds[*i]?, step.readings[*mass].as_ref()?);
-            let (sweep, direction) = data.sweeps[reading.sweep].clone();
-            Some(FitPoint {
-                sweep,
-                mass: *mass as u8 + 1,
-                direction,
-                frequency: step.frequency,
-                motion: kind,
-                measured: reading.amplitude * reading.compliance,
-                fitted: data.shows(&setting, kind, step)[*mass] * reading.compliance,
-                residual: *residual * stated,
-            })
-        });
+        let points =
+            used.iter().zip(&least.minimum.residuals).filter_map(|((i, mass, reading), residual)| {
+                let (step, kind) = (&data.steps[*i], problem.kinds[*i]?);
+                let (sweep, direction) = data.sweeps[reading.sweep].clone();
+                Some(FitPoint {
+                    sweep,
+                    mass: *mass as u8 + 1,
+                    direction,
+                    frequency: step.frequency,
+                    motion: kind,
+                    measured: reading.amplitude * reading.compliance,
+                    fitted: data.shows(&setting, kind, step)[*mass] * reading.compliance,
+                    residual: *residual * stated,
+                })
+            });
         let (far, wavering, findings) = (self.settled.far, self.settled.wavering, self.doubts());
         let doubt = findings.first().map(|doubt| doubt.code);
         Fit {

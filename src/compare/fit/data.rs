@@ -147,12 +147,10 @@ impl Data {
     fn add(&mut self, swept: &Swept<'_>, relative: f64) {
         let (sweep, mass, points) = (self.sweeps.len(), usize::from(swept.mass) - 1, swept.points());
         self.sweeps.push((swept.response.name.clone(), swept.direction));
-        let step = |p: &&ResponsePoint| Step {
-            frequency: p.excitation,
-            frequency_std: p.excitation_std.unwrap_or(0.0),
-            force: swept.forcing.of(p),
-            force_std: swept.forcing.std_of(p),
-            readings: [None, None],
+        let step = |p: &&ResponsePoint| {
+            let (frequency, (force, force_std)) = (p.excitation, swept.forcing.of(p));
+            let frequency_std = p.excitation_std.unwrap_or(0.0);
+            Step { frequency, frequency_std, force, force_std, readings: [None, None] }
         };
         let new: Vec<Step> = points.iter().map(step).collect();
         let same = |(i, n): (&usize, &Step)| {

@@ -80,7 +80,7 @@ pub fn without_outliers(data: &Data, setting: &Setting, mut kinds: Vec<Option<Ki
         let mut problem = Problem::new(data, setting, Vec::new()).of(kinds.clone());
         problem.weigh(&[]);
         let mut away = vec![None::<f64>; kinds.len()];
-        for ((step, _), r) in problem.used().zip(problem.at(&[])) {
+        for ((step, ..), r) in problem.used().zip(problem.at(&[])) {
             away[step] = Some(away[step].unwrap_or(0.0).max(r.abs()));
         }
         let limit = FAR * (median(away.iter().flatten().copied()).unwrap_or(0.0) / MEDIAN).max(1.0);

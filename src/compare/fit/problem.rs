@@ -69,12 +69,15 @@ impl Problem<'_> {
         self.unknowns.iter().map(|k| k.coordinate.of(setting.get(k.parameter))).collect()
     }
 
-    /// Turns coordinates below 0 of unknowns without an upper bound into those above with the same value; says which were turned.
-    pub fn fold(&self, u: &mut [f64]) -> Vec<bool> {
-        let is_below = |(k, u): (&Unknown, &f64)| k.coordinate.high.is_infinite() && *u < 0.0;
-        let below: Vec<bool> = self.unknowns.iter().zip(u.iter()).map(is_below).collect();
-        u.iter_mut().zip(&below).filter(|(_, below)| **below).for_each(|(u, _)| *u = -*u);
-        below
+    /// The same minimum with coordinates of unknowns without an upper bound not below 0, where they have the same values.
+    pub fn folded(&self, mut minimum: Minimum) -> Minimum {
+        for (i, (unknown, u)) in self.unknowns.iter().zip(&mut minimum.parameters).enumerate() {
+            if unknown.coordinate.high.is_infinite() && *u < 0.0 {
+                *u = -*u;
+                minimum.jacobian.column_mut(i).neg_mut();
+            }
+        }
+        minimum
     }
 
     /// Whether the amplitudes that take part and the priors can determine the unknowns.
@@ -92,10 +95,10 @@ impl Problem<'_> {
         ))
     }
 
-    /// Amplitudes that take part: index of the step and of the mass.
-    pub fn used(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    /// Amplitudes that take part, with the indices of step and mass.
+    pub fn used(&self) -> impl Iterator<Item = (usize, usize, &Reading)> {
         let steps = self.data.steps.iter().zip(&self.kinds).enumerate();
-        steps.flat_map(|(i, (step, kind))| shown(step, *kind).map(move |(mass, _)| (i, mass)))
+        steps.flat_map(|(i, (step, kind))| shown(step, *kind).map(move |(mass, reading)| (i, mass, reading)))
     }
 
     /// Number of residuals: data, and priors behind them.
@@ -203,13 +206,7 @@ impl Problem<'_> {
     pub fn solve(&self, start: &[f64]) -> Result<Minimum> {
         let (data, priors) = self.rows();
         let residuals = |u: &[f64], r: &mut [f64]| r.copy_from_slice(&self.at(u));
-        let mut minimum = minimise(residuals, data + priors, start, &vec![0.1; start.len()], None)?;
-        for (i, turned) in self.fold(&mut minimum.parameters).into_iter().enumerate() {
-            if turned {
-                minimum.jacobian.column_mut(i).neg_mut();
-            }
-        }
-        Ok(minimum)
+        Ok(self.folded(minimise(residuals, data + priors, start, &vec![0.1; start.len()], None)?))
     }
 }
 

@@ -133,9 +133,8 @@ impl Problem<'_> {
             r.iter_mut().zip(points.chain(priors)).for_each(|(r, value)| *r = value);
         };
         let n = self.data.clear() + self.unknowns.len();
-        let Ok(mut minimum) = minimise(residuals, n, &u, &vec![0.1; u.len()], Some(GAIN)) else { return u };
-        self.fold(&mut minimum.parameters);
-        minimum.parameters
+        let found = minimise(residuals, n, &u, &vec![0.1; u.len()], Some(GAIN));
+        found.map_or(u, |minimum| self.folded(minimum).parameters)
     }
 
     /// Σ ln (1 + z²) of all points at the finer of the coarse κ, each on its nearest motion, and of the priors.

@@ -145,11 +145,7 @@ impl<'a> Problem<'a> {
         let (data, priors) = residuals.split_at(self.rows().0.min(residuals.len()));
         let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
         let mut rows: Vec<Vec<f64>> = vec![Vec::new(); self.data.sweeps.len()];
-        for ((step, mass), r) in self.used().zip(data) {
-            if let Some(reading) = &self.data.steps[step].readings[mass] {
-                rows[reading.sweep].push(*r);
-            }
-        }
+        self.used().zip(data).for_each(|((.., reading), r)| rows[reading.sweep].push(*r));
         let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
         let freedom = if self.freedom() == 0 { f64::NAN } else { self.freedom() as f64 };
         ((self.scale * sum(data) + sum(priors)) / freedom, Whiteness::of(&rows))

@@ -54,12 +54,12 @@ impl Unknown {
     /// Lowest and highest value that it takes.
     pub fn limits(&self, base: &Setting) -> [f64; 2] {
         let Coordinate { low, high } = self.coordinate;
-        let start = base.get(self.parameter) - low;
-        if high.is_infinite() && start > 0.0 {
-            [low + start / FARTHEST, low + start * FARTHEST]
-        } else {
-            self.coordinate.limits()
+        if high.is_finite() {
+            let inside = NEAREST * (high - low);
+            return [low + inside, high - inside];
         }
+        let start = base.get(self.parameter) - low;
+        [low + start / FARTHEST, low + start * FARTHEST]
     }
 }
 
@@ -93,12 +93,6 @@ impl Coordinate {
             return self.low + u * u;
         }
         self.low + (self.high - self.low) / (1.0 + (-u).exp())
-    }
-
-    /// The values nearest to both bounds.
-    pub fn limits(self) -> [f64; 2] {
-        let inside = NEAREST * (self.high - self.low);
-        if inside.is_finite() { [self.low + inside, self.high - inside] } else { [self.low, self.high] }
     }
 
     /// Least and largest θ from u − `away` to u + `away`.
