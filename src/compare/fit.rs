@@ -97,23 +97,21 @@ fn found(
 }
 
 /// The best answer of several starts, and where each start ended.
-fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Vec<Vec<f64>>)> {
+fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Vec<End>)> {
     // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start reached.
     let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
     let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();
     let found: Vec<Result<Settled<'a>>> = reached.par_iter().map(|end| problem.settle(&end.u)).collect();
-    let settled =
-        found.iter().zip(&reached).filter_map(|(found, end)| Some((found.as_ref().ok()?, end.starts)));
-    let ends =
-        settled.flat_map(|(found, starts)| vec![found.least.minimum.parameters.clone(); starts]).collect();
+    let ends = found.iter().zip(&reached).filter_map(|(found, end)| {
+        Some(End { u: found.as_ref().ok()?.least.minimum.parameters.clone(), ..*end })
+    });
+    let ends = ends.collect();
     let (mut best, mut idle) = (nearest(found)?, 0);
     for turn in 0..TURNS {
-        if idle == IDLE {
-            break;
-        }
         let places = problem.around(&best.least.minimum.parameters, turn);
         match nearest(places.par_iter().map(|u| problem.settle(u)).collect()) {
             Ok(next) if next.unexplained < best.unexplained - BETTER => (best, idle) = (next, 0),
+            _ if idle + 1 == IDLE => break,
             _ => idle += 1,
         }
     }
@@ -130,10 +128,10 @@ fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
 }
 
 /// How many starts ended within one standard uncertainty of the answer in every parameter.
-fn agreeing(ends: &[Vec<f64>], answer: &Settled<'_>) -> Result<usize> {
+fn agreeing(ends: &[End], answer: &Settled<'_>) -> Result<usize> {
     let (best, uncertainty) = (&answer.least.minimum.parameters, Uncertainty::new(&answer.least)?);
     let near = |(i, u): (usize, &f64)| (u - best[i]).abs() <= uncertainty.std(i);
-    Ok(ends.iter().filter(|end| end.iter().enumerate().all(near)).count())
+    Ok(ends.iter().filter(|end| end.u.iter().enumerate().all(near)).map(|end| end.starts).sum())
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::settle::Least;
 use super::uncertainty::Uncertainty;
-use super::unknown::Unknown;
 use crate::campaign::Parameter;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -48,22 +47,19 @@ pub fn profile(least: &Least<'_>, uncertainty: &Uncertainty, which: usize) -> Op
     let most =
         if unknown.coordinate.high.is_infinite() { best[which].abs() } else { std::f64::consts::LN_10 };
     let reach = (REACH * uncertainty.std(which)).min(most);
-    let others: Vec<Unknown> =
-        problem.unknowns.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, k)| *k).collect();
+    let covariance = &uncertainty.covariance;
     let rise = |step: i32| {
         let away = reach * f64::from(step) / f64::from(SIDE);
         let value = unknown.coordinate.value(best[which] + away);
         let mut rest = problem.clone();
         rest.base = rest.base.with(unknown.parameter, value);
-        rest.unknowns.clone_from(&others);
+        rest.unknowns.remove(which);
         let prior = unknown.prior.map_or(0.0, |[v, s]| ((value - v) / s).powi(2));
         // Along the valley, as far as it is straight.
-        let covariance = &uncertainty.covariance;
-        let start: Vec<f64> = (0..best.len())
-            .filter(|j| *j != which)
-            .map(|j| best[j] + away * (covariance[(j, which)] / covariance[(which, which)]))
-            .collect();
-        let data = if others.is_empty() { rest.at(&[]) } else { rest.solve(&start).ok()?.residuals };
+        let valley = covariance.column(which) * (away / covariance[(which, which)]);
+        let mut start: Vec<f64> = best.iter().zip(&valley).map(|(best, along)| best + along).collect();
+        start.remove(which);
+        let data = if start.is_empty() { rest.at(&[]) } else { rest.solve(&start).ok()?.residuals };
         Some((value, sum(&data) + prior - lowest))
     };
     let (value, rise): (Vec<f64>, Vec<f64>) = (-SIDE..=SIDE).into_par_iter().filter_map(rise).unzip();
@@ -83,9 +79,7 @@ pub fn profile(least: &Least<'_>, uncertainty: &Uncertainty, which: usize) -> Op
 /// Where the rise reaches [`ONE`]; its root is nearly straight.
 fn crossing<'a>(points: impl Iterator<Item = (&'a f64, &'a f64)>) -> Option<f64> {
     let points: Vec<(f64, f64)> = points.map(|(v, r)| (*v, r.max(0.0).sqrt())).collect();
-    let limit = ONE.sqrt();
-    points.windows(2).find(|w| w[0].1 <= limit && w[1].1 > limit).map(|w| {
-        let part = (limit - w[0].1) / (w[1].1 - w[0].1);
-        w[0].0 + part * (w[1].0 - w[0].0)
-    })
+    let (limit, above) = (ONE.sqrt(), points.iter().position(|p| p.1 > ONE.sqrt())?);
+    let (a, b) = (points.get(above.checked_sub(1)?)?, points[above]);
+    Some(a.0 + (limit - a.1) / (b.1 - a.1) * (b.0 - a.0))
 }
