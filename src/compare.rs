@@ -6,21 +6,17 @@ mod forcing;
 mod named;
 mod overlay;
 mod pair;
-mod peak_pair;
 mod prediction;
 mod rungs;
-mod score;
 mod simulated;
 
 pub use fit::{Block, Fit, FitModel, FitPoint, Fitted, LeftOut, Profile, Rung, Unidentified, fit};
 pub use forcing::{Forcing, levels};
 pub use named::{Named, named};
 pub use overlay::{Level, Overlay, overlay};
-pub use pair::Pair;
-pub use peak_pair::PeakPair;
+pub use pair::{Pair, PeakPair, Score};
 pub use prediction::{Kind, Motion, Prediction, Verdict};
 pub use rungs::{Predicting, Rungs};
-pub use score::Score;
 pub use simulated::Pace;
 
 pub use vibro_precision as precision;

@@ -11,20 +11,15 @@ mod compliance;
 mod data;
 mod findings;
 mod hold_out;
-mod motion;
 mod problem;
-mod profile;
 mod search;
-mod setting;
 mod settle;
-mod shared_errors;
 mod uncertainty;
 mod unknown;
 
 pub use answer::{Fit, FitPoint, Fitted, LeftOut};
 pub use hold_out::{Block, FitModel, Rung};
-pub use profile::Profile;
-pub use uncertainty::Unidentified;
+pub use uncertainty::{Profile, Unidentified};
 
 use super::simulated::Pace;
 use crate::campaign::FitEntry;
@@ -38,10 +33,9 @@ use hold_out::rungs;
 use problem::Problem;
 use rayon::prelude::*;
 use search::End;
-use setting::Setting;
 use settle::Settled;
 use uncertainty::Uncertainty;
-use unknown::Unknown;
+use unknown::{Setting, Unknown};
 
 /// Starting points where none are asked for.
 const STARTS: usize = 8;

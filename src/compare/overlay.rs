@@ -2,11 +2,9 @@
 
 use super::course::{Course, Swept};
 use super::forcing::{Forcing, levels, range};
-use super::pair::Pair;
-use super::peak_pair::{PeakPair, peaks};
+use super::pair::{Pair, PeakPair, Score, outliers, peaks, score};
 use super::prediction::{Kind, Prediction};
 use super::rungs::{Predicting, Rungs, rungs};
-use super::score::{Score, outliers, score};
 use super::simulated::Pace;
 use crate::error::Result;
 use crate::measure::response::Response;

@@ -3,10 +3,9 @@
 use super::super::prediction::Kind;
 use super::data::Step;
 use super::hold_out::Rung;
-use super::profile::{Profile, profile};
-use super::setting::Setting;
 use super::settle::Settled;
-use super::uncertainty::{NORMAL, Uncertainty, Unidentified};
+use super::uncertainty::{NORMAL, Profile, Uncertainty, Unidentified, profile};
+use super::unknown::Setting;
 use super::unknown::Unknown;
 use crate::campaign::Parameter;
 use crate::error::Result;

@@ -2,10 +2,9 @@
 
 use super::super::prediction::Kind;
 use super::data::{Data, Reading, Step};
-use super::motion::assigned;
 use super::problem::Problem;
-use super::setting::Setting;
-use super::settle::Settled;
+use super::settle::{Settled, assigned};
+use super::unknown::Setting;
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;

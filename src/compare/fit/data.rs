@@ -4,7 +4,7 @@ use super::super::course::Swept;
 use super::super::forcing::median;
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
-use super::setting::Setting;
+use super::unknown::Setting;
 use crate::error::Result;
 use crate::measure::response::{Response, ResponsePoint};
 use crate::record::Direction;

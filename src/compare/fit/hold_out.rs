@@ -2,10 +2,9 @@
 
 use super::super::prediction::Kind;
 use super::data::Data;
-use super::motion::assigned;
 use super::problem::Problem;
-use super::setting::Setting;
-use super::settle::Settled;
+use super::settle::{Settled, assigned};
+use super::unknown::Setting;
 use crate::campaign::Parameter;
 use crate::measure::residuals::aicc;
 use crate::measure::response::Response;

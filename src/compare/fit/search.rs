@@ -9,8 +9,7 @@
 use super::super::prediction::Kind;
 use super::data::{Data, Step};
 use super::problem::Problem;
-use super::setting::Setting;
-use super::unknown::Unknown;
+use super::unknown::{Setting, Unknown};
 use crate::campaign::Parameter;
 use crate::math::minimise;
 use rayon::prelude::*;
