@@ -27,19 +27,17 @@
 //! ```
 //! An unknown key is an error that points at its line.
 
-mod compute;
 mod entry;
-mod fit;
 mod locate;
 mod parameter;
 mod reading;
+mod tables;
 mod value;
 
-pub use compute::{Compute, Drive, Follows, ModelEntry};
 pub use entry::Entry;
-pub use fit::FitEntry;
 pub use parameter::Parameter;
 pub use reading::{Channel, Decimal, Reading, above_zero};
+pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 pub use value::{LowPass, Word, channel, channels, two, word};
 
 use crate::error::{Error, Place, Result};
@@ -171,8 +169,7 @@ impl Campaign {
         let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
         inside(self.folder(), out, false).map_err(|_| {
             let found = format!("out = {} leads outside this folder", out.display());
-            let hint = "name a folder beside the campaign, or give --out on the command line";
-            at("", "out", Error::usage(found, "").hint(hint))
+            at("", "out", Error::usage(found, "a folder beside the campaign"))
         })?;
         let checked =
             [("compute", self.compute.check()), ("model", self.model.check()), ("fit", self.fit.check())];

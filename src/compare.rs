@@ -10,7 +10,7 @@ mod prediction;
 mod rungs;
 mod simulated;
 
-pub use fit::{Block, Fit, FitModel, FitPoint, Fitted, LeftOut, Profile, Rung, Unidentified, fit};
+pub use fit::{Block, Fit, FitPoint, Fitted, LeftOut, Profile, Rung, Unidentified, fit};
 pub use forcing::{Forcing, levels};
 pub use named::{Named, named};
 pub use overlay::{Level, Overlay, overlay};

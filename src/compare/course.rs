@@ -87,7 +87,7 @@ impl Course<'_> {
         }
         let step = curve.frequency.len().div_ceil(FOLLOWED).max(1);
         let mut points: Vec<(f64, f64)> =
-            curve.frequency.iter().zip(&curve.force).map(|(f, n)| (*f, *n)).step_by(step).collect();
+            curve.frequency.iter().step_by(step).map(|f| (*f, sweep.forcing.at(*f))).collect();
         if sweep.direction == Direction::Down {
             points.reverse();
         }

@@ -9,7 +9,6 @@
 mod answer;
 mod compliance;
 mod data;
-mod findings;
 mod hold_out;
 mod problem;
 mod search;
@@ -18,7 +17,7 @@ mod uncertainty;
 mod unknown;
 
 pub use answer::{Fit, FitPoint, Fitted, LeftOut};
-pub use hold_out::{Block, FitModel, Rung};
+pub use hold_out::{Block, Rung};
 pub use uncertainty::{Profile, Unidentified};
 
 use super::simulated::Pace;

@@ -24,12 +24,10 @@ pub struct Named<T> {
 pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     let sides = [(&swept.up, Direction::Up), (&swept.down, Direction::Down)];
     let curves = sides.into_iter().filter(|(points, _)| points.len() > 2).flat_map(|(points, direction)| {
-        [1, 2].map(|mass| {
-            let read = |p: &Point| match mass {
-                1 => (p.frequency, p.x1, p.x1_scatter),
-                _ => (p.frequency, p.x2, p.x2_scatter),
-            };
-            (mass, direction, points.iter().map(read).collect::<Vec<_>>())
+        [1u8, 2].map(|mass| {
+            let read = |p: &Point| [(p.x1, p.x1_scatter), (p.x2, p.x2_scatter)][usize::from(mass) - 1];
+            let curve = points.iter().map(|p| (p.frequency, read(p).0, read(p).1));
+            (mass, direction, curve.collect::<Vec<_>>())
         })
     });
     let mut found: Vec<_> = curves

@@ -70,8 +70,6 @@ impl Motion {
 pub struct Prediction {
     /// Frequencies in Hz, rising.
     pub frequency: Vec<f64>,
-    /// Force amplitude in N at each frequency.
-    pub force: Vec<f64>,
     /// Motions at each frequency: impacting ones with the larger impulse first, then the free one.
     pub motions: Vec<Vec<Motion>>,
 }
@@ -84,9 +82,8 @@ impl Prediction {
     pub(super) fn over(rig: &Rig, forcing: &Forcing, range: (f64, f64), n: usize) -> Result<Prediction> {
         let step = (range.1 - range.0) / (n - 1) as f64;
         let frequency: Vec<f64> = (0..n).map(|i| range.0 + i as f64 * step).collect();
-        let force: Vec<f64> = frequency.iter().map(|f| forcing.at(*f)).collect();
-        let points: Vec<(f64, f64)> = frequency.iter().copied().zip(force.iter().copied()).collect();
-        Ok(Prediction { motions: all_motions(rig, &points)?, frequency, force })
+        let points: Vec<(f64, f64)> = frequency.iter().map(|f| (*f, forcing.at(*f))).collect();
+        Ok(Prediction { motions: all_motions(rig, &points)?, frequency })
     }
 
     /// The motion a slow sweep in `direction` would show at each frequency, in order of rising frequency.

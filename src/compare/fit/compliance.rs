@@ -72,13 +72,12 @@ fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f
             step.readings = [None, None];
             continue;
         };
-        for (reading, factor) in step.readings.iter_mut().zip(factors) {
-            if let Some(reading) = reading {
-                reading.amplitude /= factor;
-                reading.std = (reading.std / factor).hypot(left * reading.amplitude);
-                reading.upper_limit = reading.upper_limit.map(|l| l / factor);
-                reading.compliance = factor;
-            }
+        let readings = step.readings.iter_mut().zip(factors);
+        for (reading, factor) in readings.filter_map(|(reading, factor)| Some((reading.as_mut()?, factor))) {
+            reading.amplitude /= factor;
+            reading.std = (reading.std / factor).hypot(left * reading.amplitude);
+            reading.upper_limit = reading.upper_limit.map(|l| l / factor);
+            reading.compliance = factor;
         }
     }
     Ok(Corrected { data, lost, u: problem.coordinates(setting) })

@@ -19,31 +19,6 @@ const SAME: f64 = 1e-3;
 /// No model is chosen where the best is off by half of what was held out.
 const NONSENSE: f64 = 0.5;
 
-/// A model of the ladder that a fit climbs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum FitModel {
-    /// No impacts.
-    #[serde(rename = "linear")]
-    Linear,
-    /// Rigid impacts.
-    #[serde(rename = "closed form")]
-    ClosedForm,
-    /// Impacts with the compliance of the contact taken out to first order.
-    #[serde(rename = "soft-corrected closed form")]
-    SoftCorrected,
-}
-
-impl FitModel {
-    /// Its name in results and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            FitModel::Linear => "linear",
-            FitModel::ClosedForm => "closed form",
-            FitModel::SoftCorrected => "soft-corrected closed form",
-        }
-    }
-}
-
 /// A stretch of steps that was held out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Block {
@@ -58,8 +33,9 @@ pub struct Block {
 /// A model, and how well it predicts what it was not shown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rung {
-    /// Model.
-    pub model: FitModel,
+    /// Model: `linear`, without impacts; `closed form`, with rigid impacts; `soft-corrected closed form`, with the compliance of the contact
+    /// taken out to first order.
+    pub model: &'static str,
     /// Parameters that it was fitted with.
     pub parameters: Vec<Parameter>,
     /// Their values by this model.
@@ -95,15 +71,14 @@ pub fn rungs(rigid: &Settled<'_>, soft: Option<&Settled<'_>>, responses: &[Respo
         .retain(|u| matches!(u.parameter, Parameter::Force | Parameter::C1 | Parameter::K1 | Parameter::M1));
     let blocks = blocks(full.data, responses);
     let answer = &soft.unwrap_or(rigid).least.problem;
-    let rung = |model, problem, own: &Settled<'_>| rung(model, problem, &own.setting(), answer, &blocks);
-    let mut rungs: Vec<Rung> = [
-        rung(FitModel::Linear, &linear, rigid),
-        rung(FitModel::ClosedForm, full, rigid),
-        soft.and_then(|soft| rung(FitModel::SoftCorrected, &soft.least.problem, soft)),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    let climbed = [
+        rung("linear", false, &linear, &rigid.setting(), answer, &blocks),
+        rung("closed form", true, full, &rigid.setting(), answer, &blocks),
+        soft.and_then(|soft| {
+            rung("soft-corrected closed form", true, answer, &soft.setting(), answer, &blocks)
+        }),
+    ];
+    let mut rungs: Vec<Rung> = climbed.into_iter().flatten().collect();
     let means = rungs.iter().filter_map(|r| Some((r.held_out?, r.held_out_std?)));
     let best = means.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 < NONSENSE);
     let is_near = |r: &&mut Rung| best.zip(r.held_out).is_some_and(|((mean, std), own)| own <= mean + std);
@@ -114,7 +89,8 @@ pub fn rungs(rigid: &Settled<'_>, soft: Option<&Settled<'_>>, responses: &[Respo
 }
 
 fn rung(
-    model: FitModel,
+    model: &'static str,
+    impacts: bool,
     problem: &Problem<'_>,
     from: &Setting,
     answer: &Problem<'_>,
@@ -124,7 +100,7 @@ fn rung(
     let setting = own.setting(&u);
     // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be compared.
     let off = answer.off(|step, kind| {
-        let kind = if model == FitModel::Linear { Kind::Free } else { kind };
+        let kind = if impacts { kind } else { Kind::Free };
         let shows = answer.data.shows(&setting, kind, step);
         if std::ptr::eq(problem.data, answer.data) {
             return shows;
@@ -138,7 +114,7 @@ fn rung(
         let mut rest = problem.clone();
         held.steps.iter().for_each(|i| rest.kinds[*i] = None);
         let (rest, u) = fitted(rest, from)?;
-        let error = error(problem.data, &rest.setting(&u), model, &held.steps)?;
+        let error = error(problem.data, &rest.setting(&u), impacts, &held.steps)?;
         Some(Block { feature: held.feature.clone(), frequency: held.frequency, error })
     };
     let blocks: Vec<Block> = blocks.par_iter().filter_map(judged).collect();
@@ -172,8 +148,7 @@ fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, 
 }
 
 /// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is none.
-fn error(data: &Data, setting: &Setting, model: FitModel, steps: &[usize]) -> Option<f64> {
-    let impacts = model != FitModel::Linear;
+fn error(data: &Data, setting: &Setting, impacts: bool, steps: &[usize]) -> Option<f64> {
     let motions = if impacts { Some(assigned(data, setting, data.pace).ok()?) } else { None };
     let one = |i: &usize| {
         let step = &data.steps[*i];

@@ -128,8 +128,7 @@ impl Problem<'_> {
                 let z = distances(self.data, step, shows, part);
                 z.map(move |z| counts * (z * z).ln_1p().sqrt().copysign(z))
             });
-            let priors = self.unknowns.iter().map(|unknown| prior(unknown, &setting));
-            r.iter_mut().zip(points.chain(priors)).for_each(|(r, value)| *r = value);
+            r.iter_mut().zip(points.chain(self.priors(&setting))).for_each(|(r, value)| *r = value);
         };
         let n = self.data.clear() + self.unknowns.len();
         let found = minimise(residuals, n, &u, &vec![0.1; u.len()], Some(GAIN));
@@ -143,9 +142,15 @@ impl Problem<'_> {
         self.prior_cost(&setting) + self.data.steps.iter().map(one).sum::<f64>()
     }
 
+    /// Distances from the priors.
+    fn priors(&self, setting: &Setting) -> impl Iterator<Item = f64> {
+        let known = self.unknowns.iter().map(|k| (setting.get(k.parameter), k.prior));
+        known.map(|(value, prior)| prior.map_or(0.0, |[known, std]| (value - known) / (WIDE * std)))
+    }
+
     /// What the priors add to a cost.
     pub fn prior_cost(&self, setting: &Setting) -> f64 {
-        self.unknowns.iter().map(|unknown| prior(unknown, setting).powi(2)).sum()
+        self.priors(setting).map(|z| z * z).sum()
     }
 
     /// The motion nearest to a step, and what its points cost.
@@ -165,10 +170,6 @@ impl Problem<'_> {
 /// The digits of `i` behind the point, in reverse.
 fn radical_inverse(i: usize, base: usize) -> f64 {
     if i == 0 { 0.0 } else { ((i % base) as f64 + radical_inverse(i / base, base)) / base as f64 }
-}
-
-fn prior(unknown: &Unknown, setting: &Setting) -> f64 {
-    unknown.prior.map_or(0.0, |[value, std]| (setting.get(unknown.parameter) - value) / (WIDE * std))
 }
 
 /// z of a step's points, where these amplitudes are predicted.
