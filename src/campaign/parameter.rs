@@ -86,6 +86,11 @@ impl Parameter {
         if self == Parameter::Restitution { (0.0, 1.0) } else { (0.0, f64::INFINITY) }
     }
 
+    /// Whether only motions with impacts depend on it.
+    pub(crate) fn needs_impacts(self) -> bool {
+        !matches!(self, Parameter::Force | Parameter::C1 | Parameter::K1 | Parameter::M1)
+    }
+
     /// Whether it is one of the masses.
     pub fn is_mass(self) -> bool {
         matches!(self, Parameter::M1 | Parameter::M2)

@@ -17,11 +17,9 @@ pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> Result<T, String> {
 /// With what stands there.
 pub fn two<const MARK: char>(text: &str) -> Result<(f64, f64), String> {
     let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is not a number"));
-    let parts: Vec<&str> = text.split(MARK).collect();
-    match parts.as_slice() {
-        [a, b] => Ok((number(a)?, number(b)?)),
-        other => Err(format!("expected two numbers with {MARK:?} between them, found {}", other.len())),
-    }
+    let expected = || format!("expected two numbers with {MARK:?} between them, found {text:?}");
+    let (a, b) = text.split_once(MARK).ok_or_else(expected)?;
+    Ok((number(a)?, number(b)?))
 }
 
 /// Low-pass of average and displacement of a drill, or of the instrument of a pulse.

@@ -1,10 +1,9 @@
 //! Pairs of measured and predicted amplitudes, their peaks, and a score.
 
-use super::course::{Course, Swept};
 use super::forcing::{Forcing, levels, range};
 use super::pair::{Pair, PeakPair, Score, outliers, peaks, score};
+use super::predicting::{Course, Predicting, Rungs, Swept, rungs};
 use super::prediction::{Kind, Prediction};
-use super::rungs::{Predicting, Rungs, rungs};
 use super::simulated::Pace;
 use crate::error::Result;
 use crate::measure::response::Response;

@@ -1,7 +1,7 @@
 //! Measured amplitudes and resonances beside their predictions, and how well they agree.
 
-use super::course::{Course, Followed, Swept};
 use super::forcing::median;
+use super::predicting::{Course, Followed, Swept};
 use super::prediction::{Kind, Motion, all_motions};
 use super::simulated::{Simulated, simulated};
 use crate::error::Result;

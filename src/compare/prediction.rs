@@ -104,13 +104,17 @@ impl Prediction {
             }
             seen(kind)
         };
-        if direction == Direction::Up {
-            return self.motions.iter().map(follow).collect();
-        }
-        let mut followed: Vec<_> = self.motions.iter().rev().map(follow).collect();
-        followed.reverse();
-        followed
+        let swept = in_order(direction, self.motions.iter().collect());
+        in_order(direction, swept.into_iter().map(follow).collect())
     }
+}
+
+/// What rises with frequency in the order of a sweep, and back.
+pub(super) fn in_order<T>(direction: Direction, mut rising: Vec<T>) -> Vec<T> {
+    if direction == Direction::Down {
+        rising.reverse();
+    }
+    rising
 }
 
 /// Motions at each of `points`: frequency in Hz and force amplitude in N.

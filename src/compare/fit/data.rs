@@ -1,7 +1,7 @@
 //! The measured points of a fit, both masses of one step together.
 
-use super::super::course::Swept;
 use super::super::forcing::median;
+use super::super::predicting::Swept;
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
 use super::unknown::Setting;

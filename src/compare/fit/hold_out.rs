@@ -66,9 +66,7 @@ pub fn rungs(rigid: &Settled<'_>, soft: Option<&Settled<'_>>, responses: &[Respo
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {
         *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
     }
-    linear
-        .unknowns
-        .retain(|u| matches!(u.parameter, Parameter::Force | Parameter::C1 | Parameter::K1 | Parameter::M1));
+    linear.unknowns.retain(|u| !u.parameter.needs_impacts());
     let blocks = blocks(full.data, responses);
     let answer = &soft.unwrap_or(rigid).least.problem;
     let climbed = [

@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::math::Minimum;
 use crate::measure::residuals::{Whiteness, student};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// Rounds before steps whose motion still changes are left out: near a fold each set of parameters has another motion there.
 const ROUNDS: usize = 3;
@@ -72,10 +73,7 @@ impl<'a> Problem<'a> {
             u = now.approached(part, u);
         }
         let n = data.steps.len();
-        let mut wavering = vec![false; n];
-        let without = |kinds: &mut Vec<Option<Kind>>, wavering: &[bool]| {
-            kinds.iter_mut().zip(wavering).filter(|(_, out)| **out).for_each(|(kind, _)| *kind = None);
-        };
+        let mut wavering = BTreeSet::new();
         let mut kinds = without_outliers(data, &self.setting(&u), motions(&u, pace)?.kinds);
         let mut round = 0;
         loop {
@@ -84,22 +82,22 @@ impl<'a> Problem<'a> {
             u.clone_from(&least.minimum.parameters);
             let now = motions(&u, pace)?;
             let mut next = without_outliers(data, &self.setting(&u), now.kinds.clone());
-            without(&mut next, &wavering);
+            wavering.iter().for_each(|i: &usize| next[*i] = None);
             let agreed = next == kinds;
             if agreed || round == MOST {
-                let outlier = |i: &usize| kinds[*i].is_none() && !wavering[*i];
+                let outlier = |i: &usize| kinds[*i].is_none() && !wavering.contains(i);
                 return Ok(Settled {
-                    wavering: (0..n).filter(|i| wavering[*i]).map(|i| data.steps[i].clear().count()).sum(),
+                    wavering: wavering.iter().map(|i| data.steps[*i].clear().count()).sum(),
                     far: (0..n).filter(outlier).map(|i| shown(&data.steps[i], now.kinds[i]).count()).sum(),
                     agreed,
                     unexplained: least.problem.left_over(&u, &now),
                     least,
                 });
             }
-            for (i, out) in wavering.iter_mut().enumerate().filter(|_| round >= ROUNDS) {
-                *out |= kinds[i] != next[i];
+            if round >= ROUNDS {
+                wavering.extend((0..n).filter(|i| kinds[*i] != next[*i]));
+                wavering.iter().for_each(|i| next[*i] = None);
             }
-            without(&mut next, &wavering);
             kinds = next;
         }
     }

@@ -125,11 +125,8 @@ impl Uncertainty {
         if !is_loose(i) && self.limits[i].is_none() {
             return None;
         }
-        let of_impacts = matches!(
-            parameter,
-            Parameter::Restitution | Parameter::C2 | Parameter::K2 | Parameter::Gap | Parameter::M2
-        );
-        Some(if of_impacts && !problem.kinds.contains(&Some(Kind::Impacting)) {
+        let without_impacts = !problem.kinds.contains(&Some(Kind::Impacting));
+        Some(if parameter.needs_impacts() && without_impacts {
             Unidentified::NeedsImpacts
         } else if self.limits[i].is_some() {
             Unidentified::AtLimit
