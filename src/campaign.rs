@@ -27,34 +27,26 @@
 //! ```
 //! An unknown key is an error that points at its line.
 
-mod channel;
-mod compute;
 mod entry;
-mod fit;
 mod locate;
 mod parameter;
-mod prediction;
 mod reading;
+mod tables;
 mod value;
 
-pub use compute::{Compute, Drive};
-pub use fit::FitEntry;
 pub use parameter::Parameter;
-pub use prediction::{Follows, ModelEntry};
+pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
-pub(crate) use channel::{one as channel, several as channels};
 pub(crate) use entry::Entry;
 pub(crate) use reading::{Channel, Reading, above_zero};
-pub(crate) use value::{LowPass, two, word};
+pub(crate) use value::{LowPass, channel, channels, two, word};
 
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Rig};
 use crate::read::inside;
 use serde::Deserialize;
-use serde::de::IntoDeserializer;
 use std::path::{Path, PathBuf};
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
 /// Folder for results where none is named.
 const RESULTS: &str = "results";
@@ -89,9 +81,6 @@ pub struct Campaign {
     text: String,
 }
 
-/// Keys at the top that are no section of records.
-const KEYS: [&str; 9] = ["name", "made_by", "out", "rig", "excitation", "contact", "model", "fit", "compute"];
-
 /// Tables that a rig file has beside the rig's keys.
 const SCENE: [&str; 3] = ["excitation", "contact", "buffer"];
 
@@ -102,56 +91,42 @@ impl Campaign {
     /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
     pub fn from_path(path: impl AsRef<Path>, sections: &[&str]) -> Result<Campaign> {
         let path = path.as_ref();
-        let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-        if !toml || path.is_dir() {
-            return Err(Error::input(Place::file(path), "not a campaign", "a campaign file, NAME.toml")
+        let other = |found: &str, expected: &str| Error::input(Place::file(path), found, expected);
+        if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || path.is_dir() {
+            return Err(other("not a campaign", "a campaign file, NAME.toml")
                 .hint("a list of files goes to `vibro response`; docs/campaign.md shows a campaign"));
         }
         let bytes = std::fs::read(path).map_err(|e| Error::io("open", path, e))?;
         if bytes.trim_ascii().is_empty() {
-            return Err(Error::input(Place::file(path), "the file is empty", "a campaign").hint(
-                "write what it is to do, e.g. a table [[sweep]] with name, list and quantity, or [[frf]] with file; docs/campaign.md lists every key",
-            ));
+            let hint = "write what it is to do, e.g. a table [[sweep]] with name, list and quantity, or [[frf]] with file;";
+            let hint = format!("{hint} docs/campaign.md lists every key");
+            return Err(other("the file is empty", "a campaign").hint(hint));
         }
         let text = String::from_utf8(bytes).map_err(|e| {
-            Error::input(
-                Place::byte(path, e.utf8_error().valid_up_to() as u64),
-                "bytes that are not UTF-8",
-                "text in UTF-8",
-            )
-            .hint("save the file as UTF-8 in your editor")
+            let place = Place::byte(path, e.utf8_error().valid_up_to() as u64);
+            Error::input(place, "bytes that are not UTF-8", "text in UTF-8")
+                .hint("save the file as UTF-8 in your editor")
         })?;
         Campaign::parse(path, text, sections)
     }
 
     fn parse(path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
-        let mut campaign = Campaign { path: path.to_owned(), text, ..Campaign::default() };
-        let table = campaign.table()?;
-        let of_rig = |key: &&str| Rig::KEYS.contains(key);
-        let keys: Vec<&str> = table.keys().map(|key| key.get_ref().as_ref()).collect();
-        if keys.iter().any(of_rig) && keys.iter().all(|key| of_rig(key) || SCENE.contains(key)) {
+        let complaint = |e: &toml::de::Error| locate::toml_error(path, &text, e, sections);
+        let table = DeTable::parse(&text).map_err(|e| complaint(&e))?.into_inner();
+        let of_rig = |key: &str| Rig::KEYS.contains(&key);
+        let keys = || table.keys().map(|key| key.get_ref().as_ref());
+        if keys().any(of_rig) && keys().all(|key| of_rig(key) || SCENE.contains(&key)) {
             let expected = "a campaign: the rig's keys under [rig], and what was measured, such as [[sweep]]";
-            return Err(Error::input(Place::file(path), "this is a rig, not a campaign", expected).hint(
-                format!(
-                    "`vibro model orbit {}` tells what the rig does; docs/campaign.md shows a campaign",
-                    path.display()
-                ),
-            ));
+            let rig = Error::input(Place::file(path), "this is a rig, not a campaign", expected);
+            let hint = format!("`vibro model orbit {}` tells what the rig does", path.display());
+            return Err(rig.hint(format!("{hint}; docs/campaign.md shows a campaign")));
         }
-        let known = [&KEYS[..], sections].concat();
-        if let Some(key) = table.keys().find(|key| !known.contains(&key.get_ref().as_ref())) {
-            return Err(locate::unknown(path, &campaign.text, key, &known));
-        }
-        let own: DeTable<'_> = table
-            .iter()
-            .filter(|(key, _)| KEYS.contains(&key.get_ref().as_ref()))
-            .map(|(key, value)| (key.clone(), value.clone()))
-            .collect();
-        let asked = table.len() - own.len();
-        let own = Spanned::new(0..0, DeValue::Table(own));
-        let head = Campaign::deserialize(own.into_deserializer());
-        let head = head.map_err(|e| locate::toml_error(path, &campaign.text, &e, &[]))?;
-        campaign = Campaign { sections: asked, path: campaign.path, text: campaign.text, ..head };
+        let of_records = |key: &str| sections.contains(&key);
+        let (records, head): (DeTable<'_>, DeTable<'_>) =
+            table.into_iter().partition(|(key, _)| of_records(key.get_ref()));
+        let sections = records.len();
+        let head: Campaign = locate::keys(head, 0..0).map_err(|e| complaint(&e))?;
+        let campaign = Campaign { sections, path: path.to_owned(), text, ..head };
         campaign.check()?;
         Ok(campaign)
     }
@@ -185,11 +160,9 @@ impl Campaign {
 
     fn check(&self) -> Result<()> {
         let at = |table: &str, key: &str, error: Error| {
-            let found = self.table().ok().and_then(|all| {
-                let inside = all.get(table).and_then(|inside| inside.get_ref().as_table());
-                locate::find(inside.unwrap_or(&all), key)
-            });
-            error.in_file(&self.path).excerpt(&self.text, found.unwrap_or(0..0))
+            let all = self.table().unwrap_or_default();
+            let found = locate::find(table_of(&all, table).unwrap_or(&all), key);
+            self.pointed(error, found.unwrap_or(0..0))
         };
         if let Some((key, error)) = self.rig.as_ref().and_then(Rig::fault) {
             return Err(at("rig", key, error));
@@ -197,13 +170,11 @@ impl Campaign {
         let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
         inside(self.folder(), out, false).map_err(|_| {
             let found = format!("out = {} leads outside this folder", out.display());
-            let error = Error::usage(found, "")
-                .hint("name a folder beside the campaign, or give --out on the command line");
-            at("", "out", error)
+            at("", "out", Error::usage(found, "a folder beside the campaign"))
         })?;
-        for (table, checked) in
-            [("compute", self.compute.check()), ("model", self.model.check()), ("fit", self.fit.check())]
-        {
+        let checked =
+            [("compute", self.compute.check()), ("model", self.model.check()), ("fit", self.fit.check())];
+        for (table, checked) in checked {
             checked.map_err(|(key, why)| at(table, key, Error::usage(why, "")))?;
         }
         Ok(())
@@ -212,8 +183,8 @@ impl Campaign {
     /// Keys of the rig that are not given and were taken from the thesis' rig.
     pub(crate) fn rig_left_out(&self) -> Vec<&'static str> {
         let table = self.table().unwrap_or_default();
-        let rig = table.get("rig").and_then(|rig| rig.get_ref().as_table());
-        rig.map_or_else(Vec::new, |rig| Rig::KEYS.into_iter().filter(|k| !rig.contains_key(*k)).collect())
+        let given = |key: &&str| table_of(&table, "rig").is_none_or(|rig| rig.contains_key(*key));
+        Rig::KEYS.into_iter().filter(|key| !given(key)).collect()
     }
 
     /// Path of a file that a table names under a key.
@@ -252,4 +223,9 @@ impl Campaign {
         let error = Error::usage(format!("the file {} does not exist", path.display()), "").hint(hint);
         Err(self.fault(entry, error.setting(key)))
     }
+}
+
+/// A table of a campaign.
+fn table_of<'a>(all: &'a DeTable<'a>, name: &str) -> Option<&'a DeTable<'a>> {
+    all.get(name)?.get_ref().as_table()
 }

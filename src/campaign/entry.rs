@@ -3,7 +3,7 @@
 use super::{Campaign, Channel, Reading, locate};
 use crate::error::{Error, Result};
 use serde::Deserialize;
-use serde::de::{DeserializeOwned, IntoDeserializer};
+use serde::de::DeserializeOwned;
 use std::ops::Range;
 use std::path::PathBuf;
 use toml::Spanned;
@@ -54,25 +54,19 @@ impl Campaign {
         section: &str,
         of_a_file: bool,
     ) -> Result<Vec<Entry<K>>> {
-        let mut table = self.table()?;
-        let Some(all) = table.remove(section) else { return Ok(Vec::new()) };
+        let Some(all) = self.table()?.remove(section) else { return Ok(Vec::new()) };
         let several = |span: Range<usize>| {
-            let expected = "one table for each, with double brackets";
             let found = format!("{section} is not a list of tables");
-            Error::usage(found, expected)
-                .hint(format!("write [[{section}]]"))
-                .in_file(self.path())
-                .excerpt(&self.text, span)
+            let error = Error::usage(found, "one table for each, with double brackets");
+            self.pointed(error.hint(format!("write [[{section}]]")), span)
         };
         let span = all.span();
         let DeValue::Array(all) = all.into_inner() else { return Err(several(span)) };
-        let mut entries = Vec::with_capacity(all.len());
-        for one in all {
-            let head = one.span();
-            let DeValue::Table(rows) = one.into_inner() else { return Err(several(head)) };
-            entries.push(self.entry(rows, head, of_a_file)?);
-        }
-        Ok(entries)
+        let one = |table: Spanned<DeValue<'_>>| match (table.span(), table.into_inner()) {
+            (head, DeValue::Table(rows)) => self.entry(rows, head, of_a_file),
+            (span, _) => Err(several(span)),
+        };
+        all.into_iter().map(one).collect()
     }
 
     fn entry<K: DeserializeOwned>(
@@ -83,29 +77,29 @@ impl Campaign {
     ) -> Result<Entry<K>> {
         let places =
             rows.iter().map(|(k, v)| (k.get_ref().to_string(), k.span().start..v.span().end)).collect();
-        let mut part = |keys: &[&str]| -> Spanned<DeValue<'_>> {
-            let own = keys.iter().filter(|_| of_a_file).filter_map(|key| rows.remove_entry(*key)).collect();
-            Spanned::new(head.clone(), DeValue::Table(own))
-        };
-        let (named, channel, reading) = (part(&NAMED), part(&Channel::KEYS), part(&Reading::KEYS));
-        let keys = Spanned::new(head.clone(), DeValue::Table(rows));
         let beside: Vec<&str> =
             if of_a_file { [&NAMED[..], &Channel::KEYS, &Reading::KEYS].concat() } else { Vec::new() };
-        let entry = || -> std::result::Result<Entry<K>, toml::de::Error> {
-            let keys = K::deserialize(keys.into_deserializer())?;
-            let Named { name, file } = Named::deserialize(named.into_deserializer())?;
-            let channel = Channel::deserialize(channel.into_deserializer())?;
-            let reading = Reading::deserialize(reading.into_deserializer())?;
-            Ok(Entry { name, file, channel, reading, keys, head, places })
+        let mut part = |keys: &[&str]| -> DeTable<'_> {
+            keys.iter().filter(|key| beside.contains(key)).filter_map(|key| rows.remove_entry(*key)).collect()
         };
-        entry().map_err(|e| locate::toml_error(self.path(), &self.text, &e, &beside))
+        let (named, channel, reading) = (part(&NAMED), part(&Channel::KEYS), part(&Reading::KEYS));
+        let complaint = |e| locate::toml_error(self.path(), &self.text, &e, &beside);
+        let keys = locate::keys(rows, head.clone()).map_err(complaint)?;
+        let Named { name, file } = locate::keys(named, head.clone()).map_err(complaint)?;
+        let channel = locate::keys(channel, head.clone()).map_err(complaint)?;
+        let reading = locate::keys(reading, head.clone()).map_err(complaint)?;
+        Ok(Entry { name, file, channel, reading, keys, head, places })
     }
 
     /// An error about a table: it points at the line of the key that the error names as its setting, else at the table.
     pub(crate) fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
         let place = |key: &&str| entry.places.iter().find(|(name, _)| name == key);
-        let span = error.settings().iter().find_map(place);
-        let span = span.map_or(&entry.head, |(_, span)| span);
-        error.in_file(self.path()).excerpt(&self.text, span.clone())
+        let span = error.settings().iter().find_map(place).map_or(&entry.head, |(_, span)| span).clone();
+        self.pointed(error, span)
+    }
+
+    /// The error with its place in the file.
+    pub(super) fn pointed(&self, error: Error, span: Range<usize>) -> Error {
+        error.in_file(self.path()).excerpt(&self.text, span)
     }
 }

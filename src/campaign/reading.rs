@@ -1,6 +1,6 @@
 //! What a person knows of a file that the file does not say: keys of a campaign and options of the command line alike.
 
-use super::channel;
+use super::value::channel;
 use crate::error::{Error, Result};
 use crate::read::{Format, Reader};
 use crate::units::Unit;
@@ -43,7 +43,7 @@ pub struct Reading {
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Channel {
     /// Record of the file, by name or by number from 1 [default: the only one]
-    #[serde(deserialize_with = "channel::one")]
+    #[serde(deserialize_with = "channel")]
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub channel: Option<String>,
     /// Factor on the stored values; with a unit, to that unit

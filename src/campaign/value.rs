@@ -1,7 +1,7 @@
-//! Values that a campaign and a command line write alike: names, a low-pass or none, two numbers.
+//! Values that a campaign and a command line write alike: names, channels, a low-pass or none, two numbers.
 
-use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
+use serde::{Deserialize, Deserializer};
 
 /// A value by its name, as a campaign writes it between quotes.
 ///
@@ -17,11 +17,9 @@ pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> Result<T, String> {
 /// With what stands there.
 pub fn two<const MARK: char>(text: &str) -> Result<(f64, f64), String> {
     let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is not a number"));
-    let parts: Vec<&str> = text.split(MARK).collect();
-    match parts.as_slice() {
-        [a, b] => Ok((number(a)?, number(b)?)),
-        other => Err(format!("expected two numbers with {MARK:?} between them, found {}", other.len())),
-    }
+    let expected = || format!("expected two numbers with {MARK:?} between them, found {text:?}");
+    let (a, b) = text.split_once(MARK).ok_or_else(expected)?;
+    Ok((number(a)?, number(b)?))
 }
 
 /// Low-pass of average and displacement of a drill, or of the instrument of a pulse.
@@ -58,4 +56,37 @@ impl LowPass {
 pub enum Word {
     /// `none`.
     None,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a channel by its name between quotes, or by its number from 1")]
+enum Channel {
+    Name(String),
+    Number(u32),
+}
+
+impl Channel {
+    /// As readers take it.
+    fn text(self) -> String {
+        match self {
+            Channel::Name(name) => name,
+            Channel::Number(number) => number.to_string(),
+        }
+    }
+}
+
+/// A channel: by name, or by number from 1.
+///
+/// # Errors
+/// If it is neither a name nor a number.
+pub fn channel<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
+    Channel::deserialize(from).map(|channel| Some(channel.text()))
+}
+
+/// Channels, likewise.
+///
+/// # Errors
+/// If one is neither a name nor a number.
+pub fn channels<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
+    Vec::<Channel>::deserialize(from).map(|all| all.into_iter().map(Channel::text).collect())
 }

@@ -72,7 +72,8 @@ impl Compare {
         let mut campaign = analysis::open(&self.campaign)?;
         if !self.fit.is_empty() {
             let names = self.fit.iter().map(|name| Parameter::from_name(name.trim()));
-            campaign.fit.ask(names.collect::<Result<_>>()?)?;
+            campaign.fit.parameters = names.collect::<Result<_>>()?;
+            campaign.fit.usable()?;
         }
         let options = JobOptions { allow_outside: self.allow_outside };
         let answer = print::busy(json, "comparing", |bar| modelled::compared(&campaign, options, bar))?;

@@ -8,24 +8,17 @@
 
 mod answer;
 mod compliance;
-mod coordinate;
 mod data;
-mod findings;
 mod hold_out;
-mod motion;
 mod problem;
-mod profile;
 mod search;
-mod setting;
 mod settle;
-mod shared_errors;
 mod uncertainty;
 mod unknown;
 
 pub use answer::{Fit, FitPoint, Fitted, LeftOut};
-pub use hold_out::{Block, FitModel, Rung};
-pub use profile::Profile;
-pub use uncertainty::Unidentified;
+pub use hold_out::{Block, Rung};
+pub use uncertainty::{Profile, Unidentified};
 
 use super::simulated::Pace;
 use crate::campaign::FitEntry;
@@ -39,10 +32,9 @@ use hold_out::rungs;
 use problem::Problem;
 use rayon::prelude::*;
 use search::End;
-use setting::Setting;
 use settle::Settled;
 use uncertainty::Uncertainty;
-use unknown::Unknown;
+use unknown::{Setting, Unknown};
 
 /// Starting points where none are asked for.
 const STARTS: usize = 8;
@@ -88,43 +80,31 @@ fn found(
     let starts = entry.starts.unwrap_or(STARTS);
     let (rigid, ends) = identify(&problem, starts)?;
     let corrected = contact.map(|stiffness| corrected(&rigid, stiffness)).transpose()?;
-    let soft = corrected.as_ref().map(|soft| {
-        Problem::new(&soft.data, base, problem.unknowns.clone())
-            .settle(&soft.u)
-            .map(|found| (found, soft.lost))
-    });
-    let soft = soft.transpose()?;
-    let rungs = rungs(&rigid, soft.as_ref().map(|soft| &soft.0), responses);
+    let soft = corrected.as_ref().map(|soft| problem.with(&soft.data).settle(&soft.u)).transpose()?;
+    let rungs = rungs(&rigid, soft.as_ref(), responses);
     let agreeing = agreeing(&ends, &rigid)?;
-    let (settled, lost) = soft.map_or((rigid, None), |(settled, lost)| (settled, Some(lost)));
-    let answer = Answer::new(settled, lost)?;
-    let doubts = answer.doubts();
-    let mut fit = answer.fit(base, doubts.first().map(|doubt| doubt.code));
-    (fit.starts, fit.agreeing, fit.rungs) = (starts, agreeing, rungs);
-    let rest = answer.cautions(&fit, entry);
-    fit.findings = doubts.into_iter().chain(rest).collect();
+    let answer = Answer::new(soft.unwrap_or(rigid), corrected.as_ref().map(|soft| soft.lost))?;
+    let mut fit = Fit { starts, agreeing, rungs, ..answer.fit(base) };
+    fit.findings.extend(answer.cautions(&fit, entry));
     Ok(fit)
 }
 
 /// The best answer of several starts, and where each start ended.
-fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Vec<Vec<f64>>)> {
-    problem.enough(problem.data.clear())?;
+fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Vec<End>)> {
     // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start reached.
     let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
     let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();
     let found: Vec<Result<Settled<'a>>> = reached.par_iter().map(|end| problem.settle(&end.u)).collect();
-    let end = |(found, end): (&Result<Settled<'a>>, &End)| {
-        Some(vec![found.as_ref().ok()?.least.minimum.parameters.clone(); end.starts])
-    };
-    let ends = found.iter().zip(&reached).filter_map(end).flatten().collect();
+    let ends = found.iter().zip(&reached).filter_map(|(found, end)| {
+        Some(End { u: found.as_ref().ok()?.least.minimum.parameters.clone(), ..*end })
+    });
+    let ends = ends.collect();
     let (mut best, mut idle) = (nearest(found)?, 0);
     for turn in 0..TURNS {
-        if idle == IDLE {
-            break;
-        }
         let places = problem.around(&best.least.minimum.parameters, turn);
         match nearest(places.par_iter().map(|u| problem.settle(u)).collect()) {
             Ok(next) if next.unexplained < best.unexplained - BETTER => (best, idle) = (next, 0),
+            _ if idle + 1 == IDLE => break,
             _ => idle += 1,
         }
     }
@@ -133,24 +113,18 @@ fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Ve
 
 /// The answer that explains most; the first refusal where there is none.
 fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
-    let (mut best, mut refusal) = (None::<Settled<'_>>, None);
-    for one in found {
-        match one {
-            Ok(one) if best.as_ref().is_none_or(|best| one.unexplained < best.unexplained) => {
-                best = Some(one);
-            }
-            Ok(_) => {}
-            Err(error) => refusal = refusal.or(Some(error)),
-        }
-    }
-    best.ok_or_else(|| refusal.unwrap_or_else(|| Error::refused("no start led to an answer")))
+    let mut refusals = Vec::new();
+    let answers = found.into_iter().filter_map(|one| one.map_err(|refusal| refusals.push(refusal)).ok());
+    let best = answers.reduce(|best, one| if one.unexplained < best.unexplained { one } else { best });
+    let refused = || Error::refused("no start led to an answer");
+    best.ok_or_else(|| refusals.into_iter().next().unwrap_or_else(refused))
 }
 
 /// How many starts ended within one standard uncertainty of the answer in every parameter.
-fn agreeing(ends: &[Vec<f64>], answer: &Settled<'_>) -> Result<usize> {
+fn agreeing(ends: &[End], answer: &Settled<'_>) -> Result<usize> {
     let (best, uncertainty) = (&answer.least.minimum.parameters, Uncertainty::new(&answer.least)?);
     let near = |(i, u): (usize, &f64)| (u - best[i]).abs() <= uncertainty.std(i);
-    Ok(ends.iter().filter(|end| end.iter().enumerate().all(near)).count())
+    Ok(ends.iter().filter(|end| end.u.iter().enumerate().all(near)).map(|end| end.starts).sum())
 }
 
 #[cfg(test)]

@@ -37,23 +37,21 @@ impl Forcing {
         stated: Option<f64>,
         responses: &[&Response],
     ) -> Result<(Vec<Forcing>, Vec<Finding>)> {
-        let mut all: Vec<f64> = responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force).collect();
-        all.sort_by(f64::total_cmp);
-        let median = median(&all);
-        let mut findings = Vec::new();
+        let all = || responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force);
+        let (low, high) = range(all());
         if let Some(stated) = stated {
-            let worst = all.iter().map(|m| (m / stated - 1.0).abs()).fold(0.0, f64::max);
-            if let Some(median) = median.filter(|_| worst > DIFFERS) {
+            let part = (low / stated - 1.0).abs().max((high / stated - 1.0).abs());
+            let differs = median(all()).filter(|_| part > DIFFERS).map(|median| {
                 let differs = Finding::caution("stated-force-differs").number("stated", stated);
-                findings.push(differs.number("median", median).number("part", worst));
-            }
-            return Ok((vec![Forcing::Constant(stated); responses.len()], findings));
+                differs.number("median", median).number("part", part)
+            });
+            return Ok((vec![Forcing::Constant(stated); responses.len()], differs.into_iter().collect()));
         }
-        let (Some(median), Some(low), Some(high)) = (median, all.first(), all.last()) else {
+        let Some(median) = median(all()) else {
             return Err(Error::refused("the force is neither stated nor measured")
                 .hint("state `excitation.force` in N in the campaign"));
         };
-        findings.push(Finding::note("force-as-measured").number("low", *low).number("high", *high));
+        let mut findings = vec![Finding::note("force-as-measured").number("low", low).number("high", high)];
         let own = |r: &&Response| {
             Forcing::measured(r).unwrap_or_else(|| {
                 findings.push(Finding::caution("force-not-measured").about(&r.name).number("median", median));
@@ -86,28 +84,18 @@ impl Forcing {
             Forcing::Constant(force) => return *force,
             Forcing::Measured(points) => points,
         };
-        let above = points.partition_point(|p| p.0 < frequency);
-        let before = above.checked_sub(1).and_then(|i| points.get(i));
-        match (before, points.get(above)) {
-            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (frequency - a.0) / (b.0 - a.0),
-            (Some(only), None) | (None, Some(only)) => only.1,
-            (None, None) => f64::NAN,
+        match points.split_at(points.partition_point(|p| p.0 < frequency)) {
+            ([.., a], [b, ..]) => a.1 + (b.1 - a.1) * (frequency - a.0) / (b.0 - a.0),
+            ([.., only], []) | ([], [only, ..]) => only.1,
+            ([], []) => f64::NAN,
         }
     }
 
-    /// Force in N of a point of the sweep.
-    pub fn of(&self, point: &ResponsePoint) -> f64 {
+    /// Force in N of a point of the sweep, and its standard uncertainty: 0 where it is stated, taken from other points, or not known.
+    pub(super) fn of(&self, point: &ResponsePoint) -> (f64, f64) {
         match (self, point.force) {
-            (Forcing::Measured(_), Some(force)) => force,
-            _ => self.at(point.excitation),
-        }
-    }
-
-    /// Standard uncertainty in N of that; 0 where it is stated, taken from other points, or not known.
-    pub(crate) fn std_of(&self, point: &ResponsePoint) -> f64 {
-        match self {
-            Forcing::Measured(_) => point.force.and(point.force_std).unwrap_or(0.0),
-            Forcing::Constant(_) => 0.0,
+            (Forcing::Measured(_), Some(force)) => (force, point.force_std.unwrap_or(0.0)),
+            _ => (self.at(point.excitation), 0.0),
         }
     }
 
@@ -115,20 +103,23 @@ impl Forcing {
     pub fn median(&self) -> f64 {
         match self {
             Forcing::Constant(force) => *force,
-            Forcing::Measured(points) => {
-                let mut forces: Vec<f64> = points.iter().map(|p| p.1).collect();
-                forces.sort_by(f64::total_cmp);
-                median(&forces).unwrap_or(f64::NAN)
-            }
+            Forcing::Measured(points) => median(points.iter().map(|p| p.1)).unwrap_or(f64::NAN),
         }
     }
 }
 
-/// Median of sorted values.
-pub(super) fn median(sorted: &[f64]) -> Option<f64> {
+/// Median of values in any order; `None` of none.
+pub(super) fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.into_iter().collect();
+    sorted.sort_by(f64::total_cmp);
     let middle = sorted.len() / 2;
     let upper = *sorted.get(middle)?;
     Some(if sorted.len().is_multiple_of(2) { f64::midpoint(sorted[middle - 1], upper) } else { upper })
+}
+
+/// Least and largest value; (∞, −∞) of none.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
 /// Levels of force in order of their first sweep: indices into `forces`, the median of each sweep where known.
@@ -139,23 +130,16 @@ pub fn levels(forces: &[Option<f64>]) -> Vec<Vec<usize>> {
     let mut known: Vec<(f64, usize)> =
         forces.iter().enumerate().filter_map(|(i, force)| Some(((*force)?, i))).collect();
     known.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut levels: Vec<Vec<usize>> = known
-        .chunk_by(|a, b| b.0 <= LEVEL * a.0)
-        .map(|level| {
-            let mut members: Vec<usize> = level.iter().map(|(_, i)| *i).collect();
-            members.sort_unstable();
-            members
-        })
-        .collect();
+    let split = known.chunk_by(|a, b| b.0 <= LEVEL * a.0);
+    let mut levels: Vec<Vec<usize>> = split.map(|level| level.iter().map(|(_, i)| *i).collect()).collect();
+    levels.iter_mut().for_each(|level| level.sort_unstable());
     levels.sort_unstable();
-    let unknown = (0..forces.len()).filter(|i| forces[*i].is_none());
-    match levels.first_mut() {
-        Some(first) => {
-            first.extend(unknown);
-            first.sort_unstable();
-        }
-        None if forces.is_empty() => {}
-        None => levels.push(unknown.collect()),
+    if levels.is_empty() && !forces.is_empty() {
+        levels.push(Vec::new());
+    }
+    if let Some(first) = levels.first_mut() {
+        first.extend((0..forces.len()).filter(|i| forces[*i].is_none()));
+        first.sort_unstable();
     }
     levels
 }

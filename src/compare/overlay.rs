@@ -1,16 +1,13 @@
 //! Pairs of measured and predicted amplitudes, their peaks, and a score.
 
-use super::course::{Course, Swept};
-use super::forcing::{Forcing, levels};
-use super::pair::Pair;
-use super::peak_pair::{PeakPair, peaks};
+use super::forcing::{Forcing, levels, range};
+use super::pair::{Pair, PeakPair, Score, outliers, peaks, score};
+use super::predicting::{Course, Predicting, Rungs, Swept, rungs};
 use super::prediction::{Kind, Prediction};
-use super::rungs::{Predicting, Rungs, rungs};
-use super::score::{Score, outliers, score};
 use super::simulated::Pace;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::measure::response::Response;
-use crate::model::{Observable, Rig};
+use crate::model::Rig;
 use crate::record::{Direction, Finding};
 use serde::Serialize;
 
@@ -64,65 +61,57 @@ pub fn overlay(
     predicting: &Predicting,
     responses: &[Response],
 ) -> Result<Overlay> {
-    let usable: Vec<(&Response, u8, Direction)> = responses
-        .iter()
-        .filter(|r| r.quantity == "displacement")
-        .filter_map(|r| Some((r, r.mass?, r.direction?)))
-        .collect();
-    let left_out = responses.len() - usable.len();
-    let frequencies = || usable.iter().flat_map(|u| &u.0.points).map(|p| p.excitation);
-    let (low, high) = frequencies().fold((f64::INFINITY, 0.0f64), |(a, b), f| (a.min(f), b.max(f)));
-    if low > high {
-        return Err(Error::refused("no response can be overlaid on the model")
-            .hint("state `mass = 1` or `2` for each sweep, with three or more points in one direction"));
-    }
-    // Room for the markers of the outer points.
-    let margin = 0.03 * (high - low);
-    let range = ((low - margin).max(low / 2.0), high + margin);
-    let curve = |forcing: &Forcing| Prediction::over(rig, forcing, range, CURVE, Observable::Fundamental);
-    let (forcings, mut findings) = Forcing::of_all(force, &usable.iter().map(|u| u.0).collect::<Vec<_>>())?;
+    let (swept, mut findings) = Swept::all(force, responses)?;
+    let left_out = responses.len() - swept.len();
     if left_out > 0 {
         findings.push(Finding::caution("responses-not-overlaid").count("n", left_out));
     }
-    let medians: Vec<Option<f64>> = forcings.iter().map(|f| Some(f.median())).collect();
-    let swept: Vec<Swept<'_>> = usable
-        .into_iter()
-        .zip(forcings)
-        .map(|((response, mass, direction), forcing)| Swept { response, mass, direction, forcing })
-        .collect();
-    let asked =
-        if predicting.model.is_some() { Vec::new() } else { choices(rig, predicting, &swept, &medians)? };
-    let model = predicting.model(&asked);
-    findings.extend(asked.iter().find_map(|r| r.finding.clone()).map(|f| f.name("model", model.name())));
-    let course = Course { rig, law: predicting.law(rig, model)?, model, pace: predicting.pace };
-    let mut overlay = Overlay {
-        force,
-        levels: Vec::new(),
-        pairs: Vec::new(),
-        peaks: Vec::new(),
-        scores: Vec::new(),
-        rungs: asked,
-        findings,
-    };
-    for level in levels(&medians) {
+    let (low, high) = frequencies(&swept);
+    // Room for the markers of the outer points.
+    let margin = 0.03 * (high - low);
+    let ends = ((low - margin).max(low / 2.0), high + margin);
+    let curve = |forcing: &Forcing| Prediction::over(rig, forcing, ends, CURVE);
+    let medians: Vec<Option<f64>> = swept.iter().map(|s| Some(s.forcing.median())).collect();
+    let grouped = levels(&medians).into_iter().filter_map(|level| {
         let members: Vec<&Swept<'_>> = level.iter().filter_map(|i| swept.get(*i)).collect();
-        let forcings: Vec<&Forcing> = members.iter().map(|s| &s.forcing).collect();
-        let Some(mean) = Forcing::mean(&forcings) else { continue };
+        Some((Forcing::mean(&members.iter().map(|s| &s.forcing).collect::<Vec<_>>())?, members))
+    });
+    let grouped: Vec<(Forcing, Vec<&Swept<'_>>)> = grouped.collect();
+    // The choice of a model for each level of force and direction.
+    let mut choices = Vec::new();
+    for (force, members) in grouped.iter().filter(|_| predicting.model.name.is_none()) {
+        for direction in [Direction::Up, Direction::Down] {
+            let (low, high) = frequencies(members.iter().copied().filter(|s| s.direction == direction));
+            if low < high {
+                choices.push(rungs(rig, predicting, force.median(), direction, (low, high))?);
+            }
+        }
+    }
+    let model = predicting.model(&choices);
+    findings.extend(choices.iter().find_map(|r| r.finding.clone()).map(|f| f.name("model", model.name())));
+    let course = Course { rig, law: predicting.law(rig, model)?, model, pace: predicting.pace() };
+    let (mut pairs, mut found_peaks, mut scores, mut shown) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (mean, members) in grouped {
         let common = curve(&mean)?;
         for sweep in &members {
-            let pairs = course.pairs(sweep)?;
-            overlay.scores.push(score(&sweep.response.name, &pairs));
-            overlay.findings.extend(outliers(&sweep.response.name, &pairs));
-            overlay.pairs.extend(pairs);
+            let own = course.pairs(sweep)?;
+            scores.push(score(&sweep.response.name, &own));
+            findings.extend(outliers(&sweep.response.name, &own));
+            pairs.extend(own);
             let own = if sweep.forcing == mean { None } else { Some(curve(&sweep.forcing)?) };
-            let followed = course.followed(sweep, own.as_ref().unwrap_or(&common));
-            overlay.peaks.extend(peaks(sweep, &followed));
+            found_peaks.extend(peaks(sweep, &course.followed(sweep, own.as_ref().unwrap_or(&common))));
         }
         let sweeps = members.iter().map(|s| s.response.name.clone()).collect();
-        overlay.levels.push(Level { force: mean.median(), sweeps, curve: common });
+        shown.push(Level { force: mean.median(), sweeps, curve: common });
     }
-    overlay.findings.extend(of_motions(&overlay.pairs, predicting.pace));
-    Ok(overlay)
+    findings.extend(of_motions(&pairs, course.pace));
+    Ok(Overlay { force, levels: shown, pairs, peaks: found_peaks, scores, rungs: choices, findings })
+}
+
+/// Lowest and highest excitation frequency in Hz.
+fn frequencies<'a>(swept: impl IntoIterator<Item = &'a Swept<'a>>) -> (f64, f64) {
+    range(swept.into_iter().flat_map(|s| &s.response.points).map(|p| p.excitation))
 }
 
 /// Findings of the predicted motions.
@@ -141,30 +130,6 @@ fn of_motions(pairs: &[Pair], pace: Pace) -> Vec<Finding> {
     .into_iter()
     .filter(|f| f.get("n") > Some(0.0))
     .collect()
-}
-
-/// The choice of a model for each level of force and direction.
-fn choices(
-    rig: &Rig,
-    predicting: &Predicting,
-    swept: &[Swept<'_>],
-    medians: &[Option<f64>],
-) -> Result<Vec<Rungs>> {
-    let mut asked = Vec::new();
-    for level in levels(medians) {
-        let members: Vec<&Swept<'_>> = level.iter().filter_map(|i| swept.get(*i)).collect();
-        let forcings: Vec<&Forcing> = members.iter().map(|s| &s.forcing).collect();
-        let Some(force) = Forcing::mean(&forcings).map(|f| f.median()) else { continue };
-        for direction in [Direction::Up, Direction::Down] {
-            let points = members.iter().filter(|s| s.direction == direction).flat_map(|s| &s.response.points);
-            let (low, high) =
-                points.map(|p| p.excitation).fold((f64::INFINITY, 0.0f64), |(a, b), f| (a.min(f), b.max(f)));
-            if low < high {
-                asked.push(rungs(rig, predicting, force, direction, (low, high))?);
-            }
-        }
-    }
-    Ok(asked)
 }
 
 #[cfg(test)]

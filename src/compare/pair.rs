@@ -1,14 +1,16 @@
-//! Measured amplitudes and their predictions, point by point.
+//! Measured amplitudes and resonances beside their predictions, and how well they agree.
 
-use super::course::{Course, Swept};
-use super::prediction::{Kind, Motion, Prediction};
+use super::forcing::median;
+use super::predicting::{Course, Followed, Swept};
+use super::prediction::{Kind, Motion, all_motions};
 use super::simulated::{Simulated, simulated};
 use crate::error::Result;
 use crate::measure::Estimate;
+use crate::measure::peaks::{local_maxima, vertex};
+use crate::measure::resonance::{Resonance, ResonanceKind};
 use crate::measure::response::ResponsePoint;
-use crate::model::Observable;
 use crate::model::ladder::Model;
-use crate::record::Direction;
+use crate::record::{Direction, Finding};
 use serde::Serialize;
 
 /// One measured amplitude and its prediction.
@@ -49,17 +51,9 @@ impl Course<'_> {
     pub fn pairs(&self, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
         let Course { rig, law, model, pace } = *self;
         let Swept { response, mass, direction, ref forcing } = *sweep;
-        let mut points: Vec<&ResponsePoint> = response.points.iter().collect();
-        points.sort_by(|a, b| a.excitation.total_cmp(&b.excitation));
-        let driven = |p: &&ResponsePoint| (p.excitation, forcing.of(p));
-        let closed = Prediction::at(rig, points.iter().map(driven).collect(), Observable::Fundamental)?;
-        let mut motions = closed.motions;
-        if direction == Direction::Down {
-            points.reverse();
-            motions.reverse();
-        }
-        let passed: Vec<(f64, f64)> = points.iter().map(driven).collect();
-        let simulated = simulated(rig, law, &passed, pace);
+        let points = sweep.points();
+        let driven: Vec<(f64, f64)> = points.iter().map(|p| (p.excitation, forcing.of(p).0)).collect();
+        let (motions, simulated) = (all_motions(rig, &driven)?, simulated(rig, law, &driven, pace));
         let of = usize::from(mass) - 1;
         let pair = |((point, motions), simulated): ((&&ResponsePoint, &Vec<Motion>), &Result<Simulated>)| {
             let simulated = simulated.as_ref().ok();
@@ -71,7 +65,7 @@ impl Course<'_> {
                 mass,
                 direction,
                 frequency: point.excitation,
-                force: forcing.of(point),
+                force: forcing.of(point).0,
                 measured: point.amplitude.clone(),
                 upper_limit: point.upper_limit,
                 predicted,
@@ -99,4 +93,143 @@ pub(super) fn reached<'a>(simulated: &Simulated, motions: &'a [Motion]) -> Optio
         let size = |i: usize| if m.amplitude[i] > 0.0 { m.amplitude[i] } else { m.amplitude[1 - i] };
         (0..2).all(|i| (simulated.amplitude[i] - m.amplitude[i]).abs() <= SETTLED * size(i))
     })
+}
+
+/// A measured resonance and the predicted one nearest to it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PeakPair {
+    /// Sweep.
+    pub sweep: String,
+    /// 1 excited, 2 passive.
+    pub mass: u8,
+    /// Direction of the sweep.
+    pub direction: Direction,
+    /// What the measured one is.
+    pub kind: ResonanceKind,
+    /// Measured frequency in Hz, with its uncertainty.
+    pub measured_frequency: Estimate,
+    /// Predicted frequency in Hz.
+    pub predicted_frequency: Option<f64>,
+    /// Measured minus predicted frequency in Hz.
+    pub frequency_difference: Option<f64>,
+    /// Measured amplitude in m.
+    pub measured_amplitude: Estimate,
+    /// Predicted amplitude in m.
+    pub predicted_amplitude: Option<f64>,
+    /// Measured over predicted amplitude, less one.
+    pub amplitude_difference: Option<f64>,
+}
+
+/// A predicted peak belongs to a measured one within this ratio of frequencies: a stiffness is known to a fifth.
+const NEAR: f64 = 1.1;
+
+/// Each measured resonance of a sweep with the predicted one nearest to it.
+pub(super) fn peaks(sweep: &Swept<'_>, curve: &[Followed]) -> Vec<PeakPair> {
+    let Swept { response, mass, direction, .. } = *sweep;
+    // Where a branch ends, its last point is the peak: a missing value beside it counts as low.
+    let closed: Vec<f64> =
+        curve.iter().map(|p| if p.amplitude.is_nan() { 0.0 } else { p.amplitude }).collect();
+    // Free motion has no peak in reach of the gap: its end is where impacts begin.
+    let maxima = local_maxima(&closed, 1.2).into_iter().filter(|m| curve[m.at].impacting);
+    let predicted: Vec<(f64, f64)> = maxima.map(|m| top(curve, &closed, m.at)).collect();
+    let one = |r: &Resonance| {
+        let ratio = |p: &(f64, f64)| (p.0 / r.frequency).max(r.frequency / p.0);
+        let near = predicted.iter().copied().filter(|p| ratio(p) < NEAR);
+        let near = near.min_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        let method =
+            if r.at_jump { "highest point before a jump" } else { "local curve through up to five points" };
+        PeakPair {
+            sweep: response.name.clone(),
+            mass,
+            direction,
+            kind: r.kind,
+            measured_frequency: Estimate::new(r.frequency, r.frequency_std, "Hz", 3, method),
+            predicted_frequency: near.map(|p| p.0),
+            frequency_difference: near.map(|p| r.frequency - p.0),
+            measured_amplitude: Estimate::new(r.amplitude, r.amplitude_std, "m", 3, method),
+            predicted_amplitude: near.map(|p| p.1),
+            amplitude_difference: near.map(|p| r.amplitude / p.1 - 1.0),
+        }
+    };
+    response.resonances.iter().filter(|r| r.kind.is_maximum()).map(one).collect()
+}
+
+/// Top of a predicted curve at its grid point `i`: the vertex, or the point itself where the branch ends beside it.
+fn top(curve: &[Followed], closed: &[f64], i: usize) -> (f64, f64) {
+    let near = [i - 1, i, i + 1];
+    let heights = near.map(|k| closed[k]);
+    vertex(near.map(|k| curve[k].frequency), heights, [0.0; 3])
+        .filter(|_| heights[0].min(heights[2]) > 0.5 * heights[1])
+        .map_or((curve[i].frequency, closed[i]), |v| (v.frequency, v.height))
+}
+
+/// How well one sweep is predicted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Score {
+    /// Sweep.
+    pub sweep: String,
+    /// Points with a prediction.
+    pub n: usize,
+    /// Points without.
+    pub without: usize,
+    /// Predicted points with nothing to compare: both amplitudes are below the noise floor.
+    pub faint: usize,
+    /// Median of |measured − predicted| over the larger of both, at points that are not faint; `None` without such points.
+    pub median_relative: Option<f64>,
+    /// The largest of them.
+    pub max_relative: Option<f64>,
+    /// Excitation frequency of the largest in Hz.
+    pub max_at: Option<f64>,
+    /// Root mean square of measured − predicted, in m.
+    pub rms: Option<f64>,
+}
+
+impl Pair {
+    /// |measured − predicted| over the larger of both: twice or half as much as predicted is 50 %. `None` without a
+    /// prediction, and where both lie within the noise.
+    fn deviation(&self) -> Option<f64> {
+        let (predicted, residual) = (self.predicted?, self.residual?);
+        let larger = predicted.max(self.measured.value);
+        let faint = self.upper_limit.is_some_and(|limit| predicted <= limit);
+        (!faint && larger > 0.0).then_some(residual.abs() / larger)
+    }
+}
+
+pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
+    let squares: Vec<f64> = pairs.iter().filter_map(|p| p.residual).map(|r| r * r).collect();
+    let deviations = pairs.iter().filter_map(|p| Some((p.deviation()?, p.frequency)));
+    let largest = deviations.clone().max_by(|a, b| a.0.total_cmp(&b.0));
+    let relative: Vec<f64> = deviations.map(|d| d.0).collect();
+    let n = squares.len();
+    Score {
+        sweep: sweep.to_owned(),
+        n,
+        without: pairs.len() - n,
+        faint: n - relative.len(),
+        median_relative: median(relative),
+        max_relative: largest.map(|l| l.0),
+        max_at: largest.map(|l| l.1),
+        rms: (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt()),
+    }
+}
+
+/// A point is an outlier beyond this part of the larger amplitude: a sensor's calibration and its mounting stay below …
+const FAR: f64 = 0.05;
+/// … where it is also beyond so many standard uncertainties: chance takes one point of 1.7 million there.
+const SIGMAS: f64 = 5.0;
+
+/// Points far off the prediction, which a median hides.
+pub(super) fn outliers(sweep: &str, pairs: &[Pair]) -> Option<Finding> {
+    let certain =
+        |p: &&Pair| p.measured.std.is_none_or(|std| p.residual.is_some_and(|r| r.abs() > SIGMAS * std));
+    let far = pairs.iter().filter(certain).filter_map(|p| Some((p.deviation()?, p))).filter(|f| f.0 > FAR);
+    let (_, worst) = far.clone().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(
+        Finding::caution("points-off-prediction")
+            .about(sweep)
+            .count("n", far.count())
+            .number("frequency", worst.frequency)
+            .number("measured", worst.measured.value)
+            .number("predicted", worst.predicted?),
+    )
 }

@@ -70,41 +70,20 @@ impl Motion {
 pub struct Prediction {
     /// Frequencies in Hz, rising.
     pub frequency: Vec<f64>,
-    /// Force amplitude in N at each frequency.
-    pub force: Vec<f64>,
     /// Motions at each frequency: impacting ones with the larger impulse first, then the free one.
     pub motions: Vec<Vec<Motion>>,
 }
 
 impl Prediction {
-    /// Predicts at `points`: frequency in Hz, rising, and force amplitude in N.
-    ///
-    /// # Errors
-    /// As [`orbits`].
-    pub fn at(rig: &Rig, points: Vec<(f64, f64)>, observable: Observable) -> Result<Prediction> {
-        let motions = points
-            .par_iter()
-            .map(|(frequency, force)| motions(rig, *force, *frequency, observable))
-            .collect::<Result<_>>()?;
-        let (frequency, force) = points.into_iter().unzip();
-        Ok(Prediction { frequency, force, motions })
-    }
-
     /// Predicts on `n` evenly spaced frequencies (two or more).
     ///
     /// # Errors
     /// As [`orbits`].
-    pub fn over(
-        rig: &Rig,
-        forcing: &Forcing,
-        range: (f64, f64),
-        n: usize,
-        observable: Observable,
-    ) -> Result<Prediction> {
-        let n = n.max(2);
+    pub(super) fn over(rig: &Rig, forcing: &Forcing, range: (f64, f64), n: usize) -> Result<Prediction> {
         let step = (range.1 - range.0) / (n - 1) as f64;
-        let frequencies = (0..n).map(|i| range.0 + i as f64 * step);
-        Prediction::at(rig, frequencies.map(|f| (f, forcing.at(f))).collect(), observable)
+        let frequency: Vec<f64> = (0..n).map(|i| range.0 + i as f64 * step).collect();
+        let points: Vec<(f64, f64)> = frequency.iter().map(|f| (*f, forcing.at(*f))).collect();
+        Ok(Prediction { motions: all_motions(rig, &points)?, frequency })
     }
 
     /// The motion a slow sweep in `direction` would show at each frequency, in order of rising frequency.
@@ -113,12 +92,8 @@ impl Prediction {
     /// the other mass; impacts last until no orbit with impacts exists. `None` where impacts go on but no orbit with one
     /// impact a cycle can be seen: the motion there has another pattern (after a flip, say) and is not predicted here.
     pub fn followed(&self, direction: Direction) -> Vec<Option<Motion>> {
-        let n = self.frequency.len();
-        let mut followed = vec![None; n];
         let mut kind = Kind::Free;
-        for step in 0..n {
-            let i = if direction == Direction::Up { step } else { n - 1 - step };
-            let motions = &self.motions[i];
+        let follow = |motions: &Vec<Motion>| {
             let seen = |kind: Kind| motions.iter().find(|m| m.is_seen() && m.kind == kind).copied();
             let goes_on = match kind {
                 Kind::Free => seen(Kind::Free).is_some(),
@@ -127,35 +102,45 @@ impl Prediction {
             if !goes_on {
                 kind = if kind == Kind::Free { Kind::Impacting } else { Kind::Free };
             }
-            followed[i] = seen(kind);
-        }
-        followed
+            seen(kind)
+        };
+        let swept = in_order(direction, self.motions.iter().collect());
+        in_order(direction, swept.into_iter().map(follow).collect())
     }
 }
 
-pub(super) fn motions(rig: &Rig, force: f64, frequency: f64, observable: Observable) -> Result<Vec<Motion>> {
-    let found = orbits(rig, force, frequency)?;
-    let mut motions: Vec<Motion> = found
-        .orbits
-        .iter()
-        .filter(|o| o.validity.exists)
-        .map(|o| Motion {
-            kind: Kind::Impacting,
-            amplitude: observable.of_orbit(o),
-            verdict: match (o.validity.admissible, o.validity.stable) {
-                (false, _) => Verdict::Impossible,
-                (true, Some(true)) => Verdict::Seen,
-                (true, Some(false)) => Verdict::Unstable,
-                (true, None) => Verdict::Neutral,
-            },
-        })
-        .collect();
-    motions.push(Motion {
+/// What rises with frequency in the order of a sweep, and back.
+pub(super) fn in_order<T>(direction: Direction, mut rising: Vec<T>) -> Vec<T> {
+    if direction == Direction::Down {
+        rising.reverse();
+    }
+    rising
+}
+
+/// Motions at each of `points`: frequency in Hz and force amplitude in N.
+pub(super) fn all_motions(rig: &Rig, points: &[(f64, f64)]) -> Result<Vec<Vec<Motion>>> {
+    points.par_iter().map(|(frequency, force)| motions(rig, *force, *frequency)).collect()
+}
+
+/// Impacting motions with the larger impulse first, then the free one, by their fundamentals.
+pub(super) fn motions(rig: &Rig, force: f64, frequency: f64) -> Result<Vec<Motion>> {
+    let (found, observable) = (orbits(rig, force, frequency)?, Observable::Fundamental);
+    let impacting = found.orbits.iter().filter(|o| o.validity.exists).map(|o| Motion {
+        kind: Kind::Impacting,
+        amplitude: observable.of_orbit(o),
+        verdict: match (o.validity.admissible, o.validity.stable) {
+            (false, _) => Verdict::Impossible,
+            (true, Some(true)) => Verdict::Seen,
+            (true, Some(false)) => Verdict::Unstable,
+            (true, None) => Verdict::Neutral,
+        },
+    });
+    let free = Motion {
         kind: Kind::Free,
         amplitude: observable.of_no_impact(&found.no_impact),
         verdict: if found.no_impact.possible { Verdict::Seen } else { Verdict::Impossible },
-    });
-    Ok(motions)
+    };
+    Ok(impacting.chain([free]).collect())
 }
 
 #[cfg(test)]
@@ -166,8 +151,7 @@ mod tests {
     #[test]
     fn history_decides_where_two_motions_exist() {
         let rig = Rig { restitution: 0.95, ..Rig::thesis() };
-        let p = Prediction::over(&rig, &Forcing::Constant(0.1), (6.0, 13.0), 1401, Observable::Fundamental)
-            .unwrap();
+        let p = Prediction::over(&rig, &Forcing::Constant(0.1), (6.0, 13.0), 1401).unwrap();
         let (up, down) = (p.followed(Direction::Up), p.followed(Direction::Down));
         let largest = |f: &[Option<Motion>]| {
             let mut best = (0.0, 0.0);

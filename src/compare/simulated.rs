@@ -15,13 +15,6 @@ pub struct Pace {
     pub measure: u32,
 }
 
-impl Default for Pace {
-    /// 300 cycles, then 64 read: on the thesis' rig a disturbance falls below e⁻⁸ by the first.
-    fn default() -> Pace {
-        Pace { settle: 300, measure: 64 }
-    }
-}
-
 /// What the rig does at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Simulated {
@@ -39,32 +32,17 @@ pub struct Simulated {
 /// Each point has its own answer: an error where a parameter is impossible or the motion needs more events than can be followed, behind
 /// which the rig starts from rest again.
 pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
-    match law {
-        None => swept(
-            rig,
-            points,
-            |motion| read(motion, pace),
-            |sine, state, phase| Simulation::from_state(rig, &sine, state, phase),
-        ),
-        Some(law) => swept(
-            rig,
-            points,
-            |motion| read(motion, pace),
-            |sine, state, phase| Compliant::new(rig, &Excitation::Sine(sine), law, state, phase),
-        ),
-    }
+    let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
+    let Some(law) = law else { return swept(rig, points, |motion| read(motion, pace), rigid) };
+    let soft = |sine, state, phase| Compliant::new(rig, &Excitation::Sine(sine), law, state, phase);
+    swept(rig, points, |motion| read(motion, pace), soft)
 }
 
 /// As [`simulated`] with rigid contacts, but a point with more impacts than a plain pattern has is given up: a rig of wrong parameters could
 /// take minutes.
-pub(crate) fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
-    let plain = |motion: &mut Simulation| {
-        if is_busy(motion)? {
-            return Err(Error::refused(format!("the masses meet more than {BUSY} times a cycle")));
-        }
-        read(motion, pace)
-    };
-    swept(rig, points, plain, |sine, state, phase| Simulation::from_state(rig, &sine, state, phase))
+pub(super) fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
+    let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
+    swept(rig, points, |motion| plain(motion).and_then(|()| read(motion, pace)), rigid)
 }
 
 /// Cycles that are checked for many impacts, twice: at first, and when the transient may have died away.
@@ -72,19 +50,19 @@ const CHECKED: u32 = 8;
 /// Flights a cycle that no plain pattern has: more is chatter, or the rig of wrong parameters.
 const BUSY: u32 = 100;
 
-/// Whether a motion has more flights than a plain pattern.
-fn is_busy(motion: &mut Simulation) -> Result<bool> {
+/// Refuses a motion with more flights than a plain pattern.
+fn plain(motion: &mut Simulation) -> Result<()> {
     for _ in 0..2 {
         let until = motion.time() + f64::from(CHECKED) / motion.frequency();
         let mut flights = 0;
         while motion.fly(until)?.event != Event::Reached {
             flights += 1;
             if flights > BUSY * CHECKED {
-                return Ok(true);
+                return Err(Error::refused(format!("the masses meet more than {BUSY} times a cycle")));
             }
         }
     }
-    Ok(false)
+    Ok(())
 }
 
 fn swept<M: Motion>(
@@ -132,11 +110,13 @@ mod tests {
     use super::*;
     use crate::model::orbits;
 
+    const PACE: Pace = Pace { settle: 300, measure: 64 };
+
     #[test]
     fn a_sweep_up_reaches_the_motions_of_the_closed_form() {
         let rig = Rig::thesis();
         let points: Vec<(f64, f64)> = (0..8).map(|i| (10.5 + 0.25 * f64::from(i), 0.5)).collect();
-        let found = simulated(&rig, None, &points, Pace::default());
+        let found = simulated(&rig, None, &points, PACE);
         for (at, point) in found.iter().zip(&points) {
             let at = at.as_ref().unwrap();
             let all = orbits(&rig, point.1, point.0).unwrap();
@@ -160,7 +140,7 @@ mod tests {
         let rig = Rig::thesis();
         let points = [(11.0, 0.5), (11.2, 0.5)];
         let law = Law::kelvin_voigt(1e9, rig.restitution, rig.reduced_mass()).unwrap();
-        let [hard, stiff] = [None, Some(law)].map(|law| simulated(&rig, law, &points, Pace::default()));
+        let [hard, stiff] = [None, Some(law)].map(|law| simulated(&rig, law, &points, PACE));
         for (a, b) in hard.iter().flatten().zip(stiff.iter().flatten()) {
             // The contact lasts π√(M/k) = 2.3e-5 s, 2.5e-4 of the cycle; near the clapping resonance that counts some thirty times over
             // (0.74 % of the cycle moves the impact speed by 21 %).
@@ -171,7 +151,7 @@ mod tests {
     #[test]
     fn too_small_a_force_leaves_the_second_mass_at_rest() {
         let rig = Rig::thesis();
-        let found = simulated(&rig, None, &[(20.0, 0.1), (21.0, 0.2)], Pace::default());
+        let found = simulated(&rig, None, &[(20.0, 0.1), (21.0, 0.2)], PACE);
         assert_eq!(found.iter().flatten().count(), 2);
         assert!(found.iter().flatten().all(|f| f.regime == Regime::NoImpact && f.amplitude[1] == 0.0));
     }
@@ -179,7 +159,7 @@ mod tests {
     #[test]
     fn a_point_that_cannot_be_is_refused_alone() {
         let rig = Rig::thesis();
-        let found = simulated(&rig, None, &[(20.0, 0.1), (-1.0, 0.1), (21.0, 0.1)], Pace::default());
+        let found = simulated(&rig, None, &[(20.0, 0.1), (-1.0, 0.1), (21.0, 0.1)], PACE);
         assert_eq!(found.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, false, true]);
     }
 }

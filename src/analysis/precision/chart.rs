@@ -204,7 +204,8 @@ fn stairs(scene: &Scene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Panel, Shape};
+    use crate::figure::Shape;
+    use crate::report::Panel;
 
     fn measured(method: &str, setting: &str, error: Option<f64>, front: bool) -> Measured {
         Measured {

@@ -24,12 +24,15 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
     // A curved contact has no stiffness in N/m, and a damper that is stated leaves no restitution to be found.
     let straight = campaign.contact.filter(|c| c.exponent.is_none_or(|n| n == 1.0) && c.damping.is_none());
     let contact = straight.and_then(|c| c.stiffness);
-    let pace = Predicting::from(campaign).pace;
-    crate::compare::fit(rig, force, contact, pace, responses, &campaign.fit).map(Some)
+    crate::compare::fit(rig, force, contact, predicting(campaign).pace(), responses, &campaign.fit).map(Some)
 }
 
 fn overlaid(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Overlay> {
-    overlay(rig, campaign.excitation.and_then(|e| e.force), &campaign.into(), responses)
+    overlay(rig, campaign.excitation.and_then(|e| e.force), &predicting(campaign), responses)
+}
+
+fn predicting(campaign: &Campaign) -> Predicting {
+    Predicting { model: campaign.model, contact: campaign.contact }
 }
 
 /// The sweeps of a campaign over its rig, with the fit that it asks for.

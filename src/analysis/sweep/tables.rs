@@ -207,7 +207,7 @@ pub fn fit_rungs(fit: &Fit) -> Table {
         "Models by hold-out error",
         &fit.rungs,
         &[
-            ("model", "", &|r| r.model.name().into()),
+            ("model", "", &|r| r.model.into()),
             ("parameters", "", &|r| r.parameters.len().into()),
             ("error", "%", &|r| percent(r.held_out)),
             ("standard error", "%", &|r| percent(r.held_out_std)),

@@ -2,10 +2,9 @@
 
 use super::super::prediction::Kind;
 use super::data::{Data, Reading, Step};
-use super::motion::assigned;
 use super::problem::Problem;
-use super::setting::Setting;
-use super::settle::Settled;
+use super::settle::{Settled, assigned};
+use super::unknown::Setting;
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
@@ -34,14 +33,13 @@ pub struct Corrected {
 /// # Errors
 /// If too few points are left.
 pub fn corrected(answer: &Settled<'_>, stiffness: f64) -> Result<Corrected> {
+    let from = |setting: &Setting| corrected_from(answer, setting, stiffness);
     // A rigid answer may be a rig whose contacts last too long to be corrected: then from the rig as it was stated.
-    let found = corrected_from(answer, &answer.setting(), stiffness);
-    if found.as_ref().is_ok_and(|found| found.lost == 0) {
-        return found;
-    }
-    match (found, corrected_from(answer, &answer.least.problem.base, stiffness)) {
-        (Ok(a), Ok(b)) => Ok(if b.lost < a.lost { b } else { a }),
-        (found, other) => other.or(found),
+    let stated = || from(&answer.least.problem.base);
+    match from(&answer.setting()) {
+        Ok(found) if found.lost == 0 => Ok(found),
+        Ok(found) => Ok(stated().ok().filter(|other| other.lost < found.lost).unwrap_or(found)),
+        Err(refusal) => stated().map_err(|_| refusal),
     }
 }
 
@@ -49,11 +47,10 @@ fn corrected_from(answer: &Settled<'_>, from: &Setting, stiffness: f64) -> Resul
     let problem = &answer.least.problem;
     let mut now = without(problem, problem.data, from, stiffness)?;
     for _ in 0..ROUNDS {
-        let settled = Problem::new(&now.data, &problem.base, problem.unknowns.clone()).settle(&now.u)?;
-        let next = without(problem, &now.data, &settled.setting(), stiffness)?;
-        let still = change(&now.data, &next.data) <= STILL;
-        now = next;
-        if still {
+        let setting = problem.with(&now.data).settle(&now.u)?.setting();
+        let before = now.data;
+        now = without(problem, &before, &setting, stiffness)?;
+        if change(&before, &now.data) <= STILL {
             break;
         }
     }
@@ -75,13 +72,12 @@ fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f
             step.readings = [None, None];
             continue;
         };
-        for (reading, factor) in step.readings.iter_mut().zip(factors) {
-            if let Some(reading) = reading {
-                reading.amplitude /= factor;
-                reading.std = (reading.std / factor).hypot(left * reading.amplitude);
-                reading.upper_limit = reading.upper_limit.map(|l| l / factor);
-                reading.compliance = factor;
-            }
+        let readings = step.readings.iter_mut().zip(factors);
+        for (reading, factor) in readings.filter_map(|(reading, factor)| Some((reading.as_mut()?, factor))) {
+            reading.amplitude /= factor;
+            reading.std = (reading.std / factor).hypot(left * reading.amplitude);
+            reading.upper_limit = reading.upper_limit.map(|l| l / factor);
+            reading.compliance = factor;
         }
     }
     Ok(Corrected { data, lost, u: problem.coordinates(setting) })
@@ -89,14 +85,13 @@ fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f
 
 /// Largest change of an amplitude in standard deviations.
 fn change(before: &Data, after: &Data) -> f64 {
-    let steps = before.steps.iter().zip(&after.steps);
-    let pairs = steps.flat_map(|(a, b)| a.readings.iter().zip(&b.readings));
-    let one = |pair: (&Option<Reading>, &Option<Reading>)| match pair {
+    let readings = |data: &Data| -> Vec<_> { data.steps.iter().flat_map(|s| s.readings.clone()).collect() };
+    let one = |(a, b): (&Option<Reading>, &Option<Reading>)| match (a, b) {
         (Some(a), Some(b)) => (b.amplitude - a.amplitude).abs() / b.std,
         (None, None) => 0.0,
         _ => f64::INFINITY,
     };
-    pairs.map(one).fold(0.0, f64::max)
+    readings(before).iter().zip(&readings(after)).map(one).fold(0.0, f64::max)
 }
 
 /// What the compliance makes of the amplitudes of both masses, as factors, and the part (ωt)² of each that a correction of first order in the

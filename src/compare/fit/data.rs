@@ -1,10 +1,11 @@
 //! The measured points of a fit, both masses of one step together.
 
-use super::super::forcing::{Forcing, median};
+use super::super::forcing::median;
+use super::super::predicting::Swept;
 use super::super::prediction::Kind;
 use super::super::simulated::Pace;
-use super::setting::Setting;
-use crate::error::{Error, Result};
+use super::unknown::Setting;
+use crate::error::Result;
 use crate::measure::response::{Response, ResponsePoint};
 use crate::record::Direction;
 
@@ -21,6 +22,15 @@ pub struct Reading {
     pub upper_limit: Option<f64>,
     /// Factor by which the contact's compliance changed the amplitude; amplitude and uncertainty are those divided by it.
     pub compliance: f64,
+}
+
+impl Reading {
+    /// ln (measured/predicted), e^20 at most: a motion that shows nothing, or does not exist, is as far as can be.
+    pub fn log_ratio(&self, predicted: f64) -> f64 {
+        const FARTHEST: f64 = 20.0;
+        let ratio = (self.amplitude / predicted).ln();
+        if ratio.is_finite() { ratio.clamp(-FARTHEST, FARTHEST) } else { FARTHEST }
+    }
 }
 
 /// One step of a sweep: both masses where they were measured under the very same force.
@@ -41,9 +51,13 @@ pub struct Step {
 impl Step {
     /// Amplitudes above the noise floor, with the index of their mass.
     pub fn clear(&self) -> impl Iterator<Item = (usize, &Reading)> {
-        (0..2)
-            .filter_map(|mass| Some((mass, self.readings[mass].as_ref()?)))
-            .filter(|(_, reading)| reading.upper_limit.is_none())
+        let readings = (0..2).filter_map(|mass| Some((mass, self.readings[mass].as_ref()?)));
+        readings.filter(|(_, reading)| reading.upper_limit.is_none())
+    }
+
+    /// Upper limits of those below it, with the index of their mass.
+    pub fn faint(&self) -> impl Iterator<Item = (usize, f64)> {
+        (0..2).filter_map(|mass| Some((mass, self.readings[mass].as_ref()?.upper_limit?)))
     }
 }
 
@@ -77,33 +91,24 @@ impl Data {
     /// # Errors
     /// If there is no such response, or no force is known.
     pub fn new(force: Option<f64>, responses: &[Response], pace: Pace) -> Result<Data> {
-        let usable: Vec<(&Response, usize, Direction)> = responses
-            .iter()
-            .filter(|r| r.quantity == "displacement" && matches!(r.mass, Some(1 | 2)))
-            .filter_map(|r| Some((r, usize::from(r.mass? - 1), r.direction?)))
-            .collect();
-        if usable.is_empty() {
-            return Err(Error::refused("no response can be fitted")
-                .hint("state `mass = 1` or `2` for each sweep, with three or more points in one direction"));
-        }
         // The overlay of the same responses has the findings of their force.
-        let sweeps: Vec<&Response> = usable.iter().map(|u| u.0).collect();
-        let (forcings, _) = Forcing::of_all(force, &sweeps)?;
-        let mut medians: Vec<f64> = forcings.iter().map(Forcing::median).collect();
-        medians.sort_by(f64::total_cmp);
-        let known = relative_std(sweeps.iter().flat_map(|r| &r.points));
+        let (swept, _) = Swept::all(force, responses)?;
+        let points = || swept.iter().flat_map(|s| &s.response.points);
+        let clear = points().filter(|p| p.upper_limit.is_none() && p.amplitude.value > 0.0);
+        let relative = |p: &ResponsePoint| Some(p.amplitude.std.filter(|s| *s > 0.0)? / p.amplitude.value);
+        let known = median(clear.filter_map(relative));
         let mut data = Data {
             sweeps: Vec::new(),
             steps: Vec::new(),
             sequences: Vec::new(),
-            force: force.or(median(&medians)).unwrap_or(f64::NAN),
+            force: force.or(median(swept.iter().map(|s| s.forcing.median()))).unwrap_or(f64::NAN),
             calibration: 0.0,
-            without_std: sweeps.iter().flat_map(|r| &r.points).filter(|p| p.amplitude.std.is_none()).count(),
+            without_std: points().filter(|p| p.amplitude.std.is_none()).count(),
             guessed: known.is_none(),
             pace,
         };
-        for ((response, mass, direction), forcing) in usable.into_iter().zip(&forcings) {
-            data.add(response, mass, direction, forcing, known.unwrap_or(GUESS));
+        for sweep in &swept {
+            data.add(sweep, known.unwrap_or(GUESS));
         }
         Ok(data)
     }
@@ -137,47 +142,26 @@ impl Data {
         self.steps.iter().flat_map(Step::clear).count()
     }
 
-    /// Amplitudes below the noise floor.
-    pub fn faint(&self) -> usize {
-        self.steps.iter().flat_map(|s| s.readings.iter().flatten()).count() - self.clear()
-    }
-
     /// Adds a sweep: beside the other mass, where that passed the very same steps. `relative` is the standard uncertainty of amplitudes
     /// without one.
-    fn add(
-        &mut self,
-        response: &Response,
-        mass: usize,
-        direction: Direction,
-        forcing: &Forcing,
-        relative: f64,
-    ) {
-        let sweep = self.sweeps.len();
-        self.sweeps.push((response.name.clone(), direction));
-        let mut points: Vec<&ResponsePoint> = response.points.iter().collect();
-        points.sort_by(|a, b| a.excitation.total_cmp(&b.excitation));
-        if direction == Direction::Down {
-            points.reverse();
-        }
-        let step = |p: &&ResponsePoint| Step {
-            frequency: p.excitation,
-            frequency_std: p.excitation_std.unwrap_or(0.0),
-            force: forcing.of(p),
-            force_std: forcing.std_of(p),
-            readings: [None, None],
+    fn add(&mut self, swept: &Swept<'_>, relative: f64) {
+        let (sweep, mass, points) = (self.sweeps.len(), usize::from(swept.mass) - 1, swept.points());
+        self.sweeps.push((swept.response.name.clone(), swept.direction));
+        let step = |p: &&ResponsePoint| {
+            let (frequency, (force, force_std)) = (p.excitation, swept.forcing.of(p));
+            let frequency_std = p.excitation_std.unwrap_or(0.0);
+            Step { frequency, frequency_std, force, force_std, readings: [None, None] }
         };
         let new: Vec<Step> = points.iter().map(step).collect();
-        let beside = |sequence: &&Vec<usize>| {
-            sequence.len() == new.len()
-                && sequence.iter().zip(&new).all(|(i, n)| {
-                    let s = &self.steps[*i];
-                    s.readings[mass].is_none() && (s.frequency, s.force) == (n.frequency, n.force)
-                })
+        let same = |(i, n): (&usize, &Step)| {
+            let s = &self.steps[*i];
+            s.readings[mass].is_none() && (s.frequency, s.force) == (n.frequency, n.force)
         };
+        let beside = |s: &&Vec<usize>| s.len() == new.len() && s.iter().zip(&new).all(same);
         let places = if let Some(places) = self.sequences.iter().find(beside) {
             places.clone()
         } else {
-            let places: Vec<usize> = (self.steps.len()..self.steps.len() + new.len()).collect();
+            let places: Vec<usize> = (self.steps.len()..).take(new.len()).collect();
             self.steps.extend(new);
             self.sequences.push(places.clone());
             places
@@ -192,14 +176,4 @@ impl Data {
             }
         }
     }
-}
-
-/// Median relative standard uncertainty of the amplitudes above the noise floor that have one.
-fn relative_std<'a>(points: impl Iterator<Item = &'a ResponsePoint>) -> Option<f64> {
-    let mut known: Vec<f64> = points
-        .filter(|p| p.upper_limit.is_none() && p.amplitude.value > 0.0)
-        .filter_map(|p| Some(p.amplitude.std.filter(|s| *s > 0.0)? / p.amplitude.value))
-        .collect();
-    known.sort_by(f64::total_cmp);
-    median(&known)
 }

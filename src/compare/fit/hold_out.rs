@@ -1,11 +1,10 @@
 //! No more model than the points ask for: models of rising order, each judged by points that it was not fitted to.
 
 use super::super::prediction::Kind;
-use super::data::{Data, Reading};
-use super::motion::assigned;
+use super::data::Data;
 use super::problem::Problem;
-use super::setting::Setting;
-use super::settle::Settled;
+use super::settle::{Settled, assigned};
+use super::unknown::Setting;
 use crate::campaign::Parameter;
 use crate::measure::residuals::aicc;
 use crate::measure::response::Response;
@@ -19,31 +18,6 @@ const BESIDE: usize = 2;
 const SAME: f64 = 1e-3;
 /// No model is chosen where the best is off by half of what was held out.
 const NONSENSE: f64 = 0.5;
-
-/// A model of the ladder that a fit climbs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum FitModel {
-    /// No impacts.
-    #[serde(rename = "linear")]
-    Linear,
-    /// Rigid impacts.
-    #[serde(rename = "closed form")]
-    ClosedForm,
-    /// Impacts with the compliance of the contact taken out to first order.
-    #[serde(rename = "soft-corrected closed form")]
-    SoftCorrected,
-}
-
-impl FitModel {
-    /// Its name in results and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            FitModel::Linear => "linear",
-            FitModel::ClosedForm => "closed form",
-            FitModel::SoftCorrected => "soft-corrected closed form",
-        }
-    }
-}
 
 /// A stretch of steps that was held out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -59,8 +33,9 @@ pub struct Block {
 /// A model, and how well it predicts what it was not shown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rung {
-    /// Model.
-    pub model: FitModel,
+    /// Model: `linear`, without impacts; `closed form`, with rigid impacts; `soft-corrected closed form`, with the compliance of the contact
+    /// taken out to first order.
+    pub model: &'static str,
     /// Parameters that it was fitted with.
     pub parameters: Vec<Parameter>,
     /// Their values by this model.
@@ -87,34 +62,33 @@ pub struct Rung {
 /// (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
 pub fn rungs(rigid: &Settled<'_>, soft: Option<&Settled<'_>>, responses: &[Response]) -> Vec<Rung> {
     let full = &rigid.least.problem;
-    let blocks = blocks(full.data, responses);
     let mut linear = full.clone();
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {
         *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
     }
-    linear
-        .unknowns
-        .retain(|u| matches!(u.parameter, Parameter::Force | Parameter::C1 | Parameter::K1 | Parameter::M1));
-    let mut models = vec![(FitModel::Linear, linear, rigid), (FitModel::ClosedForm, full.clone(), rigid)];
-    models.extend(soft.map(|soft| (FitModel::SoftCorrected, soft.least.problem.clone(), soft)));
+    linear.unknowns.retain(|u| !u.parameter.needs_impacts());
+    let blocks = blocks(full.data, responses);
     let answer = &soft.unwrap_or(rigid).least.problem;
-    let judged = |(model, problem, own): &(FitModel, Problem<'_>, &Settled<'_>)| {
-        rung(*model, problem, &own.setting(), answer, &blocks)
-    };
-    let mut rungs: Vec<Rung> = models.iter().filter_map(judged).collect();
-    let best =
-        rungs.iter().filter_map(|r| Some((r.held_out?, r.held_out_std?))).min_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some((mean, std)) = best
-        && mean < NONSENSE
-        && let Some(chosen) = rungs.iter_mut().find(|r| r.held_out.is_some_and(|h| h <= mean + std))
-    {
+    let climbed = [
+        rung("linear", false, &linear, &rigid.setting(), answer, &blocks),
+        rung("closed form", true, full, &rigid.setting(), answer, &blocks),
+        soft.and_then(|soft| {
+            rung("soft-corrected closed form", true, answer, &soft.setting(), answer, &blocks)
+        }),
+    ];
+    let mut rungs: Vec<Rung> = climbed.into_iter().flatten().collect();
+    let means = rungs.iter().filter_map(|r| Some((r.held_out?, r.held_out_std?)));
+    let best = means.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|best| best.0 < NONSENSE);
+    let is_near = |r: &&mut Rung| best.zip(r.held_out).is_some_and(|((mean, std), own)| own <= mean + std);
+    if let Some(chosen) = rungs.iter_mut().find(is_near) {
         chosen.chosen = true;
     }
     rungs
 }
 
 fn rung(
-    model: FitModel,
+    model: &'static str,
+    impacts: bool,
     problem: &Problem<'_>,
     from: &Setting,
     answer: &Problem<'_>,
@@ -124,25 +98,21 @@ fn rung(
     let setting = own.setting(&u);
     // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be compared.
     let off = answer.off(|step, kind| {
-        let kind = if model == FitModel::Linear { Kind::Free } else { kind };
-        let mut shows = answer.data.shows(&setting, kind, step);
-        // A rigid model is compared with what was measured.
-        if !std::ptr::eq(problem.data, answer.data) {
-            for (shows, reading) in shows.iter_mut().zip(&step.readings) {
-                *shows /= reading.as_ref().map_or(1.0, |r| r.compliance);
-            }
+        let kind = if impacts { kind } else { Kind::Free };
+        let shows = answer.data.shows(&setting, kind, step);
+        if std::ptr::eq(problem.data, answer.data) {
+            return shows;
         }
-        shows
+        // A rigid model is compared with what was measured.
+        [0, 1].map(|mass: usize| shows[mass] / step.readings[mass].as_ref().map_or(1.0, |r| r.compliance))
     });
     let sum = off.iter().map(|r| r * r).sum();
     let (_, whiteness) = own.goodness(&own.at(&u));
     let judged = |held: &HeldOut| {
         let mut rest = problem.clone();
-        for i in &held.steps {
-            rest.kinds[*i] = None;
-        }
+        held.steps.iter().for_each(|i| rest.kinds[*i] = None);
         let (rest, u) = fitted(rest, from)?;
-        let error = error(problem.data, &rest.setting(&u), model, &held.steps)?;
+        let error = error(problem.data, &rest.setting(&u), impacts, &held.steps)?;
         Some(Block { feature: held.feature.clone(), frequency: held.frequency, error })
     };
     let blocks: Vec<Block> = blocks.par_iter().filter_map(judged).collect();
@@ -176,20 +146,16 @@ fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, 
 }
 
 /// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is none.
-fn error(data: &Data, setting: &Setting, model: FitModel, steps: &[usize]) -> Option<f64> {
-    let impacts = model != FitModel::Linear;
+fn error(data: &Data, setting: &Setting, impacts: bool, steps: &[usize]) -> Option<f64> {
     let motions = if impacts { Some(assigned(data, setting, data.pace).ok()?) } else { None };
     let one = |i: &usize| {
         let step = &data.steps[*i];
         let of = |kind| data.shows(setting, kind, step);
-        let predicted = match &motions {
-            None => of(Kind::Free),
-            Some(motions) => motions.history[*i].map(of).or(motions.simulated[*i]).unwrap_or([f64::NAN; 2]),
-        };
-        step.clear().map(move |(mass, reading): (usize, &Reading)| {
-            let r = (reading.amplitude / predicted[mass]).ln().abs();
-            if r.is_finite() { r.min(1.0) } else { 1.0 }
-        })
+        let predicted = motions.as_ref().map_or_else(
+            || of(Kind::Free),
+            |motions| motions.history[*i].map(of).or(motions.simulated[*i]).unwrap_or([f64::NAN; 2]),
+        );
+        step.clear().map(move |(mass, reading)| reading.log_ratio(predicted[mass]).abs().min(1.0))
     };
     let errors: Vec<f64> = steps.iter().flat_map(one).collect();
     (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
@@ -204,44 +170,45 @@ struct HeldOut {
 
 /// Features with their frequency and the steps of all sweeps around them; between them pieces of as many steps.
 fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
-    let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();
     let at = |i: &usize| data.steps[*i].frequency;
+    let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();
     used.sort_by(|a, b| at(a).total_cmp(&at(b)));
-    let mut blocks: Vec<HeldOut> = Vec::new();
-    let mut ranges: Vec<(String, RangeInclusive<f64>)> = Vec::new();
+    let (mut blocks, mut ranges) = (Vec::<HeldOut>::new(), Vec::<(String, RangeInclusive<f64>)>::new());
     for sequence in &data.sequences {
         let own: Vec<usize> = used.iter().copied().filter(|i| sequence.contains(i)).collect();
-        let measures = |r: &&Response| {
-            let readings = sequence.iter().flat_map(|i| data.steps[*i].readings.iter().flatten());
-            readings.map(|reading| &data.sweeps[reading.sweep].0).any(|name| *name == r.name)
-        };
-        for response in responses.iter().filter(measures) {
-            let named = response.resonances.iter().map(|r| (r.kind.name().to_owned(), r.frequency));
-            let jumps = response.jumps.iter().map(|j| ("jump".to_owned(), j.frequency));
-            for (feature, frequency) in named.chain(jumps) {
-                let away = |k: &usize| (at(&own[*k]) - frequency).abs();
-                let Some(k) = (0..own.len()).min_by(|a, b| away(a).total_cmp(&away(b))) else { continue };
-                if ranges.iter().any(|(name, range)| *name == feature && range.contains(&frequency)) {
-                    continue;
-                }
-                let (low, high) = (k.saturating_sub(BESIDE), (k + BESIDE).min(own.len() - 1));
-                let range = at(&own[low]) * (1.0 - SAME)..=at(&own[high]) * (1.0 + SAME);
-                let steps: Vec<usize> = used.iter().copied().filter(|i| range.contains(&at(i))).collect();
-                // Two features in the same steps are one block.
-                let shared = |b: &HeldOut| steps.iter().filter(|i| b.steps.contains(i)).count();
-                if blocks.iter().all(|b| 2 * shared(b) <= steps.len()) {
-                    blocks.push(HeldOut { feature: feature.clone(), frequency, steps });
-                }
-                ranges.push((feature, range));
+        let readings = || sequence.iter().flat_map(|i| data.steps[*i].readings.iter().flatten());
+        let is_measured = |r: &&Response| readings().any(|reading| data.sweeps[reading.sweep].0 == r.name);
+        for (feature, frequency) in responses.iter().filter(is_measured).flat_map(features) {
+            let away = |k: &usize| (at(&own[*k]) - frequency).abs();
+            let Some(k) = (0..own.len()).min_by(|a, b| away(a).total_cmp(&away(b))) else { continue };
+            if ranges.iter().any(|(name, range)| *name == feature && range.contains(&frequency)) {
+                continue;
             }
+            let (low, high) = (k.saturating_sub(BESIDE), (k + BESIDE).min(own.len() - 1));
+            let range = at(&own[low]) * (1.0 - SAME)..=at(&own[high]) * (1.0 + SAME);
+            let steps: Vec<usize> = used.iter().copied().filter(|i| range.contains(&at(i))).collect();
+            // Two features in the same steps are one block.
+            let shared = |b: &HeldOut| steps.iter().filter(|i| b.steps.contains(i)).count();
+            if blocks.iter().all(|b| 2 * shared(b) <= steps.len()) {
+                blocks.push(HeldOut { feature: feature.clone(), frequency, steps });
+            }
+            ranges.push((feature, range));
         }
     }
-    let open: Vec<usize> =
-        (0..used.len()).filter(|k| !ranges.iter().any(|r| r.1.contains(&at(&used[*k])))).collect();
+    let is_open = |i: &usize| !ranges.iter().any(|r| r.1.contains(&at(i)));
     let piece = (2 * BESIDE + 1) * data.sequences.len();
-    for steps in open.chunk_by(|a, b| b - a == 1).flat_map(|s| s.chunks_exact(piece)) {
-        let steps: Vec<usize> = steps.iter().map(|k| used[*k]).collect();
-        blocks.push(HeldOut { feature: "amplitude".to_owned(), frequency: at(&steps[piece / 2]), steps });
+    for open in used.chunk_by(|a, b| is_open(a) == is_open(b)).filter(|open| is_open(&open[0])) {
+        blocks.extend(open.chunks_exact(piece).map(|steps| HeldOut {
+            feature: "amplitude".to_owned(),
+            frequency: at(&steps[piece / 2]),
+            steps: steps.to_vec(),
+        }));
     }
     blocks
+}
+
+/// Resonances, antiresonances and jumps of a response, with their frequencies in Hz.
+fn features(response: &Response) -> impl Iterator<Item = (String, f64)> {
+    let named = response.resonances.iter().map(|r| (r.kind.name().to_owned(), r.frequency));
+    named.chain(response.jumps.iter().map(|j| ("jump".to_owned(), j.frequency)))
 }

@@ -1,13 +1,13 @@
 //! Weighted residuals of the steps whose motion is known.
 
+use super::super::forcing::range;
 use super::super::prediction::Kind;
 use super::data::{Data, Reading, Step};
-use super::setting::Setting;
-use super::shared_errors::SharedErrors;
-use super::unknown::Unknown;
+use super::unknown::{Setting, Unknown};
 use crate::campaign::Parameter;
 use crate::error::{Error, Result};
 use crate::math::{Minimum, minimise};
+use nalgebra::{DMatrix, SVD};
 
 /// A sum of squares to be minimised: data with weights, and priors.
 ///
@@ -45,7 +45,12 @@ impl<'a> Problem<'a> {
 
     /// The same with these motions; weights are still to be taken.
     pub fn of(&self, kinds: Vec<Option<Kind>>) -> Problem<'a> {
-        Problem { kinds, ..Problem::new(self.data, &self.base, self.unknowns.clone()) }
+        Problem { kinds, ..self.with(self.data) }
+    }
+
+    /// The same of other points, whose motions are not known yet.
+    pub fn with<'b>(&self, data: &'b Data) -> Problem<'b> {
+        Problem::new(data, &self.base, self.unknowns.clone())
     }
 }
 
@@ -63,25 +68,24 @@ impl Problem<'_> {
         self.unknowns.iter().map(|k| k.coordinate.of(setting.get(k.parameter))).collect()
     }
 
-    /// Turns coordinates below 0 of unknowns without an upper bound into those above with the same value; says which were turned.
-    pub fn fold(&self, u: &mut [f64]) -> Vec<bool> {
-        let one = |(unknown, u): (&Unknown, &mut f64)| {
-            let below = unknown.coordinate.high.is_infinite() && *u < 0.0;
-            if below {
+    /// The same minimum with coordinates of unknowns without an upper bound not below 0, where they have the same values.
+    pub fn folded(&self, mut minimum: Minimum) -> Minimum {
+        for (i, (unknown, u)) in self.unknowns.iter().zip(&mut minimum.parameters).enumerate() {
+            if unknown.coordinate.high.is_infinite() && *u < 0.0 {
                 *u = -*u;
+                minimum.jacobian.column_mut(i).neg_mut();
             }
-            below
-        };
-        self.unknowns.iter().zip(u).map(one).collect()
+        }
+        minimum
     }
 
-    /// Whether `n` amplitudes and the priors can determine the unknowns.
+    /// Whether the amplitudes that take part and the priors can determine the unknowns.
     ///
     /// # Errors
     /// If not.
-    pub fn enough(&self, n: usize) -> Result<()> {
-        let all = self.unknowns.len();
-        if n + self.rows().1 >= all && n > 0 {
+    pub fn enough(&self) -> Result<()> {
+        let ((n, priors), all) = (self.rows(), self.unknowns.len());
+        if n + priors >= all && n > 0 {
             return Ok(());
         }
         let why = format!("{n} amplitudes with one impact a cycle or none do not determine {all} parameters");
@@ -90,10 +94,10 @@ impl Problem<'_> {
         ))
     }
 
-    /// Amplitudes that take part: index of the step and of the mass.
-    pub fn used(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    /// Amplitudes that take part, with the indices of step and mass.
+    pub fn used(&self) -> impl Iterator<Item = (usize, usize, &Reading)> {
         let steps = self.data.steps.iter().zip(&self.kinds).enumerate();
-        steps.flat_map(|(i, (step, kind))| shown(step, *kind).map(move |(mass, _)| (i, mass)))
+        steps.flat_map(|(i, (step, kind))| shown(step, *kind).map(move |(mass, reading)| (i, mass, reading)))
     }
 
     /// Number of residuals: data, and priors behind them.
@@ -113,21 +117,18 @@ impl Problem<'_> {
         let errors = |(step, kind): (&Step, &Option<Kind>)| {
             let Some(kind) = *kind else { return SharedErrors::default() };
             let force = self.data.force_at(&setting, step);
-            let column = |std: f64, shows: &dyn Fn(f64) -> [f64; 2]| {
+            let column = |std: f64, slopes: [f64; 2]| {
                 let mut column = vec![0.0; 2];
-                if std > 0.0 {
-                    let slopes = slopes(shows);
-                    for (mass, reading) in shown(step, Some(kind)) {
-                        column[mass] = slopes[mass] * std / reading.std;
-                    }
+                for (mass, reading) in shown(step, Some(kind)) {
+                    column[mass] = slopes[mass] * std / reading.std;
                 }
                 column
             };
+            let by_frequency = slopes(|by| setting.shows(kind, force, step.frequency * by));
+            let by_force = slopes(|by| setting.shows(kind, force * by, step.frequency));
             SharedErrors::new(&[
-                column(step.frequency_std / step.frequency, &|by| {
-                    setting.shows(kind, force, step.frequency * by)
-                }),
-                column(step.force_std / step.force, &|by| setting.shows(kind, force * by, step.frequency)),
+                column(step.frequency_std / step.frequency, by_frequency),
+                column(step.force_std / step.force, by_force),
             ])
         };
         self.step_errors = self.data.steps.iter().zip(&self.kinds).map(errors).collect();
@@ -137,26 +138,20 @@ impl Problem<'_> {
     /// Change of each residual by one standard uncertainty of the calibrations: of each mass' factor, of its slope, 1 at the ends of the
     /// frequencies, and of the force where it is not looked for. That moves gap and amplitudes alike, and no amplitude tells it.
     fn calibration_columns(&self, setting: &Setting) -> Vec<Vec<f64>> {
-        let std = self.data.calibration;
+        let (std, mut columns) = (self.data.calibration, Vec::new());
         if std == 0.0 {
-            return Vec::new();
+            return columns;
         }
-        let frequencies = self.data.steps.iter().map(|s| s.frequency);
-        let (low, high) =
-            frequencies.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), f| (l.min(f), h.max(f)));
+        let (low, high) = range(self.data.steps.iter().map(|s| s.frequency));
         let along = |f: f64| if high > low { (2.0 * f - low - high) / (high - low) } else { 0.0 };
-        let column = |mass: usize, sloped: bool| {
-            self.whitened(|step, kind| {
+        for (mass, sloped) in [(0, false), (1, false), (0, true), (1, true)] {
+            columns.push(self.whitened(|step, kind| {
                 let mut error = [0.0; 2];
-                error[mass] = self.data.shows(setting, kind, step)[mass]
-                    * std
-                    * if sloped { along(step.frequency) } else { 1.0 };
+                let part = std * if sloped { along(step.frequency) } else { 1.0 };
+                error[mass] = self.data.shows(setting, kind, step)[mass] * part;
                 error
-            })
-        };
-        let mut columns = [(0, false), (1, false), (0, true), (1, true)]
-            .map(|(mass, sloped)| column(mass, sloped))
-            .to_vec();
+            }));
+        }
         if self.unknowns.iter().all(|u| u.parameter != Parameter::Force) {
             columns.push(self.whitened(|step, kind| {
                 let force = self.data.force_at(setting, step);
@@ -188,9 +183,7 @@ impl Problem<'_> {
             let shows = shows(step, kind);
             [0, 1].map(|mass: usize| step.readings[mass].as_ref().map_or(0.0, |r| r.amplitude) - shows[mass])
         });
-        for r in &mut all {
-            *r /= widened;
-        }
+        all.iter_mut().for_each(|r| *r /= widened);
         self.calibrations.whiten(&mut all, widened);
         all
     }
@@ -212,13 +205,7 @@ impl Problem<'_> {
     pub fn solve(&self, start: &[f64]) -> Result<Minimum> {
         let (data, priors) = self.rows();
         let residuals = |u: &[f64], r: &mut [f64]| r.copy_from_slice(&self.at(u));
-        let mut minimum = minimise(residuals, data + priors, start, &vec![0.1; start.len()], None)?;
-        for (i, turned) in self.fold(&mut minimum.parameters).into_iter().enumerate() {
-            if turned {
-                minimum.jacobian.column_mut(i).neg_mut();
-            }
-        }
-        Ok(minimum)
+        Ok(self.folded(minimise(residuals, data + priors, start, &vec![0.1; start.len()], None)?))
     }
 }
 
@@ -238,4 +225,106 @@ fn slopes(shows: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     const H: f64 = 1e-6;
     let [above, below] = [1.0 + H, 1.0 - H].map(shows);
     [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * H)).map(|s| if s.is_finite() { s } else { 0.0 })
+}
+
+/// Errors that move several residuals at once: frequency and force of a step, the calibrations of all points of a mass.
+///
+/// With W the change of the residuals, in their standard deviations, by one standard uncertainty of each error, their covariance is
+/// `I + WWᵀ`. With `W = VSQᵀ` they are multiplied by its inverse square root `I − V (I − (I + S²)^(−1/2)) Vᵀ`: generalised least squares
+/// (A. C. Aitken 1935), as if each error were an unknown with a prior, found with the rest.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SharedErrors {
+    /// Columns of V, each of length 1, and S.
+    directions: Vec<(Vec<f64>, f64)>,
+}
+
+impl SharedErrors {
+    /// From the columns of W; none where all are 0.
+    pub fn new(columns: &[Vec<f64>]) -> SharedErrors {
+        let rows = columns.first().map_or(0, Vec::len);
+        let w = DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][i]);
+        let usable = rows > 0 && w.iter().all(|v| v.is_finite()) && w.amax() > 0.0;
+        // With an iteration limit, since the algorithm has no bound of its own.
+        let Some(svd) = usable.then(|| SVD::try_new(w, true, false, f64::EPSILON, 10_000)).flatten() else {
+            return SharedErrors::default();
+        };
+        let v = svd.u.iter().flat_map(|u| u.column_iter().map(|c| c.iter().copied().collect::<Vec<f64>>()));
+        SharedErrors { directions: v.zip(svd.singular_values.iter().copied()).collect() }
+    }
+
+    /// Whitens residuals in units of standard deviations that are `widened` times as large as stated.
+    pub(crate) fn whiten(&self, residuals: &mut [f64], widened: f64) {
+        for (v, s) in &self.directions {
+            // V's columns are orthogonal: each takes off its own part.
+            let along: f64 = v.iter().zip(residuals.iter()).map(|(v, r)| v * r).sum();
+            let off = along * (1.0 - 1.0 / (s / widened).hypot(1.0));
+            residuals.iter_mut().zip(v).for_each(|(r, v)| *r -= off * v);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the definition: rᵀ(I + WWᵀ)⁻¹r by a plain inverse, for columns that are neither at right angles nor small.
+    #[test]
+    fn squares_sum_to_the_definition() {
+        let columns: [Vec<f64>; 3] =
+            [vec![1.0, 2.0, -0.5, 3.0, 0.1], vec![0.5, 2.0, 0.0, 2.5, -1.0], vec![0.0, 0.0, 30.0, 1.0, 0.0]];
+        let r = [0.3, -1.0, 2.0, 0.7, -0.2];
+        for widened in [1.0, 2.5] {
+            let w = DMatrix::from_fn(5, 3, |i, j| columns[j][i] / widened);
+            let covariance = DMatrix::identity(5, 5) + &w * w.transpose();
+            let column = nalgebra::DVector::from_row_slice(&r);
+            let expected = column.dot(&(covariance.try_inverse().unwrap() * &column));
+            let mut white = r;
+            SharedErrors::new(&columns).whiten(&mut white, widened);
+            let sum: f64 = white.iter().map(|r| r * r).sum();
+            // The largest eigenvalue of the covariance, 900, times rounding.
+            assert!((sum / expected - 1.0).abs() < 1e-12, "{sum} {expected}");
+        }
+    }
+
+    #[test]
+    fn without_errors_nothing_changes() {
+        for columns in [&[][..], &[vec![0.0; 4]], &[vec![f64::NAN; 4]]] {
+            let mut r = [1.0, 2.0, 3.0, 4.0];
+            SharedErrors::new(columns).whiten(&mut r, 1.0);
+            assert_eq!(r, [1.0, 2.0, 3.0, 4.0]);
+        }
+    }
+
+    /// Against the definition for two residuals, C^(−1/2) C C^(−1/2) = I, for errors small and large, along each other and not.
+    #[test]
+    fn the_covariance_of_white_residuals_is_one() {
+        for errors in [
+            [[0.0, 0.0], [0.0, 0.0]],
+            [[3.0, 0.0], [0.1, 0.0]],
+            [[0.3, -0.2], [1.0, 2.0]],
+            [[1e3, 2e3], [5e2, 1e3]],
+            [[1e4, 1.0], [-1.0, 1e4]],
+        ] {
+            let shared = SharedErrors::new(&errors.map(|w| w.to_vec()));
+            let c = |i: usize, j: usize| {
+                f64::from(u8::from(i == j)) + errors.iter().map(|w| w[i] * w[j]).sum::<f64>()
+            };
+            let columns = [[1.0, 0.0], [0.0, 1.0]].map(|mut column| {
+                shared.whiten(&mut column, 1.0);
+                column
+            });
+            for (i, a) in columns.iter().enumerate() {
+                for (j, b) in columns.iter().enumerate() {
+                    let pairs = (0..2).flat_map(|k| (0..2).map(move |l| (k, l)));
+                    let sum: f64 = pairs.map(|(k, l)| a[k] * c(k, l) * b[l]).sum();
+                    // Sums of C that cancel down to 1: three roundings in each whitened entry, two in a product, three in the sum.
+                    let tolerance = 11.0 * f64::EPSILON * (c(0, 0) + c(1, 1));
+                    assert!(
+                        (sum - f64::from(u8::from(i == j))).abs() < tolerance,
+                        "{errors:?}: {i} {j} {sum}"
+                    );
+                }
+            }
+        }
+    }
 }

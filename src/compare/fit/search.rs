@@ -7,10 +7,9 @@
 //! (1987), 7).
 
 use super::super::prediction::Kind;
-use super::data::{Data, Reading, Step};
+use super::data::{Data, Step};
 use super::problem::Problem;
-use super::setting::Setting;
-use super::unknown::Unknown;
+use super::unknown::{Setting, Unknown};
 use crate::campaign::Parameter;
 use crate::math::minimise;
 use rayon::prelude::*;
@@ -50,27 +49,24 @@ pub struct End {
 impl Problem<'_> {
     /// Follows `starts` starting points, the first from the base itself; gives where they ended, each place once, the cheapest first.
     pub fn search(&self, starts: usize) -> Vec<End> {
-        let place = |i| {
-            let u = self.spread(i);
-            (self.cost(&u), u)
+        let ranked = |places: Vec<Vec<f64>>| {
+            let mut costs: Vec<_> = places.into_par_iter().map(|u| (self.cost(&u), u)).collect();
+            costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            costs
         };
-        let mut screened: Vec<(f64, Vec<f64>)> =
-            (1..=SCREENED * (starts - 1)).into_par_iter().map(place).collect();
-        screened.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let screened = ranked((1..=SCREENED * (starts - 1)).map(|i| self.spread(i)).collect());
         let mut all = vec![self.coordinates(&self.base)];
         all.extend(screened.into_iter().take(starts - 1).map(|s| s.1));
-        let one = |u: &Vec<f64>| {
-            let u = self.follow(u);
-            (self.cost(&u), End { u, starts: 1 })
-        };
-        let mut ends: Vec<(f64, End)> = all.par_iter().map(one).collect();
-        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ends.dedup_by(|b, a| {
+        let mut ends: Vec<(f64, End)> = Vec::new();
+        for (cost, u) in ranked(all.par_iter().map(|u| self.follow(u)).collect()) {
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_PLACE * a.abs().max(b.abs());
-            let same = (a.0 - b.0).abs() <= SAME_COST && a.1.u.iter().zip(&b.1.u).all(near);
-            a.1.starts += if same { b.1.starts } else { 0 };
-            same
-        });
+            match ends.last_mut() {
+                Some((least, end)) if cost - *least <= SAME_COST && end.u.iter().zip(&u).all(near) => {
+                    end.starts += 1
+                }
+                _ => ends.push((cost, End { u, starts: 1 })),
+            }
+        }
         ends.into_iter().map(|end| end.1).collect()
     }
 
@@ -127,20 +123,16 @@ impl Problem<'_> {
         let residuals = |u: &[f64], r: &mut [f64]| {
             let setting = self.setting(u);
             let points = self.data.steps.iter().zip(&self.kinds).flat_map(|(step, kind)| {
-                let shows = kind.map(|kind| self.data.shows(&setting, kind, step));
-                step.clear().map(move |(mass, reading)| {
-                    let z =
-                        shows.map_or(0.0, |shows| away(reading, shows[mass], part, self.data.calibration));
-                    (z * z).ln_1p().sqrt().copysign(z)
-                })
+                let shows = kind.map_or([f64::NAN; 2], |kind| self.data.shows(&setting, kind, step));
+                let counts = f64::from(u8::from(kind.is_some()));
+                let z = distances(self.data, step, shows, part);
+                z.map(move |z| counts * (z * z).ln_1p().sqrt().copysign(z))
             });
-            let priors = self.unknowns.iter().map(|unknown| prior(unknown, &setting));
-            r.iter_mut().zip(points.chain(priors)).for_each(|(r, value)| *r = value);
+            r.iter_mut().zip(points.chain(self.priors(&setting))).for_each(|(r, value)| *r = value);
         };
         let n = self.data.clear() + self.unknowns.len();
-        let Ok(mut minimum) = minimise(residuals, n, &u, &vec![0.1; u.len()], Some(GAIN)) else { return u };
-        self.fold(&mut minimum.parameters);
-        minimum.parameters
+        let found = minimise(residuals, n, &u, &vec![0.1; u.len()], Some(GAIN));
+        found.map_or(u, |minimum| self.folded(minimum).parameters)
     }
 
     /// Σ ln (1 + z²) of all points at the finer of the coarse κ, each on its nearest motion, and of the priors.
@@ -150,60 +142,40 @@ impl Problem<'_> {
         self.prior_cost(&setting) + self.data.steps.iter().map(one).sum::<f64>()
     }
 
+    /// Distances from the priors.
+    fn priors(&self, setting: &Setting) -> impl Iterator<Item = f64> {
+        let known = self.unknowns.iter().map(|k| (setting.get(k.parameter), k.prior));
+        known.map(|(value, prior)| prior.map_or(0.0, |[known, std]| (value - known) / (WIDE * std)))
+    }
+
     /// What the priors add to a cost.
     pub fn prior_cost(&self, setting: &Setting) -> f64 {
-        self.unknowns.iter().map(|unknown| prior(unknown, setting).powi(2)).sum()
+        self.priors(setting).map(|z| z * z).sum()
     }
 
     /// The motion nearest to a step, and what its points cost.
     fn nearest(&self, setting: &Setting, step: &Step, part: f64) -> (Kind, f64) {
         let [impacting, free] =
             [Kind::Impacting, Kind::Free].map(|kind| self.data.shows(setting, kind, step));
-        let costs = |shows: [f64; 2]| -> f64 {
-            let z =
-                |(mass, reading): (usize, &Reading)| away(reading, shows[mass], part, self.data.calibration);
-            step.clear().map(|point| z(point).powi(2).ln_1p()).sum()
-        };
         // A mass in the noise speaks against impacts; without weight in the sum, since it is the same for all parameters.
-        let silent = (0..2).any(|mass| {
-            let limit = step.readings[mass].as_ref().and_then(|r| r.upper_limit);
-            limit.is_some_and(|limit| impacting[mass] > 2.0 * limit)
-        });
+        let silent = step.faint().any(|(mass, limit)| impacting[mass] > 2.0 * limit);
         // No sharp border while the parameters are wrong.
         let clears = free[0] < REACH * setting.rig.gap;
-        let (impacting, free) = (costs(impacting), costs(free));
+        let [impacting, free] = [impacting, free]
+            .map(|shows| distances(self.data, step, shows, part).map(|z| z.powi(2).ln_1p()).sum::<f64>());
         if silent || clears && free < impacting { (Kind::Free, free) } else { (Kind::Impacting, impacting) }
     }
 }
 
 /// The digits of `i` behind the point, in reverse.
-fn radical_inverse(mut i: usize, base: usize) -> f64 {
-    let (mut digit, mut sum) = (1.0, 0.0);
-    while i > 0 {
-        digit /= base as f64;
-        sum += digit * (i % base) as f64;
-        i /= base;
-    }
-    sum
+fn radical_inverse(i: usize, base: usize) -> f64 {
+    if i == 0 { 0.0 } else { ((i % base) as f64 + radical_inverse(i / base, base)) / base as f64 }
 }
 
-/// Σ min (z², 1) of a step's points over all the finer κ, where these amplitudes are predicted.
-pub fn unexplained(data: &Data, step: &Step, shows: [f64; 2]) -> f64 {
-    let z = |(mass, reading): (usize, &Reading), part: f64| {
-        away(reading, shows[mass], part, data.calibration).powi(2).min(1.0)
-    };
-    FINE.iter().flat_map(|part| step.clear().map(|point| z(point, *part))).sum()
-}
-
-fn prior(unknown: &Unknown, setting: &Setting) -> f64 {
-    unknown.prior.map_or(0.0, |[value, std]| (setting.get(unknown.parameter) - value) / (WIDE * std))
-}
-
-/// z of a point; a motion that shows nothing, or does not exist, is as far as can be.
-fn away(reading: &Reading, shows: f64, part: f64, calibration: f64) -> f64 {
-    /// e^20 is beyond any amplitude.
-    const FARTHEST: f64 = 20.0;
-    let r = (reading.amplitude / shows).ln();
-    let r = if r.is_finite() { r.clamp(-FARTHEST, FARTHEST) } else { FARTHEST };
-    r / part.hypot(WIDE * (reading.std / reading.amplitude).hypot(calibration))
+/// z of a step's points, where these amplitudes are predicted.
+pub fn distances(data: &Data, step: &Step, shows: [f64; 2], part: f64) -> impl Iterator<Item = f64> {
+    step.clear().map(move |(mass, reading)| {
+        let own = WIDE * (reading.std / reading.amplitude).hypot(data.calibration);
+        reading.log_ratio(shows[mass]) / part.hypot(own)
+    })
 }

@@ -1,6 +1,6 @@
 use super::super::prediction::Kind;
 use super::data::{Reading, Step};
-use super::motion::assigned;
+use super::settle::assigned;
 use super::uncertainty::NORMAL;
 use super::*;
 use crate::campaign::Parameter;
@@ -77,7 +77,7 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
         data.sequences.push((from..data.steps.len()).collect());
     }
     let kinds = assigned(&data, setting, pace).unwrap().kinds;
-    let kinds = motion::without_outliers(&data, setting, kinds);
+    let kinds = settle::without_outliers(&data, setting, kinds);
     (data, kinds)
 }
 
@@ -398,7 +398,7 @@ fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
     // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
     assert!(c1.rests_on_prior && (c1.estimate.std.unwrap() / 1e-7 - 1.0).abs() < 1e-3, "{c1:?}");
     // The profile of one parameter of a straight problem is a parabola: its interval is ±1.96 standard deviations.
-    let profile = profile::profile(&answer.settled.least, &answer.uncertainty, 0).unwrap();
+    let profile = uncertainty::profile(&answer.settled.least, &answer.uncertainty, 0).unwrap();
     let [low, high] = profile.interval.map(Option::unwrap);
     let width = 2.0 * NORMAL * gap.estimate.std.unwrap();
     assert!(((high - low) / width - 1.0).abs() < 0.02, "{profile:?} {gap:?}");
@@ -414,15 +414,14 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
     for (step, _) in still.steps.iter_mut().zip(&free).filter(|(_, kind)| kind.is_none()) {
         step.readings = [None, None];
     }
-    for (data, names, kinds, expected) in [
-        (&data, &ALL[1..], kinds, FitModel::ClosedForm),
-        (&still, &["force", "k1"][..], free, FitModel::Linear),
-    ] {
+    for (data, names, kinds, expected) in
+        [(&data, &ALL[1..], kinds, "closed form"), (&still, &["force", "k1"][..], free, "linear")]
+    {
         let unknowns = unknowns(names, &setting);
         let settled = least_from(data, &setting, unknowns, &kinds);
         // Without named features all steps are held out in turn, ten at a time.
         let rungs = rungs(&settled, None, &[]);
-        let chosen: Vec<FitModel> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
+        let chosen: Vec<&str> = rungs.iter().filter(|r| r.chosen).map(|r| r.model).collect();
         assert_eq!(chosen, [expected], "{rungs:?}");
         // The noise is 0.3 µm of 0.15 mm or more, and the parameters are better known.
         let right = rungs.iter().find(|r| r.chosen).unwrap();

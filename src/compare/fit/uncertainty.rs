@@ -1,12 +1,12 @@
-//! How well the points determine each parameter.
+//! How well the points determine each parameter: by the slopes at the least sum of squares, and by its profile.
 
 use super::super::prediction::Kind;
 use super::problem::Problem;
 use super::settle::Least;
-use super::unknown::Unknown;
 use crate::campaign::Parameter;
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector, SVD};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Normal deviate that is exceeded on both sides together in 5 % of cases (Abramowitz & Stegun, table 26.1).
@@ -71,38 +71,35 @@ impl Uncertainty {
     /// If the singular values cannot be found.
     pub fn new(least: &Least<'_>) -> Result<Uncertainty> {
         let (problem, u) = (&least.problem, &least.minimum.parameters);
-        let setting = problem.setting(u);
-        let n = u.len();
+        let (setting, n) = (problem.setting(u), u.len());
         let mut jacobian = least.minimum.jacobian.clone();
-        let sides: Vec<Option<f64>> = (0..n).map(|i| side(problem, u, i, &mut jacobian)).collect();
+        let sides: Vec<Option<(f64, f64)>> = (0..n).map(|i| side(problem, u, i, &mut jacobian)).collect();
         // d ln θ/du.
-        let rate = |(unknown, u): (&Unknown, &f64)| {
-            let rate = unknown.coordinate.slope(*u) / setting.get(unknown.parameter).abs();
+        let rates = DVector::from_fn(n, |i, _| {
+            let unknown = &problem.unknowns[i];
+            let rate = unknown.coordinate.slope(u[i]) / setting.get(unknown.parameter).abs();
             if rate.is_finite() && rate > 0.0 { rate } else { f64::MIN_POSITIVE.sqrt() }
-        };
-        let rates: Vec<f64> = problem.unknowns.iter().zip(u).map(rate).collect();
-        let scaled = DMatrix::from_fn(jacobian.nrows().max(n), n, |row, i| {
-            if row < jacobian.nrows() { jacobian[(row, i)] / rates[i] } else { 0.0 }
         });
+        let mut scaled = jacobian.clone().resize_vertically(jacobian.nrows().max(n), 0.0);
+        for (mut column, rate) in scaled.column_iter_mut().zip(&rates) {
+            column /= *rate;
+        }
         let unfound = || Error::refused("the singular values of the fit were not found");
         if scaled.iter().any(|v| !v.is_finite()) {
             return Err(unfound());
         }
         // With an iteration limit, since the algorithm has no bound of its own.
         let svd = SVD::try_new(scaled, false, true, f64::EPSILON, 10_000).ok_or_else(unfound)?;
-        let v = svd.v_t.ok_or_else(unfound)?;
         let floor = (svd.singular_values.max() * RESOLVED).max(1e-12);
-        let s: Vec<f64> = svd.singular_values.iter().map(|s| s.max(floor)).collect();
-        let covariance = DMatrix::from_fn(n, n, |i, j| {
-            let sum: f64 = s.iter().enumerate().map(|(k, s)| v[(k, i)] * v[(k, j)] / (s * s)).sum();
-            sum / (rates[i] * rates[j])
-        });
+        let mut v = svd.v_t.ok_or_else(unfound)?;
+        for (mut row, s) in v.row_iter_mut().zip(&svd.singular_values) {
+            row /= s.max(floor);
+        }
+        let covariance = v.tr_mul(&v).component_div(&(&rates * rates.transpose()));
         // A step of Gauss and Newton over its standard deviation.
         let step = -(&covariance * jacobian.tr_mul(&DVector::from_column_slice(&least.minimum.residuals)));
         let limit = |i: usize| {
-            let (outwards, coordinate) = (sides[i]?, problem.unknowns[i].coordinate);
-            let bound = if outwards < 0.0 { coordinate.low } else { coordinate.high };
-            let value = if bound.is_finite() { bound } else { problem.unknowns[i].limits(&problem.base)[1] };
+            let (outwards, value) = sides[i]?;
             Some(Limit { value, pull: outwards * step[i] / covariance[(i, i)].sqrt() })
         };
         let mut found = Uncertainty {
@@ -120,22 +117,16 @@ impl Uncertainty {
         let parameter = problem.unknowns[i].parameter;
         let is_loose = |i: usize| {
             let coordinate = problem.unknowns[i].coordinate;
-            let part = if coordinate.high.is_finite() {
-                let [low, high] = coordinate.interval(u[i], NORMAL * self.std(i));
-                (high - low) / (coordinate.high - coordinate.low)
-            } else {
-                self.relative[i]
-            };
-            part > LOOSE
+            let [low, high] = coordinate.interval(u[i], NORMAL * self.std(i));
+            let bounded =
+                coordinate.high.is_finite().then(|| (high - low) / (coordinate.high - coordinate.low));
+            bounded.unwrap_or(self.relative[i]) > LOOSE
         };
         if !is_loose(i) && self.limits[i].is_none() {
             return None;
         }
-        let of_impacts = matches!(
-            parameter,
-            Parameter::Restitution | Parameter::C2 | Parameter::K2 | Parameter::Gap | Parameter::M2
-        );
-        Some(if of_impacts && !problem.kinds.contains(&Some(Kind::Impacting)) {
+        let without_impacts = !problem.kinds.contains(&Some(Kind::Impacting));
+        Some(if parameter.needs_impacts() && without_impacts {
             Unidentified::NeedsImpacts
         } else if self.limits[i].is_some() {
             Unidentified::AtLimit
@@ -167,25 +158,104 @@ impl Uncertainty {
     }
 }
 
-/// The way outwards, 1 or −1, where the parameter number `i` lies at a limit. Beyond it nothing changes any more, so its column of the
-/// Jacobian becomes that from the limit inwards.
-fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<f64> {
-    let unknown = &problem.unknowns[i];
-    let [least, most] = unknown.limits(&problem.base).map(|v| unknown.coordinate.of(v));
-    let span = AT_LIMIT * (1.0 + u[i].abs());
-    let (limit, outwards) = if u[i] <= least + span {
-        (least, -1.0)
+/// The way outwards, 1 or −1, and the bound where the parameter number `i` lies at a limit. Beyond it nothing changes any more, so its column
+/// of the Jacobian becomes that from the limit inwards.
+fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<(f64, f64)> {
+    let (unknown, span) = (&problem.unknowns[i], AT_LIMIT * (1.0 + u[i].abs()));
+    let (coordinate, limits) = (unknown.coordinate, unknown.limits(&problem.base));
+    let [least, most] = limits.map(|v| coordinate.of(v));
+    let highest = if coordinate.high.is_finite() { coordinate.high } else { limits[1] };
+    let (limit, outwards, bound) = if u[i] <= least + span {
+        (least, -1.0, coordinate.low)
     } else if u[i] >= most - span {
-        (most, 1.0)
+        (most, 1.0, highest)
     } else {
         return None;
     };
     let h = -outwards * INWARDS * limit.abs().max(AT_LIMIT);
-    let at = |v: f64| {
-        let mut u = u.to_vec();
-        u[i] = v;
-        DVector::from_vec(problem.at(&u))
+    let mut moved = u.to_vec();
+    let mut at = |v: f64| {
+        moved[i] = v;
+        DVector::from_vec(problem.at(&moved))
     };
     jacobian.set_column(i, &((at(limit + h) - at(limit)) / h));
-    Some(outwards)
+    Some((outwards, bound))
+}
+
+/// χ² of one degree of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
+const ONE: f64 = 3.841;
+/// Values on each side of the least.
+const SIDE: i32 = 12;
+/// They reach so many standard uncertainties, twice what the interval needs.
+const REACH: f64 = 4.0;
+
+/// Profile of a parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Profile {
+    /// Parameter.
+    pub parameter: Parameter,
+    /// Its SI unit.
+    pub unit: &'static str,
+    /// Values, rising.
+    pub value: Vec<f64>,
+    /// Least sum of squares at each value above the least of all.
+    pub rise: Vec<f64>,
+    /// The rise that the true value stays below with 95 % confidence.
+    pub limit: f64,
+    /// Values within which the rise stays below it. `None` for a side on which it is not reached in the values.
+    pub interval: [Option<f64>; 2],
+}
+
+impl Profile {
+    /// How far it falls below the answer: 0 where that is the least sum of squares.
+    pub fn fall(&self) -> f64 {
+        -self.rise.iter().copied().fold(0.0, f64::min)
+    }
+}
+
+/// Profile of the unknown number `which`, but not beyond a bound (D. J. Venzon & S. H. Moolgavkar 1988).
+pub fn profile(least: &Least<'_>, uncertainty: &Uncertainty, which: usize) -> Option<Profile> {
+    let (problem, best) = (&least.problem, &least.minimum.parameters);
+    let unknown = *problem.unknowns.get(which)?;
+    let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+    let lowest = sum(&least.minimum.residuals);
+    // Down to the lower bound, or a factor of ten in the odds between two.
+    let most =
+        if unknown.coordinate.high.is_infinite() { best[which].abs() } else { std::f64::consts::LN_10 };
+    let reach = (REACH * uncertainty.std(which)).min(most);
+    let covariance = &uncertainty.covariance;
+    let rise = |step: i32| {
+        let away = reach * f64::from(step) / f64::from(SIDE);
+        let value = unknown.coordinate.value(best[which] + away);
+        let mut rest = problem.clone();
+        rest.base = rest.base.with(unknown.parameter, value);
+        rest.unknowns.remove(which);
+        let prior = unknown.prior.map_or(0.0, |[v, s]| ((value - v) / s).powi(2));
+        // Along the valley, as far as it is straight.
+        let valley = covariance.column(which) * (away / covariance[(which, which)]);
+        let mut start: Vec<f64> = best.iter().zip(&valley).map(|(best, along)| best + along).collect();
+        start.remove(which);
+        let data = if start.is_empty() { rest.at(&[]) } else { rest.solve(&start).ok()?.residuals };
+        Some((value, sum(&data) + prior - lowest))
+    };
+    let (value, rise): (Vec<f64>, Vec<f64>) = (-SIDE..=SIDE).into_par_iter().filter_map(rise).unzip();
+    let middle = value.iter().position(|v| *v >= unknown.coordinate.value(best[which]))?;
+    let below = crossing(value[..=middle].iter().zip(&rise[..=middle]).rev());
+    let above = crossing(value[middle..].iter().zip(&rise[middle..]));
+    Some(Profile {
+        parameter: unknown.parameter,
+        unit: unknown.parameter.unit(),
+        value,
+        rise,
+        limit: ONE,
+        interval: [below, above],
+    })
+}
+
+/// Where the rise reaches [`ONE`]; its root is nearly straight.
+fn crossing<'a>(points: impl Iterator<Item = (&'a f64, &'a f64)>) -> Option<f64> {
+    let points: Vec<(f64, f64)> = points.map(|(v, r)| (*v, r.max(0.0).sqrt())).collect();
+    let (limit, above) = (ONE.sqrt(), points.iter().position(|p| p.1 > ONE.sqrt())?);
+    let (a, b) = (points.get(above.checked_sub(1)?)?, points[above]);
+    Some(a.0 + (limit - a.1) / (b.1 - a.1) * (b.0 - a.0))
 }

@@ -1,9 +1,9 @@
-//! The parameters that a fit looks for.
+//! The parameters that a fit looks for, their coordinates without bounds, and the rig that has them.
 
-use super::coordinate::Coordinate;
-use super::setting::Setting;
+use super::super::prediction::Kind;
 use crate::campaign::{FitEntry, Parameter};
 use crate::error::{Error, Result};
+use crate::model::{Rig, Sine, Steady, shown};
 
 /// A parameter to be found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,11 +55,142 @@ impl Unknown {
     /// Lowest and highest value that it takes.
     pub fn limits(&self, base: &Setting) -> [f64; 2] {
         let Coordinate { low, high } = self.coordinate;
+        if high.is_finite() {
+            let inside = NEAREST * (high - low);
+            return [low + inside, high - inside];
+        }
         let start = base.get(self.parameter) - low;
-        if high.is_infinite() && start > 0.0 {
-            [low + start / FARTHEST, low + start * FARTHEST]
-        } else {
-            self.coordinate.limits()
+        [low + start / FARTHEST, low + start * FARTHEST]
+    }
+}
+
+/// A parameter θ from `low` to `high` by a coordinate u from −∞ to ∞: √(θ − low) without an upper bound, else the logit of its place
+/// between both.
+///
+/// A logarithm instead of the root would never come back from θ = low, where all slopes vanish: a damper may be 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordinate {
+    pub low: f64,
+    /// Infinite where there is none.
+    pub high: f64,
+}
+
+/// A parameter between two bounds comes no nearer to either than this part of the way: a loss 1 − R of 1e-6 is below what any sweep shows.
+const NEAREST: f64 = 1e-6;
+
+impl Coordinate {
+    /// u of θ; θ at a bound or beyond it counts as just inside.
+    pub fn of(self, value: f64) -> f64 {
+        if self.high.is_infinite() {
+            return (value - self.low).max(0.0).sqrt();
+        }
+        let part = ((value - self.low) / (self.high - self.low)).clamp(NEAREST, 1.0 - NEAREST);
+        (part / (1.0 - part)).ln()
+    }
+
+    /// θ of u.
+    pub fn value(self, u: f64) -> f64 {
+        if self.high.is_infinite() {
+            return self.low + u * u;
+        }
+        self.low + (self.high - self.low) / (1.0 + (-u).exp())
+    }
+
+    /// Least and largest θ from u − `away` to u + `away`.
+    pub fn interval(self, u: f64, away: f64) -> [f64; 2] {
+        let [a, b] = [u - away, u + away].map(|u| self.value(u));
+        let low = if self.high.is_infinite() && u.abs() < away { self.low } else { a.min(b) };
+        [low, a.max(b)]
+    }
+
+    /// dθ/du.
+    pub fn slope(self, u: f64) -> f64 {
+        let value = self.value(u);
+        if self.high.is_infinite() {
+            return 2.0 * u;
+        }
+        (value - self.low) * (self.high - value) / (self.high - self.low)
+    }
+}
+
+/// A rig and the reference force on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    pub rig: Rig,
+    /// In N.
+    pub force: f64,
+}
+
+impl Setting {
+    fn place(&mut self, parameter: Parameter) -> &mut f64 {
+        match parameter {
+            Parameter::Force => &mut self.force,
+            Parameter::Restitution => &mut self.rig.restitution,
+            Parameter::C1 => &mut self.rig.c1,
+            Parameter::C2 => &mut self.rig.c2,
+            Parameter::Gap => &mut self.rig.gap,
+            Parameter::K1 => &mut self.rig.k1,
+            Parameter::K2 => &mut self.rig.k2,
+            Parameter::M1 => &mut self.rig.m1,
+            Parameter::M2 => &mut self.rig.m2,
+        }
+    }
+
+    pub fn get(mut self, parameter: Parameter) -> f64 {
+        *self.place(parameter)
+    }
+
+    pub fn with(mut self, parameter: Parameter, value: f64) -> Setting {
+        *self.place(parameter) = value;
+        self
+    }
+
+    /// What a spectrum shows of both masses in m, of the motion of this kind at this force and frequency; NaN where it cannot be.
+    pub fn shows(&self, kind: Kind, force: f64, frequency: f64) -> [f64; 2] {
+        let sine = Sine { force, frequency };
+        match kind {
+            Kind::Impacting => shown(&self.rig, &sine).map_or([f64::NAN; 2], |s| s.amplitude),
+            Kind::Free => Steady::new(&self.rig, &sine).map_or([f64::NAN; 2], |s| [s.amplitude(), 0.0]),
+            Kind::Pattern | Kind::Irregular => [f64::NAN; 2],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        let cases = [
+            (0.0, 1.0, 0.98),
+            (0.0, f64::INFINITY, 1e-3),
+            (-1e-3, f64::INFINITY, 5e-4),
+            (90.0, 180.0, 128.0),
+        ];
+        for (low, high, value) in cases {
+            let c = Coordinate { low, high };
+            let u = c.of(value);
+            assert!((c.value(u) / value - 1.0).abs() < 1e-12);
+            // A central difference errs by h²/6 of the third derivative, and by ε/h.
+            let slope = (c.value(u + 1e-5) - c.value(u - 1e-5)) / 2e-5;
+            assert!((c.slope(u) / slope - 1.0).abs() < 1e-6, "{c:?}");
+            for u in [-1e9, 1e9] {
+                assert!(c.value(u) >= low && c.value(u) <= high);
+            }
+            assert!(c.of(low).is_finite() && c.of(value.min(high)).is_finite());
+        }
+    }
+
+    #[test]
+    fn each_parameter_has_its_place() {
+        let setting = Setting { rig: Rig::thesis(), force: 0.1 };
+        for parameter in Parameter::ALL {
+            let changed = setting.with(parameter, 0.25);
+            for other in Parameter::ALL {
+                let expected = if other == parameter { 0.25 } else { setting.get(other) };
+                assert_eq!(changed.get(other), expected, "{parameter:?} {other:?}");
+            }
         }
     }
 }

@@ -1,46 +1,106 @@
-//! Which models of the ladder a sweep needs, and where.
+//! Measured sweeps, how they are predicted, and which models of the ladder they need.
 
-use super::simulated::Pace;
-use crate::campaign::{Campaign, Follows};
-use crate::error::Result;
+use super::forcing::Forcing;
+use super::prediction::{Kind, Prediction, in_order};
+use super::simulated::{Pace, simulated};
+use crate::campaign::ModelEntry;
+use crate::error::{Error, Result};
+use crate::measure::response::{Response, ResponsePoint};
 use crate::model::ladder::{self, Choice, Model, Need, Question, Stretch, choose_over};
 use crate::model::{ContactKeys, Excitation, Law, Observable, Rig, Scene, Sine};
 use crate::record::{Direction, Finding};
 use serde::Serialize;
 
-/// How predictions are made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Predicting {
-    /// The model; `None` where the ladder is to choose.
-    pub model: Option<Follows>,
-    /// What is known of the contact.
-    pub contact: Option<ContactKeys>,
-    /// Relative change that does not matter.
-    pub tolerance: f64,
-    /// How long the rig stays at each point.
+/// One sweep to be compared with the model.
+pub(super) struct Swept<'a> {
+    pub response: &'a Response,
+    pub mass: u8,
+    pub direction: Direction,
+    pub forcing: Forcing,
+}
+
+impl<'a> Swept<'a> {
+    /// All displacement responses that name their mass and direction, with findings of their force, of which `stated` is in N.
+    ///
+    /// # Errors
+    /// If there is no such response, or no force is known.
+    pub fn all(stated: Option<f64>, responses: &'a [Response]) -> Result<(Vec<Swept<'a>>, Vec<Finding>)> {
+        let displacement = responses.iter().filter(|r| r.quantity == "displacement");
+        let usable: Vec<(&Response, u8, Direction)> = displacement
+            .filter_map(|r| Some((r, r.mass.filter(|m| [1, 2].contains(m))?, r.direction?)))
+            .collect();
+        if usable.iter().all(|u| u.0.points.is_empty()) {
+            return Err(Error::refused("no response can be compared with the model")
+                .hint("state `mass = 1` or `2` for each sweep, with three or more points in one direction"));
+        }
+        let (forcings, findings) = Forcing::of_all(stated, &usable.iter().map(|u| u.0).collect::<Vec<_>>())?;
+        let swept = usable.into_iter().zip(forcings);
+        let swept =
+            swept.map(|((response, mass, direction), forcing)| Swept { response, mass, direction, forcing });
+        Ok((swept.collect(), findings))
+    }
+
+    /// Points in the order of their measurement.
+    pub fn points(&self) -> Vec<&'a ResponsePoint> {
+        let mut points: Vec<&ResponsePoint> = self.response.points.iter().collect();
+        points.sort_by(|a, b| a.excitation.total_cmp(&b.excitation));
+        in_order(self.direction, points)
+    }
+}
+
+/// How all sweeps are predicted.
+#[derive(Clone, Copy)]
+pub(super) struct Course<'a> {
+    pub rig: &'a Rig,
+    pub model: Model,
+    pub law: Option<Law>,
     pub pace: Pace,
 }
 
-impl Default for Predicting {
-    /// The ladder chooses at 2 %; nothing is known of the contact.
-    fn default() -> Predicting {
-        Predicting { model: None, contact: None, tolerance: 0.02, pace: Pace::default() }
+/// Points of a simulated curve: their distance is far below the width of a resonance.
+const FOLLOWED: usize = 400;
+/// Cycles at each: fewer than at a measured point, since the motion goes on from one to the next.
+const PASSING: Pace = Pace { settle: 100, measure: 16 };
+
+/// A point of a predicted curve as a sweep follows it.
+pub(super) struct Followed {
+    pub frequency: f64,
+    /// NaN where the motion cannot be followed.
+    pub amplitude: f64,
+    /// Whether the masses meet once a cycle.
+    pub impacting: bool,
+}
+
+impl Course<'_> {
+    /// The curve that a sweep follows, in order of rising frequency: of the closed form where impacts take no time, else simulated.
+    pub fn followed(&self, sweep: &Swept<'_>, curve: &Prediction) -> Vec<Followed> {
+        let point = |frequency: f64, motion: Option<(Kind, [f64; 2])>| Followed {
+            frequency,
+            amplitude: motion.map_or(f64::NAN, |(_, amplitude)| amplitude[usize::from(sweep.mass) - 1]),
+            impacting: motion.is_some_and(|(kind, _)| kind == Kind::Impacting),
+        };
+        if self.law.is_none() {
+            let motions =
+                curve.followed(sweep.direction).into_iter().map(|m| m.map(|m| (m.kind, m.amplitude)));
+            return curve.frequency.iter().zip(motions).map(|(f, motion)| point(*f, motion)).collect();
+        }
+        let step = curve.frequency.len().div_ceil(FOLLOWED).max(1);
+        let points = curve.frequency.iter().step_by(step).map(|f| (*f, sweep.forcing.at(*f)));
+        let points = in_order(sweep.direction, points.collect());
+        let simulated = simulated(self.rig, self.law, &points, PASSING).into_iter();
+        let motions = simulated.map(|s| s.ok().map(|s| (Kind::of(s.regime), s.amplitude)));
+        let followed = points.iter().zip(motions).map(|((f, _), motion)| point(*f, motion));
+        in_order(sweep.direction, followed.collect())
     }
 }
 
-impl From<&Campaign> for Predicting {
-    fn from(campaign: &Campaign) -> Predicting {
-        let (entry, usual) = (campaign.model, Predicting::default());
-        Predicting {
-            model: entry.name,
-            contact: campaign.contact,
-            tolerance: entry.tolerance.unwrap_or(usual.tolerance),
-            pace: Pace {
-                settle: entry.settle.unwrap_or(usual.pace.settle),
-                measure: entry.measure.unwrap_or(usual.pace.measure),
-            },
-        }
-    }
+/// How predictions are made.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Predicting {
+    /// The model, what is tolerated, and the pace.
+    pub model: ModelEntry,
+    /// What is known of the contact.
+    pub contact: Option<ContactKeys>,
 }
 
 /// The choice of a model for sweeps in one direction at one force.
@@ -75,7 +135,7 @@ pub fn rungs(
 ) -> Result<Rungs> {
     let scene = predicting.scene(rig, force, low);
     let question = Question {
-        tolerance: predicting.tolerance,
+        tolerance: predicting.model.tolerance,
         history: Some(direction),
         ..Question::new(Observable::Fundamental)
     };
@@ -93,6 +153,11 @@ pub fn rungs(
 }
 
 impl Predicting {
+    /// How long the rig stays at each point.
+    pub fn pace(&self) -> Pace {
+        Pace { settle: self.model.settle, measure: self.model.measure }
+    }
+
     fn scene(&self, rig: &Rig, force: f64, frequency: f64) -> Scene {
         let excitation = Some(Excitation::Sine(Sine { force, frequency }));
         Scene { rig: *rig, excitation, contact: self.contact, buffer: None }
@@ -100,11 +165,11 @@ impl Predicting {
 
     /// The model of all sweeps: the one named, else the highest one chosen for any stretch; rigid contacts for the rungs below and where none
     /// can be chosen.
-    pub fn model(&self, asked: &[Rungs]) -> Model {
-        if let Some(named) = self.model {
+    pub fn model(&self, choices: &[Rungs]) -> Model {
+        if let Some(named) = self.model.name {
             return named.model();
         }
-        let highest = asked.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
+        let highest = choices.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
         let known = |of: fn(&ContactKeys) -> Option<f64>| self.contact.as_ref().and_then(of);
         let curved = known(|c| c.exponent).is_some_and(|n| n != 1.0);
         match highest {
@@ -130,6 +195,7 @@ impl Predicting {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::Follows;
 
     #[test]
     fn a_soft_contact_asks_for_a_richer_model_than_a_stiff_one() {
@@ -168,7 +234,8 @@ mod tests {
         // Between 1e4 N/m, in contact for 7 % of the cycle, and 1e9 N/m the answer moves by more than the 2 % that do not matter.
         assert!(found.finding.as_ref().is_some_and(|f| f.get("part").unwrap() > 0.02), "{found:?}");
         assert_eq!(Predicting::default().model(&[found]), Model::Restitution);
-        let named = Predicting { model: Some(Follows::KelvinVoigt), ..Predicting::default() };
+        let model = ModelEntry { name: Some(Follows::KelvinVoigt), ..ModelEntry::default() };
+        let named = Predicting { model, ..Predicting::default() };
         assert!(named.law(&rig, named.model(&[])).unwrap_err().to_string().contains("contact.stiffness"));
     }
 }

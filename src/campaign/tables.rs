@@ -1,0 +1,222 @@
+//! Tables of a campaign that hold for all sweeps: what drives the rig, how it is predicted, what is computed and what is fitted.
+
+use super::Parameter;
+use crate::error::Error;
+use crate::model::ladder::Model;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A key with an impossible value, and why it is.
+type Fault = (&'static str, String);
+
+/// What drives mass 1 in all sweeps.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drive {
+    /// `sine`.
+    #[serde(default)]
+    pub kind: DriveKind,
+    /// Force amplitude in N; left out, the measured force is taken.
+    pub force: Option<f64>,
+}
+
+/// Kinds of excitation of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DriveKind {
+    /// Harmonic force.
+    #[default]
+    Sine,
+}
+
+/// What to compute, and how.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Compute {
+    /// Overlay measured responses on the model. Default: where a rig is given.
+    pub overlay: bool,
+    /// Draw waterfalls. Default true.
+    pub waterfall: bool,
+    /// Lines on both sides of the excitation in which a peak is looked for. Default 3.
+    pub band: usize,
+    /// Cut-off in Hz. Default: two lines or a quarter of the lowest excitation.
+    pub fmin: Option<f64>,
+    /// Highest frequency in waterfalls, in Hz. Default: the base band.
+    pub fmax: Option<f64>,
+}
+
+impl Compute {
+    /// What cannot be: key and sentence.
+    pub(super) fn check(&self) -> Result<(), Fault> {
+        for (key, value) in [("fmin", self.fmin), ("fmax", self.fmax)] {
+            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+                return Err((key, format!("{key} = {v} is not a finite number above 0")));
+            }
+        }
+        if !(1..=1000).contains(&self.band) {
+            return Err(("band", format!("band = {} is not between 1 and 1000 lines", self.band)));
+        }
+        Ok(())
+    }
+}
+
+impl Default for Compute {
+    fn default() -> Compute {
+        Compute { overlay: true, waterfall: true, band: 3, fmin: None, fmax: None }
+    }
+}
+
+/// The table `[model]`.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ModelEntry {
+    /// The model that predicts. Left out, the ladder chooses.
+    pub name: Option<Follows>,
+    /// Relative change of an amplitude that does not matter when a model is chosen. Default 0.02.
+    pub tolerance: f64,
+    /// Cycles that the simulated rig stays at each point of a sweep before it is read. Default 300.
+    pub settle: u32,
+    /// Cycles read. Default 64.
+    pub measure: u32,
+}
+
+/// Models that can follow a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Follows {
+    /// Impacts without duration.
+    Restitution,
+    /// A contact of spring and damper.
+    KelvinVoigt,
+    /// A contact whose force is no straight line.
+    HuntCrossley,
+}
+
+impl Follows {
+    /// The rung of the ladder.
+    pub fn model(self) -> Model {
+        match self {
+            Follows::Restitution => Model::Restitution,
+            Follows::KelvinVoigt => Model::KelvinVoigt,
+            Follows::HuntCrossley => Model::HuntCrossley,
+        }
+    }
+}
+
+/// Cycles at a point beyond which a campaign is refused: a sweep of 40 points then takes some seconds.
+const MOST: u32 = 1_000_000;
+
+impl Default for ModelEntry {
+    /// On the thesis' rig a disturbance falls below e⁻⁸ within 300 cycles.
+    fn default() -> ModelEntry {
+        ModelEntry { name: None, tolerance: 0.02, settle: 300, measure: 64 }
+    }
+}
+
+impl ModelEntry {
+    /// What cannot be.
+    pub(super) fn check(&self) -> Result<(), Fault> {
+        let tolerance = self.tolerance;
+        if !(1e-4..=1.0).contains(&tolerance) {
+            return Err(("tolerance", format!("tolerance = {tolerance}: expected a part from 0.0001 to 1")));
+        }
+        if self.measure == 0 {
+            return Err(("measure", "measure = 0 cycles: nothing would be read".to_owned()));
+        }
+        for (key, cycles) in [("settle", self.settle), ("measure", self.measure)] {
+            if cycles > MOST {
+                return Err((key, format!("{key} = {cycles} cycles at each point, more than {MOST}")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The table `[fit]`.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FitEntry {
+    /// Parameters to be found. None: nothing is fitted.
+    pub parameters: Vec<Parameter>,
+    /// What is known of a parameter from another measurement: `[value, standard uncertainty]`.
+    pub prior: BTreeMap<Parameter, [f64; 2]>,
+    /// Lowest and highest value that a parameter may take.
+    pub bounds: BTreeMap<Parameter, [f64; 2]>,
+    /// Starting points. Default 8.
+    pub starts: Option<usize>,
+    /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of them, and as much again as a slope
+    /// from the lowest to the highest frequency; and of the factor of the force, where that is not fitted. Default 0.01, which is said.
+    pub calibration: Option<f64>,
+    /// Relative standard uncertainty of each amplitude for itself, beside the noise in its spectrum: how far a measurement that is repeated
+    /// strays. Default 0.
+    pub scatter: Option<f64>,
+}
+
+/// Starting points, at most.
+const MOST_STARTS: usize = 1000;
+
+impl FitEntry {
+    /// That nothing in it is impossible.
+    ///
+    /// # Errors
+    /// With the key that is, and why.
+    pub fn usable(&self) -> Result<(), Error> {
+        let expected = "each parameter once, masses with a prior, and values as docs/campaign.md has them";
+        self.check().map_err(|(key, why)| Error::usage(format!("fit of {key}: {why}"), expected))
+    }
+
+    /// The key that holds an impossible value, and why.
+    pub(super) fn check(&self) -> Result<(), Fault> {
+        for (i, parameter) in self.parameters.iter().enumerate() {
+            let name = parameter.name();
+            if self.parameters[..i].contains(parameter) {
+                return Err(("parameters", format!("{name} is named twice")));
+            }
+            if parameter.is_mass() && !self.prior.contains_key(parameter) {
+                let why = "while motion tells only the ratios of force, stiffness and damping to the masses: weigh it and give";
+                let why = format!(
+                    "{name} is fitted without a prior, {why} `prior.{name} = [kg, standard uncertainty]` in [fit]"
+                );
+                return Err(("parameters", why));
+            }
+        }
+        if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
+            return Err(("starts", format!("starts is not from 1 to {MOST_STARTS}")));
+        }
+        for (key, value) in [("calibration", self.calibration), ("scatter", self.scatter)] {
+            if value.is_some_and(|v| !(0.0..0.5).contains(&v)) {
+                return Err((key, format!("{key} is not from 0 to 0.5: it is relative, 0.01 for 1 %")));
+            }
+        }
+        for (parameter, [value, std]) in &self.prior {
+            let (name, (low, high)) = (parameter.name(), self.range(*parameter));
+            let prior = format!("the prior of {name} is {value}");
+            if !(value.is_finite() && std.is_finite() && *std > 0.0) {
+                let why = "which is not above 0: leave it out of the fit to keep it fixed";
+                return Err((name, format!("{prior} with a standard uncertainty of {std}, {why}")));
+            }
+            if !(*value > low && *value < high) {
+                return Err((name, format!("{prior}, outside its bounds {low} to {high}")));
+            }
+        }
+        for (parameter, [low, high]) in &self.bounds {
+            let (name, (least, most)) = (parameter.name(), parameter.range());
+            // A gap may be negative: the masses are then pressed together.
+            let least = if *parameter == Parameter::Gap { f64::NEG_INFINITY } else { least };
+            if !(low < high && *low >= least && *high <= most) {
+                let why = match parameter {
+                    Parameter::Restitution if low < high => "it is from 0 to 1",
+                    _ if low < high => "it is not below 0",
+                    _ => "no value lies between",
+                };
+                return Err((name, format!("the bounds of {name} are {low} to {high}: {why}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a parameter may lie.
+    pub fn range(&self, parameter: Parameter) -> (f64, f64) {
+        self.bounds.get(&parameter).map_or(parameter.range(), |[low, high]| (*low, *high))
+    }
+}
