@@ -19,7 +19,7 @@ pub mod sweep;
 mod page;
 
 pub use answer::Answer;
-pub use job::{Job, JobOptions, Outcome, Progress, run};
+pub use job::{Job, JobOptions, Progress, run};
 pub use source::Source;
 
 use crate::campaign::{Campaign, Entry};

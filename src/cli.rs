@@ -12,7 +12,7 @@ mod sweep;
 
 use crate::error::Result;
 use crate::report::words::Voice;
-use clap::{Parser, Subcommand};
+use clap::{Command as Typed, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 /// Measure impacting machines: from analyser files to answers, each with its uncertainty.
 #[derive(Debug, Parser)]
@@ -63,7 +63,8 @@ enum Command {
 /// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
 /// unreadable input.
 pub fn main() -> u8 {
-    let args = match Args::try_parse() {
+    let typed = with_negatives(Args::command()).try_get_matches().and_then(|m| Args::from_arg_matches(&m));
+    let args = match typed {
         Ok(args) => args,
         // What could not be parsed may have asked for JSON all the same.
         Err(error) => {
@@ -77,6 +78,15 @@ pub fn main() -> u8 {
         _ => Voice::Command,
     };
     dispatch(&args).unwrap_or_else(|error| complain::error(&error, voice, args.json))
+}
+
+/// Every value may be a negative number: whether it makes sense, its check says better than a complaint about an unknown option.
+fn with_negatives(command: Typed) -> Typed {
+    let negative = |arg: clap::Arg| {
+        let takes = arg.get_action().takes_values();
+        arg.allow_negative_numbers(takes)
+    };
+    command.mut_args(negative).mut_subcommands(with_negatives)
 }
 
 fn dispatch(args: &Args) -> Result<u8> {

@@ -30,10 +30,10 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub reference: Option<String>,
     /// Velocity along the beam in m/s for one unit of the channel [default: 1 where the file says it is a velocity]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR"))]
     pub sensitivity: Option<f64>,
     /// Angle of the beam in degrees
-    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG"))]
     pub beam_angle: Option<f64>,
     /// From where that angle is counted: the normal to the motion, or its axis
     #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<From>))]
@@ -45,7 +45,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Edge>))]
     pub edge: Option<Edge>,
     /// Level of the edge, in the unit of the reference [default: the middle of its two levels]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "VALUE", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "VALUE"))]
     pub level: Option<f64>,
     /// Mass that is measured, in kg: gives energies
     #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
@@ -63,7 +63,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub longest_dropout: Option<f64>,
     /// Channel delay to remove, in s: the velocity was recorded later than the reference [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub delay: Option<f64>,
     /// Phases of the average [default: 720]
     #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
@@ -89,7 +89,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub handle: Vec<String>,
     /// Acceleration in m/s² for one unit of these channels
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR"))]
     pub handle_sensitivity: Option<f64>,
     /// Hours a day of that exposure: A(8)
     #[cfg_attr(feature = "cli", arg(long, value_name = "HOURS"))]

@@ -17,25 +17,22 @@ use serde::Deserialize;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Height of the fall in m; without it, a train of bounces
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub height: Option<f64>,
     /// Its standard uncertainty in m
     #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub height_std: Option<f64>,
     /// Time from first to second impact in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub interval: Option<f64>,
     /// Standard uncertainty of the interval in s
     #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub interval_std: Option<f64>,
     /// Times between successive impacts of one train of bounces, in s
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "A,B,C", value_delimiter = ',', allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "A,B,C", value_delimiter = ','))]
     pub intervals: Vec<f64>,
     /// Acceleration of free fall in m/s² [default: 9.80665]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²"))]
     pub gravity: Option<f64>,
     /// Its standard uncertainty in m/s²
     #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²"))]
@@ -53,16 +50,13 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
     pub masses: Option<(f64, f64)>,
     /// Velocities of both masses before the impact, in m/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_parser = crate::campaign::two::<','>, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_parser = crate::campaign::two::<','>))]
     pub before: Option<(f64, f64)>,
     /// Velocities of both masses after it, in m/s; of mass 1 alone where masses are given
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "V1,V2", value_delimiter = ',', allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_delimiter = ','))]
     pub after: Vec<f64>,
     /// Velocity of mass 2 after it, in m/s, where that of mass 1 is not known and masses are given
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V2", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "V2"))]
     pub after2: Option<f64>,
     /// Standard uncertainty of each velocity, in m/s
     #[cfg_attr(feature = "cli", arg(long, value_name = "M/S"))]

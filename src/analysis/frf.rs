@@ -24,7 +24,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
     pub band: Option<(f64, f64)>,
     /// Mass in kg, for the stiffness k = m(2 pi f)^2
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
     pub mass: Option<f64>,
     /// File with the coherence of the same lines [default: a coherence in the file]
     #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
@@ -43,7 +43,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
     pub segment: Option<usize>,
     /// Part of a segment that it shares with the next [default: 0.5]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
     pub overlap: Option<f64>,
     /// Taken out of a segment before the window: mean or none [default: mean]
     #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
@@ -52,7 +52,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
     /// Integrations in frequency [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub integrate: Option<i8>,
     /// Lowest frequency in Hz [default: two lines where integrated, else 0]
     #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
@@ -67,7 +67,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
     pub left_at_end: Option<f64>,
     /// Channel delay to remove, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub delay: Option<f64>,
 }
 

@@ -37,19 +37,6 @@ pub struct JobOptions {
     pub allow_outside: bool,
 }
 
-/// What a campaign gave.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// As in `results.json`: a list of answers by the name of each kind.
-    pub results: Map<String, Value>,
-    /// What a person should know, each about a record.
-    pub findings: Vec<About>,
-    /// The tables that a person wants first.
-    pub tables: Vec<Table>,
-    /// Whether anything was answered.
-    pub answered: bool,
-}
-
 /// A campaign at work: what its analyses ask, and where they put what they find.
 pub struct Job<'a> {
     /// The campaign.
@@ -247,7 +234,7 @@ pub struct Record {
     pub answer: Answer,
 }
 
-/// Does all that a campaign asks for, and writes it to `output`.
+/// Does all that a campaign asks for, and writes it to `output`. Gives what was found, and whether any record was answered.
 ///
 /// # Errors
 /// If a file cannot be read; if the overlay is not possible; if a file cannot be written.
@@ -256,7 +243,7 @@ pub fn run(
     options: JobOptions,
     output: &mut Output,
     progress: &dyn Progress,
-) -> Result<Outcome> {
+) -> Result<(Answer, bool)> {
     let mut job = Job::new(campaign, options, progress);
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;
@@ -279,6 +266,5 @@ pub fn run(
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
     output.write("results.json", json + "\n")?;
     output.write("report.html", page::page(&job, version, &all, &drawings).html())?;
-    let Answer { result: results, findings, tables, .. } = all;
-    Ok(Outcome { results, findings, tables, answered: job.answers > 0 })
+    Ok((all, job.answers > 0))
 }

@@ -26,13 +26,13 @@ pub struct SceneKeys {
     #[cfg_attr(feature = "cli", arg(long = "set", value_name = "KEY=VALUE"))]
     pub set: Vec<String>,
     /// Force in N: amplitude of a sine, height of a pulse
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub force: Option<f64>,
     /// Impulse in N s, once a cycle, instead of a sine force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NS", allow_negative_numbers = true, conflicts_with_all = ["force", "width"]))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NS", conflicts_with_all = ["force", "width"]))]
     pub impulse: Option<f64>,
     /// Width in s of a rectangular pulse, once a cycle, instead of a sine force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub width: Option<f64>,
 }
 

@@ -22,22 +22,21 @@ pub struct Keys {
         arg(
             long,
             value_name = "S",
-            allow_negative_numbers = true,
             conflicts_with_all = crate::campaign::Channel::KEYS.into_iter().chain(crate::campaign::Reading::KEYS)
         )
     )]
     pub time_to_peak: Option<f64>,
     /// Time from the onset to the end of the contact, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub duration: Option<f64>,
     /// Standard uncertainty of each of the two times, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub std: Option<f64>,
     /// Mass that is decelerated, in kg, for stiffness and damping
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
     pub mass: Option<f64>,
     /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no uncertainty]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Order of that low-pass, 1 to 10
     #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]

@@ -28,7 +28,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
     pub segment: Option<usize>,
     /// Part of a segment that it shares with the next [default: 0.5]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
     pub overlap: Option<f64>,
     /// Taken out before the window: mean or none [default: mean with welch or an integration, else none]
     #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
@@ -40,7 +40,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub integrate: Option<i8>,
     /// Lowest frequency given, in Hz [default: two lines where integrated, else 0]
     #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
@@ -62,7 +62,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
     pub left_at_end: Option<f64>,
     /// Channel delay to remove, in s: the channel was recorded later than the reference
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub delay: Option<f64>,
     /// Give levels in decibels over this reference, in SI units of the channel: 1, or 1e-6 for 1 µm/s²
     #[cfg_attr(feature = "cli", arg(long, value_name = "REF"))]

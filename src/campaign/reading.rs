@@ -18,13 +18,10 @@ pub struct Reading {
     #[cfg_attr(feature = "cli", arg(long))]
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with = "base_band")
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", conflicts_with = "base_band"))]
     pub rate: Option<f64>,
     /// Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56 times it
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub base_band: Option<f64>,
     /// Unit of the values, such as mm/s
     #[cfg_attr(feature = "cli", arg(long))]
@@ -47,7 +44,7 @@ pub struct Channel {
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub channel: Option<String>,
     /// Factor on the stored values; with a unit, to that unit
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR"))]
     pub calibration: Option<f64>,
 }
 

@@ -18,7 +18,7 @@ pub enum Model {
     Sweep(Asked<sweep::Keys>),
     /// The simplest model that is good enough for a scene, and why
     Choose(Asked<choose::Keys>),
-    /// Map regime and stability over two parameters; a map that was cut short in its folder is taken up again
+    /// Map regime and stability over two parameters
     Map(Asked<map::Keys>),
 }
 
@@ -42,7 +42,7 @@ impl Model {
                 Model::Response(typed) => (typed.keys.answer()?, &typed.out),
                 Model::Sweep(typed) => (typed.keys.answer()?, &typed.out),
                 Model::Choose(typed) => (typed.keys.answer()?, &typed.out),
-                Model::Map(typed) => (typed.keys.answer(typed.out.as_deref(), bar)?, &typed.out),
+                Model::Map(typed) => (typed.keys.answer(bar)?, &typed.out),
             })
         })?;
         print::answer(answer, out.as_deref(), json)

@@ -7,7 +7,6 @@ use crate::compare::precision::{Family, Results, Scene};
 use crate::error::{Error, Result};
 use crate::record::Finding;
 use crate::report::files;
-use clap::ValueEnum;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -15,9 +14,9 @@ pub struct Precision {
     /// Fewer settings, repeats, records and cycles, so rougher errors: seconds instead of minutes
     #[arg(long)]
     quick: bool,
-    /// Methods of this kind
-    #[arg(long, value_name = "KIND", default_value = "both")]
-    family: Kind,
+    /// Only the methods of this kind: models or estimators [default: both]
+    #[arg(long, value_name = "KIND", value_parser = crate::campaign::word::<Family>)]
+    family: Option<Family>,
     /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed, not asked
     #[arg(long)]
     failures: bool,
@@ -40,24 +39,6 @@ pub struct Precision {
     out: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Kind {
-    Models,
-    Estimators,
-    Both,
-}
-
-impl Kind {
-    /// Whether methods of this family are meant.
-    fn holds(self, family: Family) -> bool {
-        match self {
-            Kind::Models => family == Family::Models,
-            Kind::Estimators => family == Family::Estimators,
-            Kind::Both => true,
-        }
-    }
-}
-
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 
 impl Precision {
@@ -67,7 +48,7 @@ impl Precision {
             Some(path) => Results::from_path(path)?,
             None => self.measured(json)?,
         };
-        results.retain(|family| self.family.holds(family));
+        results.retain(|family| self.family.is_none_or(|only| only == family));
         let nothing = results.failures.is_empty();
         if nothing && (self.failures || results.scenes.is_empty()) {
             let missing = if self.failures { "failures" } else { "scenes" };
@@ -120,7 +101,7 @@ impl Precision {
                 bar.set_message(scene.to_owned());
                 bar.inc(1);
             };
-            for family in FAMILIES.into_iter().filter(|f| self.family.holds(*f)) {
+            for family in FAMILIES.into_iter().filter(|f| self.family.is_none_or(|only| only == *f)) {
                 results.measure(family, self.quick, self.failures, &mut tell)?;
             }
             Ok(results)

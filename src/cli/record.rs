@@ -1,7 +1,8 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
-use super::print;
+use super::convert::write_beside;
 use super::sweep::of_script;
+use super::{complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::{Answer, Source, drill, drop, frf, impacts, pulse, spectrum};
 use crate::campaign::{Channel, Reading};
@@ -9,11 +10,9 @@ use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
 use crate::measure::{Estimate, legacy};
 use crate::record::{Finding, Trace};
-use crate::report::Output;
 use crate::report::layout::table;
 use clap::Args;
 use serde_json::json;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Which record, how its file is read, and where results go.
@@ -53,7 +52,7 @@ pub struct Impacts {
 
 #[derive(Debug, Args)]
 pub struct Drill {
-    /// Write every impact with the speed of its turn, and beside it the velocity of every turn over the phase
+    /// Write the velocity of every turn over the phase into this file
     #[arg(long, value_name = "CSV")]
     each_cycle: Option<PathBuf>,
     #[command(flatten)]
@@ -213,40 +212,22 @@ impl Restitution {
 impl Drill {
     /// Prints speed, impacts and the average turn.
     pub fn run(&self, json: bool) -> Result<()> {
-        let Some(path) = &self.each_cycle else {
-            let each = &mut |_: &Cycle<'_>| Ok(());
-            let answer = self.of.by(json, |keys, source| keys.measure(source, each))?;
-            return self.of.record.print(answer, json);
+        let mut turns = String::new();
+        let mut each = |cycle: &Cycle<'_>| -> Result<()> {
+            if self.each_cycle.is_some() {
+                if turns.is_empty() {
+                    turns = cycles::head(cycle.velocity.len());
+                }
+                turns += &cycles::row(cycle);
+            }
+            Ok(())
         };
-        let named =
-            path.file_name().zip(path.file_stem()).map(|(n, s)| (n.to_string_lossy(), s.to_string_lossy()));
-        let (name, stem) = named
-            .ok_or_else(|| Error::usage("no file name for each cycle", "NAME.csv").setting("each_cycle"))?;
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        // Turns are written as they come, beside the table of impacts; a record that allows no answer leaves nothing.
-        let mut output = Output::set(folder)?;
-        let velocities = format!("{stem}_velocity.csv");
-        let mut turns = None;
-        let mut each = |cycle: &Cycle<'_>| {
-            let head = if turns.is_none() { cycles::head(cycle.velocity.len()) } else { String::new() };
-            let file = match &mut turns {
-                Some(file) => file,
-                none => none.insert(output.growing(&velocities)?),
-            };
-            let rows = head + &cycles::row(cycle);
-            file.write_all(rows.as_bytes())
-                .map_err(|e| Error::io("write", path.with_file_name(&velocities), e))
-        };
-        let answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
-        if let Some(mut file) = turns {
-            file.flush().map_err(|e| Error::io("write", path.with_file_name(&velocities), e))?;
+        let mut answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
+        if let Some(path) = &self.each_cycle {
+            let written = write_beside(path, turns)?.display().to_string();
+            complain::line(&format!("wrote {written}"));
+            answer.result.insert("each_cycle".to_owned(), written.into());
         }
-        if let Some((_, impacts)) = answer.files.iter().find(|(name, _)| name == "impacts.csv") {
-            output.write(&name, impacts)?;
-        }
-        output.commit()?;
-        let mut written = print::written(&answer, self.of.record.out.as_deref())?;
-        written.extend(output.written().iter().map(|name| folder.join(name).display().to_string()));
-        print::shown(answer, written, json)
+        self.of.record.print(answer, json)
     }
 }

@@ -32,7 +32,7 @@ pub struct Source {
     #[command(flatten)]
     stored: Stored,
     /// Lowest frequency looked at, in Hz [default: two lines or a quarter of the lowest excitation]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ")]
     fmin: Option<f64>,
 }
 
@@ -42,10 +42,10 @@ pub struct Taken {
     #[command(flatten)]
     sweep: Source,
     /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity to displacement]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i8).range(-2..=2))]
     integrate: Option<i8>,
     /// Lines on both sides of the excitation in which the peak is looked for
-    #[arg(long, value_name = "LINES", allow_negative_numbers = true, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "LINES", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     band: u16,
     /// Folder for figures as SVG and PNG, and tables as CSV
     #[arg(long, value_name = "DIR")]
@@ -57,7 +57,7 @@ pub struct Waterfall {
     #[command(flatten)]
     taken: Taken,
     /// Highest frequency drawn, in Hz [default: the base band]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ")]
     fmax: Option<f64>,
 }
 

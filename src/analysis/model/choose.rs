@@ -24,19 +24,13 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with_all = ["from", "to", "points"]))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", conflicts_with_all = ["from", "to", "points"]))]
     pub frequency: Option<f64>,
     /// Lowest excitation frequency in Hz of an axis
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "to")
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "to"))]
     pub from: Option<f64>,
     /// Highest excitation frequency in Hz of an axis
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "from")
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "from"))]
     pub to: Option<f64>,
     /// Number of frequencies of an axis
     #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 100))]
@@ -46,22 +40,13 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
     /// Part by which it may be off
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "PART", default_value_t = 0.02, allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", default_value_t = 0.02))]
     pub tolerance: f64,
     /// Noise floor of the measurement, in the unit of what is looked at: less than it does not matter
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "SIZE", default_value_t = 0.0, allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "SIZE", default_value_t = 0.0))]
     pub noise: f64,
     /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not relied on
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = 0.0))]
     pub gap_std: f64,
     /// Which way the frequency came, up or down, for where several motions are possible
     #[cfg_attr(feature = "cli", arg(long, value_name = "WAY", value_parser = crate::campaign::word::<Direction>))]

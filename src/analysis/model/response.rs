@@ -19,10 +19,10 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Lowest excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub from: f64,
     /// Highest excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub to: f64,
     /// Number of frequencies
     #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 400))]
@@ -31,7 +31,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(long, value_name = "Q", default_value_t = 1))]
     pub cycles: u32,
     /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub gap_std: Option<f64>,
 }
 

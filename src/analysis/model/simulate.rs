@@ -20,7 +20,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub frequency: Option<f64>,
     /// Law of the contact: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
     #[cfg_attr(feature = "cli", arg(long, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
@@ -38,13 +38,10 @@ pub struct Keys {
     )]
     pub initial: Vec<f64>,
     /// Phase of the excitation's cycle at the start, in rad: 0 is the crest of a sine and the beginning of a pulse
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "RAD", default_value_t = 0.0))]
     pub phase: f64,
     /// Approach speed in m/s below which an impact counts as grazing
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", allow_negative_numbers = true, default_value_t = crate::model::simulate::GRAZING_SPEED))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", default_value_t = crate::model::simulate::GRAZING_SPEED))]
     pub grazing: f64,
 }
 

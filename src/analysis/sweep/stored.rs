@@ -17,7 +17,7 @@ pub struct Stored {
     #[cfg_attr(feature = "cli", arg(long))]
     pub unit: Option<String>,
     /// Factor on the stored responses
-    #[cfg_attr(feature = "cli", arg(long, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(long))]
     pub calibration: Option<f64>,
     /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown [default: hann, assumed]
     #[cfg_attr(feature = "cli", arg(long))]
@@ -26,7 +26,7 @@ pub struct Stored {
     #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// How often the analyser integrated before it stored, 0 to 2 [default: once for a displacement]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u8).range(0..=2)))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=2)))]
     pub analyser_integrated: Option<u8>,
 }
 

@@ -20,7 +20,7 @@ pub struct Change {
     #[arg(long, value_name = "HZ")]
     high_pass: Option<f64>,
     /// Integrations in time: 1 takes velocity to displacement, −1 to acceleration
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i8).range(-2..=2))]
     integrate: i8,
     /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a differentiation
     #[arg(long, value_name = "HZ", requires = "integrate")]
