@@ -96,10 +96,23 @@ pub struct Keys {
     pub exposure: Option<f64>,
 }
 
-/// A key that has no default.
+/// The value of a key that has no default.
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
-    let lacks = || Error::usage(format!("a drill needs {key}"), "a value: there is no default").setting(key);
-    value.ok_or_else(lacks)
+    let expected = match key {
+        "velocity" => "the channel of the velocity, by name or number",
+        "reference" => "the channel of the crank pulse, by name or number",
+        "beam_angle" => "the angle of the laser beam in degrees",
+        "from" => "normal or axis: what the beam angle is counted from",
+        "pulses_per_turn" => "the number of reference pulses in a turn of the crank",
+        "edge" => "rising or falling: the pulse edge that counts",
+        "sensitivity" => {
+            "m/s for one unit of the velocity channel: the file does not say that it is a velocity"
+        }
+        _ => "m/s² for one unit of the handle channels: the file does not say that they are accelerations",
+    };
+    value.ok_or_else(|| {
+        Error::usage(format!("{} is not stated", key.replace('_', " ")), expected).setting(key)
+    })
 }
 
 /// A drill names its channels, and what they measure, by keys of its own.

@@ -73,7 +73,7 @@ impl Keys {
         let (before, after) = (self.before.is_some(), !self.after.is_empty() || self.after2.is_some());
         let one_of = "one of them: the first of intervals is that after the fall";
         let velocities = "after = V1 and V2, or with masses after = V1 or after2 = V2";
-        let wrong: [(bool, &'static str, &str, &str); 8] = [
+        let wrong: [(bool, &'static str, &str, &str); 9] = [
             (interval && intervals, "intervals", "both interval and intervals", one_of),
             (file && interval, "interval", "a file and an interval", "one of them"),
             (file && intervals, "intervals", "a file and intervals", "one of them"),
@@ -86,10 +86,16 @@ impl Keys {
             (after && !before, "after", "velocities after the impact without before", "both"),
             (self.velocity_std.is_some() && !before, "velocity_std", "velocity_std without before", "both"),
             (
+                !file && !interval && !intervals && !before && self.height.is_some(),
+                "interval",
+                "a height and no time",
+                "the time from first to second impact, or the trace files of the drops",
+            ),
+            (
                 !file && !interval && !intervals && !before,
                 "height",
-                "nothing that was measured",
-                "a file, an interval and a height, intervals, or before and after",
+                "no measured value",
+                "trace files, height and interval, intervals, or velocities before and after",
             ),
             (before && !after, "before", "before without velocities after the impact", velocities),
         ];

@@ -126,7 +126,9 @@ impl Keys {
         let mut traces =
             reader.stream_chosen(source.path, reference, channel.channel.as_deref(), channel.calibration)?;
         let all = traces.frames();
-        spectral(&mut traces, &options, |done| (source.progress)(done, all))
+        let found = spectral(&mut traces, &options, |done| (source.progress)(done, all))?;
+        source.contradicted(&found.findings)?;
+        Ok(found)
     }
 
     /// The lines of a record, with their figure, tables and files.

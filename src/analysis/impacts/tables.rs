@@ -11,18 +11,18 @@ pub fn impacts(name: &str, found: &Impacts) -> Table {
         ("impacts", ""),
         ("interval", "s"),
         ("frequency", "Hz"),
-        ("median", "s"),
-        ("spread", "s"),
+        ("median interval", "s"),
+        ("interval spread", "s"),
         ("missed", ""),
-        ("doubled", ""),
-        ("per cycle", ""),
+        ("double", ""),
+        ("impacts/cycles", ""),
+        ("rhythm", ""),
     ];
-    let per_cycle = match (found.per_cycle, found.regular) {
-        (Some(p), _) => format!("{}/{}", p.impacts, p.cycles),
-        (None, false) if found.n == 2 => "not known".to_owned(),
-        (None, false) if found.beat.is_some() => "drifts".to_owned(),
-        (None, false) => "irregular".to_owned(),
-        (None, true) => "regular".to_owned(),
+    let rhythm = match found.regular {
+        true => "regular",
+        false if found.n == 2 => "unknown (2 impacts)",
+        false if found.beat.is_some() => "drifts against the excitation",
+        false => "irregular",
     };
     headed("Impacts", &columns).row([
         Cell::from(name),
@@ -33,8 +33,10 @@ pub fn impacts(name: &str, found: &Impacts) -> Table {
         Cell::from(found.spread),
         Cell::from(found.missed),
         Cell::from(found.doubled),
-        Cell::from(per_cycle),
+        Cell::from(found.per_cycle.map(|p| format!("{}/{}", p.impacts, p.cycles))),
+        Cell::from(rhythm),
     ])
+    .note("Impacts/cycles needs the excitation frequency. Missed: intervals of several periods. Double: a second impact within half an interval.")
 }
 
 /// Every impact: time, height, phase.

@@ -101,9 +101,9 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
         "Why",
         fates(choice),
         &[
-            ("rungs", "", &|(names, ..)| names.as_str().into()),
-            ("", "", &|(_, fate, _)| (*fate).into()),
-            ("because", "", &|(.., why)| why.as_str().into()),
+            ("model", "", &|(names, ..)| names.as_str().into()),
+            ("result", "", &|(_, fate, _)| (*fate).into()),
+            ("reason", "", &|(.., why)| why.as_str().into()),
         ],
     ));
     Ok(())
@@ -203,14 +203,14 @@ fn answered(mut table: Table, question: &Question, answers: impl Iterator<Item =
 fn rungs(choice: &Choice, question: &Question) -> Table {
     let worst = |r: &Rung| r.changes.iter().copied().max_by(|a, b| a.change.abs().total_cmp(&b.change.abs()));
     let found = table(
-        "Rungs",
+        "Models compared",
         &choice.rungs,
         &[
-            ("rung", "", &|r| r.model.name().into()),
+            ("model", "", &|r| r.model.name().into()),
             ("valid", "", &|r| r.valid.into()),
-            ("moves by", "%", &|r| percent(worst(r).map(|c| c.change))),
-            ("at", "", &|r| worst(r).map(|c| c.at.name()).into()),
-            ("good enough", "", &|r| r.sufficient.into()),
+            ("answer changes by", "%", &|r| percent(worst(r).map(|c| c.change))),
+            ("against model", "", &|r| worst(r).map(|c| c.at.name()).into()),
+            ("adequate", "", &|r| r.sufficient.into()),
             ("chosen", "", &|r| (choice.chosen == Some(r.model)).into()),
             ("time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
         ],
@@ -226,8 +226,8 @@ fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
         &[
             ("contact stiffness in N/m", "", &|r| r.stiffness.into()),
             ("in contact", "% of the cycle", &|r| percent(Some(r.share))),
-            ("moves by", "%", &|r| percent(Some(r.change))),
-            ("within", "", &|r| r.enough.into()),
+            ("answer changes by", "%", &|r| percent(Some(r.change))),
+            ("within the tolerance", "", &|r| r.enough.into()),
         ],
     );
     answered(found, question, rows.iter().map(|r| Some(r.answer)))
@@ -249,15 +249,18 @@ fn stretches(stretches: &[Stretch]) -> Table {
         &[
             ("from", "Hz", &|s| s.from.into()),
             ("to", "Hz", &|s| s.to.into()),
-            ("points", "", &|s| s.points.into()),
-            ("chosen", "", &|s| s.chosen.map(Model::name).into()),
+            ("frequencies tried", "", &|s| s.points.into()),
+            ("simplest model", "", &|s| s.chosen.map(Model::name).into()),
             ("needs", "", &|s| needed(&s.needs)),
-            ("moves at most by", "%", &|s| moved(s.audit)),
-            ("at rung", "", &|s| s.audit.map(|a| a.at.name()).into()),
-            ("at", "Hz", &|s| s.worst_at.into()),
+            ("answer changes by up to", "%", &|s| moved(s.audit)),
+            ("against model", "", &|s| s.audit.map(|a| a.at.name()).into()),
+            ("largest change at", "Hz", &|s| s.worst_at.into()),
         ],
     )
 }
+
+/// What the columns of a campaign's table mean.
+const TRIED: &str = "The models are compared at evenly spaced frequencies, not at the measured points. No model (–): state what it needs.";
 
 /// Which model is good enough where along the sweeps of a campaign.
 pub(crate) fn climbed(overlay: &Overlay) -> Table {
@@ -268,18 +271,18 @@ pub(crate) fn climbed(overlay: &Overlay) -> Table {
             all.rows.push(row);
         }
     }
-    all
+    all.note(TRIED)
 }
 
 /// Each rung over the whole axis.
 fn summaries(survey: &Survey) -> Table {
     table(
-        "Rungs",
+        "Models compared",
         &survey.rungs,
         &[
-            ("rung", "", &|r| r.model.name().into()),
+            ("model", "", &|r| r.model.name().into()),
             ("valid everywhere", "", &|r| r.valid.into()),
-            ("moves at most by", "%", &|r| percent(r.error)),
+            ("answer changes by up to", "%", &|r| percent(r.error)),
             ("median time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
             ("valid at", "points", &|r| r.valid_at.into()),
             ("chosen at", "points", &|r| r.chosen_at.into()),
@@ -296,8 +299,8 @@ fn chosen(points: &[Choice], question: &Question) -> Table {
             ("frequency", "Hz", &|c| c.frequency.into()),
             ("chosen", "", &|c| c.chosen.map(Model::name).into()),
             ("needs", "", &|c| needed(&c.needs)),
-            ("moves by", "%", &|c| moved(c.audit)),
-            ("at rung", "", &|c| c.audit.map(|a| a.at.name()).into()),
+            ("answer changes by", "%", &|c| moved(c.audit)),
+            ("against model", "", &|c| c.audit.map(|a| a.at.name()).into()),
         ],
     );
     answered(found, question, points.iter().map(Choice::answer))
