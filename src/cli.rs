@@ -12,7 +12,9 @@ mod sweep;
 
 use crate::error::Result;
 use crate::report::words::Voice;
-use clap::{Command as Typed, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Arg, Command as Typed, CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::any::TypeId;
+use std::path::PathBuf;
 
 /// Measure impacting machines: from analyser files to answers, each with its uncertainty.
 #[derive(Debug, Parser)]
@@ -63,7 +65,7 @@ enum Command {
 /// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
 /// unreadable input.
 pub fn main() -> u8 {
-    let typed = with_negatives(Args::command()).try_get_matches().and_then(|m| Args::from_arg_matches(&m));
+    let typed = options(Args::command()).try_get_matches().and_then(|m| Args::from_arg_matches(&m));
     let args = match typed {
         Ok(args) => args,
         // What could not be parsed may have asked for JSON all the same.
@@ -80,13 +82,40 @@ pub fn main() -> u8 {
     dispatch(&args).unwrap_or_else(|error| complain::error(&error, voice, args.json))
 }
 
-/// Every value may be a negative number: whether it makes sense, its check says better than a complaint about an unknown option.
-fn with_negatives(command: Typed) -> Typed {
-    let negative = |arg: clap::Arg| {
+/// Makes options of the fields of all keys, in their order: each has the name of its field and, where it names no other, a value of the kind
+/// that its type says. A negative number is taken: whether it makes sense, its check says better than a complaint about an unknown option.
+fn options(command: Typed) -> Typed {
+    let mut order = 0;
+    let option = |arg: Arg| {
+        order += 1;
         let takes = arg.get_action().takes_values();
-        arg.allow_negative_numbers(takes)
+        let arg = arg.allow_negative_numbers(takes).display_order(order);
+        if arg.get_index().is_some() {
+            return arg;
+        }
+        let id = arg.get_id().to_string();
+        let long = arg.get_long().map_or_else(|| id.replace('_', "-"), str::to_owned);
+        let own = arg.get_value_names().is_none_or(|names| names[0] != id.to_uppercase().as_str());
+        let kind = kind(&arg);
+        let arg = arg.long(long);
+        if takes && !own { arg.value_name(kind) } else { arg }
     };
-    command.mut_args(negative).mut_subcommands(with_negatives)
+    command.mut_args(option).mut_subcommands(options)
+}
+
+/// The kind of an option's value.
+fn kind(arg: &Arg) -> &'static str {
+    let kinds = [
+        (TypeId::of::<f64>(), "NUMBER"),
+        (TypeId::of::<PathBuf>(), "FILE"),
+        (TypeId::of::<usize>(), "N"),
+        (TypeId::of::<u32>(), "N"),
+        (TypeId::of::<u16>(), "N"),
+        (TypeId::of::<u8>(), "N"),
+        (TypeId::of::<i8>(), "N"),
+    ];
+    let is = arg.get_value_parser().type_id();
+    kinds.into_iter().find(|(id, _)| is == *id).map_or("NAME", |(_, name)| name)
 }
 
 fn dispatch(args: &Args) -> Result<u8> {

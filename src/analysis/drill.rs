@@ -23,76 +23,57 @@ use vibro_record::units::Quantity;
 pub struct Keys {
     /// Velocity channel, by name or by number from 1
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub velocity: Option<String>,
     /// Channel with the pulses of the crank
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub reference: Option<String>,
     /// Velocity along the beam in m/s for one unit of the channel [default: 1 where the file says it is a velocity]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR"))]
     pub sensitivity: Option<f64>,
     /// Angle of the beam in degrees
-    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG"))]
     pub beam_angle: Option<f64>,
     /// From where that angle is counted: the normal to the motion, or its axis
-    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<From>))]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<From>))]
     pub from: Option<From>,
     /// Pulses of the reference in a turn
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub pulses_per_turn: Option<usize>,
     /// Edge of the pulse that counts: rising or falling
-    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Edge>))]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<Edge>))]
     pub edge: Option<Edge>,
     /// Level of the edge, in the unit of the reference [default: the middle of its two levels]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "VALUE"))]
     pub level: Option<f64>,
     /// Mass that is measured, in kg: gives energies
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
     pub mass: Option<f64>,
     /// Mass that it strikes, in kg, at rest before: gives the restitution
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
     pub struck_mass: Option<f64>,
     /// Longest contact in s [default: 0.0002]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub contact: Option<f64>,
     /// Duration in s of the fits before and after a contact [default: 0.0005]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub fit: Option<f64>,
     /// Longest drop-out in s that is bridged [default: 0.002]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub longest_dropout: Option<f64>,
     /// Channel delay to remove, in s: the velocity was recorded later than the reference [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub delay: Option<f64>,
     /// Phases of the average [default: 720]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub points: Option<usize>,
     /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: what the phases of the
     /// average can show]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed))]
+    #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Time constant in s of exponential smoothing instead of the low-pass
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub smoothing: Option<f64>,
     /// Highest frequency in Hz that the instrument passes
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub instrument: Option<f64>,
     /// Record of the velocity channel without motion: the noise floor
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub noise: Option<PathBuf>,
     /// Margin in dB by which motion must stand above the noise [default: 10]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "DB"))]
     pub margin: Option<f64>,
     /// Acceleration channel of a handle, up to three times: hand-arm exposure
     #[serde(deserialize_with = "channels")]
     #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub handle: Vec<String>,
     /// Acceleration in m/s² for one unit of these channels
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR"))]
     pub handle_sensitivity: Option<f64>,
     /// Hours a day of that exposure: A(8)
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HOURS"))]
     pub exposure: Option<f64>,
 }
 

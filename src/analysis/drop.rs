@@ -17,49 +17,38 @@ use serde::Deserialize;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Height of the fall in m; without it, a train of bounces
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub height: Option<f64>,
     /// Its standard uncertainty in m
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub height_std: Option<f64>,
     /// Time from first to second impact in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub interval: Option<f64>,
     /// Standard uncertainty of the interval in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub interval_std: Option<f64>,
     /// Times between successive impacts of one train of bounces, in s
     #[cfg_attr(feature = "cli", arg(long, value_name = "A,B,C", value_delimiter = ','))]
     pub intervals: Vec<f64>,
     /// Acceleration of free fall in m/s² [default: 9.80665]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²"))]
     pub gravity: Option<f64>,
     /// Its standard uncertainty in m/s²
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²"))]
     pub gravity_std: Option<f64>,
     /// Smallest impact counted, as a fraction of the median height [default: 0.02]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FRACTION"))]
     pub threshold: Option<f64>,
     /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub refractory: Option<f64>,
     /// Leave mains hum in the trace
-    #[cfg_attr(feature = "cli", arg(long))]
     pub keep_hum: bool,
     /// Masses in kg: the striking and the struck one
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
     pub masses: Option<(f64, f64)>,
     /// Velocities of both masses before the impact, in m/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_parser = crate::campaign::two::<','>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "V1,V2", value_parser = crate::campaign::two::<','>))]
     pub before: Option<(f64, f64)>,
     /// Velocities of both masses after it, in m/s; of mass 1 alone where masses are given
     #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_delimiter = ','))]
     pub after: Vec<f64>,
     /// Velocity of mass 2 after it, in m/s, where that of mass 1 is not known and masses are given
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V2"))]
     pub after2: Option<f64>,
     /// Standard uncertainty of each velocity, in m/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S"))]
     pub velocity_std: Option<f64>,
 }
 

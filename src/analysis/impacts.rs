@@ -18,29 +18,22 @@ use std::path::PathBuf;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Frequency of the excitation in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub excitation: Option<f64>,
     /// Trigger channel of the same file, one rising edge per excitation cycle, by name or by number from 1
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
     /// Smallest impact counted, as a fraction of the median height [default: 0.125]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FRACTION"))]
     pub threshold: Option<f64>,
     /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub refractory: Option<f64>,
     /// Leave mains hum in the trace
-    #[cfg_attr(feature = "cli", arg(long))]
     pub keep_hum: bool,
     /// Record of one pulse of the shape that all have: each impact is matched to it
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub shape: Option<PathBuf>,
     /// Sampling rate of that record in Hz, where its file does not state it
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "shape"))]
+    #[cfg_attr(feature = "cli", arg(requires = "shape"))]
     pub shape_rate: Option<f64>,
     /// Take the count as right: no impact is missed or doubled, however uneven the intervals
-    #[cfg_attr(feature = "cli", arg(long))]
     pub none_missed: bool,
 }
 

@@ -21,18 +21,17 @@ use std::path::PathBuf;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct SceneKeys {
     /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, tables excitation, contact, buffer [default: the thesis' rig]
+    #[cfg_attr(feature = "cli", arg(index = 1))]
     pub rig: Option<PathBuf>,
     /// Set a key of the rig, tables with a dot: gap=0.5e-3, contact.stiffness=1e5
     #[cfg_attr(feature = "cli", arg(long = "set", value_name = "KEY=VALUE"))]
     pub set: Vec<String>,
     /// Force in N: amplitude of a sine, height of a pulse
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub force: Option<f64>,
     /// Impulse in N s, once a cycle, instead of a sine force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NS", conflicts_with_all = ["force", "width"]))]
+    #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["force", "width"]))]
     pub impulse: Option<f64>,
     /// Width in s of a rectangular pulse, once a cycle, instead of a sine force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub width: Option<f64>,
 }
 

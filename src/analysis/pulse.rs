@@ -19,27 +19,21 @@ pub struct Keys {
     /// Time from the onset to the largest force, in s: instead of a file
     #[cfg_attr(
         feature = "cli",
-        arg(
-            long,
-            value_name = "S",
+        arg(value_name = "S",
             conflicts_with_all = crate::campaign::Channel::KEYS.into_iter().chain(crate::campaign::Reading::KEYS)
         )
     )]
     pub time_to_peak: Option<f64>,
     /// Time from the onset to the end of the contact, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub duration: Option<f64>,
     /// Standard uncertainty of each of the two times, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub std: Option<f64>,
     /// Mass that is decelerated, in kg, for stiffness and damping
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
     pub mass: Option<f64>,
     /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no uncertainty]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed))]
+    #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Order of that low-pass, 1 to 10
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub order: Option<usize>,
 }
 

@@ -19,53 +19,42 @@ use serde::Deserialize;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// One transform of the whole record, fft, or the average over segments, welch [default: welch; fft with tones]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "METHOD", value_parser = crate::campaign::word::<Method>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "METHOD", value_parser = crate::campaign::word::<Method>))]
     pub method: Option<Method>,
     /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub tones: Option<usize>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
     pub segment: Option<usize>,
     /// Part of a segment that it shares with the next [default: 0.5]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
     pub overlap: Option<f64>,
     /// Taken out before the window: mean or none [default: mean with welch or an integration, else none]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
     pub detrend: Option<Detrend>,
     /// Window: hann, rectangular, hamming, blackman, blackman-harris, flat-top [default: hann]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
     /// What a line means: peak, rms, power or psd [default: peak]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub integrate: Option<i8>,
     /// Lowest frequency given, in Hz [default: two lines where integrated, else 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub fmin: Option<f64>,
     /// Channel of the excitation: gives the frequency response function from it
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
     /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
     /// The excitation is a hammer: one record a blow, of the samples of a segment, from the level before it
-    #[cfg_attr(feature = "cli", arg(long))]
     pub hammer: bool,
     /// Width of the force window in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub force_window: Option<f64>,
     /// What an exponential window leaves of the response at the end of a record, e.g. 0.01
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
     pub left_at_end: Option<f64>,
     /// Channel delay to remove, in s: the channel was recorded later than the reference
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub delay: Option<f64>,
     /// Give levels in decibels over this reference, in SI units of the channel: 1, or 1e-6 for 1 µm/s²
-    #[cfg_attr(feature = "cli", arg(long, value_name = "REF"))]
     pub decibel: Option<f64>,
 }
 

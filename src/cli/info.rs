@@ -13,7 +13,7 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Info {
     /// Measurement files
-    #[arg(required = true)]
+    #[arg(index = 1, required = true)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,

@@ -28,7 +28,7 @@ pub struct Asked<K: Args> {
     #[command(flatten)]
     keys: K,
     /// Folder for figures as SVG and PNG, and tables as CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 

@@ -12,16 +12,14 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Precision {
     /// Fewer settings, repeats, records and cycles, so rougher errors: seconds instead of minutes
-    #[arg(long)]
     quick: bool,
     /// Only the methods of this kind: models or estimators [default: both]
-    #[arg(long, value_name = "KIND", value_parser = crate::campaign::word::<Family>)]
+    #[arg(value_name = "KIND", value_parser = crate::campaign::word::<Family>)]
     family: Option<Family>,
     /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed, not asked
-    #[arg(long)]
     failures: bool,
     /// Measure nothing: take scenes and failures from what `vibro precision --json` printed into this file
-    #[arg(long, value_name = "FILE", conflicts_with = "quick")]
+    #[arg(conflicts_with = "quick")]
     from: Option<PathBuf>,
     /// Add the lines that another program has measured and written into this file
     ///
@@ -35,7 +33,7 @@ pub struct Precision {
     #[arg(long, value_name = "FILE")]
     add: Vec<PathBuf>,
     /// Folder for charts as SVG and PNG, and tables as CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 

@@ -23,7 +23,7 @@ pub struct Record {
     #[command(flatten)]
     reading: Reading,
     /// Folder for figures as SVG and PNG, and tables as CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
@@ -31,6 +31,7 @@ pub struct Record {
 #[derive(Debug, Args)]
 pub struct Measured<K: Args> {
     /// Measurement file
+    #[arg(index = 1)]
     file: PathBuf,
     #[command(flatten)]
     keys: K,
@@ -44,7 +45,6 @@ pub type Modal = Measured<frf::Keys>;
 #[derive(Debug, Args)]
 pub struct Impacts {
     /// Print what the thesis' script timeav printed, mistakes included
-    #[arg(long)]
     legacy: bool,
     #[command(flatten)]
     of: Measured<impacts::Keys>,
@@ -53,7 +53,6 @@ pub struct Impacts {
 #[derive(Debug, Args)]
 pub struct Drill {
     /// Write the velocity of every turn over the phase into this file
-    #[arg(long, value_name = "CSV")]
     each_cycle: Option<PathBuf>,
     #[command(flatten)]
     of: Measured<drill::Keys>,
@@ -62,6 +61,7 @@ pub struct Drill {
 #[derive(Debug, Args)]
 pub struct Pulse {
     /// Record of the acceleration (or force) of a contact
+    #[arg(index = 1)]
     file: Option<PathBuf>,
     #[command(flatten)]
     keys: pulse::Keys,
@@ -72,6 +72,7 @@ pub struct Pulse {
 #[derive(Debug, Args)]
 pub struct Restitution {
     /// Traces of drops or of trains of bounces, one a drop
+    #[arg(index = 1)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     keys: drop::Keys,

@@ -24,32 +24,32 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", conflicts_with_all = ["from", "to", "points"]))]
+    #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["from", "to", "points"]))]
     pub frequency: Option<f64>,
     /// Lowest excitation frequency in Hz of an axis
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "to"))]
+    #[cfg_attr(feature = "cli", arg(requires = "to"))]
     pub from: Option<f64>,
     /// Highest excitation frequency in Hz of an axis
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "from"))]
+    #[cfg_attr(feature = "cli", arg(requires = "from"))]
     pub to: Option<f64>,
     /// Number of frequencies of an axis
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 100))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub points: usize,
     /// What is looked at: fundamental, the amplitude of both masses at the excitation frequency; peak, half of peak-to-peak; impact-speed;
     /// impulse
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
     /// Part by which it may be off
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", default_value_t = 0.02))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.02))]
     pub tolerance: f64,
     /// Noise floor of the measurement, in the unit of what is looked at: less than it does not matter
-    #[cfg_attr(feature = "cli", arg(long, value_name = "SIZE", default_value_t = 0.0))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub noise: f64,
     /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not relied on
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = 0.0))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub gap_std: f64,
     /// Which way the frequency came, up or down, for where several motions are possible
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WAY", value_parser = crate::campaign::word::<Direction>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Direction>))]
     pub history: Option<Direction>,
 }
 

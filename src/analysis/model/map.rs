@@ -16,16 +16,13 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Parameter across: one of m1 m2 k1 k2 c1 c2 gap restitution frequency force impulse width, e.g. frequency:3:14:120
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME:LOW:HIGH:N"))]
     pub x: String,
     /// Parameter upwards, as x
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME:LOW:HIGH:N"))]
     pub y: String,
     /// Excitation frequency in Hz, where it is not varied
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub frequency: Option<f64>,
     /// Cycles a cell, from rest; a cell that has settled ends before
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 200))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 200))]
     pub cycles: u32,
 }
 

@@ -18,13 +18,11 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub frequency: Option<f64>,
     /// Cycles of the excitation from impact to impact
-    #[cfg_attr(feature = "cli", arg(long, value_name = "Q", default_value_t = 1))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
     pub cycles: u32,
     /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub gap_std: Option<f64>,
 }
 

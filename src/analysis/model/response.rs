@@ -19,19 +19,16 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Lowest excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub from: f64,
     /// Highest excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub to: f64,
     /// Number of frequencies
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 400))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 400))]
     pub points: usize,
     /// Cycles of the excitation from impact to impact
-    #[cfg_attr(feature = "cli", arg(long, value_name = "Q", default_value_t = 1))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
     pub cycles: u32,
     /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub gap_std: Option<f64>,
 }
 

@@ -23,38 +23,35 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// What is swept: the excitation frequency, or force, the size of the force or of the impulse
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
     pub over: Over,
     /// Lower end in Hz, in N (N s for impulses) over the force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "LOW"))]
     pub from: f64,
     /// Upper end
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HIGH"))]
     pub to: f64,
     /// Excitation frequency in Hz of a sweep of the force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub frequency: Option<f64>,
     /// Law of the contact: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
-    #[cfg_attr(feature = "cli", arg(long, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
     /// Direction: up, down, both
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WAY", value_parser = crate::campaign::word::<Way>, default_value = "both"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Way>, default_value = "both"))]
     pub direction: Way,
     /// Change the frequency continuously by this many Hz/s, instead of in steps
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ/S", conflicts_with_all = ["settle", "measure"]))]
+    #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["settle", "measure"]))]
     pub rate: Option<f64>,
     /// Points: steps of a stepped sweep, readings of a continuous one
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 221))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 221))]
     pub steps: usize,
     /// Cycles that pass at each step before it is read
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CYCLES", default_value_t = 100))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub settle: u32,
     /// Cycles read at each step
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CYCLES", default_value_t = 12))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 12))]
     pub measure: u32,
     /// What is read of both masses: fundamental, the amplitude at the excitation frequency; peak, half of peak-to-peak; rms, a running RMS
     /// through a low-pass of 10 rad/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
 }
 
