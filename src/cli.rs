@@ -29,21 +29,21 @@ struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Say what is in a file
+    /// List the records of a file: channels, units, sampling rate
     Info(info::Info),
-    /// Rewrite a file as UFF-58, CSV, WAV or NPY, chosen by the ending of OUT
+    /// Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT
     Convert(convert::Convert),
-    /// Give the spectrum of a channel, or the frequency response function of two
+    /// Spectrum of a channel, or frequency response function between two
     Spectrum(record::Spectrum),
-    /// Find the excitation frequency of every point of a sweep
+    /// Excitation frequency of every point of a sweep
     Excitation(sweep::Excitation),
-    /// Draw all response spectra of a sweep as a waterfall
+    /// Waterfall of all response spectra of a sweep
     Waterfall(sweep::Waterfall),
-    /// Take the response at the excitation, with resonances and jumps
+    /// Response of a sweep at the excitation frequency, with resonances and jumps
     Response(sweep::Taken),
-    /// Measure speed, impacts and the average turn of a hammer drill
+    /// Speed, impacts and average turn of a hammer drill
     Drill(Box<record::Drill>),
-    /// Find the impacts in a contact trace: interval, frequency, impacts per cycle
+    /// Impacts in a contact signal: interval, frequency, impacts per cycle
     Impacts(record::Impacts),
     /// Coefficient of restitution from drops, bounces or velocities, every method side by side
     Restitution(record::Restitution),
@@ -51,14 +51,14 @@ enum Command {
     Modal(record::Modal),
     /// Damping ratio, frequency and restitution of a contact from its pulse
     Pulse(record::Pulse),
-    /// What the motion of a rig should be: orbits with their verdicts, simulations, sweeps
+    /// Model of a rig: periodic motions, simulation, sweep, map, choice of a model
     #[command(subcommand)]
     Model(Box<model::Model>),
-    /// Overlay a campaign's measured responses on the model's prediction
+    /// Compare the measured responses of a campaign with the model; fit parameters of the rig
     Compare(campaign::Compare),
-    /// Speed against accuracy of every method on scenes with a known truth, and where each breaks
+    /// Speed and accuracy of every method on scenes with a known truth
     Precision(precision::Precision),
-    /// Do all that a campaign asks for: results, tables, figures, report
+    /// Run a campaign: results, tables, figures, report
     Run(campaign::Run),
 }
 

@@ -31,7 +31,7 @@ pub struct Keys {
     pub sensitivity: Option<f64>,
     /// Angle of the beam in degrees
     pub beam_angle: Option<f64>,
-    /// From where that angle is counted: the normal to the motion, or its axis
+    /// What the beam angle is counted from: normal (to the motion) or axis (of the motion)
     #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<From>))]
     pub from: Option<From>,
     /// Pulses of the reference in a turn
@@ -39,11 +39,11 @@ pub struct Keys {
     /// Edge of the pulse that counts: rising or falling
     #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<Edge>))]
     pub edge: Option<Edge>,
-    /// Level of the edge, in the unit of the reference [default: the middle of its two levels]
+    /// Trigger level of the edge, in the unit of the reference [default: the middle of its two levels]
     pub level: Option<f64>,
-    /// Mass that is measured, in kg: gives energies
+    /// Measured mass in kg, for the energies
     pub mass: Option<f64>,
-    /// Mass that it strikes, in kg, at rest before: gives the restitution
+    /// Struck mass in kg, at rest before the impact, for the restitution
     pub struck_mass: Option<f64>,
     /// Longest contact in s [default: 0.0002]
     pub contact: Option<f64>,
@@ -53,7 +53,7 @@ pub struct Keys {
     pub longest_dropout: Option<f64>,
     /// Channel delay to remove, in s: the velocity was recorded later than the reference [default: 0]
     pub delay: Option<f64>,
-    /// Phases of the average [default: 720]
+    /// Points of the average turn [default: 720]
     pub points: Option<usize>,
     /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: what the phases of the
     /// average can show]
@@ -61,11 +61,11 @@ pub struct Keys {
     pub low_pass: Option<LowPass>,
     /// Time constant in s of exponential smoothing instead of the low-pass
     pub smoothing: Option<f64>,
-    /// Highest frequency in Hz that the instrument passes
+    /// Bandwidth of the instrument in Hz
     pub instrument: Option<f64>,
     /// Record of the velocity channel without motion: the noise floor
     pub noise: Option<PathBuf>,
-    /// Margin in dB by which motion must stand above the noise [default: 10]
+    /// Margin in dB of the motion above the noise [default: 10]
     pub margin: Option<f64>,
     /// Acceleration channel of a handle, up to three times: hand-arm exposure
     #[serde(deserialize_with = "channels")]

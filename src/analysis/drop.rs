@@ -16,7 +16,7 @@ use serde::Deserialize;
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
-    /// Height of the fall in m; without it, a train of bounces
+    /// Drop height in m; not needed for a train of bounces
     pub height: Option<f64>,
     /// Its standard uncertainty in m
     pub height_std: Option<f64>,
@@ -35,7 +35,7 @@ pub struct Keys {
     pub threshold: Option<f64>,
     /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
     pub refractory: Option<f64>,
-    /// Leave mains hum in the trace
+    /// Do not remove mains hum
     pub keep_hum: bool,
     /// Masses in kg: the striking and the struck one
     #[cfg_attr(feature = "cli", arg(value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]

@@ -27,19 +27,19 @@ pub struct Keys {
     pub mass: Option<f64>,
     /// File with the coherence of the same lines [default: a coherence in the file]
     pub coherence: Option<PathBuf>,
-    /// Lines of a lower coherence are left out [default: 0.5]
+    /// Lines with a lower coherence are left out [default: 0.5]
     pub least_coherence: Option<f64>,
-    /// Channel of the excitation: the function is computed from it to the channel
+    /// Channel of the excitation in a time record: the frequency response function is computed first
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
-    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
     pub segment: Option<usize>,
-    /// Part of a segment that it shares with the next [default: 0.5]
+    /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
-    /// Taken out of a segment before the window: mean or none [default: mean]
+    /// Removed from a segment before the window: mean or none [default: mean]
     #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
     pub detrend: Option<Detrend>,
     /// Window of a segment [default: hann]
@@ -49,11 +49,11 @@ pub struct Keys {
     pub integrate: Option<i8>,
     /// Lowest frequency in Hz [default: two lines where integrated, else 0]
     pub fmin: Option<f64>,
-    /// The excitation is a hammer: one record a blow
+    /// Hammer test: one segment for each blow
     pub hammer: bool,
     /// Width of the force window in s
     pub force_window: Option<f64>,
-    /// What an exponential window leaves of the response at the end of a record
+    /// Value of the exponential window at the end of a segment
     pub left_at_end: Option<f64>,
     /// Channel delay to remove, in s
     pub delay: Option<f64>,

@@ -26,14 +26,14 @@ pub struct Keys {
     pub threshold: Option<f64>,
     /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
     pub refractory: Option<f64>,
-    /// Leave mains hum in the trace
+    /// Do not remove mains hum
     pub keep_hum: bool,
-    /// Record of one pulse of the shape that all have: each impact is matched to it
+    /// Record of one pulse: each impact is matched to its shape
     pub shape: Option<PathBuf>,
     /// Sampling rate of that record in Hz, where its file does not state it
     #[cfg_attr(feature = "cli", arg(requires = "shape"))]
     pub shape_rate: Option<f64>,
-    /// Take the count as right: no impact is missed or doubled, however uneven the intervals
+    /// No impact is missed or double, however uneven the intervals are
     pub none_missed: bool,
 }
 

@@ -16,7 +16,7 @@ use serde::Deserialize;
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
-    /// Time from the onset to the largest force, in s: instead of a file
+    /// Time from the onset to the largest force in s, instead of a file
     #[cfg_attr(
         feature = "cli",
         arg(value_name = "S",
@@ -28,7 +28,7 @@ pub struct Keys {
     pub duration: Option<f64>,
     /// Standard uncertainty of each of the two times, in s
     pub std: Option<f64>,
-    /// Mass that is decelerated, in kg, for stiffness and damping
+    /// Decelerated mass in kg, for stiffness and damping
     pub mass: Option<f64>,
     /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no uncertainty]
     #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]

@@ -25,32 +25,32 @@ pub struct Keys {
     pub tones: Option<usize>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
     pub segment: Option<usize>,
-    /// Part of a segment that it shares with the next [default: 0.5]
+    /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
-    /// Taken out before the window: mean or none [default: mean with welch or an integration, else none]
+    /// Removed before the window: mean or none [default: mean with welch or an integration, else none]
     #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
     pub detrend: Option<Detrend>,
     /// Window: hann, rectangular, hamming, blackman, blackman-harris, flat-top [default: hann]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
-    /// What a line means: peak, rms, power or psd [default: peak]
+    /// Scaling of the lines: peak, rms, power or psd [default: peak]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration [default: 0]
     pub integrate: Option<i8>,
-    /// Lowest frequency given, in Hz [default: two lines where integrated, else 0]
+    /// Lowest frequency of the result, in Hz [default: two lines where integrated, else 0]
     pub fmin: Option<f64>,
-    /// Channel of the excitation: gives the frequency response function from it
+    /// Channel of the excitation, for the frequency response function
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
-    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
-    /// The excitation is a hammer: one record a blow, of the samples of a segment, from the level before it
+    /// Hammer test: one segment for each blow; the level before the blow is removed
     pub hammer: bool,
     /// Width of the force window in s
     pub force_window: Option<f64>,
-    /// What an exponential window leaves of the response at the end of a record, e.g. 0.01
+    /// Value of the exponential window at the end of a segment, e.g. 0.01
     pub left_at_end: Option<f64>,
     /// Channel delay to remove, in s: the channel was recorded later than the reference
     pub delay: Option<f64>,

@@ -11,9 +11,9 @@ use serde::Deserialize;
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Reading {
-    /// Force the format instead of finding it out
+    /// File format, instead of detecting it
     pub format: Option<String>,
-    /// Keep NaN, Inf and blank values as missing instead of refusing them
+    /// Keep NaN, Inf and blank values as missing, instead of refusing them
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace
     #[cfg_attr(feature = "cli", arg(conflicts_with = "base_band"))]

@@ -18,7 +18,7 @@ pub struct Run {
     /// Folder for results [default: `out` in the campaign, else `results` beside it]
     #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Allow names in lists that lead outside their folder
+    /// Allow files outside the folder of the campaign
     allow_outside: bool,
 }
 
@@ -27,9 +27,9 @@ pub struct Compare {
     /// campaign.toml with a rig, an excitation and sweeps
     #[arg(index = 1)]
     campaign: PathBuf,
-    /// Allow names in lists that lead outside their folder
+    /// Allow files outside the folder of the campaign
     allow_outside: bool,
-    /// Parameters to be found from the responses, with commas between: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a prior in
+    /// Parameters to fit, separated by commas: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a prior in
     /// [fit] [default: those of [fit] in the campaign]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     fit: Vec<String>,

@@ -8,17 +8,17 @@ use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
 pub enum Model {
-    /// All motions with one impact a period at one frequency, each with its verdicts
+    /// All motions with one impact a period at one frequency, with existence and stability
     Orbit(Asked<orbit::Keys>),
-    /// A motion from impact to impact, its regime, traces and Poincaré section
+    /// Simulated motion: regime, traces, phase plane, Poincaré section
     Simulate(Asked<simulate::Keys>),
-    /// The same over a range of frequencies, with the places where motions appear, vanish and change
+    /// All motions with one impact a period over frequency, with folds and stability limits
     Response(Asked<response::Keys>),
-    /// Sweep frequency or force up and down, the motion carried on from step to step
+    /// Simulated sweep of frequency or force; the state carries over from step to step
     Sweep(Asked<sweep::Keys>),
-    /// The simplest model that is good enough for a scene, and why
+    /// The simplest adequate model of a scene, and why
     Choose(Asked<choose::Keys>),
-    /// Map regime and stability over two parameters
+    /// Regime and stability over two parameters
     Map(Asked<map::Keys>),
 }
 

@@ -16,12 +16,12 @@ pub struct Precision {
     /// Only the methods of this kind: models or estimators [default: both]
     #[arg(value_name = "KIND", value_parser = crate::campaign::word::<Family>)]
     family: Option<Family>,
-    /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed, not asked
+    /// Show also the outcome of each method at its limits: right, refused, wrong, stalled, crashed, not asked
     failures: bool,
-    /// Measure nothing: take scenes and failures from what `vibro precision --json` printed into this file
+    /// Use the results that `vibro precision --json` wrote to this file
     #[arg(conflicts_with = "quick")]
     from: Option<PathBuf>,
-    /// Add the lines that another program has measured and written into this file
+    /// Add results of another program from this file
     ///
     /// The file is a JSON list with an object for each method and setting: scene (its name as printed here), method
     /// (program, version and method), error (in what the scene's "Error:" names; null where it failed), `time_ns` (ns

@@ -44,7 +44,7 @@ pub type Modal = Measured<frf::Keys>;
 
 #[derive(Debug, Args)]
 pub struct Impacts {
-    /// Print what the thesis' script timeav printed, mistakes included
+    /// Repeat the thesis' script timeav with its mistakes
     legacy: bool,
     #[command(flatten)]
     of: Measured<impacts::Keys>,

@@ -23,13 +23,13 @@ pub struct Source {
     /// List file, hand-over file, or campaign.toml#name
     #[arg(index = 1, value_name = "SWEEP")]
     path: String,
-    /// Reproduce the thesis' script, mistakes included
+    /// Repeat the thesis' script with its mistakes
     legacy: bool,
-    /// Allow names in the list that lead outside its folder
+    /// Allow files outside the folder of the list
     allow_outside: bool,
     #[command(flatten)]
     stored: Stored,
-    /// Lowest frequency looked at, in Hz [default: two lines or a quarter of the lowest excitation]
+    /// Lowest frequency used, in Hz [default: two lines or a quarter of the lowest excitation]
     fmin: Option<f64>,
 }
 
@@ -41,7 +41,7 @@ pub struct Taken {
     /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity to displacement]
     #[arg(value_parser = clap::value_parser!(i8).range(-2..=2))]
     integrate: Option<i8>,
-    /// Lines on both sides of the excitation in which the peak is looked for
+    /// Lines on both sides of the excitation that are searched for the peak
     #[arg(default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     band: u16,
     /// Folder for figures as SVG and PNG, and tables as CSV

@@ -37,7 +37,8 @@ pub fn agreement(found: &Restitution) -> Option<Table> {
         Some(false) => "disagree",
         None => "cannot be compared: one has no uncertainty",
     };
-    let table = headed("Methods together", &[("methods", ""), ("standard uncertainty by bootstrap", "1")])
-        .row([Cell::from(together), Cell::from(found.bootstrap_std)]);
+    let table =
+        headed("Agreement of the methods", &[("methods", ""), ("standard uncertainty by bootstrap", "1")])
+            .row([Cell::from(together), Cell::from(found.bootstrap_std)]);
     (found.by.len() > 1 || found.bootstrap_std.is_some()).then_some(table)
 }

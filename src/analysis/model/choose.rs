@@ -26,29 +26,29 @@ pub struct Keys {
     /// Excitation frequency in Hz
     #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["from", "to", "points"]))]
     pub frequency: Option<f64>,
-    /// Lowest excitation frequency in Hz of an axis
+    /// Lowest frequency of a range, in Hz, instead of one frequency
     #[cfg_attr(feature = "cli", arg(requires = "to"))]
     pub from: Option<f64>,
-    /// Highest excitation frequency in Hz of an axis
+    /// Highest frequency of the range, in Hz
     #[cfg_attr(feature = "cli", arg(requires = "from"))]
     pub to: Option<f64>,
-    /// Number of frequencies of an axis
+    /// Number of frequencies of the range
     #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub points: usize,
-    /// What is looked at: fundamental, the amplitude of both masses at the excitation frequency; peak, half of peak-to-peak; impact-speed;
+    /// Observable: fundamental, the amplitude of both masses at the excitation frequency; peak, half of peak-to-peak; impact-speed;
     /// impulse
     #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
-    /// Part by which it may be off
+    /// Relative change of the answer that does not matter
     #[cfg_attr(feature = "cli", arg(default_value_t = 0.02))]
     pub tolerance: f64,
-    /// Noise floor of the measurement, in the unit of what is looked at: less than it does not matter
+    /// Noise floor of the measurement, in the unit of the observable: smaller changes do not matter
     #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub noise: f64,
-    /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not relied on
+    /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not valid
     #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub gap_std: f64,
-    /// Which way the frequency came, up or down, for where several motions are possible
+    /// Direction of the sweep, up or down, where several motions coexist
     #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Direction>))]
     pub history: Option<Direction>,
 }
@@ -221,7 +221,7 @@ fn rungs(choice: &Choice, question: &Question) -> Table {
 /// The answer over an unknown stiffness of the contact.
 fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
     let found = table(
-        "Over the stiffness of the contact",
+        "Answer over the contact stiffness",
         rows,
         &[
             ("contact stiffness in N/m", "", &|r| r.stiffness.into()),

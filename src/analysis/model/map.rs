@@ -21,7 +21,7 @@ pub struct Keys {
     pub y: String,
     /// Excitation frequency in Hz, where it is not varied
     pub frequency: Option<f64>,
-    /// Cycles a cell, from rest; a cell that has settled ends before
+    /// Cycles of each cell, from rest; a settled cell ends earlier
     #[cfg_attr(feature = "cli", arg(default_value_t = 200))]
     pub cycles: u32,
 }

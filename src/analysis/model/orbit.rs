@@ -19,10 +19,10 @@ pub struct Keys {
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
     pub frequency: Option<f64>,
-    /// Cycles of the excitation from impact to impact
+    /// Excitation cycles from impact to impact
     #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
     pub cycles: u32,
-    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
+    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not robust
     pub gap_std: Option<f64>,
 }
 
@@ -156,7 +156,7 @@ fn no_impact(motion: &NoImpact) -> Table {
 /// What the duration of the contact changes in each motion.
 fn soft(all: &[Option<Softened>]) -> Table {
     table(
-        "With the contact's duration",
+        "Corrected for the contact duration",
         all.iter().enumerate().filter_map(|(i, soft)| soft.map(|s| (i, s))),
         &[
             ("no.", "", &|(i, _)| Cell::from(i + 1)),

@@ -25,10 +25,10 @@ pub struct Keys {
     /// Number of frequencies
     #[cfg_attr(feature = "cli", arg(default_value_t = 400))]
     pub points: usize,
-    /// Cycles of the excitation from impact to impact
+    /// Excitation cycles from impact to impact
     #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
     pub cycles: u32,
-    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
+    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not robust
     pub gap_std: Option<f64>,
 }
 

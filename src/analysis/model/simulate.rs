@@ -21,13 +21,13 @@ pub struct Keys {
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
     pub frequency: Option<f64>,
-    /// Law of the contact: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
+    /// Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
     #[cfg_attr(feature = "cli", arg(value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
-    /// Cycles of the excitation that are looked at
+    /// Excitation cycles analysed
     #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub cycles: u32,
-    /// Cycles that the motion is given to settle before
+    /// Cycles discarded before, while transients decay
     #[cfg_attr(feature = "cli", arg(default_value_t = 500))]
     pub settle: u32,
     /// Displacements in m and velocities in m/s at the start [default: at rest]

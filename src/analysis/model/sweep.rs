@@ -31,7 +31,7 @@ pub struct Keys {
     pub to: f64,
     /// Excitation frequency in Hz of a sweep of the force
     pub frequency: Option<f64>,
-    /// Law of the contact: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
+    /// Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
     #[cfg_attr(feature = "cli", arg(value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
     /// Direction: up, down, both
@@ -43,13 +43,13 @@ pub struct Keys {
     /// Points: steps of a stepped sweep, readings of a continuous one
     #[cfg_attr(feature = "cli", arg(default_value_t = 221))]
     pub steps: usize,
-    /// Cycles that pass at each step before it is read
+    /// Cycles at each step before it is read
     #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub settle: u32,
     /// Cycles read at each step
     #[cfg_attr(feature = "cli", arg(default_value_t = 12))]
     pub measure: u32,
-    /// What is read of both masses: fundamental, the amplitude at the excitation frequency; peak, half of peak-to-peak; rms, a running RMS
+    /// Observable of both masses: fundamental, the amplitude at the excitation frequency; peak, half of peak-to-peak; rms, a running RMS
     /// through a low-pass of 10 rad/s
     #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,

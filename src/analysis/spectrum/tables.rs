@@ -29,7 +29,7 @@ pub fn peaks(name: &str, found: &SpectralResult) -> Table {
 /// How the lines of a record were taken.
 pub fn taken(found: &SpectralResult) -> Table {
     table(
-        "How they were taken",
+        "Settings of the spectra",
         [found],
         &[
             ("record", "", &|f| Cell::from(f.name.as_str())),

@@ -162,7 +162,7 @@ pub fn fitted(fit: &Fit) -> Table {
     let six = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string();
     let end = |interval: Option<[f64; 2]>, side: usize| Cell::from(interval.map(|i| six(i[side])));
     table(
-        "Parameters found",
+        "Fitted parameters",
         &fit.parameters,
         &[
             ("parameter", "", &|p| p.parameter.name().into()),

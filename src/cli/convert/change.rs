@@ -12,7 +12,7 @@ use crate::units::Quantity;
 pub struct Change {
     /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
     low_pass: Option<f64>,
-    /// Time constant in s of exponential smoothing, which is late, instead of a zero-phase low-pass
+    /// Time constant in s of exponential smoothing (delays the signal), instead of the zero-phase low-pass
     #[arg(conflicts_with = "low_pass")]
     smoothing: Option<f64>,
     /// Corner in Hz of a zero-phase Butterworth high-pass of order 4
@@ -23,7 +23,7 @@ pub struct Change {
     /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a differentiation
     #[arg(requires = "integrate")]
     fmin: Option<f64>,
-    /// Frequency of the excitation in Hz: the mean is taken over whole periods before it is taken out
+    /// Excitation frequency in Hz: the mean over whole periods is removed
     #[arg(requires = "integrate")]
     excitation: Option<f64>,
 }
