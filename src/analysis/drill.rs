@@ -178,7 +178,7 @@ impl Keys {
         channels.scale(2, self.handle_sensitivity.unwrap_or(1.0));
         let still = source.further("noise", self.noise.as_ref())?;
         let still =
-            still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &|_, _| ())).transpose()?;
+            still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &())).transpose()?;
         if let Some(rate) = still.as_ref().map(|s| s.rate).filter(|r| (r / channels.rate - 1.0).abs() > 1e-9)
         {
             let why = format!("the noise was sampled at {rate} Hz, the motion at {} Hz", channels.rate);

@@ -1,14 +1,14 @@
 //! Drops: `[[drop]]`, `vibro restitution`.
 
-pub mod tables;
-
 use super::job::Record;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Job, Source, impacts};
 use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
-use crate::measure::restitution::{Drop, GRAVITY, Measured, Train, Velocities, restitution};
+use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
+use crate::report::layout::table;
+use crate::report::{Cell, Table};
 use serde::Deserialize;
 
 /// What is known of drops of one series beside their records.
@@ -203,10 +203,24 @@ impl Series {
         answer.figures = self.answer.figures;
         answer.findings = self.answer.findings;
         answer.tell("", &found.findings);
-        answer.table("restitution", tables::restitution(name, &found));
-        answer.details.extend(tables::agreement(&found));
+        answer.table("restitution", by_method(name, &found));
         Ok(answer)
     }
+}
+
+/// Restitution by every method, one row a method.
+fn by_method(name: &str, found: &Restitution) -> Table {
+    table(
+        "Coefficient of restitution",
+        &found.by,
+        &[
+            ("series", "", &|_| name.into()),
+            ("method", "", &|way| way.method.into()),
+            ("R", "", &|way| Cell::from(&way.restitution)),
+            ("samples", "", &|way| way.restitution.n.into()),
+            ("computed as", "", &|way| way.restitution.method.as_str().into()),
+        ],
+    )
 }
 
 impl Analysis for Keys {

@@ -1,14 +1,15 @@
 //! Impacts of a trace: `[[impacts]]`, `vibro impacts`.
 
 pub mod figures;
-pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{ImpactsOptions, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
 use crate::read::Reader;
+use crate::report::layout::{pair, table};
+use crate::report::{Cell, Table};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -76,11 +77,52 @@ impl Keys {
         answer.tell("", &found.findings);
         answer.tell("", &recording.findings);
         answer.tell("", &trace.meta.findings);
-        answer.tables.push(tables::impacts(source.name, &found));
+        answer.tables.push(summary(source.name, &found));
         answer.figure("impacts", figures::impacts(source.name, &trace, &found));
-        answer.csv("impacts", &tables::impact_times(&found));
+        answer.csv("impacts", &times(&found));
         Ok(answer)
     }
+}
+
+/// What the impacts of a trace repeat, in one row.
+fn summary(name: &str, found: &Impacts) -> Table {
+    let rhythm = match found.regular {
+        true => "regular",
+        false if found.n == 2 => "unknown (2 impacts)",
+        false if found.beat.is_some() => "drifts against the excitation",
+        false => "irregular",
+    };
+    table(
+        "Impacts",
+        [found],
+        &[
+            ("trace", "", &|_| name.into()),
+            ("impacts", "", &|f| f.n.into()),
+            ("interval", "s", &|f| Cell::from(&f.interval)),
+            ("frequency", "Hz", &|f| Cell::from(&f.frequency)),
+            ("median interval", "s", &|f| f.median_interval.into()),
+            ("interval spread", "s", &|f| f.spread.into()),
+            ("missed", "", &|f| f.missed.into()),
+            ("double", "", &|f| f.doubled.into()),
+            ("impacts/cycles", "", &|f| f.per_cycle.map(|p| format!("{}/{}", p.impacts, p.cycles)).into()),
+            ("rhythm", "", &|_| rhythm.into()),
+        ],
+    )
+    .note("Impacts/cycles needs the excitation frequency. Missed: intervals of several periods. Double: a second impact within half an interval.")
+}
+
+/// Every impact: time, height, phase.
+fn times(found: &Impacts) -> Table {
+    let phase = |i: usize| found.phase.get(i).copied();
+    table(
+        "Times of impacts",
+        found.times.iter().zip(&found.heights).enumerate(),
+        &[
+            ("time", "s", &|(_, (time, _))| pair(**time, found.onset_std)),
+            ("height", "", &|(_, (_, height))| (**height).into()),
+            ("phase", "", &|(i, _)| phase(*i).into()),
+        ],
+    )
 }
 
 impl Analysis for Keys {

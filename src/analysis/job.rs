@@ -11,10 +11,6 @@ use crate::report::{Output, Table, files};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Steps of progress through a record.
-const PARTS: usize = 100;
 
 /// Told how far a job is.
 pub trait Progress: Sync {
@@ -22,12 +18,15 @@ pub trait Progress: Sync {
     fn start(&self, what: &str, steps: usize);
     /// One step is done.
     fn step(&self);
+    /// So many of all steps are done.
+    fn at(&self, done: usize, all: usize);
 }
 
 /// Nobody is told.
 impl Progress for () {
     fn start(&self, _: &str, _: usize) {}
     fn step(&self) {}
+    fn at(&self, _: usize, _: usize) {}
 }
 
 /// How a job may go about its files.
@@ -192,13 +191,7 @@ impl<'a> Job<'a> {
         path: &Path,
         measure: impl FnOnce(&Source<'_>) -> Result<T>,
     ) -> Result<T> {
-        self.progress.start(name, PARTS);
-        let told = AtomicUsize::new(0);
-        let step = |done: usize, all: usize| {
-            let parts = (PARTS * done).checked_div(all).unwrap_or(0).min(PARTS);
-            let before = told.fetch_max(parts, Ordering::Relaxed);
-            (before..parts).for_each(|_| self.progress.step());
-        };
+        self.progress.start(name, 0);
         let beside =
             |key: &'static str, file: &Path| self.campaign.file(entry, key, file, self.options.allow_outside);
         measure(&Source {
@@ -207,7 +200,7 @@ impl<'a> Job<'a> {
             channel: &entry.channel,
             reading: &entry.reading,
             beside: &beside,
-            progress: &step,
+            progress: self.progress,
         })
     }
 }

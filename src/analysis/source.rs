@@ -1,5 +1,6 @@
 //! Where a record comes from: a table of a campaign, or a command line.
 
+use super::Progress;
 use crate::campaign::{Channel, Entry, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Reader, Recording};
@@ -20,8 +21,8 @@ pub struct Source<'a> {
     pub reading: &'a Reading,
     /// Path of a further file that a key names.
     pub beside: &'a dyn Fn(&'static str, &Path) -> Result<PathBuf>,
-    /// Told how many samples were gone over, of how many.
-    pub progress: &'a (dyn Fn(usize, usize) + Sync),
+    /// Told how many samples are done, of how many.
+    pub progress: &'a dyn Progress,
 }
 
 impl Source<'_> {

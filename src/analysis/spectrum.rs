@@ -115,7 +115,7 @@ impl Keys {
         let mut traces =
             reader.stream_chosen(source.path, reference, channel.channel.as_deref(), channel.calibration)?;
         let all = traces.frames();
-        let found = spectral(&mut traces, &options, |done| (source.progress)(done, all))?;
+        let found = spectral(&mut traces, &options, |done| source.progress.at(done, all))?;
         source.contradicted(&found.findings)?;
         Ok(found)
     }

@@ -99,6 +99,11 @@ impl Progress for ProgressBar {
     fn step(&self) {
         self.inc(1);
     }
+
+    fn at(&self, done: usize, all: usize) {
+        self.set_length(all as u64);
+        self.set_position(done as u64);
+    }
 }
 
 #[cfg(test)]

@@ -90,17 +90,13 @@ impl Record {
     ) -> Result<T> {
         let name = file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         print::busy(json, "samples", |bar| {
-            let progress = |done: usize, all: usize| {
-                bar.set_length(all as u64);
-                bar.set_position(done as u64);
-            };
             measure(&Source {
                 name: &name,
                 path: file,
                 channel: &self.channel,
                 reading: &self.reading,
                 beside: &|_, file| Ok(file.to_owned()),
-                progress: &progress,
+                progress: bar,
             })
         })
     }
