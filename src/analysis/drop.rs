@@ -89,7 +89,8 @@ impl Keys {
             (before && !after, "before", "before without velocities after the impact", velocities),
         ];
         if let Some((_, key, found, expected)) = wrong.into_iter().find(|w| w.0) {
-            return Err(Error::usage(found, expected).setting(key));
+            let error = Error::usage(found, expected).setting(key);
+            return Err(if key == "interval" && !file { error.setting("height") } else { error });
         }
         let given = self.after.len() + usize::from(self.after2.is_some());
         if given > 2 {
