@@ -100,7 +100,11 @@ fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
 fn own_channels(channel: &Channel) -> Result<()> {
     let stated = [("channel", channel.channel.is_some()), ("calibration", channel.calibration.is_some())];
     stated.into_iter().find(|(_, stated)| *stated).map_or(Ok(()), |(key, _)| {
-        Err(Error::usage(format!("a {key} of a drill"), "velocity, reference and sensitivity").setting(key))
+        Err(Error::usage(
+            format!("{key} is stated for a drill"),
+            "velocity, reference and sensitivity instead",
+        )
+        .setting(key))
     })
 }
 
@@ -117,7 +121,7 @@ impl Keys {
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {
-            return Err(Error::usage("low_pass and smoothing", "one of them").setting("smoothing"));
+            return Err(Error::usage("both low_pass and smoothing", "one of them").setting("smoothing"));
         }
         Ok(())
     }

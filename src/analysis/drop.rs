@@ -241,7 +241,7 @@ impl Analysis for Keys {
         }
         if entry.keys.before.is_some() && series.any(|e| e.keys.before.is_some()) {
             let found = format!("two drops of {name:?} have velocities");
-            return Err(Error::usage(found, "one impact with velocities a name").setting("before"));
+            return Err(Error::usage(found, "velocities in one table of the series only").setting("before"));
         }
         Ok(())
     }

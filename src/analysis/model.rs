@@ -69,7 +69,8 @@ impl SceneKeys {
         }
         let scene = draft.scene()?;
         let excitation = scene.excitation.clone().ok_or_else(|| {
-            let expected = "a force (a sine), an impulse, a force with a width, or [excitation] in the file";
+            let expected =
+                "a force (sine), an impulse, a force with a width (pulse), or [excitation] in the rig file";
             Error::usage("nothing drives the rig", expected).setting("force").setting("impulse")
         })?;
         Ok(Driven { scene, excitation, finding: rig_left_out("The file", &missing) })

@@ -24,7 +24,7 @@ impl Channels {
     pub fn read(reader: Reader, path: &Path, names: &[&str], progress: &dyn Progress) -> Result<Channels> {
         let mut traces = reader.allow_missing(true).stream_channels(path, names)?;
         if traces.channels().len() != names.len() {
-            return Err(Error::refused(format!("two of the channels {} are one", names.join(", "))));
+            return Err(Error::refused(format!("the channels {} are not all different", names.join(", "))));
         }
         let (mut values, mut done) = (Vec::new(), 0);
         loop {

@@ -54,7 +54,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
     let lasting = [Model::KelvinVoigt, Model::HuntCrossley];
     let lasts = pairs.iter().filter(swept).any(|p| lasting.contains(&p.model));
     let (seen, other) = if lasts {
-        ("one impact a cycle, at once", "predicted with the contact")
+        ("one impact a cycle, rigid contact", "predicted with the contact stiffness")
     } else {
         ("one impact a cycle", "another motion, simulated")
     };
