@@ -252,8 +252,7 @@ impl Analysis for Keys {
             // Files without a name are no series, even where one folder has the same file name as another.
             let stated = entry.name.as_ref();
             let at = all.iter().position(|s| stated.is_some() && s.0 == stated).unwrap_or_else(|| {
-                let name = if entry.file.is_some() { name_of(entry) } else { format!("drop {}", i + 1) };
-                all.push((stated, stated.cloned().unwrap_or(name), Series::new(&entry.keys)));
+                all.push((stated, name_of(entry, i + 1), Series::new(&entry.keys)));
                 all.len() - 1
             });
             let Some((_, name, series)) = all.get_mut(at) else { continue };

@@ -151,9 +151,10 @@ impl<'a> Job<'a> {
         measure: impl Fn(&Entry<K>, &Source<'_>) -> Result<Vec<Answer>>,
     ) -> Result<()> {
         let mut records: Vec<Record> = Vec::new();
-        for entry in entries {
-            let name = name_of(entry);
-            let path = self.path(entry)?;
+        for (i, entry) in entries.iter().enumerate() {
+            let name = name_of(entry, i + 1);
+            // Numbers alone have no file.
+            let path = entry.file.as_ref().map_or_else(|| Ok(PathBuf::new()), |_| self.path(entry))?;
             let found = self.measured(entry, &name, &path, |source| measure(entry, source));
             for answer in self.found(&name, found)?.unwrap_or_default() {
                 let file = Value::String(file_name(&path));

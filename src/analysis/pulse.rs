@@ -3,8 +3,7 @@
 pub mod figures;
 pub mod tables;
 
-use super::job::Record;
-use super::source::{file_name, name_of};
+use super::job::Marks;
 use super::{Analysis, Answer, Job, Source};
 use crate::campaign::{Entry, LowPass, above_zero};
 use crate::error::{Error, Result};
@@ -113,22 +112,10 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        let mut records = Vec::new();
-        for (i, entry) in entries.iter().enumerate() {
-            let (name, file, found) = if entry.file.is_some() {
-                let (name, path) = (name_of(entry), job.path(entry)?);
-                let found = job.measured(entry, &name, &path, |source| entry.keys.measure(source));
-                (name, file_name(&path), found)
-            } else {
-                let name = entry.name.clone().unwrap_or_else(|| format!("pulse {}", i + 1));
-                let found = entry.keys.times(&name);
-                (name, String::new(), found)
-            };
-            let Some(answer) = job.found(&name, found)? else { continue };
-            let mark = (records.len() + 1).to_string();
-            records.push(Record { name, file: file.into(), mark, answer });
-        }
-        job.answer("pulses", records);
-        Ok(())
+        job.each("pulses", entries, Marks::Numbers, |entry, source| {
+            let of_file = entry.file.is_some();
+            let answer = if of_file { entry.keys.measure(source) } else { entry.keys.times(source.name) };
+            Ok(vec![answer?])
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Where a record comes from: a table of a campaign, or a command line.
 
-use super::Progress;
+use super::{Analysis, Progress};
 use crate::campaign::{Channel, Entry, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Reader, Recording};
@@ -85,7 +85,8 @@ pub fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
 }
 
-/// Name of a table for people: that stated, else the file's.
-pub(crate) fn name_of<K>(entry: &Entry<K>) -> String {
-    entry.name.clone().or_else(|| entry.file.as_deref().map(file_name)).unwrap_or_default()
+/// Name of a table for people: that stated, else the file's, else that of its section with this number.
+pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>, number: usize) -> String {
+    let own = entry.name.clone().or_else(|| entry.file.as_deref().map(file_name));
+    own.unwrap_or_else(|| format!("{} {number}", K::SECTION))
 }
