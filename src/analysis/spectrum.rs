@@ -1,7 +1,6 @@
 //! Spectra of time records, and the function of two channels: `[[spectrum]]`, `vibro spectrum`.
 
 pub mod figures;
-pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
@@ -9,7 +8,8 @@ use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Method, SpectralOptions, SpectralResult, spectral};
 use crate::record::{Scaling, Window};
-use crate::report::files;
+use crate::report::layout::table;
+use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
 use serde::Deserialize;
 
@@ -129,8 +129,8 @@ impl Keys {
         let mut answer = Answer::of(&found)?;
         answer.result.insert("channel".to_owned(), found.name.clone().into());
         answer.tell("", &found.findings);
-        answer.tables = vec![tables::peaks(source.name, &found), tables::tones(source.name, &found)];
-        answer.details.push(tables::taken(&found));
+        answer.tables = vec![peaks(source.name, &found), tones(source.name, &found)];
+        answer.details.push(taken(&found));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
         let (files, unwritten) = files::records(name, &found.records())?;
@@ -138,6 +138,62 @@ impl Keys {
         answer.tell("", unwritten);
         Ok(answer)
     }
+}
+
+/// Largest peaks of a record that a table shows.
+const SHOWN: usize = 8;
+
+/// The largest peaks of a record, one row a peak.
+fn peaks(name: &str, found: &SpectralResult) -> Table {
+    let of = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
+    let response = found.response.as_ref();
+    table(
+        "Largest peaks of spectra",
+        found.peaks(SHOWN),
+        &[
+            ("record", "", &|_| Cell::from(name)),
+            ("frequency", "Hz", &|k| Cell::from(of(&found.frequency, *k))),
+            ("value", "", &|k| Cell::Estimate { value: found.value[*k], std: of(&found.value_std, *k) }),
+            ("unit", "", &|_| Cell::from(found.unit.as_str())),
+            ("scaling", "", &|_| Cell::from(found.scaling)),
+            ("phase", "°", &|k| Cell::from(response.and_then(|r| of(&r.phase, *k)))),
+            ("coherence", "", &|k| Cell::from(response.and_then(|r| of(&r.coherence, *k)))),
+        ],
+    )
+}
+
+/// How the lines of a record were taken.
+fn taken(found: &SpectralResult) -> Table {
+    table(
+        "Settings of the spectra",
+        [found],
+        &[
+            ("record", "", &|f| Cell::from(f.name.as_str())),
+            ("lines", "", &|f| Cell::from(f.frequency.len())),
+            ("scaling", "", &|f| Cell::from(f.scaling)),
+            ("unit", "", &|f| Cell::from(f.unit.as_str())),
+            ("levels in", "", &|f| Cell::from(f.level_unit.as_deref().unwrap_or("-"))),
+            ("window", "", &|f| Cell::from(f.window)),
+            ("ENBW", "lines", &|f| Cell::Number(f.enbw)),
+            ("detrend", "", &|f| Cell::from(f.detrend)),
+            ("averages", "", &|f| Cell::from(f.averages)),
+        ],
+    )
+}
+
+/// The sines fitted to a record, one row a sine.
+fn tones(name: &str, found: &SpectralResult) -> Table {
+    table(
+        "Tones",
+        &found.tones,
+        &[
+            ("record", "", &|_| Cell::from(name)),
+            ("frequency", "Hz", &|t| Cell::from(&t.frequency)),
+            ("amplitude", "", &|t| Cell::from(&t.amplitude)),
+            ("unit", "", &|t| Cell::from(t.amplitude.unit)),
+            ("phase", "rad", &|t| Cell::from(&t.phase)),
+        ],
+    )
 }
 
 impl Analysis for Keys {

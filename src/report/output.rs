@@ -14,8 +14,6 @@ use std::path::{Component, Path, PathBuf};
 pub struct Output {
     folder: PathBuf,
     written: Vec<String>,
-    /// Whether leftovers of killed programs have been removed.
-    swept: bool,
 }
 
 impl Output {
@@ -29,7 +27,7 @@ impl Output {
             return Err(Error::input(Place::file(&folder), "this is a file", "a folder for results")
                 .hint("name another folder"));
         }
-        Ok(Output { folder, written: Vec::new(), swept: false })
+        Ok(Output { folder, written: Vec::new() })
     }
 
     /// The folder.
@@ -65,29 +63,13 @@ impl Output {
     }
 
     /// Path of a file in this folder, which is made.
-    fn place(&mut self, name: &str) -> Result<PathBuf> {
+    fn place(&self, name: &str) -> Result<PathBuf> {
         let path = self.folder.join(checked(name)?);
         fs::create_dir_all(&self.folder).map_err(|e| Error::io("make the folder", &self.folder, e))?;
-        if !std::mem::replace(&mut self.swept, true) {
-            sweep(&self.folder);
-        }
         if path.is_dir() {
             return Err(unusable(name, "names a folder").hint("remove that folder or choose another name"));
         }
         Ok(path)
-    }
-}
-
-/// Removes temporary files of killed programs: those that nobody has written to for an hour.
-fn sweep(folder: &Path) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let ours = name.to_str().is_some_and(|n| n.starts_with('.') && n.strip_suffix(".part").is_some());
-        let written = entry.metadata().and_then(|m| m.modified());
-        if ours && written.is_ok_and(|t| t.elapsed().is_ok_and(|age| age.as_secs() > 3600)) {
-            // It is in nobody's way: a leftover that cannot be removed is no failure.
-            let _ = fs::remove_file(entry.path());
-        }
     }
 }
 
@@ -142,18 +124,6 @@ mod tests {
         assert_eq!(out.written(), ["z.txt", "x.svg"]);
         assert_eq!(fs::read_to_string(out.folder().join("z.txt")).unwrap(), "two");
         assert_eq!(names(out.folder()), ["x.svg", "z.txt"]);
-    }
-
-    #[test]
-    fn leftovers_of_killed_programs_are_removed() {
-        let dir = tempfile::tempdir().unwrap();
-        let day = std::time::Duration::from_secs(24 * 3600);
-        for (name, age) in [(".a.csv.7.part", day), (".b.csv.8.part", day / 10_000), ("c.csv.9.part", day)] {
-            let file = File::create(dir.path().join(name)).unwrap();
-            file.set_modified(std::time::SystemTime::now() - age).unwrap();
-        }
-        Output::new(dir.path()).unwrap().write("a.csv", "x").unwrap();
-        assert_eq!(names(dir.path()), [".b.csv.8.part", "a.csv", "c.csv.9.part"]);
     }
 
     #[test]
