@@ -1,8 +1,7 @@
 //! A folder of results, each file of which appears whole or not at all.
 
 use crate::error::{Error, Place, Result};
-use std::fs::{self, File};
-use std::io::Write;
+use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 /// Folder into which results are written.
@@ -47,9 +46,7 @@ impl Output {
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
         let path = self.place(name)?;
         let temporary = temporary_beside(&path);
-        let replaced = begin(&temporary)
-            .and_then(|mut file| file.write_all(bytes.as_ref()))
-            .and_then(|()| fs::rename(&temporary, &path));
+        let replaced = fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, &path));
         if let Err(error) = replaced {
             // The first failure is the one to report; a leftover that cannot be removed either has the same
             // cause.
@@ -95,12 +92,6 @@ fn temporary_beside(path: &Path) -> PathBuf {
     // exceed that.
     let head: String = name.chars().take(40).collect();
     path.with_file_name(format!(".{head}.{}.part", std::process::id()))
-}
-
-fn begin(path: &Path) -> std::io::Result<File> {
-    // A leftover of a program that was killed and had this process number is ours to replace.
-    let _ = fs::remove_file(path);
-    File::create_new(path)
 }
 
 #[cfg(test)]
