@@ -172,7 +172,7 @@ fn taken(found: &SpectralResult) -> Table {
             ("lines", "", &|f| Cell::from(f.frequency.len())),
             ("scaling", "", &|f| Cell::from(f.scaling)),
             ("unit", "", &|f| Cell::from(f.unit.as_str())),
-            ("levels in", "", &|f| Cell::from(f.level_unit.as_deref().unwrap_or("-"))),
+            ("level unit", "", &|f| Cell::from(f.level_unit.as_deref().unwrap_or("-"))),
             ("window", "", &|f| Cell::from(f.window)),
             ("ENBW", "lines", &|f| Cell::Number(f.enbw)),
             ("detrend", "", &|f| Cell::from(f.detrend)),

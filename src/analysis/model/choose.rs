@@ -98,7 +98,7 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
         answer.table("sensitivity", sensitivity(&choice.sensitivity, question));
     }
     answer.tables.push(table(
-        "Why",
+        "Reasons",
         fates(choice),
         &[
             ("model", "", &|(names, ..)| names.as_str().into()),

@@ -142,6 +142,7 @@ fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
             ("energy rule", "", &|(_, o)| o.validity.energy_rule.into()),
         ],
     )
+    .note("Admissible: the masses do not pass through each other. Robust: farther from grazing than the gap is uncertain.")
 }
 
 /// The motion without impacts.
