@@ -19,7 +19,7 @@ pub(crate) mod sweep;
 mod page;
 
 pub use answer::Answer;
-pub use job::{JobOptions, Outcome, Progress, run};
+pub use job::{JobOptions, Progress, run};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 

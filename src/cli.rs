@@ -12,7 +12,9 @@ mod sweep;
 
 use crate::error::Result;
 use crate::report::words::Voice;
-use clap::{Parser, Subcommand};
+use clap::{Arg, Command as Typed, CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::any::TypeId;
+use std::path::PathBuf;
 
 /// Measure impacting machines: from analyser files to answers, each with its uncertainty.
 #[derive(Debug, Parser)]
@@ -27,21 +29,21 @@ struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Say what is in a file
+    /// List the records of a file: channels, units, sampling rate
     Info(info::Info),
-    /// Rewrite a file as UFF-58, CSV, WAV or NPY, chosen by the ending of OUT
+    /// Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT
     Convert(convert::Convert),
-    /// Give the spectrum of a channel, or the frequency response function of two
+    /// Spectrum of a channel, or frequency response function between two
     Spectrum(record::Spectrum),
-    /// Find the excitation frequency of every point of a sweep
+    /// Excitation frequency of every point of a sweep
     Excitation(sweep::Excitation),
-    /// Draw all response spectra of a sweep as a waterfall
+    /// Waterfall of all response spectra of a sweep
     Waterfall(sweep::Waterfall),
-    /// Take the response at the excitation, with resonances and jumps
+    /// Response of a sweep at the excitation frequency, with resonances and jumps
     Response(sweep::Taken),
-    /// Measure speed, impacts and the average turn of a hammer drill
+    /// Speed, impacts and average turn of a hammer drill
     Drill(Box<record::Drill>),
-    /// Find the impacts in a contact trace: interval, frequency, impacts per cycle
+    /// Impacts in a contact signal: interval, frequency, impacts per cycle
     Impacts(record::Impacts),
     /// Coefficient of restitution from drops, bounces or velocities, every method side by side
     Restitution(record::Restitution),
@@ -49,21 +51,22 @@ enum Command {
     Modal(record::Modal),
     /// Damping ratio, frequency and restitution of a contact from its pulse
     Pulse(record::Pulse),
-    /// What the motion of a rig should be: orbits with their verdicts, simulations, sweeps
+    /// Model of a rig: periodic motions, simulation, sweep, map, choice of a model
     #[command(subcommand)]
     Model(Box<model::Model>),
-    /// Overlay a campaign's measured responses on the model's prediction
+    /// Compare the measured responses of a campaign with the model; fit parameters of the rig
     Compare(campaign::Compare),
-    /// Speed against accuracy of every method on scenes with a known truth, and where each breaks
+    /// Speed and accuracy of every method on scenes with a known truth
     Precision(precision::Precision),
-    /// Do all that a campaign asks for: results, tables, figures, report
+    /// Run a campaign: results, tables, figures, report
     Run(campaign::Run),
 }
 
 /// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
 /// unreadable input.
 pub fn main() -> u8 {
-    let args = match Args::try_parse() {
+    let typed = options(Args::command()).try_get_matches().and_then(|m| Args::from_arg_matches(&m));
+    let args = match typed {
         Ok(args) => args,
         // What could not be parsed may have asked for JSON all the same.
         Err(error) => {
@@ -77,6 +80,42 @@ pub fn main() -> u8 {
         _ => Voice::Command,
     };
     dispatch(&args).unwrap_or_else(|error| complain::error(&error, voice, args.json))
+}
+
+/// Makes options of the fields of all keys, in their order: each has the name of its field and, where it names no other, a value of the kind
+/// that its type says. A negative number is taken: whether it makes sense, its check says better than a complaint about an unknown option.
+fn options(command: Typed) -> Typed {
+    let mut order = 0;
+    let option = |arg: Arg| {
+        order += 1;
+        let takes = arg.get_action().takes_values();
+        let arg = arg.allow_negative_numbers(takes).display_order(order);
+        if arg.get_index().is_some() {
+            return arg;
+        }
+        let id = arg.get_id().to_string();
+        let long = arg.get_long().map_or_else(|| id.replace('_', "-"), str::to_owned);
+        let own = arg.get_value_names().is_none_or(|names| names[0] != id.to_uppercase().as_str());
+        let kind = kind(&arg);
+        let arg = arg.long(long);
+        if takes && !own { arg.value_name(kind) } else { arg }
+    };
+    command.mut_args(option).mut_subcommands(options)
+}
+
+/// The kind of an option's value.
+fn kind(arg: &Arg) -> &'static str {
+    let kinds = [
+        (TypeId::of::<f64>(), "NUMBER"),
+        (TypeId::of::<PathBuf>(), "FILE"),
+        (TypeId::of::<usize>(), "N"),
+        (TypeId::of::<u32>(), "N"),
+        (TypeId::of::<u16>(), "N"),
+        (TypeId::of::<u8>(), "N"),
+        (TypeId::of::<i8>(), "N"),
+    ];
+    let is = arg.get_value_parser().type_id();
+    kinds.into_iter().find(|(id, _)| is == *id).map_or("NAME", |(_, name)| name)
 }
 
 fn dispatch(args: &Args) -> Result<u8> {

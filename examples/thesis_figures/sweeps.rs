@@ -51,8 +51,7 @@ fn highest(points: &[Point], from: f64, to: f64) -> (f64, f64) {
 
 /// Both masses; the largest x₁ in each range (Hz) of `up` and `down` is named by its frequency.
 fn picture(swept: &Swept, up: &[(f64, f64)], down: &[(f64, f64)], caption: &str) -> Figure {
-    let mut figure =
-        figures::sweep(swept, &[], &[], Observable::Rms, false, &[]).height(120.0).caption(caption);
+    let mut figure = figures::sweep(swept, &[], &[], Observable::Rms, false).height(120.0).caption(caption);
     for (points, ranges, way) in [(&swept.up, up, ""), (&swept.down, down, ", down")] {
         for (from, to) in ranges {
             let (at, height) = highest(points, *from, *to);

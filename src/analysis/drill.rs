@@ -23,90 +23,88 @@ use vibro_record::units::Quantity;
 pub struct Keys {
     /// Velocity channel, by name or by number from 1
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub velocity: Option<String>,
     /// Channel with the pulses of the crank
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub reference: Option<String>,
     /// Velocity along the beam in m/s for one unit of the channel [default: 1 where the file says it is a velocity]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
     pub sensitivity: Option<f64>,
     /// Angle of the beam in degrees
-    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG", allow_negative_numbers = true))]
     pub beam_angle: Option<f64>,
-    /// From where that angle is counted: the normal to the motion, or its axis
-    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<From>))]
+    /// What the beam angle is counted from: normal (to the motion) or axis (of the motion)
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<From>))]
     pub from: Option<From>,
     /// Pulses of the reference in a turn
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub pulses_per_turn: Option<usize>,
     /// Edge of the pulse that counts: rising or falling
-    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Edge>))]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<Edge>))]
     pub edge: Option<Edge>,
-    /// Level of the edge, in the unit of the reference [default: the middle of its two levels]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "VALUE", allow_negative_numbers = true))]
+    /// Trigger level of the edge, in the unit of the reference [default: the middle of its two levels]
     pub level: Option<f64>,
-    /// Mass that is measured, in kg: gives energies
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
+    /// Measured mass in kg, for the energies
     pub mass: Option<f64>,
-    /// Mass that it strikes, in kg, at rest before: gives the restitution
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG"))]
+    /// Struck mass in kg, at rest before the impact, for the restitution
     pub struck_mass: Option<f64>,
     /// Longest contact in s [default: 0.0002]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub contact: Option<f64>,
     /// Duration in s of the fits before and after a contact [default: 0.0005]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub fit: Option<f64>,
     /// Longest drop-out in s that is bridged [default: 0.002]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub longest_dropout: Option<f64>,
     /// Channel delay to remove, in s: the velocity was recorded later than the reference [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME", allow_negative_numbers = true))]
     pub delay: Option<f64>,
-    /// Phases of the average [default: 720]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
+    /// Points of the average turn [default: 720]
     pub points: Option<usize>,
     /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: what the phases of the
     /// average can show]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed))]
+    #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Time constant in s of exponential smoothing instead of the low-pass
-    #[cfg_attr(feature = "cli", arg(long, value_name = "TIME"))]
     pub smoothing: Option<f64>,
-    /// Highest frequency in Hz that the instrument passes
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
+    /// Bandwidth of the instrument in Hz
     pub instrument: Option<f64>,
     /// Record of the velocity channel without motion: the noise floor
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub noise: Option<PathBuf>,
-    /// Margin in dB by which motion must stand above the noise [default: 10]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "DB"))]
+    /// Margin in dB of the motion above the noise [default: 10]
     pub margin: Option<f64>,
     /// Acceleration channel of a handle, up to three times: hand-arm exposure
     #[serde(deserialize_with = "channels")]
     #[cfg_attr(feature = "cli", arg(long, value_name = "CH"))]
     pub handle: Vec<String>,
     /// Acceleration in m/s² for one unit of these channels
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
     pub handle_sensitivity: Option<f64>,
     /// Hours a day of that exposure: A(8)
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HOURS"))]
     pub exposure: Option<f64>,
 }
 
-/// A key that has no default.
+/// The value of a key that has no default.
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
-    let lacks = || Error::usage(format!("a drill needs {key}"), "a value: there is no default").setting(key);
-    value.ok_or_else(lacks)
+    let expected = match key {
+        "velocity" => "the channel of the velocity, by name or number",
+        "reference" => "the channel of the crank pulse, by name or number",
+        "beam_angle" => "the angle of the laser beam in degrees",
+        "from" => "normal or axis: what the beam angle is counted from",
+        "pulses_per_turn" => "the number of reference pulses in a turn of the crank",
+        "edge" => "rising or falling: the pulse edge that counts",
+        "sensitivity" => {
+            "m/s for one unit of the velocity channel: the file does not say that it is a velocity"
+        }
+        _ => "m/s² for one unit of the handle channels: the file does not say that they are accelerations",
+    };
+    value.ok_or_else(|| {
+        Error::usage(format!("{} is not stated", key.replace('_', " ")), expected).setting(key)
+    })
 }
 
 /// A drill names its channels, and what they measure, by keys of its own.
 fn own_channels(channel: &Channel) -> Result<()> {
     let stated = [("channel", channel.channel.is_some()), ("calibration", channel.calibration.is_some())];
     stated.into_iter().find(|(_, stated)| *stated).map_or(Ok(()), |(key, _)| {
-        Err(Error::usage(format!("a {key} of a drill"), "velocity, reference and sensitivity").setting(key))
+        Err(Error::usage(
+            format!("{key} is stated for a drill"),
+            "velocity, reference and sensitivity instead",
+        )
+        .setting(key))
     })
 }
 
@@ -123,7 +121,7 @@ impl Keys {
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {
-            return Err(Error::usage("low_pass and smoothing", "one of them").setting("smoothing"));
+            return Err(Error::usage("both low_pass and smoothing", "one of them").setting("smoothing"));
         }
         Ok(())
     }
@@ -184,7 +182,7 @@ impl Keys {
         channels.scale(2, self.handle_sensitivity.unwrap_or(1.0));
         let still = source.further("noise", self.noise.as_ref())?;
         let still =
-            still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &|_, _| ())).transpose()?;
+            still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &())).transpose()?;
         if let Some(rate) = still.as_ref().map(|s| s.rate).filter(|r| (r / channels.rate - 1.0).abs() > 1e-9)
         {
             let why = format!("the noise was sampled at {rate} Hz, the motion at {} Hz", channels.rate);

@@ -1,14 +1,14 @@
 //! Drops: `[[drop]]`, `vibro restitution`.
 
-pub mod tables;
-
 use super::job::Record;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Job, Source, impacts};
 use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
-use crate::measure::restitution::{Drop, GRAVITY, Measured, Train, Velocities, restitution};
+use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
+use crate::report::layout::table;
+use crate::report::{Cell, Table};
 use serde::Deserialize;
 
 /// What is known of drops of one series beside their records.
@@ -16,56 +16,39 @@ use serde::Deserialize;
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
-    /// Height of the fall in m; without it, a train of bounces
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    /// Drop height in m; not needed for a train of bounces
     pub height: Option<f64>,
     /// Its standard uncertainty in m
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M"))]
     pub height_std: Option<f64>,
     /// Time from first to second impact in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
     pub interval: Option<f64>,
     /// Standard uncertainty of the interval in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub interval_std: Option<f64>,
     /// Times between successive impacts of one train of bounces, in s
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "A,B,C", value_delimiter = ',', allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "A,B,C", value_delimiter = ','))]
     pub intervals: Vec<f64>,
     /// Acceleration of free fall in m/s² [default: 9.80665]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", allow_negative_numbers = true))]
     pub gravity: Option<f64>,
     /// Its standard uncertainty in m/s²
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²"))]
     pub gravity_std: Option<f64>,
     /// Smallest impact counted, as a fraction of the median height [default: 0.02]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FRACTION"))]
     pub threshold: Option<f64>,
     /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub refractory: Option<f64>,
-    /// Leave mains hum in the trace
-    #[cfg_attr(feature = "cli", arg(long))]
+    /// Do not remove mains hum
     pub keep_hum: bool,
     /// Masses in kg: the striking and the struck one
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
     pub masses: Option<(f64, f64)>,
     /// Velocities of both masses before the impact, in m/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_parser = crate::campaign::two::<','>, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(value_name = "V1,V2", value_parser = crate::campaign::two::<','>))]
     pub before: Option<(f64, f64)>,
     /// Velocities of both masses after it, in m/s; of mass 1 alone where masses are given
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "V1,V2", value_delimiter = ',', allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_delimiter = ','))]
     pub after: Vec<f64>,
     /// Velocity of mass 2 after it, in m/s, where that of mass 1 is not known and masses are given
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V2", allow_negative_numbers = true))]
     pub after2: Option<f64>,
     /// Standard uncertainty of each velocity, in m/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S"))]
     pub velocity_std: Option<f64>,
 }
 
@@ -79,7 +62,7 @@ impl Keys {
         let (before, after) = (self.before.is_some(), !self.after.is_empty() || self.after2.is_some());
         let one_of = "one of them: the first of intervals is that after the fall";
         let velocities = "after = V1 and V2, or with masses after = V1 or after2 = V2";
-        let wrong: [(bool, &'static str, &str, &str); 8] = [
+        let wrong: [(bool, &'static str, &str, &str); 9] = [
             (interval && intervals, "intervals", "both interval and intervals", one_of),
             (file && interval, "interval", "a file and an interval", "one of them"),
             (file && intervals, "intervals", "a file and intervals", "one of them"),
@@ -92,15 +75,22 @@ impl Keys {
             (after && !before, "after", "velocities after the impact without before", "both"),
             (self.velocity_std.is_some() && !before, "velocity_std", "velocity_std without before", "both"),
             (
+                !file && !interval && !intervals && !before && self.height.is_some(),
+                "interval",
+                "a height and no time",
+                "the time from first to second impact, or the trace files of the drops",
+            ),
+            (
                 !file && !interval && !intervals && !before,
                 "height",
-                "nothing that was measured",
-                "a file, an interval and a height, intervals, or before and after",
+                "no measured value",
+                "trace files, height and interval, intervals, or velocities before and after",
             ),
             (before && !after, "before", "before without velocities after the impact", velocities),
         ];
         if let Some((_, key, found, expected)) = wrong.into_iter().find(|w| w.0) {
-            return Err(Error::usage(found, expected).setting(key));
+            let error = Error::usage(found, expected).setting(key);
+            return Err(if key == "interval" && !file { error.setting("height") } else { error });
         }
         let given = self.after.len() + usize::from(self.after2.is_some());
         if given > 2 {
@@ -214,10 +204,24 @@ impl Series {
         answer.figures = self.answer.figures;
         answer.findings = self.answer.findings;
         answer.tell("", &found.findings);
-        answer.table("restitution", tables::restitution(name, &found));
-        answer.details.extend(tables::agreement(&found));
+        answer.table("restitution", by_method(name, &found));
         Ok(answer)
     }
+}
+
+/// Restitution by every method, one row a method.
+fn by_method(name: &str, found: &Restitution) -> Table {
+    table(
+        "Coefficient of restitution",
+        &found.by,
+        &[
+            ("series", "", &|_| name.into()),
+            ("method", "", &|way| way.method.into()),
+            ("R", "", &|way| Cell::from(&way.restitution)),
+            ("samples", "", &|way| way.restitution.n.into()),
+            ("computed as", "", &|way| way.restitution.method.as_str().into()),
+        ],
+    )
 }
 
 impl Analysis for Keys {
@@ -237,7 +241,7 @@ impl Analysis for Keys {
         }
         if entry.keys.before.is_some() && series.any(|e| e.keys.before.is_some()) {
             let found = format!("two drops of {name:?} have velocities");
-            return Err(Error::usage(found, "one impact with velocities a name").setting("before"));
+            return Err(Error::usage(found, "velocities in one table of the series only").setting("before"));
         }
         Ok(())
     }
@@ -248,8 +252,7 @@ impl Analysis for Keys {
             // Files without a name are no series, even where one folder has the same file name as another.
             let stated = entry.name.as_ref();
             let at = all.iter().position(|s| stated.is_some() && s.0 == stated).unwrap_or_else(|| {
-                let name = if entry.file.is_some() { name_of(entry) } else { format!("drop {}", i + 1) };
-                all.push((stated, stated.cloned().unwrap_or(name), Series::new(&entry.keys)));
+                all.push((stated, name_of(entry, i + 1), Series::new(&entry.keys)));
                 all.len() - 1
             });
             let Some((_, name, series)) = all.get_mut(at) else { continue };

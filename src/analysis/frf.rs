@@ -21,53 +21,41 @@ use std::path::PathBuf;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Band in Hz whose peaks are fitted together [default: a band around each peak]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
     pub band: Option<(f64, f64)>,
     /// Mass in kg, for the stiffness k = m(2 pi f)^2
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG", allow_negative_numbers = true))]
     pub mass: Option<f64>,
     /// File with the coherence of the same lines [default: a coherence in the file]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub coherence: Option<PathBuf>,
-    /// Lines of a lower coherence are left out [default: 0.5]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "C"))]
+    /// Lines with a lower coherence are left out [default: 0.5]
     pub least_coherence: Option<f64>,
-    /// Channel of the excitation: the function is computed from it to the channel
+    /// Channel of the excitation in a time record: the frequency response function is computed first
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
-    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
     pub segment: Option<usize>,
-    /// Part of a segment that it shares with the next [default: 0.5]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
+    /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
-    /// Taken out of a segment before the window: mean or none [default: mean]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
+    /// Removed from a segment before the window: mean or none [default: mean]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
     pub detrend: Option<Detrend>,
     /// Window of a segment [default: hann]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
     /// Integrations in frequency [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
     pub integrate: Option<i8>,
     /// Lowest frequency in Hz [default: two lines where integrated, else 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub fmin: Option<f64>,
-    /// The excitation is a hammer: one record a blow
-    #[cfg_attr(feature = "cli", arg(long))]
+    /// Hammer test: one segment for each blow
     pub hammer: bool,
     /// Width of the force window in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub force_window: Option<f64>,
-    /// What an exponential window leaves of the response at the end of a record
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
+    /// Value of the exponential window at the end of a segment
     pub left_at_end: Option<f64>,
     /// Channel delay to remove, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
     pub delay: Option<f64>,
 }
 

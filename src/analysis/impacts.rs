@@ -1,14 +1,15 @@
 //! Impacts of a trace: `[[impacts]]`, `vibro impacts`.
 
 pub mod figures;
-pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{ImpactsOptions, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
 use crate::read::Reader;
+use crate::report::layout::{pair, table};
+use crate::report::{Cell, Table};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -18,29 +19,22 @@ use std::path::PathBuf;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// Frequency of the excitation in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
     pub excitation: Option<f64>,
     /// Trigger channel of the same file, one rising edge per excitation cycle, by name or by number from 1
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
     /// Smallest impact counted, as a fraction of the median height [default: 0.125]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FRACTION"))]
     pub threshold: Option<f64>,
     /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub refractory: Option<f64>,
-    /// Leave mains hum in the trace
-    #[cfg_attr(feature = "cli", arg(long))]
+    /// Do not remove mains hum
     pub keep_hum: bool,
-    /// Record of one pulse of the shape that all have: each impact is matched to it
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
+    /// Record of one pulse: each impact is matched to its shape
     pub shape: Option<PathBuf>,
     /// Sampling rate of that record in Hz, where its file does not state it
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", requires = "shape"))]
+    #[cfg_attr(feature = "cli", arg(requires = "shape"))]
     pub shape_rate: Option<f64>,
-    /// Take the count as right: no impact is missed or doubled, however uneven the intervals
-    #[cfg_attr(feature = "cli", arg(long))]
+    /// No impact is missed or double, however uneven the intervals are
     pub none_missed: bool,
 }
 
@@ -83,11 +77,52 @@ impl Keys {
         answer.tell("", &found.findings);
         answer.tell("", &recording.findings);
         answer.tell("", &trace.meta.findings);
-        answer.tables.push(tables::impacts(source.name, &found));
+        answer.tables.push(summary(source.name, &found));
         answer.figure("impacts", figures::impacts(source.name, &trace, &found));
-        answer.csv("impacts", &tables::impact_times(&found));
+        answer.csv("impacts", &times(&found));
         Ok(answer)
     }
+}
+
+/// What the impacts of a trace repeat, in one row.
+fn summary(name: &str, found: &Impacts) -> Table {
+    let rhythm = match found.regular {
+        true => "regular",
+        false if found.n == 2 => "unknown (2 impacts)",
+        false if found.beat.is_some() => "drifts against the excitation",
+        false => "irregular",
+    };
+    table(
+        "Impacts",
+        [found],
+        &[
+            ("trace", "", &|_| name.into()),
+            ("impacts", "", &|f| f.n.into()),
+            ("interval", "s", &|f| Cell::from(&f.interval)),
+            ("frequency", "Hz", &|f| Cell::from(&f.frequency)),
+            ("median interval", "s", &|f| f.median_interval.into()),
+            ("interval spread", "s", &|f| f.spread.into()),
+            ("missed", "", &|f| f.missed.into()),
+            ("double", "", &|f| f.doubled.into()),
+            ("impacts/cycles", "", &|f| f.per_cycle.map(|p| format!("{}/{}", p.impacts, p.cycles)).into()),
+            ("rhythm", "", &|_| rhythm.into()),
+        ],
+    )
+    .note("Impacts/cycles needs the excitation frequency. Missed: intervals of several periods. Double: a second impact within half an interval.")
+}
+
+/// Every impact: time, height, phase.
+fn times(found: &Impacts) -> Table {
+    let phase = |i: usize| found.phase.get(i).copied();
+    table(
+        "Times of impacts",
+        found.times.iter().zip(&found.heights).enumerate(),
+        &[
+            ("time", "s", &|(_, (time, _))| pair(**time, found.onset_std)),
+            ("height", "", &|(_, (_, height))| (**height).into()),
+            ("phase", "", &|(i, _)| phase(*i).into()),
+        ],
+    )
 }
 
 impl Analysis for Keys {

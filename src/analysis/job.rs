@@ -11,10 +11,6 @@ use crate::report::{Output, Table, files};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Steps of progress through a record.
-const PARTS: usize = 100;
 
 /// Told how far a job is.
 pub trait Progress: Sync {
@@ -22,12 +18,15 @@ pub trait Progress: Sync {
     fn start(&self, what: &str, steps: usize);
     /// One step is done.
     fn step(&self);
+    /// So many of all steps are done.
+    fn at(&self, done: usize, all: usize);
 }
 
 /// Nobody is told.
 impl Progress for () {
     fn start(&self, _: &str, _: usize) {}
     fn step(&self) {}
+    fn at(&self, _: usize, _: usize) {}
 }
 
 /// How a job may go about its files.
@@ -35,19 +34,6 @@ impl Progress for () {
 pub struct JobOptions {
     /// Allow names that lead outside the campaign's folder.
     pub allow_outside: bool,
-}
-
-/// What a campaign gave.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// As in `results.json`: a list of answers by the name of each kind.
-    pub results: Map<String, Value>,
-    /// What a person should know, each about a record.
-    pub findings: Vec<About>,
-    /// The tables that a person wants first.
-    pub tables: Vec<Table>,
-    /// Whether anything was answered.
-    pub answered: bool,
 }
 
 /// A campaign at work: what its analyses ask, and where they put what they find.
@@ -165,9 +151,10 @@ impl<'a> Job<'a> {
         measure: impl Fn(&Entry<K>, &Source<'_>) -> Result<Vec<Answer>>,
     ) -> Result<()> {
         let mut records: Vec<Record> = Vec::new();
-        for entry in entries {
-            let name = name_of(entry);
-            let path = self.path(entry)?;
+        for (i, entry) in entries.iter().enumerate() {
+            let name = name_of(entry, i + 1);
+            // Numbers alone have no file.
+            let path = entry.file.as_ref().map_or_else(|| Ok(PathBuf::new()), |_| self.path(entry))?;
             let found = self.measured(entry, &name, &path, |source| measure(entry, source));
             for answer in self.found(&name, found)?.unwrap_or_default() {
                 let file = Value::String(file_name(&path));
@@ -205,13 +192,7 @@ impl<'a> Job<'a> {
         path: &Path,
         measure: impl FnOnce(&Source<'_>) -> Result<T>,
     ) -> Result<T> {
-        self.progress.start(name, PARTS);
-        let told = AtomicUsize::new(0);
-        let step = |done: usize, all: usize| {
-            let parts = (PARTS * done).checked_div(all).unwrap_or(0).min(PARTS);
-            let before = told.fetch_max(parts, Ordering::Relaxed);
-            (before..parts).for_each(|_| self.progress.step());
-        };
+        self.progress.start(name, 0);
         let beside =
             |key: &'static str, file: &Path| self.campaign.file(entry, key, file, self.options.allow_outside);
         measure(&Source {
@@ -220,7 +201,7 @@ impl<'a> Job<'a> {
             channel: &entry.channel,
             reading: &entry.reading,
             beside: &beside,
-            progress: &step,
+            progress: self.progress,
         })
     }
 }
@@ -247,7 +228,7 @@ pub struct Record {
     pub answer: Answer,
 }
 
-/// Does all that a campaign asks for, and writes it to `output`.
+/// Does all that a campaign asks for, and writes it to `output`. Gives what was found, and whether any record was answered.
 ///
 /// # Errors
 /// If a file cannot be read; if the overlay is not possible; if a file cannot be written.
@@ -256,7 +237,7 @@ pub fn run(
     options: JobOptions,
     output: &mut Output,
     progress: &dyn Progress,
-) -> Result<Outcome> {
+) -> Result<(Answer, bool)> {
     let mut job = Job::new(campaign, options, progress);
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;
@@ -279,6 +260,5 @@ pub fn run(
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
     output.write("results.json", json + "\n")?;
     output.write("report.html", page::page(&job, version, &all, &drawings).html())?;
-    let Answer { result: results, findings, tables, .. } = all;
-    Ok(Outcome { results, findings, tables, answered: job.answers > 0 })
+    Ok((all, job.answers > 0))
 }

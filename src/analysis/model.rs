@@ -21,18 +21,17 @@ use std::path::PathBuf;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct SceneKeys {
     /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, tables excitation, contact, buffer [default: the thesis' rig]
+    #[cfg_attr(feature = "cli", arg(index = 1))]
     pub rig: Option<PathBuf>,
     /// Set a key of the rig, tables with a dot: gap=0.5e-3, contact.stiffness=1e5
     #[cfg_attr(feature = "cli", arg(long = "set", value_name = "KEY=VALUE"))]
     pub set: Vec<String>,
     /// Force in N: amplitude of a sine, height of a pulse
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
     pub force: Option<f64>,
     /// Impulse in N s, once a cycle, instead of a sine force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NS", allow_negative_numbers = true, conflicts_with_all = ["force", "width"]))]
+    #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["force", "width"]))]
     pub impulse: Option<f64>,
     /// Width in s of a rectangular pulse, once a cycle, instead of a sine force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
     pub width: Option<f64>,
 }
 
@@ -70,7 +69,8 @@ impl SceneKeys {
         }
         let scene = draft.scene()?;
         let excitation = scene.excitation.clone().ok_or_else(|| {
-            let expected = "a force (a sine), an impulse, a force with a width, or [excitation] in the file";
+            let expected =
+                "a force (sine), an impulse, a force with a width (pulse), or [excitation] in the rig file";
             Error::usage("nothing drives the rig", expected).setting("force").setting("impulse")
         })?;
         Ok(Driven { scene, excitation, finding: rig_left_out("The file", &missing) })

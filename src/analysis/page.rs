@@ -30,8 +30,8 @@ pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing]) ->
     }
     let steps: Vec<(&str, String)> =
         job.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
-    page.heading("Where the numbers come from")
-        .details("Steps from file to curve", steps.iter().map(|(name, text)| (*name, text.as_str())))
+    page.heading("Processing")
+        .details("Steps from file to result", steps.iter().map(|(name, text)| (*name, text.as_str())))
         .paragraph(&format!(
             "Made by vibroimpact {version}. All numbers are in results.json beside this page."
         ))

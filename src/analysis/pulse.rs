@@ -1,46 +1,41 @@
 //! Contact pulses: `[[pulse]]`, `vibro pulse`.
 
 pub mod figures;
-pub mod tables;
 
-use super::job::Record;
-use super::source::{file_name, name_of};
+use super::job::Marks;
 use super::{Analysis, Answer, Job, Source};
 use crate::campaign::{Entry, LowPass, above_zero};
 use crate::error::{Error, Result};
+use crate::measure::Estimate;
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
+use crate::report::layout::{headed, table};
+use crate::report::{Cell, Table};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// What is known of a pulse and of its instrument, or two times without a record.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
-    /// Time from the onset to the largest force, in s: instead of a file
+    /// Time from the onset to the largest force in s, instead of a file
     #[cfg_attr(
         feature = "cli",
-        arg(
-            long,
-            value_name = "S",
-            allow_negative_numbers = true,
+        arg(value_name = "S",
             conflicts_with_all = crate::campaign::Channel::KEYS.into_iter().chain(crate::campaign::Reading::KEYS)
         )
     )]
     pub time_to_peak: Option<f64>,
     /// Time from the onset to the end of the contact, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
     pub duration: Option<f64>,
     /// Standard uncertainty of each of the two times, in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
     pub std: Option<f64>,
-    /// Mass that is decelerated, in kg, for stiffness and damping
-    #[cfg_attr(feature = "cli", arg(long, value_name = "KG", allow_negative_numbers = true))]
+    /// Decelerated mass in kg, for stiffness and damping
     pub mass: Option<f64>,
     /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no uncertainty]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", value_parser = LowPass::typed, allow_negative_numbers = true))]
+    #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Order of that low-pass, 1 to 10
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub order: Option<usize>,
 }
 
@@ -105,11 +100,58 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     let mut answer = Answer::of(found)?;
     answer.tell("", &found.findings);
     answer.figures.extend(figures::pulse(name, found).map(|figure| ("pulse".to_owned(), figure)));
-    answer.table("pulse", tables::pulse(name, found));
+    answer.table("pulse", contact(name, found));
     if !found.fits.is_empty() {
-        answer.table("pulse_fits", tables::pulse_fits(name, found));
+        answer.table("pulse_fits", models(name, found));
     }
     Ok(answer)
+}
+
+fn named(what: &str, title: &str) -> String {
+    if title.is_empty() { what.to_owned() } else { format!("{what}, {title}") }
+}
+
+/// What a pulse says, one row a quantity, in SI units.
+fn contact(title: &str, result: &PulseResult) -> Table {
+    let known = |e: &Option<Estimate>| e.as_ref().map_or(Cell::Missing, Cell::from);
+    table(
+        named("Contact", title),
+        [result],
+        &[
+            ("damping ratio", "1", &|r| Cell::from(&r.xi)),
+            ("frequency", "Hz", &|r| Cell::from(&r.frequency)),
+            ("duration", "s", &|r| Cell::from(&r.duration)),
+            ("restitution", "1", &|r| Cell::from(&r.restitution)),
+            ("initial velocity", "m/s", &|r| known(&r.initial_velocity)),
+            ("stiffness", "N/m", &|r| known(&r.stiffness)),
+            ("damping", "N s/m", &|r| known(&r.damping)),
+        ],
+    )
+}
+
+/// The models that were fitted to the pulse.
+fn models(title: &str, result: &PulseResult) -> Table {
+    let columns = [("model", ""), ("RMS residual", ""), ("AICc", ""), ("whiteness p", ""), ("samples", "")];
+    let all = result.fits.iter().flat_map(|f| &f.parameters);
+    let parameters: BTreeMap<&str, &str> = all.map(|(name, e)| (*name, e.unit)).collect();
+    let own = |table: Table, (name, unit): (&&str, &&str)| table.column(name.replace('_', " "), *unit);
+    let mut table = parameters.iter().fold(headed(named("Models", title), &columns), own);
+    for fit in &result.fits {
+        let whiteness = match fit.whiteness {
+            Some(p) if p < 1e-6 => Cell::from("< 1e-6"),
+            p => Cell::from(p),
+        };
+        let known = [
+            Cell::from(fit.model.name()),
+            Cell::Number(fit.residual),
+            Cell::Number(fit.aicc),
+            whiteness,
+            Cell::from(fit.n),
+        ];
+        let own = parameters.keys().map(|name| fit.parameters.get(name).map_or(Cell::Missing, Cell::from));
+        table.push(known.into_iter().chain(own));
+    }
+    table
 }
 
 impl Analysis for Keys {
@@ -120,22 +162,10 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        let mut records = Vec::new();
-        for (i, entry) in entries.iter().enumerate() {
-            let (name, file, found) = if entry.file.is_some() {
-                let (name, path) = (name_of(entry), job.path(entry)?);
-                let found = job.measured(entry, &name, &path, |source| entry.keys.measure(source));
-                (name, file_name(&path), found)
-            } else {
-                let name = entry.name.clone().unwrap_or_else(|| format!("pulse {}", i + 1));
-                let found = entry.keys.times(&name);
-                (name, String::new(), found)
-            };
-            let Some(answer) = job.found(&name, found)? else { continue };
-            let mark = (records.len() + 1).to_string();
-            records.push(Record { name, file: file.into(), mark, answer });
-        }
-        job.answer("pulses", records);
-        Ok(())
+        job.each("pulses", entries, Marks::Numbers, |entry, source| {
+            let of_file = entry.file.is_some();
+            let answer = if of_file { entry.keys.measure(source) } else { entry.keys.times(source.name) };
+            Ok(vec![answer?])
+        })
     }
 }

@@ -1,7 +1,6 @@
 //! Spectra of time records, and the function of two channels: `[[spectrum]]`, `vibro spectrum`.
 
 pub mod figures;
-pub mod tables;
 
 use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
@@ -9,7 +8,8 @@ use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Method, SpectralOptions, SpectralResult, spectral};
 use crate::record::{Scaling, Window};
-use crate::report::files;
+use crate::report::layout::table;
+use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
 use serde::Deserialize;
 
@@ -19,53 +19,42 @@ use serde::Deserialize;
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
     /// One transform of the whole record, fft, or the average over segments, welch [default: welch; fft with tones]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "METHOD", value_parser = crate::campaign::word::<Method>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "METHOD", value_parser = crate::campaign::word::<Method>))]
     pub method: Option<Method>,
     /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N"))]
     pub tones: Option<usize>,
     /// Samples of a segment [default: 8192, or the whole of a shorter record]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "SAMPLES"))]
     pub segment: Option<usize>,
-    /// Part of a segment that it shares with the next [default: 0.5]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART", allow_negative_numbers = true))]
+    /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
-    /// Taken out before the window: mean or none [default: mean with welch or an integration, else none]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
+    /// Removed before the window: mean or none [default: mean with welch or an integration, else none]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Detrend>))]
     pub detrend: Option<Detrend>,
     /// Window: hann, rectangular, hamming, blackman, blackman-harris, flat-top [default: hann]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
-    /// What a line means: peak, rms, power or psd [default: peak]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
+    /// Scaling of the lines: peak, rms, power or psd [default: peak]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration [default: 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true))]
     pub integrate: Option<i8>,
-    /// Lowest frequency given, in Hz [default: two lines where integrated, else 0]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ"))]
+    /// Lowest frequency of the result, in Hz [default: two lines where integrated, else 0]
     pub fmin: Option<f64>,
-    /// Channel of the excitation: gives the frequency response function from it
+    /// Channel of the excitation, for the frequency response function
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub reference: Option<String>,
-    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for both alike [default: h1]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
+    #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
-    /// The excitation is a hammer: one record a blow, of the samples of a segment, from the level before it
-    #[cfg_attr(feature = "cli", arg(long))]
+    /// Hammer test: one segment for each blow; the level before the blow is removed
     pub hammer: bool,
     /// Width of the force window in s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S"))]
     pub force_window: Option<f64>,
-    /// What an exponential window leaves of the response at the end of a record, e.g. 0.01
-    #[cfg_attr(feature = "cli", arg(long, value_name = "PART"))]
+    /// Value of the exponential window at the end of a segment, e.g. 0.01
     pub left_at_end: Option<f64>,
     /// Channel delay to remove, in s: the channel was recorded later than the reference
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", allow_negative_numbers = true))]
     pub delay: Option<f64>,
     /// Give levels in decibels over this reference, in SI units of the channel: 1, or 1e-6 for 1 µm/s²
-    #[cfg_attr(feature = "cli", arg(long, value_name = "REF"))]
     pub decibel: Option<f64>,
 }
 
@@ -126,7 +115,9 @@ impl Keys {
         let mut traces =
             reader.stream_chosen(source.path, reference, channel.channel.as_deref(), channel.calibration)?;
         let all = traces.frames();
-        spectral(&mut traces, &options, |done| (source.progress)(done, all))
+        let found = spectral(&mut traces, &options, |done| source.progress.at(done, all))?;
+        source.contradicted(&found.findings)?;
+        Ok(found)
     }
 
     /// The lines of a record, with their figure, tables and files.
@@ -138,8 +129,8 @@ impl Keys {
         let mut answer = Answer::of(&found)?;
         answer.result.insert("channel".to_owned(), found.name.clone().into());
         answer.tell("", &found.findings);
-        answer.tables = vec![tables::peaks(source.name, &found), tables::tones(source.name, &found)];
-        answer.details.push(tables::taken(&found));
+        answer.tables = vec![peaks(source.name, &found), tones(source.name, &found)];
+        answer.details.push(taken(&found));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
         let (files, unwritten) = files::records(name, &found.records())?;
@@ -147,6 +138,62 @@ impl Keys {
         answer.tell("", unwritten);
         Ok(answer)
     }
+}
+
+/// Largest peaks of a record that a table shows.
+const SHOWN: usize = 8;
+
+/// The largest peaks of a record, one row a peak.
+fn peaks(name: &str, found: &SpectralResult) -> Table {
+    let of = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
+    let response = found.response.as_ref();
+    table(
+        "Largest peaks of spectra",
+        found.peaks(SHOWN),
+        &[
+            ("record", "", &|_| Cell::from(name)),
+            ("frequency", "Hz", &|k| Cell::from(of(&found.frequency, *k))),
+            ("value", "", &|k| Cell::Estimate { value: found.value[*k], std: of(&found.value_std, *k) }),
+            ("unit", "", &|_| Cell::from(found.unit.as_str())),
+            ("scaling", "", &|_| Cell::from(found.scaling)),
+            ("phase", "°", &|k| Cell::from(response.and_then(|r| of(&r.phase, *k)))),
+            ("coherence", "", &|k| Cell::from(response.and_then(|r| of(&r.coherence, *k)))),
+        ],
+    )
+}
+
+/// How the lines of a record were taken.
+fn taken(found: &SpectralResult) -> Table {
+    table(
+        "Settings of the spectra",
+        [found],
+        &[
+            ("record", "", &|f| Cell::from(f.name.as_str())),
+            ("lines", "", &|f| Cell::from(f.frequency.len())),
+            ("scaling", "", &|f| Cell::from(f.scaling)),
+            ("unit", "", &|f| Cell::from(f.unit.as_str())),
+            ("level unit", "", &|f| Cell::from(f.level_unit.as_deref().unwrap_or("-"))),
+            ("window", "", &|f| Cell::from(f.window)),
+            ("ENBW", "lines", &|f| Cell::Number(f.enbw)),
+            ("detrend", "", &|f| Cell::from(f.detrend)),
+            ("averages", "", &|f| Cell::from(f.averages)),
+        ],
+    )
+}
+
+/// The sines fitted to a record, one row a sine.
+fn tones(name: &str, found: &SpectralResult) -> Table {
+    table(
+        "Tones",
+        &found.tones,
+        &[
+            ("record", "", &|_| Cell::from(name)),
+            ("frequency", "Hz", &|t| Cell::from(&t.frequency)),
+            ("amplitude", "", &|t| Cell::from(&t.amplitude)),
+            ("unit", "", &|t| Cell::from(t.amplitude.unit)),
+            ("phase", "rad", &|t| Cell::from(&t.phase)),
+        ],
+    )
 }
 
 impl Analysis for Keys {

@@ -71,7 +71,7 @@ impl Keys {
             return wrong("name", &format!("{found} files"), expected);
         }
         if self.list.is_some() && (self.lines.is_some() || self.base_band.is_some()) {
-            let found = "lines or base_band beside a list, which says both itself";
+            let found = "lines or base_band beside a list, which states both";
             return wrong("list", found, "one of them: correct the list, or leave the keys out");
         }
         let band = self.base_band.is_some_and(|b| b.is_finite() && b > 0.0);

@@ -11,29 +11,21 @@ use serde::Deserialize;
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Reading {
-    /// Force the format instead of finding it out
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
+    /// File format, instead of detecting it
     pub format: Option<String>,
-    /// Keep NaN, Inf and blank values as missing instead of refusing them
-    #[cfg_attr(feature = "cli", arg(long))]
+    /// Keep NaN, Inf and blank values as missing, instead of refusing them
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with = "base_band")
-    )]
+    #[cfg_attr(feature = "cli", arg(conflicts_with = "base_band"))]
     pub rate: Option<f64>,
     /// Base band in Hz: the values are a spectrum from 0 to it, or a trace sampled at 2.56 times it
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub base_band: Option<f64>,
     /// Unit of the values, such as mm/s
-    #[cfg_attr(feature = "cli", arg(long))]
     pub unit: Option<String>,
     /// Decimal mark, where the file leaves it open: comma or point
-    #[cfg_attr(feature = "cli", arg(long, value_name = "MARK", value_parser = crate::campaign::word::<Decimal>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "MARK", value_parser = crate::campaign::word::<Decimal>))]
     pub decimal: Option<Decimal>,
     /// Two columns of values are real and imaginary part
-    #[cfg_attr(feature = "cli", arg(long))]
     pub complex: bool,
 }
 
@@ -44,10 +36,8 @@ pub struct Reading {
 pub struct Channel {
     /// Record of the file, by name or by number from 1 [default: the only one]
     #[serde(deserialize_with = "channel")]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME"))]
     pub channel: Option<String>,
     /// Factor on the stored values; with a unit, to that unit
-    #[cfg_attr(feature = "cli", arg(long, value_name = "FACTOR", allow_negative_numbers = true))]
     pub calibration: Option<f64>,
 }
 

@@ -13,28 +13,28 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Run {
     /// campaign.toml
+    #[arg(index = 1)]
     campaign: PathBuf,
     /// Folder for results [default: `out` in the campaign, else `results` beside it]
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Allow names in lists that lead outside their folder
-    #[arg(long)]
+    /// Allow files outside the folder of the campaign
     allow_outside: bool,
 }
 
 #[derive(Debug, clap::Args)]
 pub struct Compare {
     /// campaign.toml with a rig, an excitation and sweeps
+    #[arg(index = 1)]
     campaign: PathBuf,
-    /// Allow names in lists that lead outside their folder
-    #[arg(long)]
+    /// Allow files outside the folder of the campaign
     allow_outside: bool,
-    /// Parameters to be found from the responses, with commas between: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a prior in
+    /// Parameters to fit, separated by commas: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a prior in
     /// [fit] [default: those of [fit] in the campaign]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     fit: Vec<String>,
     /// Folder for the overlay and the fit as SVG, PNG and CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
@@ -44,25 +44,24 @@ impl Run {
         let campaign = analysis::open(&self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let options = JobOptions { allow_outside: self.allow_outside };
-        let mut output = Output::set(&folder)?;
-        let outcome =
+        let mut output = Output::new(&folder)?;
+        let (found, answered) =
             print::busy(json, "campaign", |bar| analysis::run(&campaign, options, &mut output, bar))?;
-        output.commit()?;
         let files = output.written();
         if json {
             let mut answer = Map::new();
-            answer.insert("warnings".to_owned(), outcome.results["warnings"].clone());
-            answer.insert("results".to_owned(), Value::Object(outcome.results));
+            answer.insert("warnings".to_owned(), found.result["warnings"].clone());
+            answer.insert("results".to_owned(), Value::Object(found.result));
             answer.insert("files".to_owned(), json!(files));
             answer.insert("folder".to_owned(), json!(folder.display().to_string()));
             print::object(answer)?;
         } else {
-            complain::warn(&told(&outcome.findings, Voice::Campaign, true));
-            let tables = outcome.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
+            complain::warn(&told(&found.findings, Voice::Campaign, true));
+            let tables = found.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
             let n = files.len();
             print::text(&format!("{tables}\n{n} files in {}; open report.html there\n", folder.display()))?;
         }
-        Ok(u8::from(!outcome.answered && !campaign.is_empty()))
+        Ok(u8::from(!answered && !campaign.is_empty()))
     }
 }
 

@@ -19,22 +19,30 @@ pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
 /// Prints what clap has to say: help and version are no error, anything else is wrong usage, with `json` as an object on standard
 /// output as well.
 pub fn usage(error: &clap::Error, json: bool) -> u8 {
-    // A closed pipe behind --help is no reason to complain.
-    let _ = error.print();
     if !error.use_stderr() {
+        // A closed pipe behind --help is no reason to complain.
+        let _ = error.print();
         return 0;
     }
+    let text = NUMBERS.iter().fold(error.to_string(), |text, (of_std, ours)| text.replace(of_std, ours));
+    line(text.trim_end());
     let tried = advice(error);
     if let Some(tried) = &tried {
         line(&format!("  try: {tried}"));
     }
     if json {
-        let text = error.to_string();
         let tried = tried.map_or_else(String::new, |t| format!("\n  try: {t}"));
         object(format!("{}{tried}", text.trim().trim_start_matches("error: ")), 2);
     }
     2
 }
+
+/// What the standard library says of a value that is no number, and what a person needs to know.
+const NUMBERS: [(&str, &str); 3] = [
+    ("invalid float literal", "expected a number, such as 0.5 or 1e-3"),
+    ("invalid digit found in string", "expected a whole number"),
+    ("cannot parse integer from empty string", "expected a whole number"),
+];
 
 /// A number with a decimal comma as it is to be typed.
 fn advice(error: &clap::Error) -> Option<String> {

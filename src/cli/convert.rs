@@ -17,14 +17,14 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Convert {
     /// File to read
+    #[arg(index = 1)]
     input: PathBuf,
     /// File to write: .uff .unv (UFF-58), .csv .tsv, .wav, .npy
+    #[arg(index = 2)]
     output: PathBuf,
     /// Write UFF-58 as binary (58b)
-    #[arg(long)]
     binary: bool,
     /// Write single instead of double precision, where the format has both
-    #[arg(long)]
     single: bool,
     #[command(flatten)]
     change: Change,

@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::read::Header;
 use crate::record::Finding;
 use crate::report::words::{Voice, put, told};
-use crate::units::notation::shortest;
 use serde_json::{Map, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -14,7 +13,7 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Info {
     /// Measurement files
-    #[arg(required = true)]
+    #[arg(index = 1, required = true)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
@@ -44,12 +43,13 @@ impl Info {
             let of_records: Vec<_> =
                 records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
             findings.extend(Finding::gathered(&of_records));
+            let numbered = findings.iter().any(|f| f.code == "abscissa-unsaid");
             let path = path.display().to_string();
             let file = if self.files.len() > 1 { path.as_str() } else { "" };
             about.extend(findings.into_iter().map(|finding| (file.to_owned(), finding)));
             let _ = writeln!(text, "{path} ({})", format.name());
             for record in &records {
-                line(&mut text, record);
+                line(&mut text, record, numbered);
             }
             notes(&mut text, records.first().map_or(&[], |r| &r.notes));
             files.push(json!({ "path": path, "format": format.name(), "records": records }));
@@ -68,14 +68,25 @@ impl Info {
     }
 }
 
-fn line(text: &mut String, r: &Header) {
+fn line(text: &mut String, r: &Header, numbered: bool) {
     let n = match r.declared_n {
         Some(declared) if declared != r.n => format!("{} of {declared}", r.n),
         _ => r.n.to_string(),
     };
-    let step = r.dx.map_or_else(|| "uneven".to_owned(), |dx| format!("step {}", shortest(dx)));
+    let axis = match r.kind {
+        _ if numbered => "",
+        "trace" => "s",
+        _ => "Hz",
+    };
+    let step = match r.dx {
+        Some(dx) if axis == "s" => {
+            format!("{}, {}", known(1.0 / dx, "Hz"), known(dx * r.n as f64, "s"))
+        }
+        Some(dx) => format!("step {}", known(dx, axis)),
+        None => "uneven steps".to_owned(),
+    };
     let max = match (r.max_abs, r.max_at) {
-        (Some(max), Some(at)) => format!("max {} at {}", shortest(max), shortest(at)),
+        (Some(max), Some(at)) => format!("max {} at {}", known(max, &r.unit), known(at, axis)),
         _ => "max not known".to_owned(),
     };
     let complex = if r.complex { "complex " } else { "" };
@@ -85,8 +96,14 @@ fn line(text: &mut String, r: &Header) {
         ("other", unit) => format!(" in {unit}"),
         (quantity, unit) => format!(" of {quantity} [{unit}]"),
     };
-    let (kind, start) = (r.kind, shortest(r.x0));
+    let (kind, start) = (r.kind, known(r.x0, axis));
     let _ = writeln!(text, "  {name}: {complex}{kind}{what}, {n} values from {start}, {step}, {max}");
+}
+
+/// A number to six digits, with its unit.
+fn known(value: f64, unit: &str) -> String {
+    let digits = format!("{value:.5e}").parse().unwrap_or(value);
+    format!("{digits} {unit}").trim_end().to_owned()
 }
 
 fn notes(text: &mut String, notes: &[String]) {

@@ -8,17 +8,17 @@ use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
 pub enum Model {
-    /// All motions with one impact a period at one frequency, each with its verdicts
+    /// All motions with one impact a period at one frequency, with existence and stability
     Orbit(Asked<orbit::Keys>),
-    /// A motion from impact to impact, its regime, traces and Poincaré section
+    /// Simulated motion: regime, traces, phase plane, Poincaré section
     Simulate(Asked<simulate::Keys>),
-    /// The same over a range of frequencies, with the places where motions appear, vanish and change
+    /// All motions with one impact a period over frequency, with folds and stability limits
     Response(Asked<response::Keys>),
-    /// Sweep frequency or force up and down, the motion carried on from step to step
+    /// Simulated sweep of frequency or force; the state carries over from step to step
     Sweep(Asked<sweep::Keys>),
-    /// The simplest model that is good enough for a scene, and why
+    /// The simplest adequate model of a scene, and why
     Choose(Asked<choose::Keys>),
-    /// Map regime and stability over two parameters; a map that was cut short in its folder is taken up again
+    /// Regime and stability over two parameters
     Map(Asked<map::Keys>),
 }
 
@@ -28,7 +28,7 @@ pub struct Asked<K: Args> {
     #[command(flatten)]
     keys: K,
     /// Folder for figures as SVG and PNG, and tables as CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
@@ -42,7 +42,7 @@ impl Model {
                 Model::Response(typed) => (typed.keys.answer()?, &typed.out),
                 Model::Sweep(typed) => (typed.keys.answer()?, &typed.out),
                 Model::Choose(typed) => (typed.keys.answer()?, &typed.out),
-                Model::Map(typed) => (typed.keys.answer(typed.out.as_deref(), bar)?, &typed.out),
+                Model::Map(typed) => (typed.keys.answer(bar)?, &typed.out),
             })
         })?;
         print::answer(answer, out.as_deref(), json)

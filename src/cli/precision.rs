@@ -7,24 +7,21 @@ use crate::error::{Error, Result};
 use crate::precision::{Family, Results, Scene};
 use crate::record::Finding;
 use crate::report::files;
-use clap::ValueEnum;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub struct Precision {
     /// Fewer settings, repeats, records and cycles, so rougher errors: seconds instead of minutes
-    #[arg(long)]
     quick: bool,
-    /// Methods of this kind
-    #[arg(long, value_name = "KIND", default_value = "both")]
-    family: Kind,
-    /// Tell also what the methods do at the borders of what they can: right, refused, wrong, stalled, crashed, not asked
-    #[arg(long)]
+    /// Only the methods of this kind: models or estimators [default: both]
+    #[arg(value_name = "KIND", value_parser = crate::campaign::word::<Family>)]
+    family: Option<Family>,
+    /// Show also the outcome of each method at its limits: right, refused, wrong, stalled, crashed, not asked
     failures: bool,
-    /// Measure nothing: take scenes and failures from what `vibro precision --json` printed into this file
-    #[arg(long, value_name = "FILE", conflicts_with = "quick")]
+    /// Use the results that `vibro precision --json` wrote to this file
+    #[arg(conflicts_with = "quick")]
     from: Option<PathBuf>,
-    /// Add the lines that another program has measured and written into this file
+    /// Add results of another program from this file
     ///
     /// The file is a JSON list with an object for each method and setting: scene (its name as printed here), method
     /// (program, version and method), error (in what the scene's "Error:" names; null where it failed), `time_ns` (ns
@@ -36,26 +33,8 @@ pub struct Precision {
     #[arg(long, value_name = "FILE")]
     add: Vec<PathBuf>,
     /// Folder for charts as SVG and PNG, and tables as CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Kind {
-    Models,
-    Estimators,
-    Both,
-}
-
-impl Kind {
-    /// Whether methods of this family are meant.
-    fn holds(self, family: Family) -> bool {
-        match self {
-            Kind::Models => family == Family::Models,
-            Kind::Estimators => family == Family::Estimators,
-            Kind::Both => true,
-        }
-    }
 }
 
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
@@ -67,7 +46,7 @@ impl Precision {
             Some(path) => Results::from_path(path)?,
             None => self.measured(json)?,
         };
-        results.retain(|family| self.family.holds(family));
+        results.retain(|family| self.family.is_none_or(|only| only == family));
         let nothing = results.failures.is_empty();
         if nothing && (self.failures || results.scenes.is_empty()) {
             let missing = if self.failures { "failures" } else { "scenes" };
@@ -120,7 +99,7 @@ impl Precision {
                 bar.set_message(scene.to_owned());
                 bar.inc(1);
             };
-            for family in FAMILIES.into_iter().filter(|f| self.family.holds(*f)) {
+            for family in FAMILIES.into_iter().filter(|f| self.family.is_none_or(|only| only == *f)) {
                 results.measure(family, self.quick, self.failures, &mut tell)?;
             }
             Ok(results)

@@ -16,34 +16,18 @@ use std::time::Duration;
 ///
 /// # Errors
 /// If a file or standard output cannot be written.
-pub fn answer(answer: Answer, out: Option<&Path>, json: bool) -> Result<()> {
-    let written = written(&answer, out)?;
-    if !json && out.is_none() && !answer.files.is_empty() {
+pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<()> {
+    let mut written = Vec::new();
+    if let Some(folder) = out {
+        let mut output = Output::new(folder)?;
+        files::figures(&mut output, &answer.figures, &|| ())?;
+        for (name, bytes) in &answer.files {
+            output.write(name, bytes)?;
+        }
+        written = output.written().to_vec();
+    } else if !json && !answer.files.is_empty() {
         complain::line("all numbers: --json, or files with --out DIR");
     }
-    shown(answer, written, json)
-}
-
-/// Writes the figures and files of an answer into a folder, all together; gives their names.
-///
-/// # Errors
-/// If a file cannot be written.
-pub fn written(answer: &Answer, out: Option<&Path>) -> Result<Vec<String>> {
-    let Some(folder) = out else { return Ok(Vec::new()) };
-    let mut output = Output::set(folder)?;
-    files::figures(&mut output, &answer.figures, &|| ())?;
-    for (name, bytes) in &answer.files {
-        output.write(name, bytes)?;
-    }
-    output.commit()?;
-    Ok(output.written().to_vec())
-}
-
-/// Prints an answer and the names of its files.
-///
-/// # Errors
-/// If standard output cannot be written.
-pub fn shown(mut answer: Answer, written: Vec<String>, json: bool) -> Result<()> {
     if json {
         answer.result.entry("files").or_insert_with(|| written.into());
         put(&mut answer.result, &answer.findings, Voice::Command);
@@ -114,6 +98,11 @@ impl Progress for ProgressBar {
 
     fn step(&self) {
         self.inc(1);
+    }
+
+    fn at(&self, done: usize, all: usize) {
+        self.set_length(all as u64);
+        self.set_position(done as u64);
     }
 }
 

@@ -1,7 +1,8 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
-use super::print;
+use super::convert::write_beside;
 use super::sweep::of_script;
+use super::{complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::{Answer, Source, drill, drop, frf, impacts, pulse, spectrum};
 use crate::campaign::{Channel, Reading};
@@ -9,11 +10,9 @@ use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
 use crate::measure::{Estimate, legacy};
 use crate::record::{Finding, Trace};
-use crate::report::Output;
 use crate::report::layout::table;
 use clap::Args;
 use serde_json::json;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Which record, how its file is read, and where results go.
@@ -24,7 +23,7 @@ pub struct Record {
     #[command(flatten)]
     reading: Reading,
     /// Folder for figures as SVG and PNG, and tables as CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
@@ -32,6 +31,7 @@ pub struct Record {
 #[derive(Debug, Args)]
 pub struct Measured<K: Args> {
     /// Measurement file
+    #[arg(index = 1)]
     file: PathBuf,
     #[command(flatten)]
     keys: K,
@@ -44,8 +44,7 @@ pub type Modal = Measured<frf::Keys>;
 
 #[derive(Debug, Args)]
 pub struct Impacts {
-    /// Print what the thesis' script timeav printed, mistakes included
-    #[arg(long)]
+    /// Repeat the thesis' script timeav with its mistakes
     legacy: bool,
     #[command(flatten)]
     of: Measured<impacts::Keys>,
@@ -53,8 +52,7 @@ pub struct Impacts {
 
 #[derive(Debug, Args)]
 pub struct Drill {
-    /// Write every impact with the speed of its turn, and beside it the velocity of every turn over the phase
-    #[arg(long, value_name = "CSV")]
+    /// Write the velocity of every turn over the phase into this file
     each_cycle: Option<PathBuf>,
     #[command(flatten)]
     of: Measured<drill::Keys>,
@@ -63,6 +61,7 @@ pub struct Drill {
 #[derive(Debug, Args)]
 pub struct Pulse {
     /// Record of the acceleration (or force) of a contact
+    #[arg(index = 1)]
     file: Option<PathBuf>,
     #[command(flatten)]
     keys: pulse::Keys,
@@ -73,6 +72,7 @@ pub struct Pulse {
 #[derive(Debug, Args)]
 pub struct Restitution {
     /// Traces of drops or of trains of bounces, one a drop
+    #[arg(index = 1)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     keys: drop::Keys,
@@ -90,17 +90,13 @@ impl Record {
     ) -> Result<T> {
         let name = file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         print::busy(json, "samples", |bar| {
-            let progress = |done: usize, all: usize| {
-                bar.set_length(all as u64);
-                bar.set_position(done as u64);
-            };
             measure(&Source {
                 name: &name,
                 path: file,
                 channel: &self.channel,
                 reading: &self.reading,
                 beside: &|_, file| Ok(file.to_owned()),
-                progress: &progress,
+                progress: bar,
             })
         })
     }
@@ -213,40 +209,22 @@ impl Restitution {
 impl Drill {
     /// Prints speed, impacts and the average turn.
     pub fn run(&self, json: bool) -> Result<()> {
-        let Some(path) = &self.each_cycle else {
-            let each = &mut |_: &Cycle<'_>| Ok(());
-            let answer = self.of.by(json, |keys, source| keys.measure(source, each))?;
-            return self.of.record.print(answer, json);
+        let mut turns = String::new();
+        let mut each = |cycle: &Cycle<'_>| -> Result<()> {
+            if self.each_cycle.is_some() {
+                if turns.is_empty() {
+                    turns = cycles::head(cycle.velocity.len());
+                }
+                turns += &cycles::row(cycle);
+            }
+            Ok(())
         };
-        let named =
-            path.file_name().zip(path.file_stem()).map(|(n, s)| (n.to_string_lossy(), s.to_string_lossy()));
-        let (name, stem) = named
-            .ok_or_else(|| Error::usage("no file name for each cycle", "NAME.csv").setting("each_cycle"))?;
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        // Turns are written as they come, beside the table of impacts; a record that allows no answer leaves nothing.
-        let mut output = Output::set(folder)?;
-        let velocities = format!("{stem}_velocity.csv");
-        let mut turns = None;
-        let mut each = |cycle: &Cycle<'_>| {
-            let head = if turns.is_none() { cycles::head(cycle.velocity.len()) } else { String::new() };
-            let file = match &mut turns {
-                Some(file) => file,
-                none => none.insert(output.growing(&velocities)?),
-            };
-            let rows = head + &cycles::row(cycle);
-            file.write_all(rows.as_bytes())
-                .map_err(|e| Error::io("write", path.with_file_name(&velocities), e))
-        };
-        let answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
-        if let Some(mut file) = turns {
-            file.flush().map_err(|e| Error::io("write", path.with_file_name(&velocities), e))?;
+        let mut answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
+        if let Some(path) = &self.each_cycle {
+            let written = write_beside(path, turns)?.display().to_string();
+            complain::line(&format!("wrote {written}"));
+            answer.result.insert("each_cycle".to_owned(), written.into());
         }
-        if let Some((_, impacts)) = answer.files.iter().find(|(name, _)| name == "impacts.csv") {
-            output.write(&name, impacts)?;
-        }
-        output.commit()?;
-        let mut written = print::written(&answer, self.of.record.out.as_deref())?;
-        written.extend(output.written().iter().map(|name| folder.join(name).display().to_string()));
-        print::shown(answer, written, json)
+        self.of.record.print(answer, json)
     }
 }

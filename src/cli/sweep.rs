@@ -21,18 +21,15 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Source {
     /// List file, hand-over file, or campaign.toml#name
-    #[arg(value_name = "SWEEP")]
+    #[arg(index = 1, value_name = "SWEEP")]
     path: String,
-    /// Reproduce the thesis' script, mistakes included
-    #[arg(long)]
+    /// Repeat the thesis' script with its mistakes
     legacy: bool,
-    /// Allow names in the list that lead outside its folder
-    #[arg(long)]
+    /// Allow files outside the folder of the list
     allow_outside: bool,
     #[command(flatten)]
     stored: Stored,
-    /// Lowest frequency looked at, in Hz [default: two lines or a quarter of the lowest excitation]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    /// Lowest frequency used, in Hz [default: two lines or a quarter of the lowest excitation]
     fmin: Option<f64>,
 }
 
@@ -42,13 +39,13 @@ pub struct Taken {
     #[command(flatten)]
     sweep: Source,
     /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity to displacement]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    #[arg(value_parser = clap::value_parser!(i8).range(-2..=2))]
     integrate: Option<i8>,
-    /// Lines on both sides of the excitation in which the peak is looked for
-    #[arg(long, value_name = "LINES", allow_negative_numbers = true, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    /// Lines on both sides of the excitation that are searched for the peak
+    #[arg(default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     band: u16,
     /// Folder for figures as SVG and PNG, and tables as CSV
-    #[arg(long, value_name = "DIR")]
+    #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
@@ -57,7 +54,6 @@ pub struct Waterfall {
     #[command(flatten)]
     taken: Taken,
     /// Highest frequency drawn, in Hz [default: the base band]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     fmax: Option<f64>,
 }
 

@@ -28,7 +28,7 @@ impl Page {
         Page { title: title.into(), ..Page::default() }
     }
 
-    /// Adds a sentence to the box at the top that says what the result rests on.
+    /// Adds a sentence to the box at the top.
     pub fn warning(mut self, sentence: impl Into<String>) -> Page {
         self.warnings.push(sentence.into());
         self
@@ -85,7 +85,9 @@ impl Page {
              <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n"
         );
         if !self.warnings.is_empty() {
-            out.push_str("<section class=\"warnings\" aria-label=\"Warnings\">\n<h2>What this result rests on</h2>\n<ul>\n");
+            out.push_str(
+                "<section class=\"warnings\" aria-label=\"Warnings\">\n<h2>Notes and warnings</h2>\n<ul>\n",
+            );
             for sentence in &self.warnings {
                 let _ = writeln!(out, "<li>{}</li>", escaped(sentence));
             }

@@ -31,6 +31,8 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// Rows, each with a cell for every column; a row that is too short ends with missing cells.
     pub rows: Vec<Vec<Cell>>,
+    /// What its words mean, below it.
+    pub note: &'static str,
 }
 
 /// Head of a column.
@@ -131,6 +133,11 @@ impl Table {
         self
     }
 
+    /// Explains its words below it.
+    pub fn note(self, note: &'static str) -> Table {
+        Table { note, ..self }
+    }
+
     /// Adds a row.
     pub fn row(mut self, cells: impl IntoIterator<Item = Cell>) -> Table {
         self.push(cells);
@@ -155,6 +162,9 @@ impl Table {
             let row = cells.collect::<Vec<_>>().join("  ");
             // A hyphen can be copied into other programs, a typographic minus cannot.
             let _ = writeln!(out, "{}", row.trim_end().replace('\u{2212}', "-"));
+        }
+        if !self.note.is_empty() {
+            let _ = writeln!(out, "{}", self.note);
         }
         out
     }
@@ -211,7 +221,10 @@ impl Table {
             }
             let _ = writeln!(out, "</tr>");
         }
-        out.push_str("</tbody></table></div>\n");
+        let _ = writeln!(out, "</tbody></table></div>");
+        if !self.note.is_empty() {
+            let _ = writeln!(out, "<p class=\"note\">{}</p>", escaped(self.note));
+        }
         out
     }
 
@@ -262,9 +275,10 @@ impl Formatted {
         let written = |cell: &&Cell| match (cell, cell.value()) {
             (Cell::Text(text), _) => text.clone(),
             (_, None) => "–".to_owned(),
-            (Cell::Estimate { std, .. }, Some(value)) if cell.std().is_some() => {
-                estimate(value * scale, std.map(|s| s * scale))
+            (Cell::Estimate { std: Some(std), .. }, Some(value)) if cell.std().is_some() => {
+                uncertain(value * scale, std * scale)
             }
+            (_, Some(value)) if column.unit == "%" => percentage(value),
             (_, Some(value)) => match decimals {
                 Some(decimals) if value.is_finite() => fixed(value * scale, decimals),
                 _ => significant(value * scale, 5),
@@ -309,6 +323,21 @@ fn common_decimals(values: &[f64]) -> Option<usize> {
     // The smallest keeps two digits.
     let kept = smallest * 10f64.powi(decimals as i32) >= 10.0 || decimals == needed;
     (kept && (1e-3..1e9).contains(&largest)).then_some(decimals)
+}
+
+/// A value with its uncertainty to two digits, without a power of ten of its own: the column has one.
+fn uncertain(value: f64, std: f64) -> String {
+    match usize::try_from(1 - std.log10().floor() as i32) {
+        Ok(decimals) if (1e-6..0.1).contains(&std) && value.abs() < 0.1 => {
+            format!("{} ± {}", fixed(value, decimals), fixed(std, decimals))
+        }
+        _ => estimate(value, Some(std)),
+    }
+}
+
+/// A percentage has three significant digits at most, and no power of ten.
+fn percentage(value: f64) -> String {
+    if value.abs() < 1e-3 && value != 0.0 { "< 0.001".to_owned() } else { significant(value, 3) }
 }
 
 /// The shortest text that reads back as the same number.

@@ -22,7 +22,7 @@ fn results(campaign: &str) -> (Value, tempfile::TempDir) {
     for name in output.written() {
         assert!(folder.path().join("out").join(name).is_file(), "{name}");
     }
-    (Value::Object(found.results), folder)
+    (Value::Object(found.0.result), folder)
 }
 
 /// The modes of a function.

@@ -1,7 +1,5 @@
 //! Regime and stability over two parameters.
 
-mod rows;
-
 use super::forcing::Forcing;
 use super::regime::{Strike, Watch};
 use super::{
@@ -193,25 +191,21 @@ impl Plan {
         (rig, excitation)
     }
 
-    /// Computes the rows that `rows` does not hold yet, cells in parallel, and shows each with its number as soon as it stands.
+    /// The cells row by row, those of a row in parallel; `done` hears of each row.
     ///
     /// # Errors
-    /// As [`Plan::check`], and those of `show`, which end the work.
-    pub fn run(
-        &self,
-        rows: &mut Vec<Vec<Cell>>,
-        mut show: impl FnMut(usize, &[Cell]) -> Result<()>,
-    ) -> Result<()> {
+    /// As [`Plan::check`].
+    pub fn run(&self, mut done: impl FnMut()) -> Result<Vec<Vec<Cell>>> {
         self.check()?;
-        for row in rows.len()..self.y.n {
+        let row = |row| {
             let cells = parallel::each(self.x.n, |column| {
                 let (rig, excitation) = self.at(column, row);
                 cell(&rig, &excitation, self.cycles)
             });
-            show(row, &cells)?;
-            rows.push(cells);
-        }
-        Ok(())
+            done();
+            cells
+        };
+        Ok((0..self.y.n).map(row).collect())
     }
 }
 

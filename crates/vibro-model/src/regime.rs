@@ -56,24 +56,6 @@ impl fmt::Display for Regime {
     }
 }
 
-impl std::str::FromStr for Regime {
-    type Err = ();
-
-    fn from_str(text: &str) -> std::result::Result<Regime, ()> {
-        let number = |text: &str| text.parse::<u32>().map_err(|_| ());
-        Ok(match (text, text.split_once('/')) {
-            ("no impact", _) => Regime::NoImpact,
-            ("chatter", _) => Regime::Chatter { cycles: None },
-            ("irregular", _) => Regime::Irregular,
-            (_, Some(("chatter", cycles))) => Regime::Chatter { cycles: Some(number(cycles)?) },
-            (_, Some((impacts, cycles))) => {
-                Regime::Periodic { impacts: number(impacts)?, cycles: number(cycles)? }
-            }
-            _ => return Err(()),
-        })
-    }
-}
-
 /// `{"impacts": p, "cycles": q}` for a pattern, else a word.
 impl Serialize for Regime {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {

@@ -158,9 +158,7 @@ mod tests {
             y: "restitution:0.1:0.9:3".parse().unwrap(),
             cycles: 200,
         };
-        let mut rows = Vec::new();
-        plan.run(&mut rows, |_, _| Ok(())).unwrap();
-        assert_eq!(rows.len(), 3);
+        assert_eq!(plan.run(|| ()).unwrap().len(), 3);
     }
 
     #[test]

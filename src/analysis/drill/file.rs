@@ -1,5 +1,6 @@
 //! Channels of a file.
 
+use crate::analysis::Progress;
 use std::path::Path;
 use vibro_io::Reader;
 use vibro_record::units::Quantity;
@@ -20,15 +21,10 @@ impl Channels {
     ///
     /// # Errors
     /// If the file cannot be read, a channel does not exist or is named twice, or has another rate.
-    pub fn read(
-        reader: Reader,
-        path: &Path,
-        names: &[&str],
-        progress: &dyn Fn(usize, usize),
-    ) -> Result<Channels> {
+    pub fn read(reader: Reader, path: &Path, names: &[&str], progress: &dyn Progress) -> Result<Channels> {
         let mut traces = reader.allow_missing(true).stream_channels(path, names)?;
         if traces.channels().len() != names.len() {
-            return Err(Error::refused(format!("two of the channels {} are one", names.join(", "))));
+            return Err(Error::refused(format!("the channels {} are not all different", names.join(", "))));
         }
         let (mut values, mut done) = (Vec::new(), 0);
         loop {
@@ -37,7 +33,7 @@ impl Channels {
                 break;
             }
             done += n;
-            progress(done, traces.frames());
+            progress.at(done, traces.frames());
         }
         let mut findings = traces.findings();
         findings.retain(|found| found.code != Trace::UNCALIBRATED);

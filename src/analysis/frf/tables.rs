@@ -34,7 +34,7 @@ pub fn modes(name: &str, result: &ModalResult) -> Table {
 pub(crate) fn modal_methods(result: &ModalResult) -> Table {
     let note = |note: &Option<_>| note.as_ref().map_or_else(String::new, |n| sentence(n, Voice::Campaign));
     table(
-        "By method",
+        "Modes by method",
         result.modes.iter().flat_map(|m| &m.by),
         &[
             ("method", "", &|by| Cell::from(by.method)),

@@ -13,12 +13,12 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let intervals: Vec<f64> = found.times.windows(2).map(|w| 1e3 * (w[1] - w[0])).collect();
     let axis = |name: &str| AxisSpec::new(name, "ms");
     let (low, high) = limits(&intervals);
-    let histogram = Plot::new(axis("Interval").limits(low, high), AxisSpec::new("Intervals", ""))
+    let histogram = Plot::new(axis("Interval").limits(low, high), AxisSpec::new("Count", ""))
         .with(Series::histogram("", &intervals).ink(Ink::Nth(0)))
         .with(Series::vertical("mean", 1e3 * found.interval.value))
         .legend(Legend::Hidden);
     let (before, after): (Vec<f64>, Vec<f64>) = intervals.windows(2).map(|w| (w[0], w[1])).unzip();
-    let map = Plot::new(axis("Interval").limits(low, high), axis("Interval after it").limits(low, high))
+    let map = Plot::new(axis("Interval").limits(low, high), axis("Next interval").limits(low, high))
         .with(Series::line("", [low, high], [low, high]).ink(Ink::Grey).stroke(Stroke::Thin))
         .with(Series::points("", before, after).marker(Marker::Circle).ink(Ink::Nth(0)))
         .legend(Legend::Hidden);
@@ -33,11 +33,11 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let figure = Figure::double(title)
         .height(130.0)
         .columns(2)
-        .panel(marked(trace, &found.times, all))
-        .panel(marked(trace, &found.times, near))
-        .panel(histogram)
-        .panel(map)
-        .caption("(a) The trace with the impacts that were found, (b) about ten intervals of it. (c) Intervals between successive impacts, (d) each over the one before; a periodic motion is a point there, or a few.");
+        .panel(marked(trace, &found.times, all).title("whole record"))
+        .panel(marked(trace, &found.times, near).title("about ten intervals"))
+        .panel(histogram.title("intervals"))
+        .panel(map.title("each interval over the one before"))
+        .caption("Triangles: impacts found. (c) Vertical line: mean interval. (d) A periodic motion is one point, or a few.");
     lettered(figure)
 }
 
@@ -52,10 +52,7 @@ pub fn drop(title: &str, trace: &Trace, times: &[f64]) -> Figure {
     if let Some(second) = times.get(1) {
         plot = plot.title(format!("first flight {:.2} ms", 1e3 * (second - first)));
     }
-    Figure::double(title)
-        .height(70.0)
-        .panel(plot)
-        .caption("The trace of a drop with the impacts that were found.")
+    Figure::double(title).height(70.0).panel(plot).caption("Trace of a drop. Triangles: impacts found.")
 }
 
 /// The part of a trace between two times, with its impacts marked over it.

@@ -24,47 +24,32 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true, conflicts_with_all = ["from", "to", "points"]))]
+    #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["from", "to", "points"]))]
     pub frequency: Option<f64>,
-    /// Lowest excitation frequency in Hz of an axis
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "to")
-    )]
+    /// Lowest frequency of a range, in Hz, instead of one frequency
+    #[cfg_attr(feature = "cli", arg(requires = "to"))]
     pub from: Option<f64>,
-    /// Highest excitation frequency in Hz of an axis
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "from")
-    )]
+    /// Highest frequency of the range, in Hz
+    #[cfg_attr(feature = "cli", arg(requires = "from"))]
     pub to: Option<f64>,
-    /// Number of frequencies of an axis
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 100))]
+    /// Number of frequencies of the range
+    #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub points: usize,
-    /// What is looked at: fundamental, the amplitude of both masses at the excitation frequency; peak, half of peak-to-peak; impact-speed;
+    /// Observable: fundamental, the amplitude of both masses at the excitation frequency; peak, half of peak-to-peak; impact-speed;
     /// impulse
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
-    /// Part by which it may be off
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "PART", default_value_t = 0.02, allow_negative_numbers = true)
-    )]
+    /// Relative change of the answer that does not matter
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.02))]
     pub tolerance: f64,
-    /// Noise floor of the measurement, in the unit of what is looked at: less than it does not matter
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "SIZE", default_value_t = 0.0, allow_negative_numbers = true)
-    )]
+    /// Noise floor of the measurement, in the unit of the observable: smaller changes do not matter
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub noise: f64,
-    /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not relied on
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)
-    )]
+    /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not valid
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub gap_std: f64,
-    /// Which way the frequency came, up or down, for where several motions are possible
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WAY", value_parser = crate::campaign::word::<Direction>))]
+    /// Direction of the sweep, up or down, where several motions coexist
+    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Direction>))]
     pub history: Option<Direction>,
 }
 
@@ -113,12 +98,12 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
         answer.table("sensitivity", sensitivity(&choice.sensitivity, question));
     }
     answer.tables.push(table(
-        "Why",
+        "Reasons",
         fates(choice),
         &[
-            ("rungs", "", &|(names, ..)| names.as_str().into()),
-            ("", "", &|(_, fate, _)| (*fate).into()),
-            ("because", "", &|(.., why)| why.as_str().into()),
+            ("model", "", &|(names, ..)| names.as_str().into()),
+            ("result", "", &|(_, fate, _)| (*fate).into()),
+            ("reason", "", &|(.., why)| why.as_str().into()),
         ],
     ));
     Ok(())
@@ -218,14 +203,14 @@ fn answered(mut table: Table, question: &Question, answers: impl Iterator<Item =
 fn rungs(choice: &Choice, question: &Question) -> Table {
     let worst = |r: &Rung| r.changes.iter().copied().max_by(|a, b| a.change.abs().total_cmp(&b.change.abs()));
     let found = table(
-        "Rungs",
+        "Models compared",
         &choice.rungs,
         &[
-            ("rung", "", &|r| r.model.name().into()),
+            ("model", "", &|r| r.model.name().into()),
             ("valid", "", &|r| r.valid.into()),
-            ("moves by", "%", &|r| percent(worst(r).map(|c| c.change))),
-            ("at", "", &|r| worst(r).map(|c| c.at.name()).into()),
-            ("good enough", "", &|r| r.sufficient.into()),
+            ("answer changes by", "%", &|r| percent(worst(r).map(|c| c.change))),
+            ("against model", "", &|r| worst(r).map(|c| c.at.name()).into()),
+            ("adequate", "", &|r| r.sufficient.into()),
             ("chosen", "", &|r| (choice.chosen == Some(r.model)).into()),
             ("time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
         ],
@@ -236,13 +221,13 @@ fn rungs(choice: &Choice, question: &Question) -> Table {
 /// The answer over an unknown stiffness of the contact.
 fn sensitivity(rows: &[Sensitivity], question: &Question) -> Table {
     let found = table(
-        "Over the stiffness of the contact",
+        "Answer over the contact stiffness",
         rows,
         &[
             ("contact stiffness in N/m", "", &|r| r.stiffness.into()),
             ("in contact", "% of the cycle", &|r| percent(Some(r.share))),
-            ("moves by", "%", &|r| percent(Some(r.change))),
-            ("within", "", &|r| r.enough.into()),
+            ("answer changes by", "%", &|r| percent(Some(r.change))),
+            ("within the tolerance", "", &|r| r.enough.into()),
         ],
     );
     answered(found, question, rows.iter().map(|r| Some(r.answer)))
@@ -264,15 +249,18 @@ fn stretches(stretches: &[Stretch]) -> Table {
         &[
             ("from", "Hz", &|s| s.from.into()),
             ("to", "Hz", &|s| s.to.into()),
-            ("points", "", &|s| s.points.into()),
-            ("chosen", "", &|s| s.chosen.map(Model::name).into()),
+            ("frequencies tried", "", &|s| s.points.into()),
+            ("simplest model", "", &|s| s.chosen.map(Model::name).into()),
             ("needs", "", &|s| needed(&s.needs)),
-            ("moves at most by", "%", &|s| moved(s.audit)),
-            ("at rung", "", &|s| s.audit.map(|a| a.at.name()).into()),
-            ("at", "Hz", &|s| s.worst_at.into()),
+            ("answer changes by up to", "%", &|s| moved(s.audit)),
+            ("against model", "", &|s| s.audit.map(|a| a.at.name()).into()),
+            ("largest change at", "Hz", &|s| s.worst_at.into()),
         ],
     )
 }
+
+/// What the columns of a campaign's table mean.
+const TRIED: &str = "The models are compared at evenly spaced frequencies, not at the measured points. No model (–): state what it needs.";
 
 /// Which model is good enough where along the sweeps of a campaign.
 pub(crate) fn climbed(overlay: &Overlay) -> Table {
@@ -283,18 +271,18 @@ pub(crate) fn climbed(overlay: &Overlay) -> Table {
             all.rows.push(row);
         }
     }
-    all
+    all.note(TRIED)
 }
 
 /// Each rung over the whole axis.
 fn summaries(survey: &Survey) -> Table {
     table(
-        "Rungs",
+        "Models compared",
         &survey.rungs,
         &[
-            ("rung", "", &|r| r.model.name().into()),
+            ("model", "", &|r| r.model.name().into()),
             ("valid everywhere", "", &|r| r.valid.into()),
-            ("moves at most by", "%", &|r| percent(r.error)),
+            ("answer changes by up to", "%", &|r| percent(r.error)),
             ("median time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
             ("valid at", "points", &|r| r.valid_at.into()),
             ("chosen at", "points", &|r| r.chosen_at.into()),
@@ -311,8 +299,8 @@ fn chosen(points: &[Choice], question: &Question) -> Table {
             ("frequency", "Hz", &|c| c.frequency.into()),
             ("chosen", "", &|c| c.chosen.map(Model::name).into()),
             ("needs", "", &|c| needed(&c.needs)),
-            ("moves by", "%", &|c| moved(c.audit)),
-            ("at rung", "", &|c| c.audit.map(|a| a.at.name()).into()),
+            ("answer changes by", "%", &|c| moved(c.audit)),
+            ("against model", "", &|c| c.audit.map(|a| a.at.name()).into()),
         ],
     );
     answered(found, question, points.iter().map(Choice::answer))

@@ -29,7 +29,8 @@ fn law(scene: &Scene, wanted: Contact) -> Result<Law> {
     let keys = scene.contact.unwrap_or_default();
     let missing = |key: &str, unit: &str| {
         Error::usage(format!("a contact without {key}"), format!("contact.{key} in {unit}"))
-            .hint(format!("give --set contact.{key}=…: no value fits all contacts, and results depend on it"))
+            .hint(format!("state contact.{key}; no value fits all contacts, and the result depends on it"))
+            .setting("set")
     };
     // A key that the law has no place for is no detail: N/m and N/m^1.5 are different things.
     let exponent = |law: f64| ("exponent", keys.exponent.filter(|n| *n != law), format!("{law}"));

@@ -2,14 +2,11 @@
 
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::{Answer, Progress};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::model::map::{Axis, Cell, Plan};
 use crate::record::Finding;
-use crate::report::layout::table;
+use crate::report::layout::{Shown, table};
 use serde_json::json;
-use std::fs::{self, File};
-use std::io::Write;
-use std::path::Path;
 
 /// What is asked.
 #[derive(Debug, Clone)]
@@ -19,28 +16,22 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Parameter across: one of m1 m2 k1 k2 c1 c2 gap restitution frequency force impulse width, e.g. frequency:3:14:120
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME:LOW:HIGH:N"))]
     pub x: String,
     /// Parameter upwards, as x
-    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME:LOW:HIGH:N"))]
     pub y: String,
     /// Excitation frequency in Hz, where it is not varied
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub frequency: Option<f64>,
-    /// Cycles a cell, from rest; a cell that has settled ends before
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 200))]
+    /// Cycles of each cell, from rest; a settled cell ends earlier
+    #[cfg_attr(feature = "cli", arg(default_value_t = 200))]
     pub cycles: u32,
 }
 
-/// Rows as they come.
-const PART: &str = "map.part.csv";
-
 impl Keys {
-    /// The map. Where a folder is named, rows stand in it as they come, and a map that was cut short there is taken up again.
+    /// The map.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, nothing drives the rig, or the folder holds a part of another map or cannot be written.
-    pub fn answer(&self, folder: Option<&Path>, progress: &dyn Progress) -> Result<Answer> {
+    /// If the scene or a key cannot be, or nothing drives the rig.
+    pub fn answer(&self, progress: &dyn Progress) -> Result<Answer> {
         let (x, y): (Axis, Axis) = (self.x.parse()?, self.y.parse()?);
         // What is varied needs not be given: the excitation then begins at its low end.
         let or_varied = |given: Option<f64>, name: &str| {
@@ -55,27 +46,8 @@ impl Keys {
         let Driven { scene, excitation, finding } = scene.driven(or_varied(self.frequency, "frequency"))?;
         let plan = Plan { rig: scene.rig, excitation, x, y, cycles: self.cycles };
         plan.check()?;
-        let part = folder.map(|folder| folder.join(PART));
-        let (mut rows, mut store) = match &part {
-            Some(part) => {
-                let (rows, file) = taken_up(part, &plan)?;
-                (rows, Some((part, file)))
-            }
-            None => (Vec::new(), None),
-        };
-        let kept = rows.len();
-        progress.start("map", plan.y.n - kept);
-        plan.run(&mut rows, |row, cells| {
-            progress.step();
-            store.as_mut().map_or(Ok(()), |(part, file)| {
-                let lines = plan.lines(row, cells);
-                file.write_all(lines.as_bytes()).map_err(|e| Error::io("write", part, e))
-            })
-        })?;
-        if let Some((part, file)) = store {
-            drop(file);
-            fs::remove_file(part).map_err(|e| Error::io("remove", part, e))?;
-        }
+        progress.start("map", plan.y.n);
+        let rows = plan.run(|| progress.step())?;
         let grid = |of: &dyn Fn(&Cell) -> serde_json::Value| -> Vec<Vec<serde_json::Value>> {
             rows.iter().map(|row| row.iter().map(of).collect()).collect()
         };
@@ -89,9 +61,6 @@ impl Keys {
             "spectral_radius": grid(&|c| json!(c.spectral_radius)),
         }))?;
         answer.tell("", finding);
-        if kept > 0 {
-            answer.tell("", [Finding::caution("map-rows-kept").count("done", kept).count("rows", plan.y.n)]);
-        }
         let missing = rows.iter().flatten().filter(|c| c.regime.is_none()).count();
         if missing > 0 {
             answer.tell("", [Finding::caution("map-cells-empty").count("n", missing)]);
@@ -102,29 +71,20 @@ impl Keys {
             &counts,
             &[("regime", "", &|c| c.0.to_string().into()), ("cells", "", &|c| c.1.into())],
         ));
-        answer.files.push(("map.csv".to_owned(), text(&plan, &rows)?.into_bytes()));
+        let cells = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(row, cells)| cells.iter().enumerate().map(move |(column, cell)| (column, row, cell)));
+        let ((x_name, x_unit), (y_name, y_unit)) = (x.key.label(), y.key.label());
+        let regime = |cell: &Cell| cell.regime.map_or_else(String::new, |r| r.to_string());
+        let columns: [Shown<(usize, usize, &Cell)>; 4] = [
+            (y_name, y_unit, &|c| y.value(c.1).into()),
+            (x_name, x_unit, &|c| x.value(c.0).into()),
+            ("regime", "", &|c| regime(c.2).into()),
+            ("spectral radius", "", &|c| c.2.spectral_radius.into()),
+        ];
+        answer.csv("map", &table("Map", cells, &columns));
         answer.figure("map", figures::regimes(&plan, &rows)?);
         Ok(answer)
     }
-}
-
-/// The rows that stand.
-fn text(plan: &Plan, rows: &[Vec<Cell>]) -> Result<String> {
-    let lines = rows.iter().enumerate().map(|(row, cells)| plan.lines(row, cells));
-    Ok(plan.header()? + &lines.collect::<String>())
-}
-
-/// What an earlier run has left of this map, in a file that can grow.
-fn taken_up(part: &Path, plan: &Plan) -> Result<(Vec<Vec<Cell>>, File)> {
-    if let Some(folder) = part.parent() {
-        fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, e))?;
-    }
-    let rows = match fs::read_to_string(part) {
-        Ok(earlier) if !earlier.is_empty() => plan.rows(&earlier)?,
-        _ => Vec::new(),
-    };
-    let whole = text(plan, &rows)?;
-    let mut file = File::create(part).map_err(|e| Error::io("write", part, e))?;
-    file.write_all(whole.as_bytes()).map_err(|e| Error::io("write", part, e))?;
-    Ok((rows, file))
 }

@@ -18,13 +18,11 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub frequency: Option<f64>,
-    /// Cycles of the excitation from impact to impact
-    #[cfg_attr(feature = "cli", arg(long, value_name = "Q", default_value_t = 1))]
+    /// Excitation cycles from impact to impact
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
     pub cycles: u32,
-    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not robust
     pub gap_std: Option<f64>,
 }
 
@@ -144,6 +142,7 @@ fn verdicts(orbits: &[Orbit], gap_std: Option<f64>) -> Table {
             ("energy rule", "", &|(_, o)| o.validity.energy_rule.into()),
         ],
     )
+    .note("Admissible: the masses do not pass through each other. Robust: farther from grazing than the gap is uncertain.")
 }
 
 /// The motion without impacts.
@@ -158,7 +157,7 @@ fn no_impact(motion: &NoImpact) -> Table {
 /// What the duration of the contact changes in each motion.
 fn soft(all: &[Option<Softened>]) -> Table {
     table(
-        "With the contact's duration",
+        "Corrected for the contact duration",
         all.iter().enumerate().filter_map(|(i, soft)| soft.map(|s| (i, s))),
         &[
             ("no.", "", &|(i, _)| Cell::from(i + 1)),

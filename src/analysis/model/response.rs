@@ -19,19 +19,16 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Lowest excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub from: f64,
     /// Highest excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub to: f64,
     /// Number of frequencies
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 400))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 400))]
     pub points: usize,
-    /// Cycles of the excitation from impact to impact
-    #[cfg_attr(feature = "cli", arg(long, value_name = "Q", default_value_t = 1))]
+    /// Excitation cycles from impact to impact
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
     pub cycles: u32,
-    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not relied on
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", allow_negative_numbers = true))]
+    /// Standard uncertainty of the gap in m: a motion nearer to grazing is not robust
     pub gap_std: Option<f64>,
 }
 

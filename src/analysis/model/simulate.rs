@@ -20,16 +20,15 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub frequency: Option<f64>,
-    /// Law of the contact: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
-    #[cfg_attr(feature = "cli", arg(long, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    /// Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
+    #[cfg_attr(feature = "cli", arg(value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
-    /// Cycles of the excitation that are looked at
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 100))]
+    /// Excitation cycles analysed
+    #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub cycles: u32,
-    /// Cycles that the motion is given to settle before
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 500))]
+    /// Cycles discarded before, while transients decay
+    #[cfg_attr(feature = "cli", arg(default_value_t = 500))]
     pub settle: u32,
     /// Displacements in m and velocities in m/s at the start [default: at rest]
     #[cfg_attr(
@@ -38,13 +37,10 @@ pub struct Keys {
     )]
     pub initial: Vec<f64>,
     /// Phase of the excitation's cycle at the start, in rad: 0 is the crest of a sine and the beginning of a pulse
-    #[cfg_attr(
-        feature = "cli",
-        arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)
-    )]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub phase: f64,
     /// Approach speed in m/s below which an impact counts as grazing
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", allow_negative_numbers = true, default_value_t = crate::model::simulate::GRAZING_SPEED))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = crate::model::simulate::GRAZING_SPEED))]
     pub grazing: f64,
 }
 

@@ -4,18 +4,16 @@ use super::contact::{self, Contact};
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::Answer;
 use crate::compare::{Named, named};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
-use crate::model::continuation::{Branch, Mark, follow};
 use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
-use crate::model::{Excitation, Motion, PeriodicOrbit, Rig, Simulation, Sine, State, orbits};
+use crate::model::{Excitation, Motion, Rig, Simulation, State};
 use crate::record::{Direction, Finding};
+use crate::report::Table;
 use crate::report::layout::{headed, pair, table};
-use crate::report::{Cell, Table};
-use num_complex::Complex64;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// What is asked.
 #[derive(Debug, Clone)]
@@ -25,42 +23,36 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// What is swept: the excitation frequency, or force, the size of the force or of the impulse
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
     pub over: Over,
     /// Lower end in Hz, in N (N s for impulses) over the force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "LOW", allow_negative_numbers = true))]
     pub from: f64,
     /// Upper end
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HIGH", allow_negative_numbers = true))]
     pub to: f64,
     /// Excitation frequency in Hz of a sweep of the force
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ", allow_negative_numbers = true))]
     pub frequency: Option<f64>,
-    /// Law of the contact: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
-    #[cfg_attr(feature = "cli", arg(long, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    /// Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
+    #[cfg_attr(feature = "cli", arg(value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
     /// Direction: up, down, both
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WAY", value_parser = crate::campaign::word::<Way>, default_value = "both"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Way>, default_value = "both"))]
     pub direction: Way,
     /// Change the frequency continuously by this many Hz/s, instead of in steps
-    #[cfg_attr(feature = "cli", arg(long, value_name = "HZ/S", allow_negative_numbers = true, conflicts_with_all = ["settle", "measure"]))]
+    #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["settle", "measure"]))]
     pub rate: Option<f64>,
     /// Points: steps of a stepped sweep, readings of a continuous one
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 221))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 221))]
     pub steps: usize,
-    /// Cycles that pass at each step before it is read
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CYCLES", default_value_t = 100))]
+    /// Cycles at each step before it is read
+    #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub settle: u32,
     /// Cycles read at each step
-    #[cfg_attr(feature = "cli", arg(long, value_name = "CYCLES", default_value_t = 12))]
+    #[cfg_attr(feature = "cli", arg(default_value_t = 12))]
     pub measure: u32,
-    /// What is read of both masses: fundamental, the amplitude at the excitation frequency; peak, half of peak-to-peak; rms, a running RMS
+    /// Observable of both masses: fundamental, the amplitude at the excitation frequency; peak, half of peak-to-peak; rms, a running RMS
     /// through a low-pass of 10 rad/s
-    #[cfg_attr(feature = "cli", arg(long, value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
-    /// Follow every branch of motions with one impact a cycle, unstable ones too (a sine over the frequency)
-    #[cfg_attr(feature = "cli", arg(long))]
-    pub branches: bool,
 }
 
 /// What is swept.
@@ -86,7 +78,7 @@ pub enum Way {
 }
 
 impl Keys {
-    /// The sweep with its resonances and jumps, and the branches beside it.
+    /// The sweep with its resonances and jumps.
     ///
     /// # Errors
     /// If the scene or a key cannot be, nothing drives the rig, or a motion cannot be followed.
@@ -95,10 +87,6 @@ impl Keys {
         // A frequency for the scene where it is swept: any within.
         let frequency = if over_force { self.frequency } else { Some(self.from) };
         let Driven { scene, excitation, finding } = self.scene.driven(frequency)?;
-        if self.branches && (over_force || !matches!(excitation, Excitation::Sine(_))) {
-            let found = "branches without a sine or over the force";
-            return Err(Error::usage(found, "a sine, over the frequency").setting("branches"));
-        }
         let pace = match self.rate {
             Some(rate) => Pace::Rate { rate, points: self.steps },
             None => Pace::Steps { points: self.steps, settle: self.settle, measure: self.measure },
@@ -112,7 +100,6 @@ impl Keys {
             law => self.swept(contact::compliant(&scene, law)?, rig, &excitation, &plan),
         }?;
         let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
-        let branches = if self.branches { branches(rig, &excitation, &plan) } else { Vec::new() };
         let mut answer = Answer::of(&json!({
             "scene": scene,
             "observable": plan.observable,
@@ -125,16 +112,8 @@ impl Keys {
         answer.tell("", contact::buffer(&scene, self.model));
         answer.tell("", scattered(&swept));
         answer.tables.push(found(&resonances, &jumps));
-        answer.figure(
-            "sweep",
-            figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force, &branches),
-        );
+        answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));
         answer.csv("sweep", &points(&swept));
-        if !branches.is_empty() {
-            let told = branches.iter().map(|b| followed(b, plan.observable));
-            answer.result.insert("branches".to_owned(), told.collect());
-            answer.csv("branches", &branch_points(&branches, plan.observable));
-        }
         Ok(answer)
     }
 
@@ -178,40 +157,6 @@ fn scattered(swept: &Swept) -> Option<Finding> {
     (n > 0).then(|| Finding::caution("sweep-cycles-unlike").count("n", n).count("all", all))
 }
 
-/// Every branch of motions with one impact a cycle that crosses one of some frequencies in the range.
-fn branches(rig: &Rig, excitation: &Excitation, plan: &Plan) -> Vec<Branch> {
-    const STARTS: u32 = 24;
-    let Excitation::Sine(sine) = excitation else { return Vec::new() };
-    let mut found: Vec<Branch> = Vec::new();
-    for k in 0..STARTS {
-        let share = (f64::from(k) + 0.5) / f64::from(STARTS);
-        let here = Sine { frequency: plan.from + share * (plan.to - plan.from), ..*sine };
-        let Ok(answers) = orbits(rig, here.force, here.frequency) else { continue };
-        for orbit in answers.orbits.iter().filter(|o| o.validity.exists) {
-            let known = found.iter().any(|b| passes(b, here.frequency, orbit.impulse));
-            if known {
-                continue;
-            }
-            let start = [(orbit.force_phase, orbit.impulse)];
-            let branch = PeriodicOrbit::near(rig, &here, 1, &start)
-                .and_then(|start| follow(&start, plan.from, plan.to, 0.05));
-            found.extend(branch);
-        }
-    }
-    found
-}
-
-/// Whether a branch passes through this impulse (N s) at this frequency (Hz), within its own distance of points.
-fn passes(branch: &Branch, frequency: f64, impulse: f64) -> bool {
-    branch.points.windows(2).any(|pair| {
-        let [a, b] = [&pair[0], &pair[1]].map(|o| (o.sine.frequency, o.beats[0].impulse));
-        let inside = (a.0 - frequency) * (b.0 - frequency) <= 0.0;
-        let share = (frequency - a.0) / (b.0 - a.0);
-        let between = a.1 + share.clamp(0.0, 1.0) * (b.1 - a.1);
-        inside && (between - impulse).abs() <= 0.02 * impulse + (b.1 - a.1).abs()
-    })
-}
-
 /// Point by point, up and then down.
 fn points(swept: &Swept) -> Table {
     let sides = [("up", &swept.up), ("down", &swept.down)];
@@ -246,54 +191,4 @@ fn found(resonances: &[Named<Resonance>], jumps: &[Named<Jump>]) -> Table {
         table.push([usize::from(*mass).into(), direction.name().into(), kind, place, after]);
     }
     table
-}
-
-/// x₁ and x₂ of a motion in m, as a sweep reads them.
-pub(super) fn read(orbit: &PeriodicOrbit, observable: Observable) -> [f64; 2] {
-    match observable {
-        Observable::Peak => orbit.peak_to_peak.map(|x| x / 2.0),
-        _ => orbit.fundamental.map(Complex64::norm),
-    }
-}
-
-/// A branch for programs.
-fn followed(branch: &Branch, observable: Observable) -> Value {
-    let point = |o: &PeriodicOrbit| {
-        let [x1, x2] = read(o, observable);
-        json!({
-            "frequency": o.sine.frequency,
-            "force": o.sine.force,
-            "x1": x1,
-            "x2": x2,
-            "admissible": o.validity.admissible,
-            "stable": o.validity.stable,
-            "spectral_radius": o.spectral_radius(),
-        })
-    };
-    let mark = |m: &Mark| json!({ "kind": m.kind, "frequency": m.orbit.sine.frequency, "force": m.orbit.sine.force });
-    json!({
-        "impacts": branch.points.first().map_or(0, PeriodicOrbit::impacts),
-        "cycles": branch.points.first().map_or(0, |o| o.cycles),
-        "points": branch.points.iter().map(point).collect::<Vec<Value>>(),
-        "marks": branch.marks.iter().map(mark).collect::<Vec<Value>>(),
-    })
-}
-
-/// Branches, point by point.
-fn branch_points(branches: &[Branch], observable: Observable) -> Table {
-    let points = (1_usize..).zip(branches).flat_map(|(k, b)| b.points.iter().map(move |o| (k, o)));
-    table(
-        "Branches",
-        points,
-        &[
-            ("branch", "", &|(k, _)| (*k).into()),
-            ("frequency", "Hz", &|(_, o)| o.sine.frequency.into()),
-            ("force", "N", &|(_, o)| o.sine.force.into()),
-            ("x1", "m", &|(_, o)| read(o, observable)[0].into()),
-            ("x2", "m", &|(_, o)| read(o, observable)[1].into()),
-            ("admissible", "", &|(_, o)| o.validity.admissible.into()),
-            ("stable", "", &|(_, o)| o.validity.stable.map_or(Cell::from("neutral"), Cell::from)),
-            ("spectral radius", "", &|(_, o)| o.spectral_radius().into()),
-        ],
-    )
 }

@@ -14,19 +14,16 @@ pub(crate) const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velo
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Stored {
     /// Unit of the stored responses [default: what the files say, else the SI unit of the quantity, m where none is stated]
-    #[cfg_attr(feature = "cli", arg(long))]
     pub unit: Option<String>,
     /// Factor on the stored responses
-    #[cfg_attr(feature = "cli", arg(long, allow_negative_numbers = true))]
     pub calibration: Option<f64>,
     /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown [default: hann, assumed]
-    #[cfg_attr(feature = "cli", arg(long))]
     pub window: Option<String>,
     /// Scaling of the spectra: peak or rms [default: peak, assumed]
-    #[cfg_attr(feature = "cli", arg(long, value_parser = crate::campaign::word::<Scaling>))]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// How often the analyser integrated before it stored, 0 to 2 [default: once for a displacement]
-    #[cfg_attr(feature = "cli", arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u8).range(0..=2)))]
+    #[cfg_attr(feature = "cli", arg(value_parser = clap::value_parser!(u8).range(0..=2)))]
     pub analyser_integrated: Option<u8>,
 }
 

@@ -22,13 +22,11 @@ fn points(response: &Response) -> Table {
         format!("Response, {}", response.name),
         &response.points,
         &[
-            ("excitation", "Hz", &|p| pair(p.excitation, p.excitation_std)),
+            ("excitation frequency", "Hz", &|p| pair(p.excitation, p.excitation_std)),
             ("force", "N", &|p| p.force.map(|force| pair(force, p.force_std)).into()),
-            ("response at", "Hz", &|p| pair(p.frequency, p.frequency_std)),
+            ("response frequency", "Hz", &|p| pair(p.frequency, p.frequency_std)),
             ("amplitude", response.unit, &|p| Cell::from(&p.amplitude)),
-            ("largest at", "Hz", &|p| {
-                if p.largest_elsewhere { Cell::Number(p.largest_at) } else { Cell::from("excitation") }
-            }),
+            ("larger line at", "Hz", &|p| p.largest_elsewhere.then_some(p.largest_at).into()),
             ("upper limit", response.unit, &|p| p.upper_limit.into()),
         ],
     )
@@ -69,6 +67,7 @@ pub fn resonances(responses: &[Response]) -> Table {
             ("ends in a jump", "", &|(_, r)| r.at_jump.into()),
         ],
     )
+    .note("Grazing: both masses move in phase and touch lightly. Clapping: they move in antiphase and strike head on.")
 }
 
 /// Jumps.
@@ -79,10 +78,10 @@ pub fn jumps(responses: &[Response]) -> Table {
         responses.iter().flat_map(|sweep| sweep.jumps.iter().map(move |j| (sweep, j))),
         &[
             ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
-            ("change", "", &|(_, j)| Cell::from(j.change)),
-            ("at", "Hz", &|(_, j)| pair(j.frequency, Some(j.frequency_std))),
-            ("before", unit, &|(_, j)| pair(j.amplitude_before, j.amplitude_before_std)),
-            ("after", unit, &|(_, j)| pair(j.amplitude_after, j.amplitude_after_std)),
+            ("amplitude", "", &|(_, j)| Cell::from(j.change)),
+            ("jump at", "Hz", &|(_, j)| pair(j.frequency, Some(j.frequency_std))),
+            ("amplitude before", unit, &|(_, j)| pair(j.amplitude_before, j.amplitude_before_std)),
+            ("amplitude after", unit, &|(_, j)| pair(j.amplitude_after, j.amplitude_after_std)),
         ],
     )
 }
@@ -110,7 +109,7 @@ pub fn pairs(overlay: &Overlay) -> Table {
                     Some(Kind::Free) => "free",
                     Some(Kind::Pattern) => "another pattern",
                     Some(Kind::Irregular) => "irregular",
-                    None => "not predicted",
+                    None => "no prediction",
                 })
             }),
         ],
@@ -126,12 +125,12 @@ pub fn peaks(overlay: &Overlay) -> Table {
         &[
             ("sweep", "", &|p| p.sweep.as_str().into()),
             ("kind", "", &|p| p.kind.name().into()),
-            ("measured", "Hz", &|p| Cell::from(&p.measured_frequency)),
-            ("predicted", "Hz", &|p| p.predicted_frequency.into()),
-            ("off by", "Hz", &|p| difference(p.frequency_difference, p.measured_frequency.std)),
-            ("measured", "m", &|p| Cell::from(&p.measured_amplitude)),
-            ("predicted", "m", &|p| p.predicted_amplitude.into()),
-            ("off by", "%", &|p| {
+            ("measured frequency", "Hz", &|p| Cell::from(&p.measured_frequency)),
+            ("predicted frequency", "Hz", &|p| p.predicted_frequency.into()),
+            ("difference", "Hz", &|p| difference(p.frequency_difference, p.measured_frequency.std)),
+            ("measured amplitude", "m", &|p| Cell::from(&p.measured_amplitude)),
+            ("predicted amplitude", "m", &|p| p.predicted_amplitude.into()),
+            ("difference", "%", &|p| {
                 let std = p.measured_amplitude.std.zip(p.predicted_amplitude).map(|(s, a)| 100.0 * s / a);
                 difference(p.amplitude_difference.map(|d| 100.0 * d), std)
             }),
@@ -146,12 +145,12 @@ pub fn scores(overlay: &Overlay) -> Table {
         &overlay.scores,
         &[
             ("sweep", "", &|s| s.sweep.as_str().into()),
-            ("points predicted", "", &|s| s.n.into()),
-            ("not predicted", "", &|s| s.without.into()),
-            ("too faint", "", &|s| s.faint.into()),
+            ("points compared", "", &|s| (s.n - s.faint).into()),
+            ("no prediction", "", &|s| s.without.into()),
+            ("below noise (not compared)", "", &|s| s.faint.into()),
             ("median deviation", "%", &|s| s.median_relative.map(|r| 100.0 * r).into()),
             ("largest deviation", "%", &|s| s.max_relative.map(|r| 100.0 * r).into()),
-            ("at", "Hz", &|s| s.max_at.into()),
+            ("largest deviation at", "Hz", &|s| s.max_at.into()),
             ("RMS deviation", "m", &|s| s.rms.into()),
         ],
     )
@@ -163,21 +162,21 @@ pub fn fitted(fit: &Fit) -> Table {
     let six = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string();
     let end = |interval: Option<[f64; 2]>, side: usize| Cell::from(interval.map(|i| six(i[side])));
     table(
-        "Parameters found",
+        "Fitted parameters",
         &fit.parameters,
         &[
             ("parameter", "", &|p| p.parameter.name().into()),
             ("unit", "", &|p| p.estimate.unit.into()),
             ("start", "", &|p| p.start.into()),
             ("found", "", &|p| pair(p.estimate.value, p.estimate.std)),
-            ("from", "", &|p| end(p.interval, 0)),
-            ("to (95 %)", "", &|p| end(p.interval, 1)),
+            ("95 % from", "", &|p| end(p.interval, 0)),
+            ("95 % to", "", &|p| end(p.interval, 1)),
             ("determined by", "", &|p| {
                 Cell::from(match (p.identifiable, p.rests_on_prior) {
-                    _ if fit.doubt.is_some() => "–: the answer is in doubt",
-                    (false, _) => "–: not identifiable",
-                    (true, true) => "its prior",
-                    (true, false) => "the points",
+                    _ if fit.doubt.is_some() => "not determined: the fit is in doubt",
+                    (false, _) => "not determined by these points",
+                    (true, true) => "its prior value",
+                    (true, false) => "the measured points",
                 })
             }),
         ],
@@ -204,15 +203,15 @@ pub fn fit_points(fit: &Fit) -> Table {
 pub fn fit_rungs(fit: &Fit) -> Table {
     let percent = |value: Option<f64>| Cell::from(value.map(|v| 100.0 * v));
     table(
-        "Models by hold-out error",
+        "Models compared on points kept back",
         &fit.rungs,
         &[
             ("model", "", &|r| r.model.into()),
             ("parameters", "", &|r| r.parameters.len().into()),
-            ("error", "%", &|r| percent(r.held_out)),
-            ("standard error", "%", &|r| percent(r.held_out_std)),
+            ("hold-out error", "%", &|r| percent(r.held_out)),
+            ("its standard error", "%", &|r| percent(r.held_out_std)),
             ("AICc", "", &|r| r.aicc.into()),
-            ("white with p", "", &|r| r.whiteness.into()),
+            ("residuals white (p)", "", &|r| r.whiteness.into()),
             ("chosen", "", &|r| Cell::from(if r.chosen { "yes" } else { "" })),
         ],
     )

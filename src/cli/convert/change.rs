@@ -11,22 +11,20 @@ use crate::units::Quantity;
 #[derive(Debug, clap::Args)]
 pub struct Change {
     /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
-    #[arg(long, value_name = "HZ")]
     low_pass: Option<f64>,
-    /// Time constant in s of exponential smoothing, which is late, instead of a zero-phase low-pass
-    #[arg(long, value_name = "TIME", conflicts_with = "low_pass")]
+    /// Time constant in s of exponential smoothing (delays the signal), instead of the zero-phase low-pass
+    #[arg(conflicts_with = "low_pass")]
     smoothing: Option<f64>,
     /// Corner in Hz of a zero-phase Butterworth high-pass of order 4
-    #[arg(long, value_name = "HZ")]
     high_pass: Option<f64>,
     /// Integrations in time: 1 takes velocity to displacement, −1 to acceleration
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    #[arg(default_value_t = 0, value_parser = clap::value_parser!(i8).range(-2..=2))]
     integrate: i8,
     /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a differentiation
-    #[arg(long, value_name = "HZ", requires = "integrate")]
+    #[arg(requires = "integrate")]
     fmin: Option<f64>,
-    /// Frequency of the excitation in Hz: the mean is taken over whole periods before it is taken out
-    #[arg(long, value_name = "HZ", requires = "integrate")]
+    /// Excitation frequency in Hz: the mean over whole periods is removed
+    #[arg(requires = "integrate")]
     excitation: Option<f64>,
 }
 

@@ -252,7 +252,7 @@ fn drops_and_pulses_of_numbers_alone() {
     assert_eq!(answer["results"]["pulses"][0]["xi"], alone["xi"]);
     assert_eq!(answer["results"]["pulses"][0]["stiffness"], alone["stiffness"]);
     for (keys, words) in [
-        ("[[drop]]\nheight = 1.0", "nothing that was measured"),
+        ("[[drop]]\nheight = 1.0", "a height and no time"),
         ("[[drop]]\ninterval = 1.0", "interval without a height"),
         ("[[drop]]\nafter = [1.0]\nintervals = [0.1, 0.05]", "without before"),
         ("[[pulse]]\nmass = 1.0", "neither a file nor two times"),

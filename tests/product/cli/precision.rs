@@ -94,7 +94,7 @@ fn failures_of_an_earlier_run_are_drawn_again() {
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let held = earlier("models");
     std::fs::write(path("earlier.json"), held.to_string()).unwrap();
-    for more in [&[][..], &["--failures"], &["--family", "both"], &["--family", "models"]] {
+    for more in [&[][..], &["--failures"], &["--family", "models"]] {
         let out = path("out");
         let from = path("earlier.json");
         let typed = ["precision", "--from", &from, "--out", &out].into_iter().chain(more.iter().copied());

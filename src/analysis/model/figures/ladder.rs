@@ -18,7 +18,7 @@ enum Fate {
 
 impl Fate {
     const ALL: [Fate; 4] = [Fate::Chosen, Fate::Enough, Fate::Moves, Fate::NotValid];
-    const NAMES: [&'static str; 4] = ["chosen", "good enough", "answer moves too far", "not valid"];
+    const NAMES: [&'static str; 4] = ["chosen", "adequate", "answer changes too much", "not valid"];
 
     fn of(choice: &Choice, rung: &Rung) -> Fate {
         match rung {
@@ -49,8 +49,8 @@ pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
     let frequency = || AxisSpec::frequency().limits(x[0], x[x.len() - 1]);
     let names: Vec<String> = (1..=rows).zip(Model::ALL).map(|(i, m)| format!("{i} {}", m.name())).collect();
     let names = names.join(", ");
-    let map = Plot::new(frequency(), AxisSpec::new("Rung", ""))
-        .title(format!("rungs: {names}"))
+    let map = Plot::new(frequency(), AxisSpec::new("Model", ""))
+        .title(format!("models: {names}"))
         .heatmap(Heatmap::classes(&x, &y, &fates, &Fate::NAMES)?)
         .legend(Legend::Above);
     let observable = question.observable;
@@ -69,7 +69,7 @@ pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
         .shared_x()
         .panel(map)
         .caption(format!(
-            "(a) What became of each rung: {names}. Below, the answer, with the rung that gives it; none where no rung can be chosen."
+            "(a) Verdict on each model: {names}. Below, the answer of the chosen model; none where no model can be chosen."
         ));
     for (mass, (title, label)) in panels.iter().enumerate() {
         let y = AxisSpec::new(*label, observable.unit());

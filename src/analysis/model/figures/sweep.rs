@@ -1,11 +1,8 @@
-//! Sweeps of a model: both masses, up and down, with jumps and branches.
+//! Sweeps of a model: both masses, up and down, with jumps.
 
-use super::super::sweep::read;
 use crate::compare::Named;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::{Resonance, ResonanceKind};
-use crate::model::PeriodicOrbit;
-use crate::model::continuation::Branch;
 use crate::model::sweep::{Observable, Point, Swept};
 use crate::record::Direction;
 use crate::report::layout::{lettered, line, points};
@@ -18,7 +15,6 @@ pub fn sweep(
     jumps: &[Named<Jump>],
     observable: Observable,
     over_force: bool,
-    branches: &[Branch],
 ) -> Figure {
     let quantity = match observable {
         Observable::Fundamental => "Amplitude at the excitation frequency",
@@ -29,9 +25,6 @@ pub fn sweep(
     let mut figure = Figure::double("Sweep").height(160.0).shared_x();
     for (mass, name) in [(0, "excited mass"), (1, "passive mass")] {
         let mut plot = Plot::new(AxisSpec::new(over, unit), AxisSpec::new(quantity, "m")).title(name);
-        for branch in branches {
-            plot = followed(plot, branch, |o| (o.sine.frequency, read(o, observable)[mass]));
-        }
         let place = |p: &Point| (if over_force { p.force } else { p.frequency }, [p.x1, p.x2][mass]);
         for (name, direction, points, ink, stroke) in [
             ("sweeping up", Direction::Up, &swept.up, Ink::Nth(0), Stroke::Solid),
@@ -54,31 +47,7 @@ pub fn sweep(
         }
         figure = figure.panel(plot);
     }
-    let mut caption =
-        String::from("Motion of the model with its state carried on from step to step; crosses are jumps.");
-    if !branches.is_empty() {
-        caption.push_str(
-            " Grey: motions with one impact a cycle, stable as lines, unstable as dashes; dots where the masses would pass \
-             through each other.",
-        );
-    }
-    lettered(figure.caption(caption))
-}
-
-/// Adds the stretches of a branch: stable, unstable, and those on which the masses would pass through each other.
-fn followed(mut plot: Plot, branch: &Branch, place: impl Fn(&PeriodicOrbit) -> (f64, f64)) -> Plot {
-    let stroke = |o: &PeriodicOrbit| match (o.validity.admissible, o.validity.stable) {
-        (false, _) => Stroke::Dotted,
-        (true, Some(false)) => Stroke::Dashed,
-        (true, _) => Stroke::Thin,
-    };
-    let mut from = 0;
-    for same in branch.points.chunk_by(|a, b| stroke(a) == stroke(b)) {
-        // To the first point of the next stretch, so that the curve has no holes.
-        let to = from + same.len();
-        let stretch = branch.points[from..].iter().take(same.len() + 1);
-        plot = line(plot, "", stretch.map(&place), Ink::Grey, stroke(&same[0]));
-        from = to;
-    }
-    plot
+    lettered(
+        figure.caption("Motion of the model with its state carried on from step to step; crosses are jumps."),
+    )
 }

@@ -20,8 +20,8 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
         None => "the measured force".to_owned(),
     };
     let mut figure = Figure::double(title).shared_x().caption(format!(
-        "Fundamental of the displacement. Lines: closed form for {force}; motions in which the masses would pass through each \
-         other are left out, and so is mass 2 at rest. Crosses: what a simulated sweep comes to where that is another motion, or where impacts last. Points: measured. {MARKS}"
+        "Fundamental of the displacement under {force}. Circles and squares: measured. Lines: motions with one impact a cycle, in closed form. \
+         Crosses: other motions, and contacts that last, from a simulated sweep at the measured frequencies. Not drawn: impossible motions, mass 2 at rest. {MARKS}"
     ));
     for level in &overlay.levels {
         for mass in [1, 2] {
@@ -54,7 +54,7 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
     let lasting = [Model::KelvinVoigt, Model::HuntCrossley];
     let lasts = pairs.iter().filter(swept).any(|p| lasting.contains(&p.model));
     let (seen, other) = if lasts {
-        ("one impact a cycle, at once", "predicted with the contact")
+        ("one impact a cycle, rigid contact", "predicted with the contact stiffness")
     } else {
         ("one impact a cycle", "another motion, simulated")
     };

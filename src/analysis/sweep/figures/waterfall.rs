@@ -46,7 +46,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let top = (decibel(largest, REFERENCE) / 10.0).ceil() * 10.0;
     let key = key.limits(top - RANGE, top);
     let caption = format!(
-        "{} Colours span {RANGE:.0} dB; what lies deeper has the darkest. White: not measured.",
+        "{} Colours span {RANGE:.0} dB below the highest level. White: not measured.",
         caption(matrix)
     );
     let heatmap = Heatmap::new(&x, &y, &values, key)?;
@@ -63,17 +63,14 @@ fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
     if high <= matrix.fmin {
         return Err(Error::usage(
             format!("a picture from {:.3} Hz (the cut-off) to {high:.3} Hz", matrix.fmin),
-            "an upper end above the cut-off",
+            "an upper frequency above the cut-off",
         )
-        .hint("raise --fmax, or lower --fmin"));
+        .setting("fmax")
+        .setting("fmin"));
     }
     Ok((matrix.fmin, high))
 }
 
 fn caption(matrix: &Matrix) -> String {
-    if matrix.fmin > 0.0 {
-        format!("Spectra of {}; lines below the cut-off of {:.2} Hz are left out.", matrix.name, matrix.fmin)
-    } else {
-        format!("Spectra of {}.", matrix.name)
-    }
+    if matrix.fmin > 0.0 { format!("Lines below {:.2} Hz are left out.", matrix.fmin) } else { String::new() }
 }
