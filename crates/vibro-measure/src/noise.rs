@@ -72,8 +72,8 @@ fn sine(magnitudes: &[f64], centre: usize, window: Option<Window>) -> Option<(f6
 fn median(height: f64) -> f64 {
     let x = height.clamp(0.0, 10.0);
     let k = HEIGHTS.partition_point(|h| *h < x).clamp(1, 9);
-    let part = (x - HEIGHTS[k - 1]) / (HEIGHTS[k] - HEIGHTS[k - 1]);
-    MEDIANS[k - 1] + part * (MEDIANS[k] - MEDIANS[k - 1])
+    let (a, b) = ((HEIGHTS[k - 1], MEDIANS[k - 1]), (HEIGHTS[k], MEDIANS[k]));
+    a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)
 }
 
 /// Chance that the true amplitude lies above the limit, at most.
