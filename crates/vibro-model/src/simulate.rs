@@ -2,7 +2,7 @@
 //!
 //! Nothing is integrated in steps. Each flight is a closed form; it ends at the first root of the gap; the impact
 //! changes the velocities; the next flight starts from the state found there, so errors do not grow with a flight's
-//! length. Where impacts accumulate, their end is computed ([`super::stick`]); from there both masses move together, again in
+//! length. Where impacts accumulate, their end is computed; from there both masses move together, again in
 //! closed form, up to the first root of the force between them. The phase is kept within 2π and runs on when the frequency is
 //! changed.
 
@@ -162,7 +162,7 @@ impl Simulation {
                 let duration = landing.map_or(ahead, |l| l.time);
                 self.state = landing.map_or_else(|| flight.state(ahead), |l| l.state);
                 self.go(duration);
-                if !flight.is_open(duration) {
+                if duration >= flight.open {
                     self.hold = Hold::Apart;
                 }
                 let event = landing.map(|_| self.collide()).transpose()?.map(Event::Impact);

@@ -84,9 +84,12 @@ pub enum Need {
     History,
 }
 
+/// Whether a scene has something.
+type Known = fn(&Scene) -> bool;
+
 impl Need {
     /// Its key, or what it is, and whether a scene has it; in the order of the parameters.
-    const TABLE: [(&'static str, fn(&Scene) -> bool); 8] = [
+    const TABLE: [(&'static str, Known); 8] = [
         ("mass 2", |_| true),
         ("restitution", |_| true),
         ("restitution or contact.damping", |s| keys(s).damping.is_some() || s.rig.restitution > 0.0),
