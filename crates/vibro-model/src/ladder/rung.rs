@@ -136,8 +136,8 @@ pub struct Needed {
 pub struct Rung {
     /// The model.
     pub model: Model,
-    /// Time in ns that its answer took on this machine; of models that are followed until they settle, all of it. `None` where it was
-    /// not asked.
+    /// Time in ns that its answer took on this machine; of models that are followed until they settle, all of it. `None` without an
+    /// answer.
     pub cost_ns: Option<f64>,
     /// Largest change of its answer at the rungs above that answer, over the answer: at the next one, and at the next one that follows
     /// the motion. `None` where there is none.
