@@ -1,7 +1,7 @@
 //! Contact that gives way: its laws, what they mean for a rebound, and the motion of the rig with them.
 //!
 //! With the indentation δ = x₁ − x₂ − Δ > 0 the masses push each other apart with a force F that never pulls:
-//! - Kelvin–Voigt: F = k₃δ + c₃δ̇, no less than 0: a further linear mode, flown exactly ([`super::linear`]);
+//! - Kelvin–Voigt: F = k₃δ + c₃δ̇, no less than 0: a further linear mode, flown exactly;
 //! - Hertz: F = kδ^{3/2}; Hunt–Crossley: F = kδⁿ(1 + αδ̇), no less than 0: integrated within the contact only.
 //!
 //! ```

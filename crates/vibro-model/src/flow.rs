@@ -91,8 +91,8 @@ pub struct Flight {
     pub(super) rest: f64,
     pub(super) gap: f64,
     pub(super) free: [Free; 2],
-    /// Time before which the gap is known to be open.
-    open: f64,
+    /// Time before which the gap is known to be open: the beginning of a parting.
+    pub(super) open: f64,
 }
 
 impl Flight {
@@ -138,11 +138,6 @@ impl Flight {
             self.open = root / 2.0;
         }
         self
-    }
-
-    /// Whether `t` lies in the beginning of a parting, where the gap is known to be open.
-    pub(super) fn is_open(&self, t: f64) -> bool {
-        t < self.open
     }
 
     /// Both displacements with their first five derivatives.

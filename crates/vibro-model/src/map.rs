@@ -223,7 +223,7 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
         watch = Watch::new(motion);
         let until = motion.time() + f64::from(cycles) / frequency;
         motion.advance(until, &mut |piece| watch.take(&piece))?;
-        Ok((watch.pattern(), watch.strikes().len()))
+        Ok((watch.pattern(), watch.strikes.len()))
     };
     let mut passed = 0;
     while passed < settling {

@@ -114,7 +114,8 @@ pub struct Watch {
     start: f64,
     now: f64,
     phase: f64,
-    strikes: VecDeque<Strike>,
+    /// Impacts kept, oldest first.
+    pub(crate) strikes: VecDeque<Strike>,
     sticks: VecDeque<Strike>,
 }
 
@@ -142,11 +143,6 @@ impl Watch {
         }
         let before = piece.path.state(piece.duration);
         kept.push_back(Strike { time, phase, before, impulse, approach_velocity });
-    }
-
-    /// Impacts kept, oldest first.
-    pub fn strikes(&self) -> &VecDeque<Strike> {
-        &self.strikes
     }
 
     /// What the motion does, from all that was watched.

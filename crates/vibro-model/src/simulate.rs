@@ -2,19 +2,17 @@
 //!
 //! Nothing is integrated in steps. Each flight is a closed form; it ends at the first root of the gap; the impact
 //! changes the velocities; the next flight starts from the state found there, so errors do not grow with a flight's
-//! length. Where impacts accumulate, their end is computed ([`super::stick`]); from there both masses move together, again in
+//! length. Where impacts accumulate, their end is computed; from there both masses move together, again in
 //! closed form, up to the first root of the force between them. The phase is kept within 2π and runs on when the frequency is
 //! changed.
 
-mod leg;
 mod meet;
-
-pub use leg::{Counts, Course, Impact, Leg};
 
 use super::drive::Drive;
 use super::scales::{self, check_time, check_work};
 use super::stick::Pair;
-use super::{Event, Excitation, Flight, Motion, Piece, Rig, State};
+use super::{Event, Excitation, Flight, Motion, Path, Piece, Rig, State};
+use serde::Serialize;
 use vibro_math::Oscillator;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
@@ -25,6 +23,77 @@ pub const GRAZING_SPEED: f64 = 1e-3;
 
 /// The most legs that one call follows: some ten seconds of work.
 const MOST_LEGS: u64 = 20_000_000;
+
+/// One impact.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Impact {
+    /// Time in s.
+    pub time: f64,
+    /// Phase in 0..2π of the excitation's cycle; a sine force is F₀ cos(phase).
+    pub phase: f64,
+    /// Approach speed v₁ − v₂ in m/s.
+    pub approach_velocity: f64,
+    /// Impulse in N s.
+    pub impulse: f64,
+}
+
+/// How both masses move in a leg.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Course {
+    /// Each on its own.
+    Apart(Flight),
+    /// In contact.
+    Together(Pair),
+}
+
+impl Path for Course {
+    fn state(&self, t: f64) -> State {
+        match self {
+            Course::Apart(flight) => flight.state(t),
+            Course::Together(pair) => pair.state(t),
+        }
+    }
+}
+
+/// A stretch of a simulated motion and the event that ended it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Leg {
+    /// Time in s of its start.
+    pub start: f64,
+    /// Duration in s.
+    pub duration: f64,
+    /// The motion.
+    pub course: Course,
+    /// What ended it.
+    pub event: Event,
+}
+
+impl Leg {
+    /// State at `t` seconds from the leg's start.
+    pub fn state(&self, t: f64) -> State {
+        self.course.state(t)
+    }
+
+    /// The impact at its end, if one ended it.
+    pub fn impact(&self) -> Option<Impact> {
+        match self.event {
+            Event::Impact(impact) => Some(impact),
+            _ => None,
+        }
+    }
+}
+
+/// What a motion has met so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Counts {
+    /// Stretches of motion in closed form.
+    pub flights: u64,
+    /// Impacts below the grazing speed after which the masses part by themselves: a little more gap and there is none. What
+    /// follows depends on them more than on anything else.
+    pub grazing: u64,
+    /// Times the masses came to rest against each other.
+    pub sticks: u64,
+}
 
 /// How the masses are to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,7 +231,7 @@ impl Simulation {
                 let duration = landing.map_or(ahead, |l| l.time);
                 self.state = landing.map_or_else(|| flight.state(ahead), |l| l.state);
                 self.go(duration);
-                if !flight.is_open(duration) {
+                if duration >= flight.open {
                     self.hold = Hold::Apart;
                 }
                 let event = landing.map(|_| self.collide()).transpose()?.map(Event::Impact);

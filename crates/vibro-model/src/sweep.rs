@@ -140,7 +140,8 @@ impl Plan {
                 let share = i as f64 / last;
                 let share = if direction == Direction::Up { share } else { 1.0 - share };
                 let (frequency, force) = set(motion, self.from + share * (self.to - self.from))?;
-                if gauge.needs_all() {
+                if self.observable == Observable::Rms {
+                    // Its running mean must see the whole motion.
                     for _ in 0..settle {
                         pass(motion, 1.0, &mut gauge)?;
                     }

@@ -158,7 +158,7 @@ impl Compliant {
 
     /// Whether contacts are integrated.
     pub(crate) fn integrates(&self) -> bool {
-        self.within.integrates()
+        self.within.law.is_some()
     }
 
     pub(super) fn indentation(&self) -> f64 {
@@ -184,7 +184,7 @@ impl Compliant {
         let remaining = until - self.time;
         let due = self.drive.next(remaining, until);
         let near = remaining.min(due.0);
-        if self.stage == Stage::Touching && self.within.integrates() {
+        if self.stage == Stage::Touching && self.integrates() {
             if near <= 0.0 {
                 return Ok(self.pass(&Still(self.state), 0.0, None, due, until, visit));
             }
@@ -303,7 +303,7 @@ impl Motion for Compliant {
             if self.piece(until, visit)? {
                 return Ok(());
             }
-            work += if self.stage == Stage::Touching && self.within.integrates() { 10.0 } else { 1.0 };
+            work += if self.stage == Stage::Touching && self.integrates() { 10.0 } else { 1.0 };
             at_once = if self.time == last { at_once + 1 } else { 0 };
             last = self.time;
         }

@@ -17,7 +17,8 @@ const SIZE: usize = 5;
 /// Where an integrated contact is.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Within {
-    law: Option<Law>,
+    /// `None` where contacts are linear.
+    pub law: Option<Law>,
     inverse: [f64; 2],
     gap: f64,
     reduced_mass: f64,
@@ -33,11 +34,6 @@ impl Within {
         let law = law.filter(|law| !matches!(law, Law::KelvinVoigt { .. }));
         let inverse = [1.0 / rig.m1, 1.0 / rig.m2];
         Within { law, inverse, gap: rig.gap, reduced_mass, speed: 0.0, scale: 0.0, next: 0.0 }
-    }
-
-    /// Whether contacts are integrated.
-    pub fn integrates(&self) -> bool {
-        self.law.is_some()
     }
 
     /// A contact begins with an approach at `speed`.

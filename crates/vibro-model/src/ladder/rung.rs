@@ -84,9 +84,12 @@ pub enum Need {
     History,
 }
 
+/// Whether a scene has something.
+type Known = fn(&Scene) -> bool;
+
 impl Need {
     /// Its key, or what it is, and whether a scene has it; in the order of the parameters.
-    const TABLE: [(&'static str, fn(&Scene) -> bool); 8] = [
+    const TABLE: [(&'static str, Known); 8] = [
         ("mass 2", |_| true),
         ("restitution", |_| true),
         ("restitution or contact.damping", |s| keys(s).damping.is_some() || s.rig.restitution > 0.0),
@@ -133,8 +136,8 @@ pub struct Needed {
 pub struct Rung {
     /// The model.
     pub model: Model,
-    /// Time in ns that its answer took on this machine; of models that are followed until they settle, all of it. `None` where it was
-    /// not asked.
+    /// Time in ns that its answer took on this machine; of models that are followed until they settle, all of it. `None` without an
+    /// answer.
     pub cost_ns: Option<f64>,
     /// Largest change of its answer at the rungs above that answer, over the answer: at the next one, and at the next one that follows
     /// the motion. `None` where there is none.

@@ -476,7 +476,7 @@ fn the_verdict_on_contacts_is_that_of_the_contact_search() {
             return;
         }
         let steady = Steady::new(rig, sine).unwrap();
-        let flight = crate::flow::tests::flight(&rig, &steady, rig.gap, &orbit.state(0.0), orbit.force_phase);
+        let flight = crate::flow::tests::flight(rig, &steady, rig.gap, &orbit.state(0.0), orbit.force_phase);
         let second = crate::flow::tests::first_contact(&flight, orbit.period() * (1.0 - 1e-9));
         assert_eq!(orbit.validity.admissible, second.is_none(), "{orbit:?}");
         if second.is_none() { clear += 1 } else { pierced += 1 }

@@ -21,11 +21,7 @@ pub enum Observable {
 impl Observable {
     /// `fundamental`, `peak` or `rms`.
     pub fn name(self) -> &'static str {
-        match self {
-            Observable::Fundamental => "fundamental",
-            Observable::Peak => "peak",
-            Observable::Rms => "rms",
-        }
+        ["fundamental", "peak", "rms"][self as usize]
     }
 }
 
@@ -87,11 +83,6 @@ impl Gauge {
         let natural = natural.into_iter().filter(|n| n.is_finite()).fold(0.0, f64::max);
         let (cycle, total, scatter) = (Sums::NONE, Sums::NONE, [(0.0, 0.0); 2]);
         Gauge { observable, natural, square: [0.0; 2], cycle, total, cycles: 0.0, scatter }
-    }
-
-    /// Whether it must see the whole motion, not only the cycles measured.
-    pub(crate) fn needs_all(&self) -> bool {
-        self.observable == Observable::Rms
     }
 
     /// Forgets the cycles read, not the running mean square.
