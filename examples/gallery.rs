@@ -42,7 +42,8 @@ fn main() -> Result<()> {
         [("formula", "examples/gallery.rs"), ("version", env!("CARGO_PKG_VERSION"))],
     );
     out.write("report.html", page.html())?;
-    println!("{} files in {}", out.written().len(), out.folder().display());
+    let folder = out.folder().to_owned();
+    println!("{} files in {}", out.commit()?.len(), folder.display());
     Ok(())
 }
 

@@ -33,6 +33,7 @@ fn main() -> Result<()> {
             }
         }
     }
+    output.commit()?;
     Ok(())
 }
 

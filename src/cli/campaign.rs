@@ -47,7 +47,7 @@ impl Run {
         let mut output = Output::new(&folder)?;
         let (found, answered) =
             print::busy(json, "campaign", |bar| analysis::run(&campaign, options, &mut output, bar))?;
-        let files = output.written();
+        let files = output.commit()?;
         if json {
             let mut answer = Map::new();
             answer.insert("warnings".to_owned(), found.result["warnings"].clone());

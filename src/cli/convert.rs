@@ -52,7 +52,8 @@ impl Convert {
         let precision = if self.single { Precision::Single } else { Precision::Double };
         target.write(&recording.records, Storage { binary: self.binary, precision }, &mut bytes)?;
         let existed = self.output.exists();
-        let written = write_beside(&self.output, &bytes)?.display().to_string();
+        write_beside(&self.output, &bytes)?;
+        let written = self.output.display().to_string();
         let (format, records) = (target.name(), recording.records.len());
         let mut answer = Answer::of(&json!({ "written": written, "format": format, "records": records }))?;
         answer.tell("", recording.all_findings());
@@ -83,7 +84,7 @@ pub fn apart(a: &Path, b: &Path) -> Result<()> {
 }
 
 /// Writes a file whole, in a folder that must exist.
-pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
+pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     let name = path
         .file_name()
         .ok_or_else(|| Error::usage(format!("{} is no file name", path.display()), "a file"))?;
@@ -92,5 +93,7 @@ pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
         let found = format!("the folder {} does not exist", folder.display());
         return Err(Error::usage(found, "an existing folder"));
     }
-    Output::new(folder)?.write(&name.to_string_lossy(), bytes)
+    let mut output = Output::new(folder)?;
+    output.write(&name.to_string_lossy(), bytes)?;
+    output.commit().map(drop)
 }

@@ -24,7 +24,7 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<()> 
         for (name, bytes) in &answer.files {
             output.write(name, bytes)?;
         }
-        written = output.written().to_vec();
+        written = output.commit()?;
     } else if !json && !answer.files.is_empty() {
         complain::line("all numbers: --json, or files with --out DIR");
     }

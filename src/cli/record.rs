@@ -221,7 +221,8 @@ impl Drill {
         };
         let mut answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
         if let Some(path) = &self.each_cycle {
-            let written = write_beside(path, turns)?.display().to_string();
+            write_beside(path, turns)?;
+            let written = path.display().to_string();
             complain::line(&format!("wrote {written}"));
             answer.result.insert("each_cycle".to_owned(), written.into());
         }

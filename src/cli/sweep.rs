@@ -257,7 +257,8 @@ impl Excitation {
         for (path, names) in [(force, &list.force), (response, &list.response)] {
             let names: Vec<_> = names.iter().map(|n| n.strip_prefix(folder).unwrap_or(n)).collect();
             let text = legacy::hand_over(list.lines, list.base_band, frequencies, &names);
-            written.push(write_beside(path, &text)?.display().to_string());
+            write_beside(path, &text)?;
+            written.push(path.display().to_string());
         }
         Ok(written)
     }

@@ -1,4 +1,4 @@
-//! A folder of results, each file of which appears whole or not at all.
+//! A folder of results, whose files appear together or not at all.
 
 use crate::error::{Error, Place, Result};
 use std::fs;
@@ -6,9 +6,9 @@ use std::path::{Component, Path, PathBuf};
 
 /// Folder into which results are written.
 ///
-/// A file is written beside its place under a temporary name and then renamed, so that a reader sees the old
-/// file or the new one, never a part. This holds against failures and interruptions of this program; nothing
-/// is forced to the disk, so a power failure in the seconds after may still lose the new content.
+/// Files are written beside their places under temporary names, and get their names together in [`Output::commit`]. A program that is
+/// killed before leaves the old results as they were; one that is killed in between leaves the file [`Output::INCOMPLETE`]. Nothing is
+/// forced to the disk: a power failure in the seconds after may still lose the new content.
 #[derive(Debug)]
 pub struct Output {
     folder: PathBuf,
@@ -16,6 +16,9 @@ pub struct Output {
 }
 
 impl Output {
+    /// The file that marks a folder in which old and new results stand side by side.
+    pub const INCOMPLETE: &str = "INCOMPLETE.txt";
+
     /// A folder, made with its parents when the first file is written, so that a job that fails before leaves nothing.
     ///
     /// # Errors
@@ -39,34 +42,73 @@ impl Output {
         &self.written
     }
 
-    /// Writes a file whole; returns its path.
+    /// Writes a file, or writes it anew.
     ///
     /// # Errors
-    /// If `name` is no plain name of a file, or the system refuses. In either case a file that had this name stays as it was, and no temporary file is left.
-    pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
-        let path = self.place(name)?;
-        let temporary = temporary_beside(&path);
-        let replaced = fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, &path));
-        if let Err(error) = replaced {
-            // The first failure is the one to report; a leftover that cannot be removed either has the same
-            // cause.
-            let _ = fs::remove_file(&temporary);
-            return Err(Error::io("write", &path, error));
-        }
-        if !self.written.iter().any(|w| w == name) {
-            self.written.push(name.to_owned());
-        }
-        Ok(path)
-    }
-
-    /// Path of a file in this folder, which is made.
-    fn place(&self, name: &str) -> Result<PathBuf> {
+    /// If `name` is no plain name of a file, or the system refuses.
+    pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
         let path = self.folder.join(checked(name)?);
         fs::create_dir_all(&self.folder).map_err(|e| Error::io("make the folder", &self.folder, e))?;
         if path.is_dir() {
             return Err(unusable(name, "names a folder").hint("remove that folder or choose another name"));
         }
-        Ok(path)
+        let i = self.written.iter().position(|w| w == name).unwrap_or_else(|| {
+            if self.written.is_empty() {
+                remove_leftovers(&self.folder);
+            }
+            self.written.push(name.to_owned());
+            self.written.len() - 1
+        });
+        fs::write(self.temporary(i), bytes).map_err(|e| Error::io("write", &path, e))
+    }
+
+    /// Gives the files their names, which it returns in the order in which they were written.
+    ///
+    /// # Errors
+    /// If the system refuses; the folder is then marked as incomplete.
+    pub fn commit(mut self) -> Result<Vec<String>> {
+        let mark = self.folder.join(Self::INCOMPLETE);
+        if self.written.len() > 1 {
+            let text = "Old and new results stand side by side here: run the same command again.\n";
+            fs::write(&mark, text).map_err(|e| Error::io("write", &mark, e))?;
+        }
+        for (i, name) in self.written.iter().enumerate() {
+            let path = self.folder.join(name);
+            fs::rename(self.temporary(i), &path).map_err(|e| Error::io("write", &path, e))?;
+        }
+        if self.written.len() > 1 {
+            fs::remove_file(&mark).map_err(|e| Error::io("remove", &mark, e))?;
+        }
+        Ok(std::mem::take(&mut self.written))
+    }
+
+    /// A hidden name in the same folder, hence on the same file system; the process number keeps two programs apart.
+    fn temporary(&self, i: usize) -> PathBuf {
+        self.folder.join(format!(".{}.{i}{PART}", std::process::id()))
+    }
+}
+
+/// End of the names of temporary files.
+const PART: &str = ".vibro.part";
+
+impl Drop for Output {
+    /// Results that were given up leave nothing.
+    fn drop(&mut self) {
+        for i in 0..self.written.len() {
+            let _ = fs::remove_file(self.temporary(i));
+        }
+    }
+}
+
+/// Removes temporary files of killed programs: those that nobody has written to for an hour.
+fn remove_leftovers(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let ours = entry.file_name().to_str().is_some_and(|n| n.starts_with('.') && n.ends_with(PART));
+        let written = entry.metadata().and_then(|m| m.modified());
+        if ours && written.is_ok_and(|t| t.elapsed().is_ok_and(|age| age.as_secs() > 3600)) {
+            // It is in nobody's way: a leftover that cannot be removed is no failure.
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 
@@ -82,16 +124,6 @@ fn checked(name: &str) -> Result<&Path> {
 
 fn unusable(name: &str, why: &str) -> Error {
     Error::usage(format!("the output name \"{name}\" {why}"), "a name such as response.svg")
-}
-
-/// A hidden name in the same folder, hence on the same file system; the process number keeps two programs
-/// apart.
-fn temporary_beside(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // Names may be up to 255 bytes long on common file systems: the temporary one must not be the first to
-    // exceed that.
-    let head: String = name.chars().take(40).collect();
-    path.with_file_name(format!(".{head}.{}.part", std::process::id()))
 }
 
 #[cfg(test)]
@@ -112,9 +144,10 @@ mod tests {
         out.write("z.txt", "one").unwrap();
         out.write("x.svg", b"<svg/>").unwrap();
         out.write("z.txt", "two").unwrap();
-        assert_eq!(out.written(), ["z.txt", "x.svg"]);
-        assert_eq!(fs::read_to_string(out.folder().join("z.txt")).unwrap(), "two");
-        assert_eq!(names(out.folder()), ["x.svg", "z.txt"]);
+        let folder = out.folder().to_owned();
+        assert_eq!(out.commit().unwrap(), ["z.txt", "x.svg"]);
+        assert_eq!(fs::read_to_string(folder.join("z.txt")).unwrap(), "two");
+        assert_eq!(names(&folder), ["x.svg", "z.txt"]);
     }
 
     #[test]
@@ -136,13 +169,46 @@ mod tests {
         fs::create_dir(dir.path().join("x")).unwrap();
         fs::write(dir.path().join("x/old"), "old").unwrap();
         assert!(out.write("x", "new").is_err());
-        // A name that fits for the temporary file, but not for the file itself: the rename fails.
-        let long = "n".repeat(300);
-        let error = out.write(&long, "new").unwrap_err().to_string();
-        assert!(error.contains(&long) && !error.contains(".part"), "{error}");
-        assert_eq!(names(dir.path()), ["x"]);
-        assert_eq!(fs::read_to_string(dir.path().join("x/old")).unwrap(), "old");
         assert!(out.written().is_empty());
+        // A name that no file can have: the set stands half, and the folder says so.
+        let long = "n".repeat(300);
+        out.write("a", "new").unwrap();
+        out.write(&long, "new").unwrap();
+        let error = out.commit().unwrap_err().to_string();
+        assert!(error.contains(&long) && !error.contains(PART), "{error}");
+        assert_eq!(names(dir.path()), [Output::INCOMPLETE, "a", "x"]);
+        assert_eq!(fs::read_to_string(dir.path().join("x/old")).unwrap(), "old");
+        let mut again = Output::new(dir.path()).unwrap();
+        again.write("a", "newer").unwrap();
+        again.write("b", "newer").unwrap();
+        again.commit().unwrap();
+        assert_eq!(names(dir.path()), ["a", "b", "x"]);
+    }
+
+    #[test]
+    fn a_set_appears_as_one_or_leaves_the_old_one() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("a"), "old").unwrap();
+        let mut out = Output::new(dir.path()).unwrap();
+        out.write("a", "new").unwrap();
+        assert_eq!(fs::read_to_string(dir.path().join("a")).unwrap(), "old");
+        drop(out);
+        assert_eq!(names(dir.path()), ["a"]);
+        assert_eq!(fs::read_to_string(dir.path().join("a")).unwrap(), "old");
+    }
+
+    #[test]
+    fn leftovers_of_killed_programs_are_removed() {
+        let dir = tempfile::tempdir().unwrap();
+        let day = std::time::Duration::from_secs(24 * 3600);
+        for (name, age) in [(".7.0", day), (".8.1", day / 10_000), ("9.0", day)] {
+            let file = fs::File::create(dir.path().join(format!("{name}{PART}"))).unwrap();
+            file.set_modified(std::time::SystemTime::now() - age).unwrap();
+        }
+        let mut out = Output::new(dir.path()).unwrap();
+        out.write("a.csv", "x").unwrap();
+        out.commit().unwrap();
+        assert_eq!(names(dir.path()), [".8.1.vibro.part", "9.0.vibro.part", "a.csv"]);
     }
 
     #[test]

@@ -28,6 +28,7 @@ fn the_campaign_gives_back_the_truth() {
     let out = tempfile::tempdir().unwrap();
     let mut output = Output::new(out.path()).unwrap();
     let results = analysis::run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
+    output.commit().unwrap();
     let results = Value::Object(results.0.result);
     let estimate = |found: &Value| (found["value"].as_f64().unwrap(), found["std"].as_f64().unwrap());
     let drops = &results["drops"][0];

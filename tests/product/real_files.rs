@@ -19,7 +19,7 @@ fn results(campaign: &str) -> (Value, tempfile::TempDir) {
     let campaign = open(&path).unwrap();
     let mut output = Output::new(folder.path().join("out")).unwrap();
     let found = run(&campaign, JobOptions { allow_outside: true }, &mut output, &()).unwrap();
-    for name in output.written() {
+    for name in &output.commit().unwrap() {
         assert!(folder.path().join("out").join(name).is_file(), "{name}");
     }
     (Value::Object(found.0.result), folder)

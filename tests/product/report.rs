@@ -217,10 +217,11 @@ fn a_folder_of_results_is_written_whole() {
     out.write("all.svg", drawing.svg()).unwrap();
     out.write("all.png", drawing.png(100.0).unwrap()).unwrap();
     let page = Page::new("Report").figure(&drawing, "", &["all.svg"]);
-    let path = out.write("report.html", page.html()).unwrap();
-    assert_eq!(out.written(), ["all.svg", "all.png", "report.html"]);
-    assert_eq!(std::fs::read_to_string(path).unwrap(), page.html());
+    out.write("report.html", page.html()).unwrap();
     assert!(out.write("../report.html", "").is_err());
+    let folder = out.folder().to_owned();
+    assert_eq!(out.commit().unwrap(), ["all.svg", "all.png", "report.html"]);
+    assert_eq!(std::fs::read_to_string(folder.join("report.html")).unwrap(), page.html());
 }
 
 /// Numbers as they come from broken files as well as from sound ones.
