@@ -165,6 +165,7 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     fn said(template: &str, finding: &Finding) -> String {
         filled(template, finding, Voice::Command)
@@ -217,35 +218,35 @@ mod tests {
         assert_eq!(rows.count(), SENTENCES.len());
     }
 
-    /// Codes that the sources of all crates make.
-    fn made(folder: &std::path::Path, codes: &mut Vec<String>) {
+    /// The sources below a folder, without tests and comments.
+    fn sources(folder: &Path, all: &mut String) {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
-            if path.is_dir() {
-                made(&path, codes);
-            } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("words.rs") {
+            if path.is_dir() && !path.ends_with("tests") {
+                sources(&path, all);
+            } else if path.extension().is_some_and(|e| e == "rs")
+                && !path.ends_with("words.rs")
+                && !path.ends_with("tests.rs")
+            {
                 let text = std::fs::read_to_string(&path).unwrap();
                 let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
-                let code: String = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
-                for maker in ["Finding::note(", "Finding::caution(", "Finding::doubt("] {
-                    let behind = code.split(maker).skip(1).map(str::trim_start);
-                    codes.extend(
-                        behind.filter_map(|c| Some(c.strip_prefix('"')?.split('"').next()?.to_owned())),
-                    );
-                }
+                all.extend(text.lines().filter(|l| !l.trim_start().starts_with("//")));
             }
         }
     }
 
     #[test]
     fn every_code_has_its_sentence_and_every_sentence_its_code() {
-        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        let mut codes = Vec::new();
-        made(&root.join("src"), &mut codes);
-        made(&root.join("crates"), &mut codes);
-        let silent: Vec<&String> = codes.iter().filter(|c| !SENTENCES.contains_key(c.as_str())).collect();
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut all = String::new();
+        sources(&root.join("src"), &mut all);
+        sources(&root.join("crates"), &mut all);
+        let makers = ["Finding::note(", "Finding::caution(", "Finding::doubt("];
+        let behind = makers.iter().flat_map(|maker| all.split(maker).skip(1));
+        let codes = behind.filter_map(|c| c.trim_start().strip_prefix('"')?.split('"').next());
+        let silent: Vec<&str> = codes.filter(|c| !SENTENCES.contains_key(c)).collect();
         assert!(silent.is_empty(), "no sentence for {silent:?}");
-        let unused: Vec<&&str> = SENTENCES.keys().filter(|c| !codes.iter().any(|made| made == *c)).collect();
+        let unused: Vec<_> = SENTENCES.keys().filter(|c| !all.contains(&format!("\"{c}\""))).collect();
         assert!(unused.is_empty(), "no finding for {unused:?}");
     }
 }

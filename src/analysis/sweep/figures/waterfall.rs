@@ -65,6 +65,7 @@ fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
             format!("a picture from {:.3} Hz (the cut-off) to {high:.3} Hz", matrix.fmin),
             "an upper frequency above the cut-off",
         )
+        .hint("raise the upper frequency, or lower the cut-off")
         .setting("fmax")
         .setting("fmin"));
     }
