@@ -69,7 +69,7 @@ impl<'a> Problem<'a> {
         let mut u = start.to_vec();
         for part in FINE {
             let now = self.of(motions(&u, brief)?.kinds);
-            now.enough()?;
+            now.enough(now.rows().0)?;
             u = now.approached(part, u);
         }
         let n = data.steps.len();
@@ -107,7 +107,7 @@ impl<'a> Problem<'a> {
     /// # Errors
     /// If there are fewer points than parameters.
     pub fn least(mut self, start: &[f64]) -> Result<Least<'a>> {
-        self.enough()?;
+        self.enough(self.rows().0)?;
         let mut rescaled = 0;
         let mut u = start.to_vec();
         loop {
