@@ -38,14 +38,14 @@ impl Answer {
         let Value::Object(mut result) = serde_json::to_value(result).map_err(unwritten)? else {
             return Err(Error::refused("the result is no object"));
         };
-        // They are told as findings of the answer.
+        // The answer has them as its findings.
         result.shift_remove("findings");
         Ok(Answer { result, ..Answer::default() })
     }
 
     /// Adds what is known of a record; `""` is the whole answer.
-    pub fn tell(&mut self, record: &str, told: impl IntoIterator<Item = impl Borrow<Finding>>) {
-        self.findings.extend(told.into_iter().map(|f| (record.to_owned(), f.borrow().clone())));
+    pub fn add(&mut self, record: &str, findings: impl IntoIterator<Item = impl Borrow<Finding>>) {
+        self.findings.extend(findings.into_iter().map(|f| (record.to_owned(), f.borrow().clone())));
     }
 
     /// Adds a figure.
@@ -84,13 +84,13 @@ pub fn left_out(error: Error) -> Result<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::words::{Voice, told};
+    use crate::report::words::{Voice, sentences};
 
     #[test]
     fn what_is_left_out_is_told_with_what_to_try() {
         let refusal = Error::refused("no peak. Two are noise.").hint("is it a metre?");
-        let told = told(&[("a".to_owned(), left_out(refusal).unwrap())], Voice::Campaign, false);
-        assert_eq!(told, ["a: Left out: no peak. Two are noise. Try: is it a metre?"]);
+        let findings = sentences(&[("a".to_owned(), left_out(refusal).unwrap())], Voice::Campaign, false);
+        assert_eq!(findings, ["a: Left out: no peak. Two are noise. Try: is it a metre?"]);
         assert!(left_out(Error::usage("x", "y")).is_err());
     }
 

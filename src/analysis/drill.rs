@@ -194,7 +194,7 @@ impl Keys {
         let mut found = drill_each(&record, &options, still.as_deref(), each)?;
         found.findings.splice(..0, channels.findings);
         let mut answer = Answer::of(&found)?;
-        answer.tell("", &found.findings);
+        answer.add("", &found.findings);
         answer.tables.push(tables::drill(source.name, &found));
         answer.figures = figures::drill(source.name, &found);
         answer.csv("average", &tables::drill_average(&found));

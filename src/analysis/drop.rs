@@ -178,9 +178,9 @@ impl Series {
         };
         let (train, found) = Train::of(&trace, &how)?;
         self.trains.push(train);
-        self.answer.tell(&file, &recording.findings);
-        self.answer.tell(&file, &trace.meta.findings);
-        self.answer.tell(&file, &found.findings);
+        self.answer.add(&file, &recording.findings);
+        self.answer.add(&file, &trace.meta.findings);
+        self.answer.add(&file, &found.findings);
         self.answer
             .figure(format!("drop_{number}"), impacts::figures::drop(source.name, &trace, &found.times));
         self.files.push(file);
@@ -203,7 +203,7 @@ impl Series {
         let mut answer = Answer::of(&found)?;
         answer.figures = self.answer.figures;
         answer.findings = self.answer.findings;
-        answer.tell("", &found.findings);
+        answer.add("", &found.findings);
         answer.table("restitution", by_method(name, &found));
         Ok(answer)
     }

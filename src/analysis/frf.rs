@@ -123,27 +123,27 @@ impl Keys {
     /// If a file cannot be read, or no function is there.
     pub fn measure(&self, source: &Source<'_>) -> Result<Vec<Answer>> {
         self.usable()?;
-        let mut told = Answer::default();
-        let functions = self.functions(source, &mut told)?;
+        let mut of_file = Answer::default();
+        let functions = self.functions(source, &mut of_file)?;
         let answers = functions.into_iter().map(|function| {
             let mut answer = self.modes(source, &function)?;
-            answer.findings.splice(0..0, told.findings.iter().cloned());
+            answer.findings.splice(0..0, of_file.findings.iter().cloned());
             Ok(answer)
         });
         answers.collect()
     }
 
-    fn functions(&self, source: &Source<'_>, told: &mut Answer) -> Result<Vec<Function>> {
+    fn functions(&self, source: &Source<'_>, of_file: &mut Answer) -> Result<Vec<Function>> {
         if self.reference.is_some() {
             let found = self.taken().lines(source)?;
-            told.tell("", &found.findings);
+            of_file.add("", &found.findings);
             let records = found.records();
             let Some(Record::Frf(frf)) = records.first() else { return Ok(Vec::new()) };
             let measured = Measured::complex(frf).with_coherence_of(&records)?;
             return Ok(vec![Function { meta: frf.meta.clone(), measured, records }]);
         }
         let recording = source.reader()?.from_path(source.path)?;
-        told.tell("", &recording.findings);
+        of_file.add("", &recording.findings);
         let coherence = source.further("coherence", self.coherence.as_ref())?;
         let coherence = coherence.map(|path| source.reader()?.from_path(path)).transpose()?;
         let all = Measured::all(&recording.records, source.channel.channel.as_deref())
@@ -181,8 +181,8 @@ impl Keys {
         let (quantity, unit) = (meta.quantity.name(), meta.unit.symbol());
         let mut answer = Answer::of(&Found { quantity, unit, modal: &found })?;
         answer.result.insert("channel".to_owned(), meta.name.clone().into());
-        answer.tell("", &meta.findings);
-        answer.tell("", &found.findings);
+        answer.add("", &meta.findings);
+        answer.add("", &found.findings);
         answer.refused = refused;
         answer.table("modes", tables::modes(source.name, &found));
         let methods = tables::modal_methods(&found);
@@ -192,7 +192,7 @@ impl Keys {
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);
-            answer.tell("", unwritten);
+            answer.add("", unwritten);
         }
         Ok(answer)
     }
@@ -212,7 +212,7 @@ impl Analysis for Keys {
             for answer in &mut answers {
                 let none =
                     answer.refused.take().map(|e| Finding::caution("no-modes").name("why", e.to_string()));
-                answer.tell("", none);
+                answer.add("", none);
             }
             Ok(answers)
         })

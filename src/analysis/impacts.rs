@@ -74,9 +74,9 @@ impl Keys {
         };
         let found = impacts(&trace, &options)?;
         let mut answer = Answer::of(&found)?;
-        answer.tell("", &found.findings);
-        answer.tell("", &recording.findings);
-        answer.tell("", &trace.meta.findings);
+        answer.add("", &found.findings);
+        answer.add("", &recording.findings);
+        answer.add("", &trace.meta.findings);
         answer.tables.push(summary(source.name, &found));
         answer.figure("impacts", figures::impacts(source.name, &trace, &found));
         answer.csv("impacts", &times(&found));

@@ -78,7 +78,7 @@ impl<'a> Job<'a> {
         match found {
             Ok(found) => Ok(Some(found)),
             Err(error) => {
-                self.all.tell(record, [left_out(error)?]);
+                self.all.add(record, [left_out(error)?]);
                 Ok(None)
             }
         }
@@ -246,9 +246,9 @@ pub fn run(
         (kind.run)(&mut job)?;
     }
     if campaign.is_empty() {
-        job.all.tell("", [Finding::caution("campaign-without-record")]);
+        job.all.add("", [Finding::caution("campaign-without-record")]);
     } else if job.answers == 0 {
-        job.all.tell("", [Finding::caution("no-record-answers")]);
+        job.all.add("", [Finding::caution("no-record-answers")]);
     }
     let mut all = std::mem::take(&mut job.all);
     progress.start("drawing figures", all.figures.len());

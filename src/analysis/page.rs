@@ -2,7 +2,7 @@
 
 use super::{Answer, Job};
 use crate::record::Step;
-use crate::report::words::{Voice, told};
+use crate::report::words::{Voice, sentences};
 use crate::report::{Drawing, Page};
 use crate::units::notation::shortest;
 use std::fmt::Write as _;
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// Lays out all that is shown, with the drawings of its figures.
 pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing]) -> Page {
     let mut page = Page::new(job.title.as_str());
-    for sentence in told(&all.findings, Voice::Campaign, true) {
+    for sentence in sentences(&all.findings, Voice::Campaign, true) {
         page = page.warning(sentence);
     }
     for table in &all.tables {

@@ -90,15 +90,15 @@ impl Keys {
         let trace = source.trace(&recording)?;
         let found = pulse(&trace, &PulseOptions { instrument: self.instrument()?, mass: self.mass })?;
         let mut answer = shown(source.name, &found)?;
-        answer.tell("", &recording.findings);
-        answer.tell("", &trace.meta.findings);
+        answer.add("", &recording.findings);
+        answer.add("", &trace.meta.findings);
         Ok(answer)
     }
 }
 
 fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     let mut answer = Answer::of(found)?;
-    answer.tell("", &found.findings);
+    answer.add("", &found.findings);
     answer.figures.extend(figures::pulse(name, found).map(|figure| ("pulse".to_owned(), figure)));
     answer.table("pulse", contact(name, found));
     if !found.fits.is_empty() {

@@ -128,14 +128,14 @@ impl Keys {
         let found = self.lines(source)?;
         let mut answer = Answer::of(&found)?;
         answer.result.insert("channel".to_owned(), found.name.clone().into());
-        answer.tell("", &found.findings);
+        answer.add("", &found.findings);
         answer.tables = vec![peaks(source.name, &found), tones(source.name, &found)];
         answer.details.push(taken(&found));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
         let (files, unwritten) = files::records(name, &found.records())?;
         answer.files = files;
-        answer.tell("", unwritten);
+        answer.add("", unwritten);
         Ok(answer)
     }
 }

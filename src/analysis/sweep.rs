@@ -206,7 +206,7 @@ fn taken(
 }
 
 /// What is known of the responses, each about its sweep.
-fn told(responses: &[Response]) -> impl Iterator<Item = About> {
+fn findings_of(responses: &[Response]) -> impl Iterator<Item = About> {
     responses.iter().flat_map(|r| r.findings.iter().map(|f| (r.name.clone(), f.clone())))
 }
 
@@ -243,20 +243,20 @@ impl Analysis for Keys {
         modelled::run(job, &responses)?;
         let slugs = files::slugs(responses.iter().map(|r| r.name.as_str()));
         let compute = &job.campaign.compute;
-        let mut told = Vec::new();
+        let mut shown = Vec::new();
         for (slug, (response, matrix)) in slugs.iter().zip(responses.iter().zip(&matrices)) {
             let mut one = Answer::of(response)?;
-            one.tell("", &response.findings);
+            one.add("", &response.findings);
             if compute.waterfall {
                 one.figure("waterfall", figures::waterfall(matrix, compute.fmax)?);
                 one.figure("map", figures::map(matrix, compute.fmax)?);
             }
             one.csv("response", &tables::response(response));
             one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
-            told.push(job.show(&response.name, slug, one));
+            shown.push(job.show(&response.name, slug, one));
             job.all.details.push(tables::curve(response));
             job.histories.push((response.name.clone(), response.history.clone()));
         }
-        job.put("responses", &told)
+        job.put("responses", &shown)
     }
 }

@@ -5,7 +5,7 @@ use crate::analysis::sweep::modelled;
 use crate::analysis::{self, JobOptions};
 use crate::campaign::Parameter;
 use crate::error::Result;
-use crate::report::words::{Voice, told};
+use crate::report::words::{Voice, sentences};
 use crate::report::{Output, Table};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
@@ -56,7 +56,7 @@ impl Run {
             answer.insert("folder".to_owned(), json!(folder.display().to_string()));
             print::object(answer)?;
         } else {
-            complain::warn(&told(&found.findings, Voice::Campaign, true));
+            complain::warn(&sentences(&found.findings, Voice::Campaign, true));
             let tables = found.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
             let n = files.len();
             print::text(&format!("{tables}\n{n} files in {}; open report.html there\n", folder.display()))?;

@@ -56,10 +56,10 @@ impl Convert {
         let written = self.output.display().to_string();
         let (format, records) = (target.name(), recording.records.len());
         let mut answer = Answer::of(&json!({ "written": written, "format": format, "records": records }))?;
-        answer.tell("", recording.all_findings());
-        answer.tell("", changes);
-        answer.tell("", (target == Target::Npy).then(|| Finding::caution("values-only")));
-        answer.tell("", existed.then(|| Finding::caution("file-replaced").name("file", &*written)));
+        answer.add("", recording.all_findings());
+        answer.add("", changes);
+        answer.add("", (target == Target::Npy).then(|| Finding::caution("values-only")));
+        answer.add("", existed.then(|| Finding::caution("file-replaced").name("file", &*written)));
         answer.tables.push(table(
             "",
             [()],

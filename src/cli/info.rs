@@ -5,7 +5,7 @@ use crate::campaign::Reading;
 use crate::error::Result;
 use crate::read::Header;
 use crate::record::Finding;
-use crate::report::words::{Voice, put, told};
+use crate::report::words::{Voice, put, sentences};
 use serde_json::{Map, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ impl Info {
             put(&mut answer, &about, Voice::Command);
             print::object(answer)?;
         } else {
-            complain::warn(&told(&about, Voice::Command, true));
+            complain::warn(&sentences(&about, Voice::Command, true));
             print::text(&text)?;
         }
         Ok(code)

@@ -66,7 +66,7 @@ impl Precision {
             findings.push(Finding::caution("development-build"));
         }
         let mut answer = Answer::of(&results)?;
-        answer.tell("", &findings);
+        answer.add("", &findings);
         let Results { scenes, failures } = &results;
         for scene in scenes {
             answer.figure(format!("precision_{}", files::slug(&scene.name)), shown::chart(scene));

@@ -3,7 +3,7 @@
 use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
-use crate::report::words::{Voice, put, told};
+use crate::report::words::{Voice, put, sentences};
 use crate::report::{Output, Table, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Map, Value};
@@ -33,7 +33,7 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<()> 
         put(&mut answer.result, &answer.findings, Voice::Command);
         return object(answer.result);
     }
-    complain::warn(&told(&answer.findings, Voice::Command, true));
+    complain::warn(&sentences(&answer.findings, Voice::Command, true));
     let shown = answer.tables.iter().chain(&answer.details).filter(|t| !t.rows.is_empty());
     let mut all = shown.map(Table::text).collect::<Vec<_>>().join("\n");
     for file in written {

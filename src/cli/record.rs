@@ -150,8 +150,8 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
         "regular": null,
         "times": found.times,
     }))?;
-    answer.tell("", [of_script("timeav")]);
-    answer.tell("", (n == 1).then(|| Finding::caution("timeav-one-peak")));
+    answer.add("", [of_script("timeav")]);
+    answer.add("", (n == 1).then(|| Finding::caution("timeav-one-peak")));
     answer.tables.push(table(
         "timeav",
         [()],

@@ -116,7 +116,7 @@ impl Taken {
             let found = response(&sweep, &options)?;
             let all = std::slice::from_ref(&found);
             let mut answer = Answer::of(&found)?;
-            answer.tell("", &found.findings);
+            answer.add("", &found.findings);
             answer.figure("response", figures::response(&found.name, all));
             answer.csv("response", &tables::response(&found));
             answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
@@ -130,7 +130,7 @@ impl Taken {
 fn largest_lines(sweep: &Sweep) -> Result<Answer> {
     let unit = sweep.unit().quantity().symbol();
     let points = legacy::response(sweep)?;
-    let told = points.iter().map(|(excitation, amplitude)| {
+    let rows = points.iter().map(|(excitation, amplitude)| {
         json!({
             "excitation": excitation,
             "frequency": excitation,
@@ -140,9 +140,9 @@ fn largest_lines(sweep: &Sweep) -> Result<Answer> {
             "largest_elsewhere": null,
         })
     });
-    let told = told.collect::<Vec<Value>>();
-    let mut answer = Answer::of(&json!({ "points": told, "resonances": [], "jumps": [] }))?;
-    answer.tell("", [of_script("sinesw3")]);
+    let rows = rows.collect::<Vec<Value>>();
+    let mut answer = Answer::of(&json!({ "points": rows, "resonances": [], "jumps": [] }))?;
+    answer.add("", [of_script("sinesw3")]);
     answer.table(
         "response",
         table(
@@ -184,7 +184,7 @@ impl Waterfall {
             "unit": matrix.unit,
             "fmin": matrix.fmin,
         }))?;
-        answer.tell("", &matrix.findings);
+        answer.add("", &matrix.findings);
         answer.figure("waterfall", figures::waterfall(&matrix, self.fmax)?);
         answer.figure("map", figures::map(&matrix, self.fmax)?);
         answer.files.push(("waterfall.csv".to_owned(), files::matrix_csv(&matrix).into_bytes()));
@@ -225,9 +225,9 @@ impl Excitation {
         let written = self.lists(&list, &frequencies)?;
         let mut answer = Answer::of(&json!({ "points": points, "written": written }))?;
         if self.sweep.legacy {
-            answer.tell("", [of_script("sineswpf")]);
+            answer.add("", [of_script("sineswpf")]);
         } else {
-            answer.tell("", &sweep.findings);
+            answer.add("", &sweep.findings);
         }
         answer.tables.push(table(
             "Excitation",

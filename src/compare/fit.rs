@@ -4,15 +4,15 @@
 //! none). Which motion a step shows, a simulated sweep with the parameters found so far decides; parameters and motions are found in turn
 //! until both stay. Steps of any other pattern are left out and counted.
 //!
-//! [`data`] → [`problem`] (weighted residuals) → [`search`] (starting points) → [`settle`] (motions and parameters in turn) → [`answer`].
+//! [`data`] → [`problem`] (weighted residuals) → [`search`] (starting points) → [`converge`] (motions and parameters in turn) → [`answer`].
 
 mod answer;
 mod compliance;
+mod converge;
 mod data;
 mod hold_out;
 mod problem;
 mod search;
-mod settle;
 mod uncertainty;
 mod unknown;
 
@@ -27,12 +27,12 @@ use crate::measure::response::Response;
 use crate::model::Rig;
 use answer::Answer;
 use compliance::corrected;
+use converge::Converged;
 use data::Data;
 use hold_out::rungs;
 use problem::Problem;
 use rayon::prelude::*;
 use search::End;
-use settle::Settled;
 use uncertainty::Uncertainty;
 use unknown::{Setting, Unknown};
 
@@ -80,7 +80,7 @@ fn found(
     let starts = entry.starts.unwrap_or(STARTS);
     let (rigid, ends) = identify(&problem, starts)?;
     let corrected = contact.map(|stiffness| corrected(&rigid, stiffness)).transpose()?;
-    let soft = corrected.as_ref().map(|soft| problem.with(&soft.data).settle(&soft.u)).transpose()?;
+    let soft = corrected.as_ref().map(|soft| problem.with(&soft.data).converge(&soft.u)).transpose()?;
     let rungs = rungs(&rigid, soft.as_ref(), responses);
     let agreeing = agreeing(&ends, &rigid)?;
     let answer = Answer::new(soft.unwrap_or(rigid), corrected.as_ref().map(|soft| soft.lost))?;
@@ -90,12 +90,12 @@ fn found(
 }
 
 /// The best answer of several starts, and where each start ended.
-fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Vec<End>)> {
+fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Converged<'a>, Vec<End>)> {
     problem.enough(problem.data.clear())?;
     // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start reached.
     let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
     let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();
-    let found: Vec<Result<Settled<'a>>> = reached.par_iter().map(|end| problem.settle(&end.u)).collect();
+    let found: Vec<Result<Converged<'a>>> = reached.par_iter().map(|end| problem.converge(&end.u)).collect();
     let ends = found.iter().zip(&reached).filter_map(|(found, end)| {
         Some(End { u: found.as_ref().ok()?.least.minimum.parameters.clone(), ..*end })
     });
@@ -103,7 +103,7 @@ fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Ve
     let (mut best, mut idle) = (nearest(found)?, 0);
     for turn in 0..TURNS {
         let places = problem.around(&best.least.minimum.parameters, turn);
-        match nearest(places.par_iter().map(|u| problem.settle(u)).collect()) {
+        match nearest(places.par_iter().map(|u| problem.converge(u)).collect()) {
             Ok(next) if next.unexplained < best.unexplained - BETTER => (best, idle) = (next, 0),
             _ if idle + 1 == IDLE => break,
             _ => idle += 1,
@@ -113,7 +113,7 @@ fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Ve
 }
 
 /// The answer that explains most; the first refusal where there is none.
-fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
+fn nearest(found: Vec<Result<Converged<'_>>>) -> Result<Converged<'_>> {
     let mut refusals = Vec::new();
     let answers = found.into_iter().filter_map(|one| one.map_err(|refusal| refusals.push(refusal)).ok());
     let best = answers.reduce(|best, one| if one.unexplained < best.unexplained { one } else { best });
@@ -122,7 +122,7 @@ fn nearest(found: Vec<Result<Settled<'_>>>) -> Result<Settled<'_>> {
 }
 
 /// How many starts ended within one standard uncertainty of the answer in every parameter.
-fn agreeing(ends: &[End], answer: &Settled<'_>) -> Result<usize> {
+fn agreeing(ends: &[End], answer: &Converged<'_>) -> Result<usize> {
     let (best, uncertainty) = (&answer.least.minimum.parameters, Uncertainty::new(&answer.least)?);
     let near = |(i, u): (usize, &f64)| (u - best[i]).abs() <= uncertainty.std(i);
     Ok(ends.iter().filter(|end| end.u.iter().enumerate().all(near)).map(|end| end.starts).sum())

@@ -59,7 +59,7 @@ pub fn sentence(finding: &Finding, voice: Voice) -> String {
 pub type About = (String, Finding);
 
 /// The sentences of findings about records, doubts first. One that holds for several records stands once, behind their names.
-pub fn told(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
+pub fn sentences(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
     let mut groups: Vec<(&Finding, Vec<&str>)> = Vec::new();
     for (record, finding) in findings {
         match groups.iter_mut().find(|(known, _)| *known == finding) {
@@ -88,7 +88,7 @@ pub fn put(answer: &mut Map<String, Value>, findings: &[About], voice: Voice) {
         if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }
     });
     answer.insert("findings".to_owned(), json!(subjects.collect::<Vec<Finding>>()));
-    answer.insert("warnings".to_owned(), json!(told(findings, voice, false)));
+    answer.insert("warnings".to_owned(), json!(sentences(findings, voice, false)));
 }
 
 /// A template with the facts of a finding in place.
@@ -196,8 +196,8 @@ mod tests {
     fn doubts_come_first_and_each_sentence_once() {
         let found = [Finding::note("a"), Finding::caution("b"), Finding::doubt("c"), Finding::doubt("c")];
         let found = found.map(|finding| (String::new(), finding));
-        assert_eq!(told(&found, Voice::Command, true), ["c", "b", "a"]);
-        assert_eq!(told(&found, Voice::Command, false), ["c", "b"]);
+        assert_eq!(sentences(&found, Voice::Command, true), ["c", "b", "a"]);
+        assert_eq!(sentences(&found, Voice::Command, false), ["c", "b"]);
     }
 
     #[test]
@@ -205,7 +205,7 @@ mod tests {
         let of = |record: &str, code| (record.to_owned(), Finding::caution(code));
         let all =
             [of("a", "x-code"), of("b", "x-code"), of("a", "x-code"), of("", "y-code"), of("c", "y-code")];
-        assert_eq!(told(&all, Voice::Campaign, true), ["a; b: x-code", "y-code"]);
+        assert_eq!(sentences(&all, Voice::Campaign, true), ["a; b: x-code", "y-code"]);
         let mut answer = Map::new();
         put(&mut answer, &all[..1], Voice::Campaign);
         assert_eq!(answer["findings"][0]["subject"], "a");

@@ -15,7 +15,7 @@ mod uff_text;
 
 /// What a person reads of findings.
 fn sentences(findings: &[vibroimpact::record::Finding]) -> Vec<String> {
-    use vibroimpact::report::words::{Voice, told};
+    use vibroimpact::report::words;
     let about = findings.iter().map(|finding| (String::new(), finding.clone()));
-    told(&about.collect::<Vec<_>>(), Voice::Command, true)
+    words::sentences(&about.collect::<Vec<_>>(), words::Voice::Command, true)
 }

@@ -11,7 +11,7 @@ use crate::model::ladder::{
 };
 use crate::record::{Direction, Finding, Severity};
 use crate::report::layout::table;
-use crate::report::words::{Voice, sentence, told};
+use crate::report::words::{Voice, sentence, sentences};
 use crate::report::{Cell, Table};
 use crate::units::notation::significant;
 use serde_json::{Value, json};
@@ -72,7 +72,7 @@ impl Keys {
         if let Value::Object(asked) = json!(question) {
             answer.result.extend(asked);
         }
-        answer.tell("", finding);
+        answer.add("", finding);
         if let Some((from, to)) = self.from.zip(self.to) {
             along(&choose_over(&scene, from, to, self.points, &question)?, &question, &mut answer)?;
             return Ok(answer);
@@ -92,7 +92,7 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
         found.shift_remove("findings");
         answer.result.extend(found);
     }
-    answer.tell("", &choice.findings);
+    answer.add("", &choice.findings);
     answer.table("rungs", rungs(choice, question));
     if !choice.sensitivity.is_empty() {
         answer.table("sensitivity", sensitivity(&choice.sensitivity, question));
@@ -129,10 +129,10 @@ fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()
             seen.push(finding.code);
             let n = all().filter(|(_, f)| f.code == finding.code).count();
             let first = significant(first, 6);
-            answer.tell(&format!("At {n} of {points} frequencies, first at {first} Hz"), [finding]);
+            answer.add(&format!("At {n} of {points} frequencies, first at {first} Hz"), [finding]);
         }
     }
-    answer.tell(
+    answer.add(
         "",
         [match survey.chosen {
             Some(model) => Finding::note("rung-for-all").name("model", model.name()),
@@ -178,7 +178,7 @@ fn worded(choice: &Choice) -> Result<Value> {
     }
     let rungs = fates(choice).into_iter().map(|(names, fate, why)| format!("{names}: {fate}. {why}"));
     let found: Vec<_> = choice.findings.iter().map(|f| (String::new(), f.clone())).collect();
-    value["reasons"] = rungs.chain(told(&found, Voice::Command, true)).collect();
+    value["reasons"] = rungs.chain(sentences(&found, Voice::Command, true)).collect();
     Ok(value)
 }
 

@@ -60,10 +60,10 @@ impl Keys {
             "regime": grid(&|c| json!(c.regime)),
             "spectral_radius": grid(&|c| json!(c.spectral_radius)),
         }))?;
-        answer.tell("", finding);
+        answer.add("", finding);
         let missing = rows.iter().flatten().filter(|c| c.regime.is_none()).count();
         if missing > 0 {
-            answer.tell("", [Finding::caution("map-cells-empty").count("n", missing)]);
+            answer.add("", [Finding::caution("map-cells-empty").count("n", missing)]);
         }
         let counts = figures::counted(rows.iter().flatten());
         answer.tables.push(table(

@@ -39,27 +39,27 @@ impl Keys {
         let found = orbits_of(&scene.rig, excitation, self.cycles)?;
         let mut softening = Vec::new();
         let (contact, soft) = soften(&driven, &found, &mut softening)?;
-        let told = found.orbits.iter().zip(&soft).map(|(orbit, soft)| {
+        let findings = found.orbits.iter().zip(&soft).map(|(orbit, soft)| {
             let mut all = judged(orbit, self.gap_std);
             all["soft"] = json!(soft);
             all
         });
         let mut answer = Answer::of(&json!({
             "scene": scene,
-            "orbits": told.collect::<Vec<Value>>(),
+            "orbits": findings.collect::<Vec<Value>>(),
             "no_impact": found.no_impact,
             "contact": contact,
         }))?;
-        answer.tell("", finding);
-        answer.tell("", softening);
+        answer.add("", finding);
+        answer.add("", softening);
         if found.orbits.is_empty() {
-            answer.tell("", [Finding::note("no-orbit")]);
+            answer.add("", [Finding::note("no-orbit")]);
         }
         for (i, orbit) in (1..).zip(&found.orbits).filter(|(_, orbit)| orbit.validity.exists) {
             let distance = orbit.validity.grazing_distance;
             if let Some(std) = self.gap_std.filter(|std| distance <= *std) {
                 let near = Finding::caution("verdicts-near-grazing").count("motion", i);
-                answer.tell("", [near.number("distance", distance).number("std", std)]);
+                answer.add("", [near.number("distance", distance).number("std", std)]);
             }
             let title = format!("Motion {i}");
             answer.figure(format!("orbit_{i}"), figures::orbit(&title, &scene.rig, orbit));
@@ -75,13 +75,13 @@ impl Keys {
 fn soften(
     driven: &Driven,
     found: &Orbits,
-    told: &mut Vec<Finding>,
+    findings: &mut Vec<Finding>,
 ) -> Result<(Option<Compliance>, Vec<Option<Softened>>)> {
     let none = vec![None; found.orbits.len()];
     let Driven { scene, excitation, .. } = driven;
     let Some(keys) = scene.contact else { return Ok((None, none)) };
     let Some(stiffness) = keys.stiffness.filter(|_| keys.exponent.is_none_or(|n| n == 1.0)) else {
-        told.push(match keys.stiffness {
+        findings.push(match keys.stiffness {
             Some(_) => Finding::caution("contact-curved"),
             None => Finding::caution("contact-stiffness-missing"),
         });
@@ -91,11 +91,11 @@ fn soften(
     let of_rig = scene.rig.restitution;
     if (contact.restitution - of_rig).abs() > 1e-3 {
         let differs = Finding::caution("contact-restitution-differs");
-        told.push(differs.number("contact", contact.restitution).number("rig", of_rig));
+        findings.push(differs.number("contact", contact.restitution).number("rig", of_rig));
     }
     let rig = Rig { restitution: contact.restitution, ..scene.rig };
     let soft = softened(&rig, excitation, found, &contact).unwrap_or_else(|error| {
-        told.push(Finding::caution("contact-not-corrected").name("why", error.to_string()));
+        findings.push(Finding::caution("contact-not-corrected").name("why", error.to_string()));
         none
     });
     Ok((Some(contact), soft))

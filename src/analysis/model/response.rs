@@ -48,17 +48,17 @@ impl Keys {
             "points": found.points.iter().map(|p| self.point(p)).collect::<Vec<Value>>(),
             "changes": found.changes,
         }))?;
-        answer.tell("", finding);
+        answer.add("", finding);
         let refused = found.points.iter().filter_map(|p| p.refused.as_deref());
         if let Some(why) = refused.clone().next() {
             let some = Finding::caution("frequencies-without-answer").count("n", refused.count());
-            answer.tell("", [some.name("why", why.trim_end_matches('.'))]);
+            answer.add("", [some.name("why", why.trim_end_matches('.'))]);
         }
         let real = |p: &&ResponsePoint| {
             p.orbits.iter().any(|o| o.validity.admissible && o.validity.stable == Some(true))
         };
         let stable = Finding::note("orbits-stable").count("n", found.points.iter().filter(real).count());
-        answer.tell("", [stable.count("all", found.points.len())]);
+        answer.add("", [stable.count("all", found.points.len())]);
         answer.figure("response", figures::branches("Response with one impact a period", &found));
         answer.csv("response", &branches(&found));
         answer.table("changes", changes(&found));

@@ -91,9 +91,9 @@ impl Keys {
             "final_state": { "time": time, "phase": phase, "x1": x1, "v1": v1, "x2": x2, "v2": v2 },
             "flights": flights,
         }))?;
-        answer.tell("", finding);
-        answer.tell("", contact::buffer(&scene, self.model));
-        answer.tell("", self.doubts(&seen, &scene.rig));
+        answer.add("", finding);
+        answer.add("", contact::buffer(&scene, self.model));
+        answer.add("", self.doubts(&seen, &scene.rig));
         answer.tables.push(summary(&seen));
         answer.figure("traces", figures::traces("Traces of both masses", portrait, scene.rig.gap));
         answer.figure("phase_plane", figures::phase_plane("Phase plane", portrait));

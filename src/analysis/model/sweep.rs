@@ -108,9 +108,9 @@ impl Keys {
             "resonances": resonances,
             "jumps": jumps,
         }))?;
-        answer.tell("", finding);
-        answer.tell("", contact::buffer(&scene, self.model));
-        answer.tell("", scattered(&swept));
+        answer.add("", finding);
+        answer.add("", contact::buffer(&scene, self.model));
+        answer.add("", scattered(&swept));
         answer.tables.push(found(&resonances, &jumps));
         answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));
         answer.csv("sweep", &points(&swept));

@@ -1,6 +1,6 @@
 //! Sweeps against the model: overlay and fit, in `vibro compare` and in a campaign.
 
-use super::{figures, responses, tables, told};
+use super::{figures, findings_of, responses, tables};
 use crate::analysis::model::{choose::climbed, rig_left_out};
 use crate::analysis::{Answer, Job, JobOptions, Progress};
 use crate::campaign::Campaign;
@@ -50,7 +50,7 @@ pub fn compared(campaign: &Campaign, options: JobOptions, progress: &dyn Progres
     let mut answer = shown(campaign, &responses, &overlay, fit.as_ref());
     answer.result = Answer::of(&overlay)?.result;
     answer.result.insert("fit".to_owned(), json!(fit));
-    answer.findings.extend(told(&responses));
+    answer.findings.extend(findings_of(&responses));
     Ok(answer)
 }
 
@@ -58,14 +58,14 @@ pub fn compared(campaign: &Campaign, options: JobOptions, progress: &dyn Progres
 fn shown(campaign: &Campaign, responses: &[Response], overlay: &Overlay, fit: Option<&Fit>) -> Answer {
     let mut answer = Answer::default();
     // All that follows rests on it.
-    answer.tell("", rig_left_out("[rig]", &campaign.rig_left_out()));
-    answer.tell("", &overlay.findings);
+    answer.add("", rig_left_out("[rig]", &campaign.rig_left_out()));
+    answer.add("", &overlay.findings);
     answer.figure("overlay", figures::overlay(&campaign.name, overlay, responses));
     answer.csv("pairs", &tables::pairs(overlay));
     answer.table("peaks", tables::peaks(overlay));
     answer.tables.extend([tables::scores(overlay), climbed(overlay)]);
     if let Some(fit) = fit {
-        answer.tell("", &fit.findings);
+        answer.add("", &fit.findings);
         answer.figure("fit", figures::fit(&campaign.name, fit));
         answer.table("fit", tables::fitted(fit));
         answer.tables.push(tables::fit_rungs(fit));
@@ -82,7 +82,7 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
     let campaign = job.campaign;
     let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());
     if rig.is_some() && responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
-        job.all.tell("", [Finding::caution("no-mass-named")]);
+        job.all.add("", [Finding::caution("no-mass-named")]);
         rig = None;
     }
     let (mut laid, mut found) = (None, None);

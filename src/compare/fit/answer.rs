@@ -1,9 +1,9 @@
 //! What a fit says of the rig, and what a person must know of it.
 
 use super::super::prediction::Kind;
+use super::converge::Converged;
 use super::data::{GUESS, Step};
 use super::hold_out::Rung;
-use super::settle::Settled;
 use super::uncertainty::{NORMAL, Profile, Uncertainty, Unidentified, profile};
 use super::unknown::{Setting, Unknown};
 use crate::campaign::{FitEntry, Parameter};
@@ -116,9 +116,9 @@ pub struct Fit {
     pub findings: Vec<Finding>,
 }
 
-/// A settled search with what its sum of squares says.
+/// A converged search with what its sum of squares says.
 pub struct Answer<'a> {
-    pub settled: Settled<'a>,
+    pub found: Converged<'a>,
     pub uncertainty: Uncertainty,
     pub profile: Option<Profile>,
     /// Amplitudes for which the contact lasts too long; `None` with rigid impacts.
@@ -130,10 +130,10 @@ impl<'a> Answer<'a> {
     ///
     /// # Errors
     /// As [`Uncertainty::new`].
-    pub fn new(settled: Settled<'a>, lost: Option<usize>) -> Result<Answer<'a>> {
-        let uncertainty = Uncertainty::new(&settled.least)?;
-        let profile = profile(&settled.least, &uncertainty, uncertainty.worst());
-        Ok(Answer { settled, uncertainty, profile, lost })
+    pub fn new(found: Converged<'a>, lost: Option<usize>) -> Result<Answer<'a>> {
+        let uncertainty = Uncertainty::new(&found.least)?;
+        let profile = profile(&found.least, &uncertainty, uncertainty.worst());
+        Ok(Answer { found, uncertainty, profile, lost })
     }
 }
 
@@ -143,7 +143,7 @@ const METHOD: &str = "least squares of both masses and directions by the closed 
 impl Answer<'_> {
     /// The result, but for starts, rungs and cautions.
     pub fn fit(&self, base: &Setting) -> Fit {
-        let (least, setting) = (&self.settled.least, self.settled.setting());
+        let (least, setting) = (&self.found.least, self.found.setting());
         let (problem, n) = (&least.problem, least.minimum.parameters.len());
         let (data, used) = (problem.data, problem.used().collect::<Vec<_>>());
         let row = |i: usize| (0..n).map(|j| self.uncertainty.correlation(i, j)).collect();
@@ -163,7 +163,7 @@ impl Answer<'_> {
                     residual: *residual * stated,
                 })
             });
-        let (far, wavering, findings) = (self.settled.far, self.settled.wavering, self.doubts());
+        let (far, wavering, findings) = (self.found.far, self.found.wavering, self.doubts());
         let doubt = findings.first().map(|doubt| doubt.code);
         Fit {
             parameters: (0..n).map(|i| self.fitted(base, i, doubt.is_some())).collect(),
@@ -193,11 +193,10 @@ impl Answer<'_> {
 
     /// The parameter number `i`.
     pub fn fitted(&self, base: &Setting, i: usize, in_doubt: bool) -> Fitted {
-        let (problem, u) = (&self.settled.least.problem, self.settled.least.minimum.parameters[i]);
+        let (problem, u) = (&self.found.least.problem, self.found.least.minimum.parameters[i]);
         let Unknown { parameter, coordinate, prior } = problem.unknowns[i];
         let reason = if in_doubt { Some(Unidentified::InDoubt) } else { self.uncertainty.unidentified[i] };
-        let (value, std, identifiable) =
-            (self.settled.setting().get(parameter), self.std(i), reason.is_none());
+        let (value, std, identifiable) = (self.found.setting().get(parameter), self.std(i), reason.is_none());
         // The profile of its parameter is nearer to the truth than the slopes at the least.
         let profile = self.profile.as_ref().filter(|p| p.parameter == parameter);
         let profiled = profile.and_then(|p| Some([p.interval[0]?, p.interval[1]?]));
@@ -218,7 +217,7 @@ impl Answer<'_> {
 
     /// Standard uncertainty of a parameter in its unit.
     pub fn std(&self, i: usize) -> f64 {
-        let least = &self.settled.least;
+        let least = &self.found.least;
         let slope = least.problem.unknowns[i].coordinate.slope(least.minimum.parameters[i]);
         self.uncertainty.std(i) * slope.abs()
     }
@@ -243,7 +242,7 @@ const OTHER: f64 = 0.05;
 impl Answer<'_> {
     /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
     pub fn doubts(&self) -> Vec<Finding> {
-        let (least, settled, problem) = (&self.settled.least, &self.settled, &self.settled.least.problem);
+        let (least, found, problem) = (&self.found.least, &self.found, &self.found.least.problem);
         let (n, freedom, guessed) = (problem.rows().0, problem.freedom(), problem.data.guessed);
         let many = |code, key, part: usize| {
             let many = part as f64 > LOST * (n + part) as f64;
@@ -253,11 +252,11 @@ impl Answer<'_> {
         let scaled = guessed || least.reduced > 1.0;
         let of_all = [
             many("contact-too-long", "lost", self.lost.unwrap_or(0)),
-            many("many-outliers", "outliers", settled.far),
+            many("many-outliers", "outliers", found.far),
             (!guessed && poor).then(|| Finding::doubt("lack-of-fit").number("ratio", least.reduced.sqrt())),
             (scaled && student(freedom).is_none())
                 .then(|| Finding::doubt("too-few-residuals").count("freedom", freedom)),
-            (!settled.agreed).then(|| Finding::doubt("motions-not-settled")),
+            (!found.agreed).then(|| Finding::doubt("motions-not-settled")),
             (!least.minimum.converged).then(|| Finding::doubt("least-squares-not-reached")),
         ];
         self.contradictions().into_iter().chain(of_all.into_iter().flatten()).collect()
@@ -265,7 +264,7 @@ impl Answer<'_> {
 
     /// Priors and bounds that the points contradict, and a least sum of squares that lies elsewhere.
     fn contradictions(&self) -> Vec<Finding> {
-        let (problem, setting) = (&self.settled.least.problem, self.settled.setting());
+        let (problem, setting) = (&self.found.least.problem, self.found.setting());
         let mut found = Vec::new();
         for (i, unknown) in problem.unknowns.iter().enumerate() {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
@@ -294,7 +293,7 @@ impl Answer<'_> {
 
     /// All findings but the doubts of the whole answer.
     pub fn cautions(&self, fit: &Fit, entry: &FitEntry) -> Vec<Finding> {
-        let (least, data) = (&self.settled.least, self.settled.least.problem.data);
+        let (least, data) = (&self.found.least, self.found.least.problem.data);
         let (whiteness, ratio, sound) =
             (&least.whiteness, fit.reduced_chi_squared.sqrt(), fit.doubt.is_none());
         let mut found = Vec::new();

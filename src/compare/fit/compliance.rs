@@ -1,9 +1,9 @@
 //! The compliance of the contact, taken out of the points.
 
 use super::super::prediction::Kind;
+use super::converge::{Converged, assigned};
 use super::data::{Data, Reading, Step};
 use super::problem::Problem;
-use super::settle::{Settled, assigned};
 use super::unknown::Setting;
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
@@ -32,7 +32,7 @@ pub struct Corrected {
 ///
 /// # Errors
 /// If too few points are left.
-pub fn corrected(answer: &Settled<'_>, stiffness: f64) -> Result<Corrected> {
+pub fn corrected(answer: &Converged<'_>, stiffness: f64) -> Result<Corrected> {
     let from = |setting: &Setting| corrected_from(answer, setting, stiffness);
     // A rigid answer may be a rig whose contacts last too long to be corrected: then from the rig as it was stated.
     let stated = || from(&answer.least.problem.base);
@@ -43,11 +43,11 @@ pub fn corrected(answer: &Settled<'_>, stiffness: f64) -> Result<Corrected> {
     }
 }
 
-fn corrected_from(answer: &Settled<'_>, from: &Setting, stiffness: f64) -> Result<Corrected> {
+fn corrected_from(answer: &Converged<'_>, from: &Setting, stiffness: f64) -> Result<Corrected> {
     let problem = &answer.least.problem;
     let mut now = without(problem, problem.data, from, stiffness)?;
     for _ in 0..ROUNDS {
-        let setting = problem.with(&now.data).settle(&now.u)?.setting();
+        let setting = problem.with(&now.data).converge(&now.u)?.setting();
         let before = now.data;
         now = without(problem, &before, &setting, stiffness)?;
         if change(&before, &now.data) <= STILL {

@@ -1,9 +1,9 @@
 //! No more model than the points ask for: models of rising order, each judged by points that it was not fitted to.
 
 use super::super::prediction::Kind;
+use super::converge::{Converged, assigned};
 use super::data::Data;
 use super::problem::Problem;
-use super::settle::{Settled, assigned};
 use super::unknown::Setting;
 use crate::campaign::Parameter;
 use crate::measure::residuals::aicc;
@@ -60,7 +60,7 @@ pub struct Rung {
 /// fitted, and what was held out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). Which motion such a
 /// step shows, the simulated sweep of the model's own rig decides. The simplest model within one standard error of the best is chosen
 /// (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
-pub fn rungs(rigid: &Settled<'_>, soft: Option<&Settled<'_>>, responses: &[Response]) -> Vec<Rung> {
+pub fn rungs(rigid: &Converged<'_>, soft: Option<&Converged<'_>>, responses: &[Response]) -> Vec<Rung> {
     let full = &rigid.least.problem;
     let mut linear = full.clone();
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {

@@ -1,6 +1,6 @@
 use super::super::prediction::Kind;
+use super::converge::assigned;
 use super::data::{Reading, Step};
-use super::settle::assigned;
 use super::uncertainty::NORMAL;
 use super::*;
 use crate::campaign::Parameter;
@@ -77,7 +77,7 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
         data.sequences.push((from..data.steps.len()).collect());
     }
     let kinds = assigned(&data, setting, pace).unwrap().kinds;
-    let kinds = settle::without_outliers(&data, setting, kinds);
+    let kinds = converge::without_outliers(&data, setting, kinds);
     (data, kinds)
 }
 
@@ -281,21 +281,21 @@ fn wrong_starts_come_back() {
     }
 }
 
-/// The least sum of squares from `setting` on with these motions, settled as it stands.
+/// The least sum of squares from `setting` on with these motions, as it stands.
 fn least_from<'a>(
     data: &'a Data,
     setting: &Setting,
     unknowns: Vec<Unknown>,
     kinds: &[Option<Kind>],
-) -> Settled<'a> {
+) -> Converged<'a> {
     let problem = Problem::new(data, setting, unknowns).of(kinds.to_vec());
     let u = problem.coordinates(setting);
     let least = problem.least(&u).unwrap();
-    Settled { least, wavering: 0, far: 0, agreed: true, unexplained: 0.0 }
+    Converged { least, wavering: 0, far: 0, agreed: true, unexplained: 0.0 }
 }
 
 /// How many of its standard deviations each parameter lies off `truth`.
-fn away(settled: &Settled<'_>, truth: &Setting) -> Vec<f64> {
+fn away(settled: &Converged<'_>, truth: &Setting) -> Vec<f64> {
     let found = Uncertainty::new(&settled.least).unwrap();
     let off = |(i, unknown): (usize, &Unknown)| {
         let expected = unknown.coordinate.of(truth.get(unknown.parameter));
@@ -398,7 +398,7 @@ fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
     // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
     assert!(c1.rests_on_prior && (c1.estimate.std.unwrap() / 1e-7 - 1.0).abs() < 1e-3, "{c1:?}");
     // The profile of one parameter of a straight problem is a parabola: its interval is ±1.96 standard deviations.
-    let profile = uncertainty::profile(&answer.settled.least, &answer.uncertainty, 0).unwrap();
+    let profile = uncertainty::profile(&answer.found.least, &answer.uncertainty, 0).unwrap();
     let [low, high] = profile.interval.map(Option::unwrap);
     let width = 2.0 * NORMAL * gap.estimate.std.unwrap();
     assert!(((high - low) / width - 1.0).abs() < 0.02, "{profile:?} {gap:?}");

@@ -1,8 +1,8 @@
 //! How well the points determine each parameter: by the slopes at the least sum of squares, and by its profile.
 
 use super::super::prediction::Kind;
+use super::converge::Least;
 use super::problem::Problem;
-use super::settle::Least;
 use crate::campaign::Parameter;
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector, SVD};

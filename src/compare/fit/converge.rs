@@ -36,7 +36,7 @@ pub struct Least<'a> {
 
 /// Parameters at the least sum of squares, with the motions that belong to them.
 #[derive(Debug, Clone)]
-pub struct Settled<'a> {
+pub struct Converged<'a> {
     pub least: Least<'a>,
     /// Amplitudes left out because their motion changed from round to round.
     pub wavering: usize,
@@ -49,7 +49,7 @@ pub struct Settled<'a> {
     pub unexplained: f64,
 }
 
-impl Settled<'_> {
+impl Converged<'_> {
     pub fn setting(&self) -> Setting {
         self.least.problem.setting(&self.least.minimum.parameters)
     }
@@ -62,7 +62,7 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// If a round leaves fewer points than parameters.
-    pub fn settle(&self, start: &[f64]) -> Result<Settled<'a>> {
+    pub fn converge(&self, start: &[f64]) -> Result<Converged<'a>> {
         let (data, pace) = (self.data, self.data.pace);
         let motions = |u: &[f64], pace: Pace| assigned(data, &self.setting(u), pace);
         let brief = Pace { settle: pace.settle.min(BRIEF.settle), measure: pace.measure.min(BRIEF.measure) };
@@ -86,7 +86,7 @@ impl<'a> Problem<'a> {
             let agreed = next == kinds;
             if agreed || round == MOST {
                 let outlier = |i: &usize| kinds[*i].is_none() && !wavering.contains(i);
-                return Ok(Settled {
+                return Ok(Converged {
                     wavering: wavering.iter().map(|i| data.steps[*i].clear().count()).sum(),
                     far: (0..n).filter(outlier).map(|i| shown(&data.steps[i], now.kinds[i]).count()).sum(),
                     agreed,
