@@ -77,3 +77,11 @@ fn a_missing_recording_is_made_by_the_command_that_is_named() {
     let error = run(&campaign, JobOptions::default(), &mut output, &()).unwrap_err().to_string();
     assert!(error.contains("line 3") && error.contains("try: `make it` makes it"), "{error}");
 }
+
+#[test]
+fn a_fit_without_a_rig_is_not_passed_over_in_silence() {
+    let campaign = of("[fit]\nparameters = [\"gap\"]\n").unwrap();
+    let mut output = crate::report::Output::new(tempfile::tempdir().unwrap().path()).unwrap();
+    let (answer, _) = run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
+    assert!(answer.findings.iter().any(|(_, f)| f.code == "fit-without-rig"), "{:?}", answer.findings);
+}

@@ -19,6 +19,7 @@ use contact::HuntCrossley;
 use fit::Fitted;
 use normalised::{Normalised, locate};
 use result::contact_estimates;
+use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};
 
@@ -94,6 +95,12 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
             .hint("state the sampling rate in Hz")
             .setting("rate"));
     };
+    let quantity = trace.meta.quantity;
+    if matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
+        return Err(Error::refused(format!("the record is one of {quantity}")).hint(
+            "choose a record of acceleration or force; differentiate a velocity once, a displacement twice",
+        ));
+    }
     if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
         return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
     }

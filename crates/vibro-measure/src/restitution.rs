@@ -111,28 +111,33 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
 }
 
+/// Answers that differ by more than this part disagree, however uncertain: a height would be wrong by twice as much. A missed flight and a
+/// height in mm are so.
+const GROSS: f64 = 0.2;
+
 /// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree. Methods may share numbers, as a drop
 /// and its train do: the largest possible correlation is assumed.
 fn agreement(by: &[Way], findings: &mut Vec<Finding>) -> Option<bool> {
     let mut agree = Some(true);
     for (i, a) in by.iter().enumerate() {
         for b in &by[i + 1..] {
-            let (Some(u), Some(v)) = (a.restitution.std, b.restitution.std) else {
-                agree = agree.filter(|agree| !agree);
-                continue;
+            let (first, second) = (a.restitution.value, b.restitution.value);
+            let apart = (first - second).abs();
+            let std = a.restitution.std.zip(b.restitution.std).map(|(u, v)| u + v);
+            let found = match std {
+                Some(std) if apart > 1.96 * std => {
+                    Finding::doubt("methods-disagree").number("ratio", apart / std)
+                }
+                None if apart > GROSS * first.max(second) => Finding::doubt("methods-far-apart"),
+                Some(_) => continue,
+                None => {
+                    agree = agree.filter(|agree| !agree);
+                    continue;
+                }
             };
-            let ratio = (a.restitution.value - b.restitution.value).abs() / (u + v);
-            if ratio > 1.96 {
-                agree = Some(false);
-                findings.push(
-                    Finding::doubt("methods-disagree")
-                        .name("first", a.method)
-                        .number("first_value", a.restitution.value)
-                        .name("second", b.method)
-                        .number("second_value", b.restitution.value)
-                        .number("ratio", ratio),
-                );
-            }
+            agree = Some(false);
+            let found = found.name("first", a.method).number("first_value", first);
+            findings.push(found.name("second", b.method).number("second_value", second));
         }
     }
     agree

@@ -85,6 +85,9 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
         job.all.add("", [Finding::caution("no-mass-named")]);
         rig = None;
     }
+    if rig.is_none() && !campaign.fit.parameters.is_empty() {
+        job.all.add("", [Finding::caution("fit-without-rig")]);
+    }
     let (mut laid, mut found) = (None, None);
     if let Some(rig) = &rig {
         let overlay = overlaid(campaign, rig, responses)?;

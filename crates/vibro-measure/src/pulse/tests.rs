@@ -52,6 +52,14 @@ fn all_that_follows_from_a_pulse() {
 }
 
 #[test]
+fn a_pulse_of_displacement_or_velocity_is_refused() {
+    for unit in ["mm", "m/s"] {
+        let error = pulse(&trace(record(), unit), &PulseOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("differentiate"), "{unit}: {error}");
+    }
+}
+
+#[test]
 fn an_unknown_instrument_leaves_no_uncertainty() {
     let result =
         pulse(&trace(record(), "m/s²"), &PulseOptions { mass: Some(0.4), ..PulseOptions::default() });

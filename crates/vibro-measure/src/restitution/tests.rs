@@ -178,6 +178,18 @@ fn methods_that_disagree_are_not_averaged() {
     assert!(finding(&found, "methods-disagree").is_some(), "{:?}", found.findings);
 }
 
+/// A height in mm, and a second impact that was not seen: answers far apart disagree whatever their uncertainty.
+#[test]
+fn answers_far_apart_disagree_without_uncertainties() {
+    for (height, intervals) in [(570.0, vec![0.144, 0.03]), (0.57, vec![0.144, 0.015])] {
+        let train = Train { intervals, ..Train::default() };
+        let found =
+            of(&Measured { drop: Some(drop(height, 0.144)), trains: vec![train], ..Measured::default() });
+        assert!(found.agree == Some(false) && found.restitution.value.is_nan(), "{found:?}");
+        assert!(finding(&found, "methods-far-apart").is_some(), "{:?}", found.findings);
+    }
+}
+
 #[test]
 fn what_cannot_be_compared_is_left_open() {
     let train = Train { intervals: vec![0.144, 0.03], ..Train::default() };
