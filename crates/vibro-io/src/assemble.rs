@@ -3,8 +3,8 @@
 use crate::Options;
 use vibro_record::units::{self, Unit};
 use vibro_record::{
-    Axis, AxisKind, Finding, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace, Values,
-    Window,
+    Axis, AxisKind, Error, Finding, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace,
+    Values, Window,
 };
 
 /// What a file states of a spectrum.
@@ -22,16 +22,20 @@ pub struct Spectral {
 
 /// The record of values in SI units: a trace unless they stand over frequency, and a frequency response function where they
 /// are complex and their unit is a ratio of response to force.
-pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Record {
+///
+/// # Errors
+/// If complex values stand over time.
+pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Result<Record> {
     let values = match values {
+        Values::Complex(_) if axis.kind == AxisKind::Time => return Err(complex_over_time()),
         Values::Real(values) if axis.kind != AxisKind::Frequency => {
-            return Record::Trace(Trace { meta, axis, values });
+            return Ok(Record::Trace(Trace { meta, axis, values }));
         }
         Values::Complex(values)
             if said.frf || (said.scaling.is_none() && FrfKind::of(meta.quantity) != FrfKind::Other) =>
         {
             let kind = FrfKind::of(meta.quantity);
-            return Record::Frf(Frf { meta, axis, values, kind });
+            return Ok(Record::Frf(Frf { meta, axis, values, kind }));
         }
         values => values,
     };
@@ -39,7 +43,14 @@ pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Rec
     if scaling == Scaling::Unknown {
         meta.found(said.doubt.unwrap_or_else(|| Finding::caution("scaling-unsaid")));
     }
-    Record::Spectrum(Spectrum { meta, axis, values, scaling, window: said.window, enbw: said.enbw })
+    Ok(Record::Spectrum(Spectrum { meta, axis, values, scaling, window: said.window, enbw: said.enbw }))
+}
+
+/// Refuses complex values over time.
+pub fn complex_over_time() -> Error {
+    Error::usage("complex values over time", "complex values over frequency, or real values over time")
+        .hint("state the base band, and no sampling rate; or export real and imaginary part as two channels")
+        .setting("base_band")
 }
 
 /// A scaling by its name.

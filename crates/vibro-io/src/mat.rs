@@ -116,7 +116,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         if axis.kind == AxisKind::Index {
             meta.found(Finding::caution("abscissa-unsaid"));
         }
-        Ok(assemble::record(meta, axis, values, Spectral::default()))
+        assemble::record(meta, axis, values, Spectral::default())
     };
     let records = records.into_iter().map(record).collect::<Result<Vec<Record>>>()?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, findings })

@@ -4,7 +4,7 @@ use super::dialect::Separator;
 use super::header;
 use crate::assemble::domain;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{AxisKind, Finding};
+use vibro_record::{AxisKind, Error, Finding, Result};
 
 /// Name and unit of a column.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -60,8 +60,8 @@ impl Name {
     /// Factor that takes this column as an abscissa to s or Hz, and a finding where something is assumed.
     ///
     /// # Errors
-    /// What was found, where the unit is not understood.
-    pub(crate) fn to_axis(&self, kind: &AxisKind) -> Result<(f64, Option<Finding>), String> {
+    /// If the unit is not understood.
+    pub(crate) fn to_axis(&self, kind: &AxisKind) -> Result<(f64, Option<Finding>)> {
         let Some(text) = &self.unit else {
             let assumed = match bracketed(&self.name, '(', ')') {
                 Some((_, unit)) => Finding::caution("axis-unit-unknown").name("said", unit),
@@ -72,11 +72,12 @@ impl Name {
         if text == HOUR {
             return Ok((3600.0, None));
         }
-        let unit = Unit::parse(text).ok_or_else(|| format!("the unit {text:?} of the abscissa"))?;
-        if *kind == AxisKind::Frequency && is_angular(text) {
-            return Ok((unit.factor() / std::f64::consts::TAU, Some(Finding::note("axis-angular"))));
-        }
-        Ok((unit.factor(), None))
+        let unit = Unit::parse(text).ok_or_else(|| {
+            let found = format!("the unit {text:?} of the abscissa {:?}", self.name);
+            Error::usage(found, "s, ms, Hz, kHz, …").hint("name another unit in its header, e.g. time [s]")
+        })?;
+        let angular = is_angular(text).then(|| Finding::note("axis-angular"));
+        Ok((unit.hertz().unwrap_or(unit.factor()), angular))
     }
 
     /// Whether the values are an abscissa: by name, or (only asked of a first column) by unit alone.

@@ -132,35 +132,31 @@ impl Made<'_> {
 
     /// Axis from its column, and what is to be said of it.
     fn printed(&self, column: &Column, others: &[Column]) -> Result<Printed> {
-        let label = match column.name.name.as_str() {
-            "" => "first column".to_owned(),
-            name => format!("column {name:?}"),
+        let (name, label) = match column.name.name.as_str() {
+            "" => ("first column", "first column".to_owned()),
+            name => (name, format!("column {name:?}")),
         };
-        let mut findings = Vec::new();
-        let values = column.reals();
-        let n = values.len();
         let by_name = column.name.axis(column.at == 1);
-        let (kind, factor) = if let Some(kind) = by_name.clone() {
-            let (factor, assumed) = column.name.to_axis(&kind).map_err(|found| {
-                let found = format!("{found} {:?}", column.label());
-                Error::usage(found, "s, ms, Hz, kHz, …")
-                    .hint("name another unit in its header, e.g. time [s]")
-            })?;
-            findings.extend(assumed);
-            (kind, factor)
-        } else if let Some(kind) = self.domain(n) {
-            findings.push(Finding::caution("axis-unit-assumed").name("unit", domain(&kind).1));
-            (kind, 1.0)
-        } else {
-            findings.push(Finding::caution("axis-kind-unsaid"));
-            (AxisKind::Other(label.trim_start_matches("column ").trim_matches('"').to_owned()), 1.0)
+        let values = column.reals();
+        let (kind, factor, assumed) = match (&by_name, self.domain(values.len())) {
+            (Some(kind), _) => {
+                let (factor, assumed) = column.name.to_axis(kind)?;
+                (kind.clone(), factor, assumed)
+            }
+            (None, Some(kind)) => {
+                let unit = domain(&kind).1;
+                (kind, 1.0, Some(Finding::caution("axis-unit-assumed").name("unit", unit)))
+            }
+            (None, None) => {
+                (AxisKind::Other(name.to_owned()), 1.0, Some(Finding::caution("axis-kind-unsaid")))
+            }
         };
         let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
         one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| v * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
-        let findings =
-            findings.into_iter().map(|f| f.name("column", label.as_str())).chain(finding).collect();
+        let assumed = assumed.map(|found| found.name("column", label.as_str()));
+        let findings = assumed.into_iter().chain(finding).collect();
         Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), findings })
     }
 
@@ -198,12 +194,8 @@ impl Made<'_> {
                 let found = format!("{:?} and {:?} have different units", real.label(), column.label());
                 return Err(Error::usage(found, "one unit for real and imaginary part"));
             }
-            let both = real
-                .reals()
-                .iter()
-                .zip(column.reals().iter())
-                .map(|(re, im)| Complex64::new(*re, *im))
-                .collect();
+            let (re, im) = (real.reals(), column.reals());
+            let both = re.iter().zip(im.iter()).map(|(re, im)| Complex64::new(*re, *im)).collect();
             real.values = Values::Complex(both);
             real.name.unit = real.name.unit.take().or(column.name.unit);
             if let Some((_, whole)) = real.name.part() {
@@ -250,16 +242,8 @@ impl Made<'_> {
         meta.step("read", &how);
         let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
         to_si(&mut values, factor)?;
-        if axis.kind == AxisKind::Time && matches!(values, Values::Complex(_)) {
-            return Err(Error::usage(
-                "complex values over time",
-                "complex values over frequency, or real values over time",
-            )
-            .hint("state the base band, and no sampling rate")
-            .setting("base_band"));
-        }
         let spectral = self.spectral(&meta.name, unit.as_deref());
-        Ok(assemble::record(meta, axis.clone(), values, spectral))
+        assemble::record(meta, axis.clone(), values, spectral)
     }
 
     /// What remarks and the unit of a column say of its spectrum.

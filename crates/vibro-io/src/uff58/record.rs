@@ -8,7 +8,7 @@ use crate::assemble::{self, Spectral, domain, from_values, to_si};
 use crate::{Options, missing};
 use num_complex::Complex64;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
+use vibro_record::{Axis, AxisKind, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
 /// The record of the `numbers` that stand behind a heading; `more` findings are about how they stand there.
 ///
@@ -36,9 +36,7 @@ pub fn build(
     let factor = unit(heading, system, options, coherence, &mut meta);
     let (kind, abscissa_factor) = abscissa(heading, options, &mut meta);
     if heading.layout.complex && kind == AxisKind::Time {
-        let expected = "complex values over frequency, or real values over time";
-        return Err(Error::input(heading.place.clone(), "complex values over time", expected)
-            .hint("export real and imaginary part as two real data sets"));
+        return Err(assemble::complex_over_time().at(&heading.place));
     }
     function(heading, &kind, &mut said, &mut meta);
     let missing = numbers.iter().filter(|v| v.is_nan()).count();
@@ -57,7 +55,7 @@ pub fn build(
         heading.layout.even.then_some((heading.start * abscissa_factor, heading.step * abscissa_factor));
     let axis = axis(kind, even, stored, n, options, &mut meta);
     to_si(&mut values, factor)?;
-    Ok(assemble::record(meta, axis, values, said))
+    assemble::record(meta, axis, values, said)
 }
 
 /// Abscissa values, where they are stored, and the values of whole points.
