@@ -86,16 +86,15 @@ impl Reading {
     pub fn reader(&self) -> Result<Reader> {
         above_zero("rate", self.rate)?;
         above_zero("base_band", self.base_band)?;
-        let unknown = |what: &str, name: &str, expected: &str, key| {
-            Error::usage(format!("{what} {name:?} is not known"), expected).setting(key)
+        let unknown = |key: &'static str, name: &str, expected: &str| {
+            Error::usage(format!("the {key} {name:?} is not known"), expected).setting(key)
         };
         let format = |name: &String| {
-            Format::from_name(name)
-                .ok_or_else(|| unknown("the format", name, &Format::names().join(", "), "format"))
+            Format::from_name(name).ok_or_else(|| unknown("format", name, &Format::names().join(", ")))
         };
         let unit = |text: &String| {
             let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N";
-            Unit::parse(text).ok_or_else(|| unknown("the unit", text, expected, "unit"))
+            Unit::parse(text).ok_or_else(|| unknown("unit", text, expected))
         };
         Ok(Reader::new()
             .format(self.format.as_ref().map(format).transpose()?)

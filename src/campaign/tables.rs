@@ -9,6 +9,12 @@ use std::collections::BTreeMap;
 /// A key with an impossible value, and why it is.
 type Fault = (&'static str, String);
 
+/// The first of these keys whose value is not usable.
+fn first_fault(checks: impl IntoIterator<Item = (&'static str, bool, String)>) -> Result<(), Fault> {
+    let fault = checks.into_iter().find(|(_, usable, _)| !usable);
+    fault.map_or(Ok(()), |(key, _, why)| Err((key, why)))
+}
+
 /// What drives mass 1 in all sweeps.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -48,15 +54,12 @@ pub struct Compute {
 impl Compute {
     /// What cannot be: key and sentence.
     pub(super) fn check(&self) -> Result<(), Fault> {
-        for (key, value) in [("fmin", self.fmin), ("fmax", self.fmax)] {
-            if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-                return Err((key, format!("{key} = {v} is not a finite number above 0")));
-            }
-        }
-        if !(1..=1000).contains(&self.band) {
-            return Err(("band", format!("band = {} is not between 1 and 1000 lines", self.band)));
-        }
-        Ok(())
+        let above_zero = [("fmin", self.fmin), ("fmax", self.fmax)].map(|(key, value)| {
+            let v = value.unwrap_or(1.0);
+            (key, v.is_finite() && v > 0.0, format!("{key} = {v} is not a finite number above 0"))
+        });
+        let band = format!("band = {} is not between 1 and 1000 lines", self.band);
+        first_fault(above_zero.into_iter().chain([("band", (1..=1000).contains(&self.band), band)]))
     }
 }
 
@@ -117,18 +120,14 @@ impl ModelEntry {
     /// What cannot be.
     pub(super) fn check(&self) -> Result<(), Fault> {
         let tolerance = self.tolerance;
-        if !(1e-4..=1.0).contains(&tolerance) {
-            return Err(("tolerance", format!("tolerance = {tolerance}: expected a part from 0.0001 to 1")));
-        }
-        if self.measure == 0 {
-            return Err(("measure", "measure = 0 cycles: nothing would be read".to_owned()));
-        }
-        for (key, cycles) in [("settle", self.settle), ("measure", self.measure)] {
-            if cycles > MOST {
-                return Err((key, format!("{key} = {cycles} cycles at each point, more than {MOST}")));
-            }
-        }
-        Ok(())
+        let expected = format!("tolerance = {tolerance}: expected a part from 0.0001 to 1");
+        let few = |key, n| (key, n <= MOST, format!("{key} = {n} cycles at each point, more than {MOST}"));
+        first_fault([
+            ("tolerance", (1e-4..=1.0).contains(&tolerance), expected),
+            ("measure", self.measure > 0, "measure = 0 cycles: nothing would be read".to_owned()),
+            few("settle", self.settle),
+            few("measure", self.measure),
+        ])
     }
 }
 
@@ -167,52 +166,46 @@ impl FitEntry {
 
     /// The key that holds an impossible value, and why.
     pub(super) fn check(&self) -> Result<(), Fault> {
+        let mut checks = Vec::new();
         for (i, parameter) in self.parameters.iter().enumerate() {
             let name = parameter.name();
-            if self.parameters[..i].contains(parameter) {
-                return Err(("parameters", format!("{name} is named twice")));
-            }
-            if parameter.is_mass() && !self.prior.contains_key(parameter) {
-                let why = "while motion tells only the ratios of force, stiffness and damping to the masses: weigh it and give";
-                let why = format!(
-                    "{name} is fitted without a prior, {why} `prior.{name} = [kg, standard uncertainty]` in [fit]"
-                );
-                return Err(("parameters", why));
-            }
+            let once = !self.parameters[..i].contains(parameter);
+            checks.push(("parameters", once, format!("{name} is named twice")));
+            let weighed = !parameter.is_mass() || self.prior.contains_key(parameter);
+            let why = "while motion tells only the ratios of force, stiffness and damping to the masses: weigh it and give";
+            let why = format!(
+                "{name} is fitted without a prior, {why} `prior.{name} = [kg, standard uncertainty]` in [fit]"
+            );
+            checks.push(("parameters", weighed, why));
         }
-        if self.starts.is_some_and(|n| n == 0 || n > MOST_STARTS) {
-            return Err(("starts", format!("starts is not from 1 to {MOST_STARTS}")));
-        }
+        let some = self.starts.is_none_or(|n| (1..=MOST_STARTS).contains(&n));
+        checks.push(("starts", some, format!("starts is not from 1 to {MOST_STARTS}")));
         for (key, value) in [("calibration", self.calibration), ("scatter", self.scatter)] {
-            if value.is_some_and(|v| !(0.0..0.5).contains(&v)) {
-                return Err((key, format!("{key} is not from 0 to 0.5: it is relative, 0.01 for 1 %")));
-            }
+            let relative = value.is_none_or(|v| (0.0..0.5).contains(&v));
+            checks.push((key, relative, format!("{key} is not from 0 to 0.5: it is relative, 0.01 for 1 %")));
         }
         for (parameter, [value, std]) in &self.prior {
             let (name, (low, high)) = (parameter.name(), self.range(*parameter));
             let prior = format!("the prior of {name} is {value}");
-            if !(value.is_finite() && std.is_finite() && *std > 0.0) {
-                let why = "which is not above 0: leave it out of the fit to keep it fixed";
-                return Err((name, format!("{prior} with a standard uncertainty of {std}, {why}")));
-            }
-            if !(*value > low && *value < high) {
-                return Err((name, format!("{prior}, outside its bounds {low} to {high}")));
-            }
+            let why = "which is not above 0: leave it out of the fit to keep it fixed";
+            let why = format!("{prior} with a standard uncertainty of {std}, {why}");
+            checks.push((name, value.is_finite() && std.is_finite() && *std > 0.0, why));
+            let inside = *value > low && *value < high;
+            checks.push((name, inside, format!("{prior}, outside its bounds {low} to {high}")));
         }
         for (parameter, [low, high]) in &self.bounds {
             let (name, (least, most)) = (parameter.name(), parameter.range());
             // A gap may be negative: the masses are then pressed together.
             let least = if *parameter == Parameter::Gap { f64::NEG_INFINITY } else { least };
-            if !(low < high && *low >= least && *high <= most) {
-                let why = match parameter {
-                    Parameter::Restitution if low < high => "it is from 0 to 1",
-                    _ if low < high => "it is not below 0",
-                    _ => "no value lies between",
-                };
-                return Err((name, format!("the bounds of {name} are {low} to {high}: {why}")));
-            }
+            let why = match parameter {
+                Parameter::Restitution if low < high => "it is from 0 to 1",
+                _ if low < high => "it is not below 0",
+                _ => "no value lies between",
+            };
+            let possible = low < high && *low >= least && *high <= most;
+            checks.push((name, possible, format!("the bounds of {name} are {low} to {high}: {why}")));
         }
-        Ok(())
+        first_fault(checks)
     }
 
     /// Where a parameter may lie.

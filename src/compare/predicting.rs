@@ -170,11 +170,11 @@ impl Predicting {
             return named.model();
         }
         let highest = choices.iter().flat_map(|r| &r.stretches).filter_map(|s| s.chosen).max();
-        let known = |of: fn(&ContactKeys) -> Option<f64>| self.contact.as_ref().and_then(of);
-        let curved = known(|c| c.exponent).is_some_and(|n| n != 1.0);
+        let contact = self.contact.unwrap_or_default();
+        let curved = contact.exponent.is_some_and(|n| n != 1.0);
         match highest {
             // Without a stated damping a curved contact has no restitution that holds for all speeds.
-            Some(Model::HuntCrossley) if curved && known(|c| c.damping).is_some() => Model::HuntCrossley,
+            Some(Model::HuntCrossley) if curved && contact.damping.is_some() => Model::HuntCrossley,
             // The contact of spring and damper has in full what the correction has to first order.
             Some(Model::SoftCorrected | Model::KelvinVoigt | Model::HuntCrossley) if !curved => {
                 Model::KelvinVoigt

@@ -31,20 +31,21 @@ impl Unknown {
         let one = |parameter: &Parameter| {
             let (low, high) = entry.range(*parameter);
             let (value, name) = (from.get(*parameter), parameter.name());
+            let starts = |found: &str, expected: &str| {
+                Error::usage(format!("{name} starts at {value}, {found}"), expected)
+            };
             if !(value >= low && value <= high) {
-                let pressed =
-                    if *parameter == Parameter::Gap { ", below 0 for masses pressed together" } else { "" };
-                return Err(Error::usage(
-                    format!("{name} starts at {value}, outside its bounds {low} to {high}"),
-                    "bounds around the rig's own value, from which the fit starts",
-                )
-                .hint(format!("state `bounds.{name} = [lowest, highest]` of the fit{pressed}")));
+                let gap = *parameter == Parameter::Gap;
+                let pressed = if gap { ", below 0 for masses pressed together" } else { "" };
+                let expected = "bounds around the rig's own value, from which the fit starts";
+                let error = starts(&format!("outside its bounds {low} to {high}"), expected);
+                return Err(
+                    error.hint(format!("state `bounds.{name} = [lowest, highest]` of the fit{pressed}"))
+                );
             }
             if high.is_infinite() && value == low {
-                return Err(Error::usage(
-                    format!("{name} starts at {value}, which gives no scale for its changes"),
-                    format!("a value above {low} in the rig, roughly right"),
-                ));
+                let expected = format!("a value above {low} in the rig, roughly right");
+                return Err(starts("which gives no scale for its changes", &expected));
             }
             let prior = entry.prior.get(parameter).copied();
             Ok(Unknown { parameter: *parameter, coordinate: Coordinate { low, high }, prior })
