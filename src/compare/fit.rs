@@ -91,6 +91,7 @@ fn found(
 
 /// The best answer of several starts, and where each start ended.
 fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Settled<'a>, Vec<End>)> {
+    problem.enough(problem.data.clear())?;
     // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start reached.
     let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
     let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();

@@ -79,13 +79,13 @@ impl Problem<'_> {
         minimum
     }
 
-    /// Whether the amplitudes that take part and the priors can determine the unknowns.
+    /// Whether `n` amplitudes and the priors can determine the unknowns.
     ///
     /// # Errors
     /// If not.
-    pub fn enough(&self) -> Result<()> {
-        let ((n, priors), all) = (self.rows(), self.unknowns.len());
-        if n + priors >= all && n > 0 {
+    pub fn enough(&self, n: usize) -> Result<()> {
+        let all = self.unknowns.len();
+        if n + self.rows().1 >= all && n > 0 {
             return Ok(());
         }
         let why = format!("{n} amplitudes with one impact a cycle or none do not determine {all} parameters");
@@ -183,7 +183,9 @@ impl Problem<'_> {
             let shows = shows(step, kind);
             [0, 1].map(|mass: usize| step.readings[mass].as_ref().map_or(0.0, |r| r.amplitude) - shows[mass])
         });
-        all.iter_mut().for_each(|r| *r /= widened);
+        for r in &mut all {
+            *r /= widened;
+        }
         self.calibrations.whiten(&mut all, widened);
         all
     }
