@@ -132,7 +132,9 @@ pub fn levels(forces: &[Option<f64>]) -> Vec<Vec<usize>> {
     known.sort_by(|a, b| a.0.total_cmp(&b.0));
     let split = known.chunk_by(|a, b| b.0 <= LEVEL * a.0);
     let mut levels: Vec<Vec<usize>> = split.map(|level| level.iter().map(|(_, i)| *i).collect()).collect();
-    levels.iter_mut().for_each(|level| level.sort_unstable());
+    for level in &mut levels {
+        level.sort_unstable();
+    }
     levels.sort_unstable();
     if levels.is_empty() && !forces.is_empty() {
         levels.push(Vec::new());

@@ -244,15 +244,15 @@ impl Answer<'_> {
     pub fn doubts(&self) -> Vec<Finding> {
         let (least, found, problem) = (&self.found.least, &self.found, &self.found.least.problem);
         let (n, freedom, guessed) = (problem.rows().0, problem.freedom(), problem.data.guessed);
-        let many = |code, key, part: usize| {
+        let many = |doubt: Finding, key, part: usize| {
             let many = part as f64 > LOST * (n + part) as f64;
-            many.then(|| Finding::doubt(code).count(key, part).count("n", n + part))
+            many.then(|| doubt.count(key, part).count("n", n + part))
         };
         let poor = least.reduced > POOR && (least.beyond_chance() || least.whiteness.rejected());
         let scaled = guessed || least.reduced > 1.0;
         let of_all = [
-            many("contact-too-long", "lost", self.lost.unwrap_or(0)),
-            many("many-outliers", "outliers", found.far),
+            many(Finding::doubt("contact-too-long"), "lost", self.lost.unwrap_or(0)),
+            many(Finding::doubt("many-outliers"), "outliers", found.far),
             (!guessed && poor).then(|| Finding::doubt("lack-of-fit").number("ratio", least.reduced.sqrt())),
             (scaled && student(freedom).is_none())
                 .then(|| Finding::doubt("too-few-residuals").count("freedom", freedom)),
@@ -268,20 +268,20 @@ impl Answer<'_> {
         let mut found = Vec::new();
         for (i, unknown) in problem.unknowns.iter().enumerate() {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
-            let pulled = |code, deviations| Finding::doubt(code).about(name).number("deviations", deviations);
+            let pulled = |doubt: Finding, deviations| doubt.about(name).number("deviations", deviations);
             if let Some([known, std]) = unknown.prior {
                 // The answer lies (s² − p²)/s² of the way from the prior, of uncertainty s, to what the points alone say, p being its own:
                 // over √(s² − p²), that is the distance of both over their uncertainties.
                 let taken = (std * std - self.std(i).powi(2)).max(TAKEN * std * std).sqrt();
                 let deviations = (setting.get(unknown.parameter) - known).abs() / taken;
                 if deviations > APART {
-                    let prior = pulled("prior-contradicted", deviations).number("prior", known);
-                    found.push(prior.number("std", std).name("unit", unit));
+                    let prior = pulled(Finding::doubt("prior-contradicted"), deviations);
+                    found.push(prior.number("prior", known).number("std", std).name("unit", unit));
                 }
             }
             if let Some(limit) = self.uncertainty.limits[i].filter(|limit| limit.pull > PULLED) {
-                let bound = pulled("bound-contradicted", limit.pull).number("bound", limit.value);
-                found.push(bound.name("unit", unit));
+                let bound = pulled(Finding::doubt("bound-contradicted"), limit.pull);
+                found.push(bound.number("bound", limit.value).name("unit", unit));
             }
         }
         if let Some(profile) = self.profile.as_ref().filter(|p| p.fall() > FALL) {

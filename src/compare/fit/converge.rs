@@ -82,7 +82,7 @@ impl<'a> Problem<'a> {
             u.clone_from(&least.minimum.parameters);
             let now = motions(&u, pace)?;
             let mut next = without_outliers(data, &self.setting(&u), now.kinds.clone());
-            wavering.iter().for_each(|i: &usize| next[*i] = None);
+            leave_out(&mut next, &wavering);
             let agreed = next == kinds;
             if agreed || round == MOST {
                 let outlier = |i: &usize| kinds[*i].is_none() && !wavering.contains(i);
@@ -96,7 +96,7 @@ impl<'a> Problem<'a> {
             }
             if round >= ROUNDS {
                 wavering.extend((0..n).filter(|i| kinds[*i] != next[*i]));
-                wavering.iter().for_each(|i| next[*i] = None);
+                leave_out(&mut next, &wavering);
             }
             kinds = next;
         }
@@ -149,6 +149,12 @@ impl<'a> Problem<'a> {
         let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
         let freedom = if self.freedom() == 0 { f64::NAN } else { self.freedom() as f64 };
         ((self.scale * sum(data) + sum(priors)) / freedom, Whiteness::of(&rows))
+    }
+}
+
+fn leave_out(kinds: &mut [Option<Kind>], steps: &BTreeSet<usize>) {
+    for i in steps {
+        kinds[*i] = None;
     }
 }
 

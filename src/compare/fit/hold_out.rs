@@ -110,7 +110,9 @@ fn rung(
     let (_, whiteness) = own.goodness(&own.at(&u));
     let judged = |held: &HeldOut| {
         let mut rest = problem.clone();
-        held.steps.iter().for_each(|i| rest.kinds[*i] = None);
+        for i in &held.steps {
+            rest.kinds[*i] = None;
+        }
         let (rest, u) = fitted(rest, from)?;
         let error = error(problem.data, &rest.setting(&u), impacts, &held.steps)?;
         Some(Block { feature: held.feature.clone(), frequency: held.frequency, error })

@@ -183,7 +183,9 @@ impl Problem<'_> {
             let shows = shows(step, kind);
             [0, 1].map(|mass: usize| step.readings[mass].as_ref().map_or(0.0, |r| r.amplitude) - shows[mass])
         });
-        all.iter_mut().for_each(|r| *r /= widened);
+        for r in &mut all {
+            *r /= widened;
+        }
         self.calibrations.whiten(&mut all, widened);
         all
     }

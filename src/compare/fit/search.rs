@@ -62,7 +62,7 @@ impl Problem<'_> {
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_PLACE * a.abs().max(b.abs());
             match ends.last_mut() {
                 Some((least, end)) if cost - *least <= SAME_COST && end.u.iter().zip(&u).all(near) => {
-                    end.starts += 1
+                    end.starts += 1;
                 }
                 _ => ends.push((cost, End { u, starts: 1 })),
             }
