@@ -62,6 +62,15 @@ pub(crate) trait Analysis: DeserializeOwned {
     fn run(entries: &[Entry<Self>], job: &mut Job<'_>) -> Result<()>;
 }
 
+/// Keys of a kind of record that lies alone in a file.
+pub(crate) trait OfFile {
+    /// Measures the record.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or its record allows no answer.
+    fn measure(&self, source: &Source<'_>) -> Result<Answer>;
+}
+
 /// A row of the table of kinds.
 #[derive(Clone, Copy)]
 pub(crate) struct Kind {
@@ -77,7 +86,7 @@ impl Kind {
 }
 
 /// All kinds of records, in the order in which they are measured and shown.
-pub(crate) const KINDS: [Kind; 7] = [
+pub(crate) const KINDS: &[Kind] = &[
     Kind::of::<sweep::Keys>(),
     Kind::of::<spectrum::Keys>(),
     Kind::of::<frf::Keys>(),
@@ -92,7 +101,7 @@ pub(crate) const KINDS: [Kind; 7] = [
 /// # Errors
 /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
 pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
-    let campaign = Campaign::from_path(path, &KINDS.map(|kind| kind.section))?;
+    let campaign = Campaign::from_path(path, &KINDS.iter().map(|kind| kind.section).collect::<Vec<_>>())?;
     KINDS.iter().try_for_each(|kind| (kind.check)(&campaign))?;
     Ok(campaign)
 }

@@ -10,76 +10,116 @@ mod print;
 mod record;
 mod sweep;
 
+use crate::analysis::{frf, spectrum};
 use crate::error::Result;
 use crate::report::words::Voice;
-use clap::{Arg, Command as Typed, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// Measure impacting machines: from analyser files to answers, each with its uncertainty.
-#[derive(Debug, Parser)]
-#[command(name = "vibro", version, max_term_width = 100)]
-struct Args {
-    /// Print one JSON object instead of a table
-    #[arg(long, global = true)]
-    json: bool,
-    #[command(subcommand)]
-    command: Command,
+/// All commands, in the order of the help. A new one is a row.
+const COMMANDS: &[Row] = &[
+    Row::of::<info::Info>("info", "List the records of a file: channels, units, sampling rate"),
+    Row::of::<convert::Convert>(
+        "convert",
+        "Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT",
+    ),
+    Row::of::<record::Measured<spectrum::Keys>>(
+        "spectrum",
+        "Spectrum of a channel, or frequency response function between two",
+    ),
+    Row::of::<sweep::Excitation>("excitation", "Excitation frequency of every point of a sweep"),
+    Row::of::<sweep::Waterfall>("waterfall", "Waterfall of all response spectra of a sweep"),
+    Row::of::<sweep::Taken>(
+        "response",
+        "Response of a sweep at the excitation frequency, with resonances and jumps",
+    ),
+    Row::of::<record::Drill>("drill", "Speed, impacts and average turn of a hammer drill"),
+    Row::of::<record::Impacts>(
+        "impacts",
+        "Impacts in a contact signal: interval, frequency, impacts per cycle",
+    ),
+    Row::of::<record::Restitution>(
+        "restitution",
+        "Coefficient of restitution from drops, bounces or velocities, every method side by side",
+    ),
+    Row::of::<record::Measured<frf::Keys>>(
+        "modal",
+        "Natural frequency, damping and modal constant of the modes of a frequency response function",
+    ),
+    Row::of::<record::Pulse>("pulse", "Damping ratio, frequency and restitution of a contact from its pulse"),
+    Row::of::<model::Model>(
+        "model",
+        "Model of a rig: periodic motions, simulation, sweep, map, choice of a model",
+    ),
+    Row::of::<campaign::Compare>(
+        "compare",
+        "Compare the measured responses of a campaign with the model; fit parameters of the rig",
+    ),
+    Row::of::<precision::Precision>(
+        "precision",
+        "Speed and accuracy of every method on scenes with a known truth",
+    ),
+    Row::of::<campaign::Run>("run", "Run a campaign: results, tables, figures, report"),
+];
+
+/// What is typed behind the name of a command, and what it does.
+trait Run: Args {
+    /// Who reads what is complained of: what a campaign says is corrected there.
+    const VOICE: Voice = Voice::Command;
+
+    /// Does it, and gives the exit code.
+    fn run(&self, json: bool) -> Result<u8>;
 }
 
-#[derive(Debug, Subcommand)]
-enum Command {
-    /// List the records of a file: channels, units, sampling rate
-    Info(info::Info),
-    /// Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT
-    Convert(convert::Convert),
-    /// Spectrum of a channel, or frequency response function between two
-    Spectrum(record::Spectrum),
-    /// Excitation frequency of every point of a sweep
-    Excitation(sweep::Excitation),
-    /// Waterfall of all response spectra of a sweep
-    Waterfall(sweep::Waterfall),
-    /// Response of a sweep at the excitation frequency, with resonances and jumps
-    Response(sweep::Taken),
-    /// Speed, impacts and average turn of a hammer drill
-    Drill(Box<record::Drill>),
-    /// Impacts in a contact signal: interval, frequency, impacts per cycle
-    Impacts(record::Impacts),
-    /// Coefficient of restitution from drops, bounces or velocities, every method side by side
-    Restitution(record::Restitution),
-    /// Natural frequency, damping and modal constant of the modes of a frequency response function
-    Modal(record::Modal),
-    /// Damping ratio, frequency and restitution of a contact from its pulse
-    Pulse(record::Pulse),
-    /// Model of a rig: periodic motions, simulation, sweep, map, choice of a model
-    #[command(subcommand)]
-    Model(Box<model::Model>),
-    /// Compare the measured responses of a campaign with the model; fit parameters of the rig
-    Compare(campaign::Compare),
-    /// Speed and accuracy of every method on scenes with a known truth
-    Precision(precision::Precision),
-    /// Run a campaign: results, tables, figures, report
-    Run(campaign::Run),
+/// A row of the table of commands.
+struct Row {
+    name: &'static str,
+    about: &'static str,
+    voice: Voice,
+    options: fn(Typed) -> Typed,
+    run: fn(&ArgMatches, bool) -> Result<u8>,
+}
+
+impl Row {
+    const fn of<T: Run>(name: &'static str, about: &'static str) -> Row {
+        let run = |typed: &ArgMatches, json| match T::from_arg_matches(typed) {
+            Ok(typed) => typed.run(json),
+            Err(error) => Ok(complain::usage(&error, json)),
+        };
+        Row { name, about, voice: T::VOICE, options: T::augment_args, run }
+    }
+}
+
+fn command() -> Typed {
+    let json = Arg::new("json").action(ArgAction::SetTrue).global(true);
+    let commands = COMMANDS.iter().map(|row| (row.options)(Typed::new(row.name)).about(row.about));
+    let all = Typed::new("vibro")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Measure impacting machines: from analyser files to answers, each with its uncertainty")
+        .max_term_width(100)
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .arg(json.help("Print one JSON object instead of a table"));
+    options(all.subcommands(commands))
 }
 
 /// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
 /// unreadable input.
 pub fn main() -> u8 {
-    let typed = options(Args::command()).try_get_matches().and_then(|m| Args::from_arg_matches(&m));
-    let args = match typed {
-        Ok(args) => args,
+    let typed = match command().try_get_matches() {
+        Ok(typed) => typed,
         // What could not be parsed may have asked for JSON all the same.
         Err(error) => {
             let json = std::env::args_os().take_while(|a| a != "--").any(|a| a == "--json");
             return complain::usage(&error, json);
         }
     };
-    // What a campaign says is corrected there.
-    let voice = match &args.command {
-        Command::Run(_) | Command::Compare(_) => Voice::Campaign,
-        _ => Voice::Command,
-    };
-    dispatch(&args).unwrap_or_else(|error| complain::error(&error, voice, args.json))
+    let json = typed.get_flag("json");
+    let row = |(name, typed)| Some((COMMANDS.iter().find(|row| row.name == name)?, typed));
+    typed.subcommand().and_then(row).map_or(2, |(row, typed)| {
+        (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
+    })
 }
 
 /// Makes options of the fields of all keys, in their order: each has the name of its field and, where it names no other, a value of the kind
@@ -116,26 +156,4 @@ fn kind(arg: &Arg) -> &'static str {
     ];
     let is = arg.get_value_parser().type_id();
     kinds.into_iter().find(|(id, _)| is == *id).map_or("NAME", |(_, name)| name)
-}
-
-fn dispatch(args: &Args) -> Result<u8> {
-    let json = args.json;
-    match &args.command {
-        Command::Info(typed) => return typed.run(json),
-        Command::Run(typed) => return typed.run(json),
-        Command::Convert(typed) => typed.run(json),
-        Command::Spectrum(typed) => typed.run(json),
-        Command::Excitation(typed) => typed.run(json),
-        Command::Waterfall(typed) => typed.run(json),
-        Command::Response(typed) => typed.run(json),
-        Command::Drill(typed) => typed.run(json),
-        Command::Impacts(typed) => typed.run(json),
-        Command::Restitution(typed) => typed.run(json),
-        Command::Compare(typed) => typed.run(json),
-        Command::Modal(typed) => typed.run(json),
-        Command::Pulse(typed) => typed.run(json),
-        Command::Model(typed) => typed.run(json),
-        Command::Precision(typed) => typed.run(json),
-    }?;
-    Ok(0)
 }

@@ -3,7 +3,7 @@
 pub mod figures;
 
 use super::job::Marks;
-use super::{Analysis, Answer, Job, Source, no_file};
+use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Method, SpectralOptions, SpectralResult, spectral};
@@ -119,12 +119,11 @@ impl Keys {
         source.contradicted(&found.findings)?;
         Ok(found)
     }
+}
 
+impl OfFile for Keys {
     /// The lines of a record, with their figure, tables and files.
-    ///
-    /// # Errors
-    /// As [`Keys::lines`].
-    pub fn measure(&self, source: &Source<'_>) -> Result<Answer> {
+    fn measure(&self, source: &Source<'_>) -> Result<Answer> {
         let found = self.lines(source)?;
         let mut answer = Answer::of(&found)?;
         answer.result.insert("channel".to_owned(), found.name.clone().into());

@@ -38,9 +38,11 @@ pub struct Compare {
     out: Option<PathBuf>,
 }
 
-impl Run {
+impl super::Run for Run {
+    const VOICE: Voice = Voice::Campaign;
+
     /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
-    pub fn run(&self, json: bool) -> Result<u8> {
+    fn run(&self, json: bool) -> Result<u8> {
         let campaign = analysis::open(&self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let options = JobOptions { allow_outside: self.allow_outside };
@@ -65,9 +67,11 @@ impl Run {
     }
 }
 
-impl Compare {
+impl super::Run for Compare {
+    const VOICE: Voice = Voice::Campaign;
+
     /// Prints measured responses over the model.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let mut campaign = analysis::open(&self.campaign)?;
         if !self.fit.is_empty() {
             let names = self.fit.iter().map(|name| Parameter::from_name(name.trim()));

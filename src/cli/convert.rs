@@ -2,6 +2,7 @@
 
 mod change;
 
+use super::Run;
 use super::print;
 use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading};
@@ -34,9 +35,9 @@ pub struct Convert {
     reading: Reading,
 }
 
-impl Convert {
+impl Run for Convert {
     /// Writes the file and prints what is in it.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let target = Target::of(&self.output)?;
         apart(&self.input, &self.output)?;
         let one = self.channel.channel.is_some() || self.channel.calibration.is_some();

@@ -1,5 +1,6 @@
 //! `vibro info`: what is in a file.
 
+use super::Run;
 use super::{complain, print};
 use crate::campaign::Reading;
 use crate::error::Result;
@@ -23,9 +24,9 @@ pub struct Info {
 const NOTES: usize = 8;
 const WIDE: usize = 90;
 
-impl Info {
+impl Run for Info {
     /// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
-    pub fn run(&self, json: bool) -> Result<u8> {
+    fn run(&self, json: bool) -> Result<u8> {
         let reader = self.reading.reader()?;
         let (mut files, mut errors, mut about) = (Vec::new(), Vec::new(), Vec::new());
         let (mut text, mut code) = (String::new(), 0);

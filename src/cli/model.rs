@@ -1,13 +1,20 @@
 //! `vibro model`: what the motion of a rig should be.
 
+use super::Run;
 use super::print;
 use crate::analysis::model::{choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
+#[derive(Debug, Args)]
+pub struct Model {
+    #[command(subcommand)]
+    question: Question,
+}
+
 #[derive(Debug, Subcommand)]
-pub enum Model {
+enum Question {
     /// All motions with one impact a period at one frequency, with existence and stability
     Orbit(Asked<orbit::Keys>),
     /// Simulated motion: regime, traces, phase plane, Poincaré section
@@ -32,17 +39,17 @@ pub struct Asked<K: Args> {
     out: Option<PathBuf>,
 }
 
-impl Model {
+impl Run for Model {
     /// Computes and prints the answer.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let (answer, out) = print::busy(json, "computing", |bar| {
-            Ok(match self {
-                Model::Orbit(typed) => (typed.keys.answer()?, &typed.out),
-                Model::Simulate(typed) => (typed.keys.answer()?, &typed.out),
-                Model::Response(typed) => (typed.keys.answer()?, &typed.out),
-                Model::Sweep(typed) => (typed.keys.answer()?, &typed.out),
-                Model::Choose(typed) => (typed.keys.answer()?, &typed.out),
-                Model::Map(typed) => (typed.keys.answer(bar)?, &typed.out),
+            Ok(match &self.question {
+                Question::Orbit(typed) => (typed.keys.answer()?, &typed.out),
+                Question::Simulate(typed) => (typed.keys.answer()?, &typed.out),
+                Question::Response(typed) => (typed.keys.answer()?, &typed.out),
+                Question::Sweep(typed) => (typed.keys.answer()?, &typed.out),
+                Question::Choose(typed) => (typed.keys.answer()?, &typed.out),
+                Question::Map(typed) => (typed.keys.answer(bar)?, &typed.out),
             })
         })?;
         print::answer(answer, out.as_deref(), json)

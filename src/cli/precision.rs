@@ -1,5 +1,6 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
+use super::Run;
 use super::print;
 use crate::analysis::Answer;
 use crate::analysis::precision as shown;
@@ -39,9 +40,9 @@ pub struct Precision {
 
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 
-impl Precision {
+impl Run for Precision {
     /// Measures, or takes up what was measured, and prints it.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let mut results = match &self.from {
             Some(path) => Results::from_path(path)?,
             None => self.measured(json)?,
@@ -91,7 +92,9 @@ impl Precision {
         }
         print::answer(answer, self.out.as_deref(), json)
     }
+}
 
+impl Precision {
     fn measured(&self, json: bool) -> Result<Results> {
         print::busy(json, "scenes", |bar| {
             let mut results = Results::default();

@@ -12,11 +12,11 @@ use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// Writes the figures and files of an answer where a folder is named, and prints it: as JSON, or its tables.
+/// Writes the figures and files of an answer where a folder is named, and prints it: as JSON, or its tables. Gives the exit code.
 ///
 /// # Errors
 /// If a file or standard output cannot be written.
-pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<()> {
+pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> {
     let mut written = Vec::new();
     if let Some(folder) = out {
         let mut output = Output::new(folder)?;
@@ -31,7 +31,8 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<()> 
     if json {
         answer.result.entry("files").or_insert_with(|| written.into());
         put(&mut answer.result, &answer.findings, Voice::Command);
-        return object(answer.result);
+        object(answer.result)?;
+        return Ok(0);
     }
     complain::warn(&sentences(&answer.findings, Voice::Command, true));
     let shown = answer.tables.iter().chain(&answer.details).filter(|t| !t.rows.is_empty());
@@ -39,7 +40,8 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<()> 
     for file in written {
         let _ = writeln!(all, "wrote {file}");
     }
-    text(&all)
+    text(&all)?;
+    Ok(0)
 }
 
 /// Prints one JSON object.

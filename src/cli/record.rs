@@ -1,10 +1,11 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
+use super::Run;
 use super::convert::write_beside;
 use super::sweep::of_script;
 use super::{complain, print};
 use crate::analysis::drill::cycles;
-use crate::analysis::{Answer, Source, drill, drop, frf, impacts, pulse, spectrum};
+use crate::analysis::{Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
@@ -38,9 +39,6 @@ pub struct Measured<K: Args> {
     #[command(flatten)]
     record: Record,
 }
-
-pub type Spectrum = Measured<spectrum::Keys>;
-pub type Modal = Measured<frf::Keys>;
 
 #[derive(Debug, Args)]
 pub struct Impacts {
@@ -101,7 +99,7 @@ impl Record {
         })
     }
 
-    fn print(&self, answer: Answer, json: bool) -> Result<()> {
+    fn print(&self, answer: Answer, json: bool) -> Result<u8> {
         print::answer(answer, self.out.as_deref(), json)
     }
 }
@@ -112,16 +110,16 @@ impl<K: Args> Measured<K> {
     }
 }
 
-impl Spectrum {
-    /// Prints the lines of a channel, or the response of one channel to another.
-    pub fn run(&self, json: bool) -> Result<()> {
-        self.record.print(self.by(json, spectrum::Keys::measure)?, json)
+impl<K: Args + OfFile> Run for Measured<K> {
+    /// Prints what is found in one record.
+    fn run(&self, json: bool) -> Result<u8> {
+        self.record.print(self.by(json, K::measure)?, json)
     }
 }
 
-impl Impacts {
+impl Run for Impacts {
     /// Prints the impacts.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let answer = self.of.by(json, |keys, source| {
             if self.legacy {
                 return of_timeav(&source.trace(&source.recording()?)?);
@@ -166,9 +164,9 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
     Ok(answer)
 }
 
-impl Modal {
+impl Run for Measured<frf::Keys> {
     /// Prints the modes.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let mut answers = self.by(json, frf::Keys::measure)?;
         if answers.len() > 1 {
             let names: Vec<&str> = answers.iter().filter_map(|a| a.result["channel"].as_str()).collect();
@@ -181,9 +179,9 @@ impl Modal {
     }
 }
 
-impl Pulse {
+impl Run for Pulse {
     /// Prints damping ratio and frequency of a contact.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(self.file.is_some())?;
         let answer = match &self.file {
             Some(file) => self.record.measured(file, json, |source| self.keys.measure(source))?,
@@ -193,9 +191,9 @@ impl Pulse {
     }
 }
 
-impl Restitution {
+impl Run for Restitution {
     /// Prints the restitution by every method that the data allow.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(!self.files.is_empty())?;
         let mut series = drop::Series::new(&self.keys);
         series.add_numbers(&self.keys);
@@ -206,9 +204,9 @@ impl Restitution {
     }
 }
 
-impl Drill {
+impl Run for Drill {
     /// Prints speed, impacts and the average turn.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let mut turns = String::new();
         let mut each = |cycle: &Cycle<'_>| -> Result<()> {
             if self.each_cycle.is_some() {

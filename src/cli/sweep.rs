@@ -1,5 +1,6 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
 
+use super::Run;
 use super::convert::{apart, write_beside};
 use super::print;
 use crate::analysis::sweep::{Stored, figures, named, tables};
@@ -98,17 +99,9 @@ impl Source {
     }
 }
 
-impl Taken {
-    fn read(&self) -> Result<(Sweep, ResponseOptions)> {
-        let (list, how) = self.sweep.listed()?;
-        let sweep = how.read(&list)?;
-        let integrate = self.integrate.unwrap_or_else(|| to_displacement(sweep.unit().quantity()));
-        let options = ResponseOptions { band: usize::from(self.band), integrate, fmin: self.sweep.fmin };
-        Ok((sweep, options))
-    }
-
+impl Run for Taken {
     /// Prints the response.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let (sweep, options) = self.read()?;
         let answer = if self.sweep.legacy {
             largest_lines(&sweep)?
@@ -123,6 +116,16 @@ impl Taken {
             answer
         };
         print::answer(answer, self.out.as_deref(), json)
+    }
+}
+
+impl Taken {
+    fn read(&self) -> Result<(Sweep, ResponseOptions)> {
+        let (list, how) = self.sweep.listed()?;
+        let sweep = how.read(&list)?;
+        let integrate = self.integrate.unwrap_or_else(|| to_displacement(sweep.unit().quantity()));
+        let options = ResponseOptions { band: usize::from(self.band), integrate, fmin: self.sweep.fmin };
+        Ok((sweep, options))
     }
 }
 
@@ -154,9 +157,9 @@ fn largest_lines(sweep: &Sweep) -> Result<Answer> {
     Ok(answer)
 }
 
-impl Waterfall {
+impl Run for Waterfall {
     /// Prints the matrix of spectra.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         above_zero("fmax", self.fmax)?;
         let (sweep, options) = self.taken.read()?;
         let matrix = if self.taken.sweep.legacy {
@@ -203,9 +206,9 @@ impl Waterfall {
     }
 }
 
-impl Excitation {
+impl Run for Excitation {
     /// Prints the excitation of each point.
-    pub fn run(&self, json: bool) -> Result<()> {
+    fn run(&self, json: bool) -> Result<u8> {
         let (list, how) = self.sweep.listed()?;
         let sweep = how.read(&list)?;
         let points = if self.sweep.legacy {
@@ -240,7 +243,9 @@ impl Excitation {
         ));
         print::answer(answer, None, json)
     }
+}
 
+impl Excitation {
     /// Writes the hand-over files; gives their paths.
     fn lists(&self, list: &SweepList, frequencies: &[f64]) -> Result<Vec<String>> {
         let Some([force, response]) = self.write_lists.as_deref() else { return Ok(Vec::new()) };

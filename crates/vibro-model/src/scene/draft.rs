@@ -18,10 +18,6 @@ const KINDS: [(&str, &[&str]); 4] = [
     ("sines", &["parts", "frequency"]),
 ];
 
-/// Tables that only a campaign has.
-const CAMPAIGN: [&str; 11] =
-    ["rig", "sweep", "spectrum", "frf", "impacts", "drop", "pulse", "drill", "model", "fit", "compute"];
-
 /// All keys that a scene has; none is needed to read it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -262,10 +258,10 @@ fn complaint(error: &toml::de::Error, text: &str) -> Error {
     Error::usage(found, expected).excerpt(text, error.span().unwrap_or(0..0))
 }
 
-/// The complaint about a campaign where a rig file should stand.
+/// The complaint about a campaign where a rig file should stand: it has the rig in a table, or lists of tables.
 fn campaign(path: &Path, text: &str) -> Option<Error> {
     let table: Table = toml::from_str(text).ok()?;
-    let key = CAMPAIGN.iter().find(|key| table.contains_key(**key))?;
+    let (key, _) = table.iter().find(|(key, value)| *key == "rig" || value.is_array())?;
     let expected = "the keys of a rig at the top, and [excitation], [contact], [buffer]";
     Some(Error::usage(format!("[{key}]: this is a campaign, not a rig"), expected).hint(format!(
         "put what stands under [rig] into a file of its own; `vibro run {}` does what the campaign asks for",
