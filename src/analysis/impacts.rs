@@ -90,8 +90,12 @@ fn summary(name: &str, found: &Impacts) -> Table {
         true => "regular",
         false if found.n == 2 => "unknown (2 impacts)",
         false if found.beat.is_some() => "drifts against the excitation",
+        false if found.steady() => "regular, not with the excitation",
         false => "irregular",
     };
+    let needs =
+        if found.excitation.is_none() { "Impacts/cycles needs the excitation frequency. " } else { "" };
+    let words = "Missed: intervals of several periods. Double: a second impact within half an interval.";
     table(
         "Impacts",
         [found],
@@ -108,7 +112,7 @@ fn summary(name: &str, found: &Impacts) -> Table {
             ("rhythm", "", &|_| rhythm.into()),
         ],
     )
-    .note("Impacts/cycles needs the excitation frequency. Missed: intervals of several periods. Double: a second impact within half an interval.")
+    .note([needs, words].concat())
 }
 
 /// Every impact: time, height, phase.

@@ -75,6 +75,13 @@ pub struct Impacts {
     pub findings: Vec<Finding>,
 }
 
+impl Impacts {
+    /// Whether intervals are even or repeat a pattern, with the excitation or not.
+    pub fn steady(&self) -> bool {
+        self.pattern.is_some() || self.spread.is_some_and(|s| s < REGULAR * self.median_interval)
+    }
+}
+
 /// Finds the impacts of `trace`, their mean interval, and what they repeat.
 ///
 /// # Errors

@@ -111,7 +111,9 @@ impl Error {
 
     /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
     pub fn setting(mut self, key: &'static str) -> Self {
-        self.0.settings.push(key);
+        if !self.0.settings.contains(&key) {
+            self.0.settings.push(key);
+        }
         self
     }
 
@@ -132,8 +134,11 @@ impl Error {
         what + &part("\n", excerpt, "") + &advice
     }
 
-    /// Adds what to try.
+    /// Adds what to try; in place of an earlier hint with its settings.
     pub fn hint(mut self, text: impl Into<String>) -> Self {
+        if !self.0.hint.is_empty() {
+            self.0.settings.clear();
+        }
         self.0.hint = text.into();
         self
     }
