@@ -25,7 +25,7 @@ use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace};
 
 /// Intervals that spread by less than this part of their median are regular.
-const REGULAR: f64 = 0.05;
+pub const REGULAR: f64 = 0.05;
 
 /// Impacts of a trace.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -73,13 +73,6 @@ pub struct Impacts {
     pub hum: Option<Hum>,
     /// What was done to the trace, and what is doubtful.
     pub findings: Vec<Finding>,
-}
-
-impl Impacts {
-    /// Whether intervals are even or repeat a pattern, with the excitation or not.
-    pub fn steady(&self) -> bool {
-        self.pattern.is_some() || self.spread.is_some_and(|s| s < REGULAR * self.median_interval)
-    }
 }
 
 /// Finds the impacts of `trace`, their mean interval, and what they repeat.
