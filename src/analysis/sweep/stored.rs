@@ -5,8 +5,6 @@ use crate::error::{Error, Result};
 use crate::read::SweepReader;
 use crate::record::{Scaling, Window};
 use crate::units::{Quantity, Unit};
-#[cfg(feature = "cli")]
-use clap::builder::TypedValueParser;
 
 /// Quantities that an analyser stores of a response.
 pub(crate) const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
@@ -22,8 +20,8 @@ pub struct Stored {
     /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown [default: hann, assumed]
     pub window: Option<String>,
     /// Scaling of the spectra: peak or rms [default: peak, assumed]
-    #[cfg_attr(feature = "cli", arg(value_parser = clap::builder::PossibleValuesParser::new(["peak", "rms"])
-        .try_map(|name| crate::campaign::word::<Scaling>(&name))))]
+    #[cfg_attr(feature = "cli", arg(value_parser = clap::builder::TypedValueParser::try_map(
+        clap::builder::PossibleValuesParser::new(["peak", "rms"]), |name| crate::campaign::word::<Scaling>(&name))))]
     pub scaling: Option<Scaling>,
     /// How often the analyser integrated before it stored, 0 to 2 [default: once for a displacement]
     #[cfg_attr(feature = "cli", arg(value_parser = clap::value_parser!(u8).range(0..=2)))]
@@ -47,10 +45,7 @@ impl Stored {
                     Some(Quantity::Acceleration) => "a unit of acceleration, such as m/s², mm/s² or g",
                     _ => "a unit of displacement, velocity or acceleration, such as mm, mm/s or g",
                 };
-                let found = match of {
-                    Quantity::Other => format!("the unit {text:?} is not known"),
-                    of => format!("the unit {text:?} is one of {of}"),
-                };
+                let found = format!("the unit {text:?} does not fit");
                 return Err(Error::usage(found, expected).setting("unit"));
             }
             reader.unit = Some(unit);
