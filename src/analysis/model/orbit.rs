@@ -118,10 +118,7 @@ fn orbits(orbits: &[Orbit]) -> Table {
             ("x2 fundamental", "m", &|(_, o)| Cell::from(o.fundamental[1].norm())),
         ],
     )
-    .note(match unit {
-        "rad" => "Timing: phase of the impact after the crest of x1 without impacts, not after the crest of the force.",
-        _ => "Timing: time from the impulse, or from the onset of the pulse, to the impact.",
-    })
+    .note("Timing: of the impact, in rad after the crest of x1 without impacts, not of the force; or in s after the impulse or the onset of the pulse.")
 }
 
 /// What each motion is worth; `gap_std` is the standard uncertainty of the gap in m.

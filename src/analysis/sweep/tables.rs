@@ -53,19 +53,15 @@ pub fn response(response: &Response) -> Table {
     table
 }
 
-/// What the kinds of resonances mean.
-const KINDS: [(&str, &str); 4] = [
-    ("grazing", "Grazing: both masses move in phase and touch lightly."),
-    ("clapping", "Clapping: both masses move in antiphase and strike head on."),
-    ("antiresonance", "Antiresonance: the minimum of the excited mass between resonances, or a deep one."),
-    ("minimum", "Minimum: a shallow one of the passive mass, no antiresonance."),
-];
+/// What the kinds of resonances mean, a line each.
+const KINDS: &str = "Grazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: a shallow one of another mass, no antiresonance.";
 
 /// Resonances and antiresonances.
 pub fn resonances(responses: &[Response]) -> Table {
     let unit = responses.first().map_or("", |r| r.unit);
-    let found = |kind: &str| responses.iter().flat_map(|s| &s.resonances).any(|r| r.kind.name() == kind);
-    let words: Vec<&str> = KINDS.iter().filter(|(kind, _)| found(kind)).map(|(_, words)| *words).collect();
+    let all = || responses.iter().flat_map(|s| &s.resonances);
+    let found = |line: &&str| all().any(|r| line.to_lowercase().starts_with(r.kind.name()));
+    let words: Vec<&str> = KINDS.lines().filter(found).collect();
     table(
         "Resonances",
         responses.iter().flat_map(|sweep| sweep.resonances.iter().map(move |r| (sweep, r))),
