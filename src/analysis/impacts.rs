@@ -6,7 +6,7 @@ use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{Impacts, ImpactsOptions, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts};
 use crate::read::Reader;
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Table};
@@ -86,12 +86,15 @@ impl Keys {
 
 /// What the impacts of a trace repeat, in one row.
 fn summary(name: &str, found: &Impacts) -> Table {
+    let even = found.pattern.is_some() || found.spread.is_some_and(|s| s < REGULAR * found.median_interval);
     let rhythm = match found.regular {
         true => "regular",
         false if found.n == 2 => "unknown (2 impacts)",
         false if found.beat.is_some() => "drifts against the excitation",
+        false if even => "regular, not with the excitation",
         false => "irregular",
     };
+    let needs = found.excitation.map_or("Impacts/cycles needs the excitation frequency. ", |_| "");
     table(
         "Impacts",
         [found],
@@ -108,7 +111,10 @@ fn summary(name: &str, found: &Impacts) -> Table {
             ("rhythm", "", &|_| rhythm.into()),
         ],
     )
-    .note("Impacts/cycles needs the excitation frequency. Missed: intervals of several periods. Double: a second impact within half an interval.")
+    .note(
+        needs.to_owned()
+            + "Missed: intervals of several periods. Double: a second impact within half an interval.",
+    )
 }
 
 /// Every impact: time, height, phase.

@@ -118,7 +118,7 @@ fn contact(title: &str, result: &PulseResult) -> Table {
         named("Contact", title),
         [result],
         &[
-            ("damping ratio", "1", &|r| Cell::from(&r.xi)),
+            ("damping ratio ξ", "1", &|r| Cell::from(&r.xi)),
             ("frequency", "Hz", &|r| Cell::from(&r.frequency)),
             ("duration", "s", &|r| Cell::from(&r.duration)),
             ("restitution", "1", &|r| Cell::from(&r.restitution)),
@@ -134,7 +134,8 @@ fn models(title: &str, result: &PulseResult) -> Table {
     let columns = [("model", ""), ("RMS residual", ""), ("AICc", ""), ("whiteness p", ""), ("samples", "")];
     let all = result.fits.iter().flat_map(|f| &f.parameters);
     let parameters: BTreeMap<&str, &str> = all.map(|(name, e)| (*name, e.unit)).collect();
-    let own = |table: Table, (name, unit): (&&str, &&str)| table.column(name.replace('_', " "), *unit);
+    let head = |name: &str| name.replace('_', " ").replace("xi", "damping ratio ξ");
+    let own = |table: Table, (name, unit): (&&str, &&str)| table.column(head(name), *unit);
     let mut table = parameters.iter().fold(headed(named("Models", title), &columns), own);
     for fit in &result.fits {
         let whiteness = match fit.whiteness {

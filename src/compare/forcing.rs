@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
 use crate::record::Finding;
+use crate::units::notation::significant;
 
 /// Force amplitude in N over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +52,9 @@ impl Forcing {
             return Err(Error::refused("the force is neither stated nor measured")
                 .hint("state `excitation.force` in N in the campaign"));
         };
-        let mut findings = vec![Finding::note("force-as-measured").number("low", low).number("high", high)];
+        let measured = Finding::note("force-as-measured").number("low", low);
+        let alike = significant(low, 3) == significant(high, 3);
+        let mut findings = vec![if alike { measured } else { measured.number("high", high) }];
         let own = |r: &&Response| {
             Forcing::measured(r).unwrap_or_else(|| {
                 findings.push(Finding::caution("force-not-measured").about(&r.name).number("median", median));

@@ -32,7 +32,7 @@ pub struct Table {
     /// Rows, each with a cell for every column; a row that is too short ends with missing cells.
     pub rows: Vec<Vec<Cell>>,
     /// What its words mean, below it.
-    pub note: &'static str,
+    pub note: String,
 }
 
 /// Head of a column.
@@ -134,8 +134,8 @@ impl Table {
     }
 
     /// Explains its words below it.
-    pub fn note(self, note: &'static str) -> Table {
-        Table { note, ..self }
+    pub fn note(self, note: impl Into<String>) -> Table {
+        Table { note: note.into(), ..self }
     }
 
     /// Adds a row.
@@ -223,7 +223,7 @@ impl Table {
         }
         let _ = writeln!(out, "</tbody></table></div>");
         if !self.note.is_empty() {
-            let _ = writeln!(out, "<p class=\"note\">{}</p>", escaped(self.note));
+            let _ = writeln!(out, "<p class=\"note\">{}</p>", escaped(&self.note));
         }
         out
     }
@@ -233,19 +233,19 @@ impl Table {
     }
 
     fn formatted(&self) -> Vec<Formatted> {
-        let columns: Vec<(&Column, Vec<&Cell>)> =
+        let mut columns: Vec<(&Column, Vec<&Cell>)> =
             self.columns.iter().enumerate().map(|(i, c)| (c, self.cells(i).collect())).collect();
-        let powers: Vec<Option<i32>> = columns.iter().map(|(c, cells)| power(c, cells)).collect();
-        columns
-            .iter()
-            .zip(&powers)
-            .map(|((column, cells), own)| {
-                // A column without a value has the prefix of its neighbours.
-                let mut alike = columns.iter().zip(&powers).filter(|((c, _), _)| c.unit == column.unit);
-                let power = own.or_else(|| alike.find_map(|(_, p)| *p)).unwrap_or(0);
-                Formatted::new(column, cells, power)
-            })
-            .collect()
+        // A column without a value is not shown.
+        let filled = |cell: &&Cell| matches!(cell, Cell::Text(_)) || cell.value().is_some();
+        columns.retain(|(_, cells)| cells.is_empty() || cells.iter().any(filled));
+        let shown = |(column, cells): &(&Column, Vec<&Cell>)| {
+            // A limit has the unit of what it limits.
+            let limited =
+                |c: &&(&Column, Vec<&Cell>)| c.0.unit == column.unit && column.name == "upper limit";
+            let (of, values) = columns.iter().find(limited).map_or((*column, cells), |(c, v)| (*c, v));
+            Formatted::new(column, cells, power(of, values))
+        };
+        columns.iter().map(shown).collect()
     }
 }
 
@@ -256,14 +256,14 @@ struct Formatted {
     numeric: bool,
 }
 
-/// The power of ten by which a column is scaled; `None` where it has no value to say so.
-fn power(column: &Column, cells: &[&Cell]) -> Option<i32> {
+/// The power of ten by which a column is scaled.
+fn power(column: &Column, cells: &[&Cell]) -> i32 {
     let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
-    let largest = values.map(f64::abs).reduce(f64::max)?;
+    let largest = values.map(f64::abs).fold(0.0, f64::max);
     // A degree and a per cent are scaled already. Counts and other bare numbers are not rescaled, as no unit would say so; a
     // power of ten stands with the number instead.
     let bare = matches!(column.unit.as_str(), "°" | "%" | "" | "1");
-    Some(if bare { 0 } else { engineering(largest) })
+    if bare { 0 } else { engineering(largest) }
 }
 
 impl Formatted {
@@ -410,10 +410,10 @@ none           7.49            0.35                 –
     }
 
     #[test]
-    fn a_column_without_values_has_the_prefix_of_its_unit() {
-        let table = Table::new("").column("measured", "m").column("predicted", "m").column("off", "Hz");
-        let text = table.row([estimated(2e-3, 1e-5)]).text();
-        assert!(text.starts_with("measured (mm)  predicted (mm)  off (Hz)\n"), "{text}");
+    fn a_column_without_values_is_not_shown_and_a_limit_has_the_unit_of_its_amplitude() {
+        let table = Table::new("").column("amplitude", "m").column("off", "Hz").column("upper limit", "m");
+        let text = table.row([estimated(2e-3, 1e-5), Cell::Missing, 2e-5.into()]).text();
+        assert!(text.starts_with("amplitude (mm)  upper limit (mm)\n"), "{text}");
     }
 
     #[test]

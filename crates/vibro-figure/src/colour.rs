@@ -25,7 +25,9 @@ pub(crate) const PALE: Rgb = Rgb(205, 205, 205);
 /// Paper.
 pub const WHITE: Rgb = Rgb(255, 255, 255);
 
-/// Every sixteenth colour of the map *viridis* (Smith, van der Walt and Firing 2015, released under CC0).
+/// Every sixteenth colour of the map *viridis* (Smith, van der Walt and Firing 2015, released under CC0),
+/// in the spelling of colour tables.
+#[allow(clippy::unreadable_literal)]
 const VIRIDIS: [u32; 17] = [
     0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26818e, 0x21908c, 0x1f9f88,
     0x28ae80, 0x3ebc74, 0x5dc963, 0x82d34c, 0xabdc32, 0xd5e21a, 0xfde725,

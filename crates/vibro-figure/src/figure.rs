@@ -38,6 +38,8 @@ pub struct Figure {
 
 /// One part of a figure.
 #[derive(Debug, Clone, PartialEq)]
+// A figure has a few panels.
+#[allow(clippy::large_enum_variant)]
 pub enum Panel {
     /// Series over two axes.
     Plot(Plot),

@@ -25,7 +25,7 @@ use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace};
 
 /// Intervals that spread by less than this part of their median are regular.
-const REGULAR: f64 = 0.05;
+pub const REGULAR: f64 = 0.05;
 
 /// Impacts of a trace.
 #[derive(Debug, Clone, PartialEq, Serialize)]

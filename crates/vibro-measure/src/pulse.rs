@@ -171,7 +171,10 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     say(xi - spread < 0.0, Finding::caution("pulse-no-damping").number("xi", xi));
     say(widening.is_none() && filter.is_none(), Finding::doubt("pulse-low-pass-missing"));
     say(widening.is_none() && filter.is_some(), Finding::doubt("pulse-onset-unlike"));
-    let coloured = Finding::caution("pulse-residuals-coloured").number("factor", whiteness.inflation);
+    let coloured = Finding::caution("pulse-residuals-coloured");
+    // A factor of 1.00 is none.
+    let enlarged = coloured.clone().number("factor", whiteness.inflation);
+    let coloured = if whiteness.inflation < 1.005 { coloured } else { enlarged };
     say(widening.is_some() && whiteness.rejected(), coloured);
     if let Some(filter) = filter {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);

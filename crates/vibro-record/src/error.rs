@@ -111,6 +111,7 @@ impl Error {
 
     /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
     pub fn setting(mut self, key: &'static str) -> Self {
+        self.0.settings.retain(|known| *known != key);
         self.0.settings.push(key);
         self
     }
@@ -132,8 +133,10 @@ impl Error {
         what + &part("\n", excerpt, "") + &advice
     }
 
-    /// Adds what to try.
+    /// Adds what to try; in place of an earlier hint with its settings.
     pub fn hint(mut self, text: impl Into<String>) -> Self {
+        let first = self.0.hint.is_empty();
+        self.0.settings.retain(|_| first);
         self.0.hint = text.into();
         self
     }
@@ -264,6 +267,13 @@ mod tests {
         assert_eq!(error.to_string(), "no rate\n  try: state the sampling rate (base_band)");
         let option = |key: &str| format!("--{}", key.replace('_', "-"));
         assert_eq!(error.spoken(option), "no rate\n  try: state the sampling rate (--base-band)");
+    }
+
+    #[test]
+    fn a_setting_stands_once_and_a_new_hint_drops_those_of_the_old_one() {
+        let error = Error::usage("x", "").hint("lower it").setting("low_pass").setting("low_pass");
+        assert_eq!(error.to_string(), "x\n  try: lower it (low_pass)");
+        assert_eq!(error.hint("name the file").to_string(), "x\n  try: name the file");
     }
 
     #[test]

@@ -58,10 +58,13 @@ pub enum Scaling {
     /// Power per hertz.
     Psd,
     /// Power per hertz times record length.
+    #[serde(skip_deserializing)]
     Energy,
     /// Coherence and other ratios between 0 and 1.
+    #[serde(skip_deserializing)]
     Coherence,
     /// The file does not say.
+    #[serde(skip_deserializing)]
     Unknown,
 }
 

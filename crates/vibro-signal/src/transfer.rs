@@ -111,10 +111,10 @@ pub fn transfer(
 ) -> Result<Transfer> {
     // Sums of squares may take two segments that do not overlap a hair below.
     if averages.effective < LEAST - 1e-9 {
-        let why = format!(
-            "{} averages are as good as {:.2} independent ones, two are needed: the coherence of one is always 1",
-            averages.count, averages.effective
-        );
+        let why = match averages.count {
+            1 => "one segment only; coherence needs two or more".to_owned(),
+            n => format!("{n} segments count as {:.2}; coherence needs two or more", averages.effective),
+        };
         let hint = "take a longer record or shorter segments, for ten averages or more";
         return Err(Error::refused(why).hint(hint).setting("segment"));
     }

@@ -208,9 +208,8 @@ fn rungs(choice: &Choice, question: &Question) -> Table {
         &[
             ("model", "", &|r| r.model.name().into()),
             ("valid", "", &|r| r.valid.into()),
-            ("answer changes by", "%", &|r| percent(worst(r).map(|c| c.change))),
+            ("a richer model changes the answer by", "%", &|r| percent(worst(r).map(|c| c.change))),
             ("against model", "", &|r| worst(r).map(|c| c.at.name()).into()),
-            ("adequate", "", &|r| r.sufficient.into()),
             ("chosen", "", &|r| (choice.chosen == Some(r.model)).into()),
             ("time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
         ],
@@ -252,7 +251,7 @@ fn stretches(stretches: &[Stretch]) -> Table {
             ("frequencies tried", "", &|s| s.points.into()),
             ("simplest model", "", &|s| s.chosen.map(Model::name).into()),
             ("needs", "", &|s| needed(&s.needs)),
-            ("answer changes by up to", "%", &|s| moved(s.audit)),
+            ("a richer model changes the answer by up to", "%", &|s| moved(s.audit)),
             ("against model", "", &|s| s.audit.map(|a| a.at.name()).into()),
             ("largest change at", "Hz", &|s| s.worst_at.into()),
         ],
@@ -282,7 +281,7 @@ fn summaries(survey: &Survey) -> Table {
         &[
             ("model", "", &|r| r.model.name().into()),
             ("valid everywhere", "", &|r| r.valid.into()),
-            ("answer changes by up to", "%", &|r| percent(r.error)),
+            ("a richer model changes the answer by up to", "%", &|r| percent(r.error)),
             ("median time in µs", "", &|r| r.cost_ns.map(|t| t / 1000.0).into()),
             ("valid at", "points", &|r| r.valid_at.into()),
             ("chosen at", "points", &|r| r.chosen_at.into()),
@@ -299,7 +298,7 @@ fn chosen(points: &[Choice], question: &Question) -> Table {
             ("frequency", "Hz", &|c| c.frequency.into()),
             ("chosen", "", &|c| c.chosen.map(Model::name).into()),
             ("needs", "", &|c| needed(&c.needs)),
-            ("answer changes by", "%", &|c| moved(c.audit)),
+            ("a richer model changes the answer by", "%", &|c| moved(c.audit)),
             ("against model", "", &|c| c.audit.map(|a| a.at.name()).into()),
         ],
     );

@@ -118,6 +118,7 @@ fn orbits(orbits: &[Orbit]) -> Table {
             ("x2 fundamental", "m", &|(_, o)| Cell::from(o.fundamental[1].norm())),
         ],
     )
+    .note("Timing: of the impact, in rad after the crest of x1 without impacts, not of the force; or in s after the impulse or the onset of the pulse.")
 }
 
 /// What each motion is worth; `gap_std` is the standard uncertainty of the gap in m.

@@ -186,6 +186,7 @@ fn summary(seen: &Seen) -> Table {
             ("phase", "rad", &|()| last.map(|i| i.phase).into()),
         ],
     )
+    .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")
 }
 
 fn states(times: &[f64], states: &[State]) -> Table {

@@ -20,7 +20,8 @@ pub struct Stored {
     /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown [default: hann, assumed]
     pub window: Option<String>,
     /// Scaling of the spectra: peak or rms [default: peak, assumed]
-    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<Scaling>))]
+    #[cfg_attr(feature = "cli", arg(value_parser = clap::builder::TypedValueParser::try_map(
+        clap::builder::PossibleValuesParser::new(["peak", "rms"]), |name| crate::campaign::word::<Scaling>(&name))))]
     pub scaling: Option<Scaling>,
     /// How often the analyser integrated before it stored, 0 to 2 [default: once for a displacement]
     #[cfg_attr(feature = "cli", arg(value_parser = clap::value_parser!(u8).range(0..=2)))]
@@ -44,7 +45,7 @@ impl Stored {
                     Some(Quantity::Acceleration) => "a unit of acceleration, such as m/s², mm/s² or g",
                     _ => "a unit of displacement, velocity or acceleration, such as mm, mm/s or g",
                 };
-                let found = format!("the unit {text:?} is one of {of}");
+                let found = format!("the unit {text:?} does not fit");
                 return Err(Error::usage(found, expected).setting("unit"));
             }
             reader.unit = Some(unit);

@@ -53,9 +53,15 @@ pub fn response(response: &Response) -> Table {
     table
 }
 
+/// What the kinds of resonances mean, a line each.
+const KINDS: &str = "Grazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: a shallow one of another mass, no antiresonance.";
+
 /// Resonances and antiresonances.
 pub fn resonances(responses: &[Response]) -> Table {
     let unit = responses.first().map_or("", |r| r.unit);
+    let all = || responses.iter().flat_map(|s| &s.resonances);
+    let found = |line: &&str| all().any(|r| line.to_lowercase().starts_with(r.kind.name()));
+    let words: Vec<&str> = KINDS.lines().filter(found).collect();
     table(
         "Resonances",
         responses.iter().flat_map(|sweep| sweep.resonances.iter().map(move |r| (sweep, r))),
@@ -67,7 +73,7 @@ pub fn resonances(responses: &[Response]) -> Table {
             ("ends in a jump", "", &|(_, r)| r.at_jump.into()),
         ],
     )
-    .note("Grazing: both masses move in phase and touch lightly. Clapping: they move in antiphase and strike head on.")
+    .note(words.join(" "))
 }
 
 /// Jumps.
@@ -78,7 +84,7 @@ pub fn jumps(responses: &[Response]) -> Table {
         responses.iter().flat_map(|sweep| sweep.jumps.iter().map(move |j| (sweep, j))),
         &[
             ("sweep", "", &|(sweep, _)| Cell::from(sweep.name.as_str())),
-            ("amplitude", "", &|(_, j)| Cell::from(j.change)),
+            ("kind", "", &|(_, j)| Cell::from(j.change)),
             ("jump at", "Hz", &|(_, j)| pair(j.frequency, Some(j.frequency_std))),
             ("amplitude before", unit, &|(_, j)| pair(j.amplitude_before, j.amplitude_before_std)),
             ("amplitude after", unit, &|(_, j)| pair(j.amplitude_after, j.amplitude_after_std)),
@@ -215,4 +221,5 @@ pub fn fit_rungs(fit: &Fit) -> Table {
             ("chosen", "", &|r| Cell::from(if r.chosen { "yes" } else { "" })),
         ],
     )
+    .note("Residuals white (p): probability that white noise shows as much serial correlation. A small p means that the model lacks something.")
 }

@@ -115,7 +115,7 @@ fn what_has_no_answer_is_said() {
     assert!(ask(&["--channel", "1", "--window", "kaiser"], 2).contains("hann"));
     assert!(ask(&["--channel", "1", "--scaling", "decibel"], 2).contains("psd"));
     assert!(
-        ask(&["--channel", "2", "--reference", "1", "--segment", "19980"], 1).contains("coherence of one")
+        ask(&["--channel", "2", "--reference", "1", "--segment", "19980"], 1).contains("one segment only")
     );
     let plain = folder.path().join("plain.txt");
     fs::write(&plain, "1\n2\n3\n1\n2\n3\n1\n2\n3\n4\n").unwrap();

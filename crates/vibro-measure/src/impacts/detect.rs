@@ -84,15 +84,14 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         let [noise, highest] = [quiet.reach, highest].map(|v| quantity(v, unit, 3));
         let n = each.len();
         let why = format!(
-            "{n} impact{} found, an interval needs two; noise reaches {noise} from the level, the trace {highest}",
+            "{n} impact{} found, an interval needs two; an impact must rise {noise} above the level; the trace rises at most {highest}",
             if n == 1 { "" } else { "s" }
         );
-        let (hint, setting) = if low > 0 {
-            ("a lower threshold, as lower bursts were ignored", "threshold")
-        } else {
-            ("a shorter pause, or a high-pass where hum or a slow level hides the impacts", "refractory")
-        };
-        return Err(Error::refused(why).hint(hint).setting(setting));
+        let refused = Error::refused(why);
+        return Err(match low {
+            0 => refused.hint("high-pass the record first, where hum or a slow level hides the impacts"),
+            _ => refused.hint("a lower threshold, as lower bursts were ignored").setting("threshold"),
+        });
     }
     let mut std = median(&each.iter().map(|o| o.std).collect::<Vec<f64>>()) / rate;
     if sharp {
@@ -180,7 +179,7 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
 pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
     trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| match trace.axis.grid {
         Grid::Uneven(_) => Error::refused("the trace is sampled unevenly: it has no sampling rate")
-            .hint("cut the file where samples are lost, or write them"),
+            .hint("cut the file where samples are lost, or fill in the lost samples"),
         Grid::Even { .. } => Error::usage("the sampling rate of the trace is not known", "")
             .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
             .setting("rate")

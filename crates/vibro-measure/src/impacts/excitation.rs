@@ -81,6 +81,8 @@ pub fn compare(
                     .number("beat", beat),
             );
         }
+        // Two impacts do not show what they follow.
+        Locking::Irregular if kept.len() < 3 => {}
         Locking::Irregular => answer.findings.push(Finding::caution("no-fraction-fits")),
     }
     Ok(())

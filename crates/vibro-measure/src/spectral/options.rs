@@ -102,7 +102,7 @@ impl SpectralOptions {
     /// It names the two that do.
     pub fn check(&self) -> Result<()> {
         let (tones, function) = (self.tones.is_some(), self.estimator.is_some());
-        let whole = "tones of the whole record of one channel as it is";
+        let whole = "the whole record of one channel as it is";
         let rules: [(bool, &[&str], &str, &str); 8] = [
             (tones && self.method == Some(Method::Welch), &["method"], "with tones", whole),
             (tones, &["reference", "segment", "overlap", "integrate"], "with tones", whole),
@@ -125,7 +125,8 @@ impl SpectralOptions {
         ];
         for (holds, names, with, expected) in rules {
             if let Some(name) = self.given().find(|name| holds && names.contains(name)) {
-                return Err(Error::usage(format!("{name} {with}"), expected).setting(name));
+                let error = Error::usage(format!("{name} {with}"), expected).setting(name);
+                return Err(if tones { error.hint(format!("leave out the {name}")) } else { error });
             }
         }
         let wrong = |v: &f64| !(v.is_finite() && *v > 0.0);

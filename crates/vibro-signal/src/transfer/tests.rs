@@ -105,13 +105,13 @@ fn one_average_and_an_empty_excitation_are_refused() {
     let x = Noise(1).record(100);
     let (averages, metas) = measured([("N", x.clone()), ("m", x.clone())], 100).unwrap();
     let error = transfer(&averages, 1, &metas, Estimator::H1).unwrap_err().to_string();
-    assert!(error.contains("coherence of one"), "{error}");
+    assert!(error.contains("one segment only"), "{error}");
     assert!(measured([("N", vec![0.0; 400]), ("m", vec![1.0; 400])], 64).is_err());
     // Two segments that share half of their samples are not two.
     let (averages, metas) = measured([("N", x.clone()), ("m", x.clone())], 66).unwrap();
     assert_eq!(averages.count, 2);
     let error = transfer(&averages, 1, &metas, Estimator::H1).unwrap_err().to_string();
-    assert!(error.contains("2 averages are as good as 1.9"), "{error}");
+    assert!(error.contains("2 segments count as 1.9"), "{error}");
     let (averages, metas) = measured([("N", x.clone()), ("m", x)], 32).unwrap();
     assert!(transfer(&averages, 2, &metas, Estimator::H1).is_err());
     assert!(transfer(&averages, 0, &metas, Estimator::H1).is_err());
