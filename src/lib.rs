@@ -23,6 +23,9 @@
 //! # Ok::<(), vibroimpact::Error>(())
 //! ```
 
+// Questions to models and the comparison of methods are asked by the command alone.
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
+
 pub mod analysis;
 pub mod campaign;
 #[cfg(feature = "cli")]

@@ -44,13 +44,13 @@ pub(super) fn name(responses: &mut [&mut Response]) {
         let members = responses.iter_mut().enumerate().filter(|(i, _)| level.contains(i));
         let mut members: Vec<&mut Response> =
             members.map(|(_, r)| &mut **r).filter(|r| r.mass.is_some() && r.direction.is_some()).collect();
-        let named = |r: &mut &mut Response| {
+        let curves = members.iter_mut().filter_map(|r| {
             let mut curve = curve(r);
             curve.sort_by(|a, b| a.0.total_cmp(&b.0));
             let (jumps, resonances) = (take(&mut r.jumps), take(&mut r.resonances));
             Some(NamedCurve { mass: r.mass, direction: r.direction?, curve, jumps, resonances })
-        };
-        let mut curves: Vec<NamedCurve> = members.iter_mut().filter_map(named).collect();
+        });
+        let mut curves: Vec<NamedCurve> = curves.collect();
         name_modes(&mut curves);
         for (response, curve) in members.into_iter().zip(curves) {
             (response.jumps, response.resonances) = (curve.jumps, curve.resonances);
