@@ -34,7 +34,7 @@ fn mistakes_point_at_their_line() {
         (&format!("{SWEEP}mass = 3"), "line 4", "mass"),
         (&format!("{SWEEP}base_band = 50.0"), "line 3", "beside a list"),
         (&format!("{SWEEP}quantity = \"speed\""), "line 4", "speed"),
-        (&format!("{SWEEP}unit = \"mm\"\nquantity = \"velocity\""), "line 4", "a unit of velocity"),
+        (&format!("{SWEEP}unit = \"mm\"\nquantity = \"velocity\""), "line 4", "one of displacement"),
         (&format!("{SWEEP}window = \"kaiser\""), "line 4", "kaiser"),
         (&format!("{SWEEP}calibration = 0.0"), "line 4", "calibration"),
         ("out = \"../x\"", "line 1", "outside"),

@@ -45,7 +45,9 @@ impl Stored {
                     Some(Quantity::Acceleration) => "a unit of acceleration, such as m/s², mm/s² or g",
                     _ => "a unit of displacement, velocity or acceleration, such as mm, mm/s or g",
                 };
-                let found = format!("the unit {text:?} does not fit");
+                let known = of != Quantity::Other;
+                let what = if known { format!("one of {of}") } else { "not known".to_owned() };
+                let found = format!("the unit {text:?} is {what}");
                 return Err(Error::usage(found, expected).setting("unit"));
             }
             reader.unit = Some(unit);
