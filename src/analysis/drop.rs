@@ -7,7 +7,7 @@ use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
-use crate::report::layout::table;
+use crate::report::layout::{Shown, table};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 
@@ -205,7 +205,24 @@ impl Series {
         answer.findings = self.answer.findings;
         answer.add("", &found.findings);
         answer.table("restitution", by_method(name, &found));
+        let columns: [Shown<Restitution>; 2] = [
+            ("methods", "", &|r| together(r).into()),
+            ("standard uncertainty by bootstrap", "1", &|r| r.bootstrap_std.into()),
+        ];
+        if found.by.len() > 1 || found.bootstrap_std.is_some() {
+            answer.tables.push(table("Methods together", [found], &columns));
+        }
         Ok(answer)
+    }
+}
+
+/// Whether the methods agree.
+fn together(found: &Restitution) -> &'static str {
+    match found.agree {
+        _ if found.by.len() < 2 => "one method",
+        Some(true) => "agree",
+        Some(false) => "disagree",
+        None => "cannot be compared: one has no uncertainty",
     }
 }
 

@@ -2,10 +2,9 @@
 
 use super::{Analysis, Progress};
 use crate::campaign::{Channel, Entry, Reading};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::read::{Reader, Recording};
-use crate::record::{Fact, Finding, Trace};
-use crate::units::Unit;
+use crate::record::Trace;
 use std::path::{Path, PathBuf};
 
 /// A file, how it is read, and who is told of the progress.
@@ -47,28 +46,7 @@ impl Source<'_> {
     /// # Errors
     /// If there is no such trace.
     pub fn trace(&self, recording: &Recording) -> Result<Trace> {
-        let trace = recording.trace(self.channel.channel.as_deref(), self.channel.calibration)?;
-        self.contradicted(&trace.meta.findings)?;
-        Ok(trace)
-    }
-
-    /// Refuses a stated unit of another quantity than that of the file, which only a calibration leads to.
-    pub(super) fn contradicted(&self, findings: &[Finding]) -> Result<()> {
-        let unit = |found: &Finding, name| match found.fact(name) {
-            Some(Fact::Name(symbol)) => Unit::parse(symbol),
-            _ => None,
-        };
-        for found in findings.iter().filter(|f| f.code == "unit-overrides-file") {
-            if let (Some(file), Some(used), None) =
-                (unit(found, "file"), unit(found, "used"), self.channel.calibration)
-                && file.quantity() != used.quantity()
-            {
-                let wrong = format!("the unit {} for a record in {}", used.symbol(), file.symbol());
-                let expected = format!("a unit of {}, or a calibration", file.quantity());
-                return Err(Error::usage(wrong, expected).setting("unit").setting("calibration"));
-            }
-        }
-        Ok(())
+        recording.trace(self.channel.channel.as_deref(), self.channel.calibration)
     }
 
     /// Path of a further file, where a key names one.

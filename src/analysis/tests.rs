@@ -1,4 +1,5 @@
 use super::*;
+use crate::report::words::{Voice, sentences};
 use crate::units::Quantity;
 
 fn of(text: &str) -> Result<Campaign> {
@@ -83,5 +84,6 @@ fn a_fit_without_a_rig_is_not_passed_over_in_silence() {
     let campaign = of("[fit]\nparameters = [\"gap\"]\n").unwrap();
     let mut output = crate::report::Output::new(tempfile::tempdir().unwrap().path()).unwrap();
     let (answer, _) = run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
-    assert!(answer.findings.iter().any(|(_, f)| f.code == "fit-without-rig"), "{:?}", answer.findings);
+    let said = sentences(&answer.findings, Voice::Campaign, true);
+    assert!(said.iter().any(|s| s.contains("`fit` needs a table `rig`")), "{said:?}");
 }

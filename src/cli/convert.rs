@@ -84,16 +84,19 @@ pub fn apart(a: &Path, b: &Path) -> Result<()> {
     if same { Err(Error::usage(found(), "two files").hint("name another file to write")) } else { Ok(()) }
 }
 
-/// Writes a file whole, in a folder that must exist.
+/// The folder of a file to write, which must exist.
+pub fn folder_of(path: &Path) -> Result<&Path> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let found = || format!("the folder {} does not exist", folder.display());
+    folder.is_dir().then_some(folder).ok_or_else(|| Error::usage(found(), "an existing folder"))
+}
+
+/// Writes a file whole.
 pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     let name = path
         .file_name()
         .ok_or_else(|| Error::usage(format!("{} is no file name", path.display()), "a file"))?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        let found = format!("the folder {} does not exist", folder.display());
-        return Err(Error::usage(found, "an existing folder"));
-    }
+    let folder = folder_of(path)?;
     let mut output = Output::new(folder)?;
     output.write(&name.to_string_lossy(), bytes)?;
     output.commit().map(drop)

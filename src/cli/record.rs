@@ -1,7 +1,7 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
 use super::Run;
-use super::convert::write_beside;
+use super::convert::{apart, folder_of, write_beside};
 use super::sweep::of_script;
 use super::{complain, print};
 use crate::analysis::drill::cycles;
@@ -207,6 +207,10 @@ impl Run for Restitution {
 impl Run for Drill {
     /// Prints speed, impacts and the average turn.
     fn run(&self, json: bool) -> Result<u8> {
+        if let Some(path) = &self.each_cycle {
+            apart(&self.of.file, path)?;
+            folder_of(path)?;
+        }
         let mut turns = String::new();
         let mut each = |cycle: &Cycle<'_>| -> Result<()> {
             if self.each_cycle.is_some() {

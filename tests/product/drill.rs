@@ -299,6 +299,12 @@ fn each_impact_and_the_handle() {
     assert!((number("a8") / number("a_hv") - 0.5).abs() < 1e-12);
     // Sines of 32-bit samples: crests between samples and roundings.
     assert!((found["exposure"]["unweighted_peak"].as_f64().unwrap() / 10.0 - 1.0).abs() < 1e-3);
+    // What is read is not written over, and a folder that is missing is named before anything is measured.
+    for (to, word) in [(file.clone(), "same file"), (folder.path().join("no/x.csv"), "does not exist")] {
+        let refused = with(&file, &["--each-cycle", to.to_str().unwrap()]);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&refused.stderr).contains(word), "{refused:?}");
+    }
     // Every turn over the phase: its columns have the means of the average.
     assert_eq!(found["each_cycle"], table.to_str().unwrap());
     let rows = std::fs::read_to_string(&table).unwrap();

@@ -111,8 +111,8 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
 }
 
-/// Answers that differ by more than this part disagree, however uncertain: a height would be wrong by twice as much. A missed flight and a
-/// height in mm are so.
+/// Answers that differ by more than this part disagree where one has no uncertainty: the height would be wrong by twice as much. So it is with
+/// a missed flight and a height in mm.
 const GROSS: f64 = 0.2;
 
 /// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree. Methods may share numbers, as a drop

@@ -27,7 +27,7 @@ pub struct Keys {
     pub over: Over,
     /// Lower end in Hz, in N (N s for impulses) over the force
     pub from: f64,
-    /// Upper end
+    /// Upper end, in the same unit
     pub to: f64,
     /// Excitation frequency in Hz of a sweep of the force
     pub frequency: Option<f64>,

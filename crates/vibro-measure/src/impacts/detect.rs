@@ -89,6 +89,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         );
         let refused = Error::refused(why);
         return Err(match low {
+            0 if options.refractory.is_some() => refused.hint("a shorter pause").setting("refractory"),
             0 => refused.hint("high-pass the record first, where hum or a slow level hides the impacts"),
             _ => refused.hint("a lower threshold, as lower bursts were ignored").setting("threshold"),
         });

@@ -178,7 +178,7 @@ fn methods_that_disagree_are_not_averaged() {
     assert!(finding(&found, "methods-disagree").is_some(), "{:?}", found.findings);
 }
 
-/// A height in mm, and a second impact that was not seen: answers far apart disagree whatever their uncertainty.
+/// A height in mm, and a second impact that was not seen: answers far apart disagree although none has an uncertainty.
 #[test]
 fn answers_far_apart_disagree_without_uncertainties() {
     for (height, intervals) in [(570.0, vec![0.144, 0.03]), (0.57, vec![0.144, 0.015])] {
