@@ -62,35 +62,39 @@ impl Keys {
         let (before, after) = (self.before.is_some(), !self.after.is_empty() || self.after2.is_some());
         let one_of = "one of them: the first of intervals is that after the fall";
         let velocities = "after = V1 and V2, or with masses after = V1 or after2 = V2";
-        let wrong: [(bool, &'static str, &str, &str); 9] = [
-            (interval && intervals, "intervals", "both interval and intervals", one_of),
-            (file && interval, "interval", "a file and an interval", "one of them"),
-            (file && intervals, "intervals", "a file and intervals", "one of them"),
+        let wrong: [(bool, &[&'static str], &str, &str); 9] = [
+            (interval && intervals, &["intervals"], "both interval and intervals", one_of),
+            (file && interval, &["interval"], "a file and an interval", "one of them"),
+            (file && intervals, &["intervals"], "a file and intervals", "one of them"),
             (
                 interval && self.height.is_none(),
-                "height",
+                &["height"],
                 "interval without a height",
                 "both, or flight times as intervals",
             ),
-            (after && !before, "after", "velocities after the impact without before", "both"),
-            (self.velocity_std.is_some() && !before, "velocity_std", "velocity_std without before", "both"),
+            (after && !before, &["after"], "velocities after the impact without before", "both"),
+            (
+                self.velocity_std.is_some() && !before,
+                &["velocity_std"],
+                "velocity_std without before",
+                "both",
+            ),
             (
                 !file && !interval && !intervals && !before && self.height.is_some(),
-                "interval",
+                &["interval", "height"],
                 "a height and no time",
                 "the time from first to second impact, or the trace files of the drops",
             ),
             (
                 !file && !interval && !intervals && !before,
-                "height",
+                &["height"],
                 "no measured value",
                 "trace files, height and interval, intervals, or velocities before and after",
             ),
-            (before && !after, "before", "before without velocities after the impact", velocities),
+            (before && !after, &["before"], "before without velocities after the impact", velocities),
         ];
-        if let Some((_, key, found, expected)) = wrong.into_iter().find(|w| w.0) {
-            let error = Error::usage(found, expected).setting(key);
-            return Err(if key == "interval" && !file { error.setting("height") } else { error });
+        if let Some((_, keys, found, expected)) = wrong.into_iter().find(|w| w.0) {
+            return Err(keys.iter().fold(Error::usage(found, expected), |error, key| error.setting(key)));
         }
         let given = self.after.len() + usize::from(self.after2.is_some());
         if given > 2 {

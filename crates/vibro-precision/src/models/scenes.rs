@@ -1,12 +1,13 @@
 //! Scenes of models: what is asked, of which methods with which settings, and what is true.
 
+mod chaos;
+
 use super::rivals::{self as by, Kind, Locate, Method, events};
 use super::task::{Log, Task};
 use super::{ours, truth};
 use crate::failure::Found;
 use crate::scene::{median, timed};
 use crate::{Family, Measured, Scene};
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result};
@@ -74,7 +75,7 @@ pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>>
     for (stiffness, cycles) in SOFT_CONTACTS {
         add(soft(stiffness, cycles)?);
     }
-    add(chaos()?);
+    add(chaos::scene()?);
     add(slow_sweep()?);
     Ok(found)
 }
@@ -317,87 +318,6 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
     Ok(Setup::new(texts, vec![task], methods, judge))
 }
 
-/// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no method can follow the motion,
-/// all can be asked for its statistics.
-const WINDOW: (f64, f64, f64) = (0.97, 0.3, 5.61);
-/// Cycles left out at the beginning, and cycles that every method reads.
-const SETTLE: f64 = 100.0;
-const CYCLES: f64 = 4000.0;
-/// Other starts that the truth is computed from.
-const OTHERS: usize = 10;
-/// Further off than so many standard errors the statistics are those of another motion: of errors told from ten starts one in 300 is.
-const ALLOWED: f64 = 4.0;
-
-/// The motion from x₁ (m) at rest.
-fn irregular(x1: f64, cycles: f64) -> Task {
-    let (restitution, force, frequency) = WINDOW;
-    let rig = Rig { restitution, ..Rig::thesis() };
-    let plain = Task::sine(rig, force, frequency, (SETTLE + cycles) / frequency);
-    Task { start: [x1, 0.0, 0.0, 0.0], ..plain }
-}
-
-/// Mean and standard deviation of the approach speeds.
-fn statistics(log: &Log) -> [f64; 2] {
-    moments(log.impacts.iter().filter(|i| i.0 > SETTLE / WINDOW.2).map(|i| i.1))
-}
-
-fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
-    let n = values.clone().count() as f64;
-    let mean = values.clone().sum::<f64>() / n;
-    [mean, (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()]
-}
-
-/// The statistics by integration of order 8 with tight tolerance, from starts that no method is given, so that no run of a method is among them.
-fn irregular_truth() -> Result<Vec<[f64; 2]>> {
-    let one = |start: usize| {
-        let task = irregular(-1e-4 * (start + 1) as f64, CYCLES);
-        Ok(statistics(&events(&task, None, Kind::Dop853(1e-12), Locate::Dense)?))
-    };
-    (0..OTHERS).into_par_iter().map(one).collect()
-}
-
-fn chaos() -> Result<Setup> {
-    let runs = irregular_truth()?;
-    let truth = [0, 1].map(|i| moments(runs.iter().map(|run| run[i])));
-    // Standard error of what a method reads, relative, that of the truth included.
-    let scatter = truth.map(|[mean, std]| std / mean * (1.0 + 1.0 / OTHERS as f64).sqrt());
-    let judge = move |log: &[Log]| -> Verdict {
-        let found = statistics(&log[0]);
-        let off = [0, 1].map(|i| (found[i] / truth[i][0] - 1.0).abs());
-        // Not a number is no statistics either.
-        if let Some(i) = (0..2).find(|i| off[*i].is_nan() || off[*i] > ALLOWED * scatter[*i]) {
-            let (name, part) = (["mean", "standard deviation"][i], 100.0 * off[i]);
-            return Err(format!(
-                "the {name} of the approach speeds is {part:.1} % off: those of another motion"
-            ));
-        }
-        // Below a standard error both are chance, and all methods alike.
-        Ok((0..2).map(|i| off[i].max(scatter[i])).fold(0.0, f64::max))
-    };
-    let (restitution, force, frequency) = WINDOW;
-    let [mean, std] = scatter.map(|s| 100.0 * s);
-    let texts = [
-        "chaotic window".to_owned(),
-        format!(
-            "At R {restitution}, {force} N and {frequency} Hz no two computations agree for long: mean and standard deviation of the \
-     approach speeds over {CYCLES} cycles, whose standard errors are {mean:.1} and {std:.1} %. Below them errors are chance, and told as \
-     them; beyond {ALLOWED} of them it is another motion."
-        ),
-        "larger relative error of mean and deviation".to_owned(),
-        format!("order 8, tolerance 1e-12, from {OTHERS} other starts; standard errors from their scatter"),
-    ];
-    let methods = vec![
-        (by::FLIGHTS, ONE),
-        (by::EULER, &[100.0, 1e3]),
-        (by::RK4_LOOP, &[100.0, 1e3]),
-        (by::MOREAU, &[100.0, 1e3]),
-        (by::RK45_ENDS, &[1e-3, 1e-6, 1e-9]),
-        (by::DOP853_DENSE, &[1e-6, 1e-9]),
-        (by::ROUGH_SPRING, &[1e6]),
-    ];
-    Ok(Setup::new(texts, vec![irregular(0.0, CYCLES)], methods, judge))
-}
-
 /// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which its start is still felt.
 const FROM: f64 = 10.2;
 const TO: f64 = 10.8;
@@ -453,32 +373,5 @@ mod tests {
             late.impacts[10].0 += 1e-6;
             assert!(((setup.judge)(&[late]).unwrap() - 1e-6).abs() < 2.0 * FOLLOWED);
         }
-    }
-
-    #[test]
-    fn the_window_stays_irregular() {
-        let log = ours::flights(&irregular(0.0, 20_000.0)).unwrap();
-        let mut last: Vec<f64> = log.impacts.iter().rev().take(1000).map(|i| i.1).collect();
-        last.sort_by(f64::total_cmp);
-        // What repeats after fewer than 500 impacts has every speed at least twice.
-        last.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-        assert!(last.len() > 990, "{}", last.len());
-    }
-
-    /// Where one start led to another motion than the others, its statistics would be others.
-    #[test]
-    fn other_starts_scatter_alike() {
-        let all = irregular_truth().unwrap();
-        for i in 0..2 {
-            let [mean, std] = moments(all.iter().map(|run| run[i]));
-            // Of ten normal numbers none is 9/√10 of their own standard deviations off; three are rare.
-            assert!(all.iter().all(|run| (run[i] - mean).abs() < 2.6 * std), "{all:?}");
-        }
-    }
-
-    #[test]
-    fn moments_of_four_numbers() {
-        let [mean, std] = moments([1.0, 2.0, 3.0, 6.0].into_iter());
-        assert!((mean - 3.0).abs() < 1e-15 && (std - (14.0_f64 / 3.0).sqrt()).abs() < 1e-15);
     }
 }
