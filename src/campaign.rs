@@ -29,12 +29,10 @@
 
 mod entry;
 mod locate;
-mod parameter;
 mod reading;
 mod tables;
 mod value;
 
-pub use parameter::Parameter;
 pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
 pub(crate) use entry::Entry;
@@ -42,7 +40,7 @@ pub(crate) use reading::{Channel, Reading, above_zero};
 pub(crate) use value::{LowPass, channel, channels, two, word};
 
 use crate::error::{Error, Place, Result};
-use crate::model::{ContactKeys, Rig};
+use crate::model::{ContactKeys, Parameter, Rig, Scene};
 use crate::read::inside;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -81,9 +79,6 @@ pub struct Campaign {
     text: String,
 }
 
-/// Tables that a rig file has beside the rig's keys.
-const SCENE: [&str; 3] = ["excitation", "contact", "buffer"];
-
 impl Campaign {
     /// Reads a campaign file whose records stand in these sections, and checks what holds for all of them.
     ///
@@ -113,9 +108,10 @@ impl Campaign {
     fn parse(path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
         let complaint = |e: &toml::de::Error| locate::toml_error(path, &text, e, sections);
         let table = DeTable::parse(&text).map_err(|e| complaint(&e))?.into_inner();
-        let of_rig = |key: &str| Rig::KEYS.contains(&key);
         let keys = || table.keys().map(|key| key.get_ref().as_ref());
-        if keys().any(of_rig) && keys().all(|key| of_rig(key) || SCENE.contains(&key)) {
+        if keys().any(Parameter::is_of_rig)
+            && keys().all(|key| Parameter::is_of_rig(key) || Scene::TABLES.contains(&key))
+        {
             let expected = "a campaign: the rig's keys under [rig], and what was measured, such as [[sweep]]";
             let rig = Error::input(Place::file(path), "this is a rig, not a campaign", expected);
             let hint = format!("`vibro model orbit {}` tells what the rig does", path.display());
@@ -184,7 +180,7 @@ impl Campaign {
     pub(crate) fn rig_left_out(&self) -> Vec<&'static str> {
         let table = self.table().unwrap_or_default();
         let given = |key: &&str| table_of(&table, "rig").is_none_or(|rig| rig.contains_key(*key));
-        Rig::KEYS.into_iter().filter(|key| !given(key)).collect()
+        Parameter::of_rig().map(Parameter::name).filter(|key| !given(key)).collect()
     }
 
     /// Path of a file that a table names under a key.

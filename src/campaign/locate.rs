@@ -117,7 +117,14 @@ mod tests {
         for (text, expected) in [
             ("prior.gap = [1e-3]", &["invalid length 1", "two values between square brackets"][..]),
             ("prior.gap = 1e-3", &["floating point `0.001`", "two values between square brackets"]),
-            ("prior.gapp = [1e-3, 1e-5]", &["the name `gapp`", "one of `force`", "did you mean `gap`?"]),
+            (
+                "prior.gapp = [1e-3, 1e-5]",
+                &[
+                    "the name `gapp`",
+                    "`k2`, `c1`, `c2`, `gap`, `restitution`, `force`",
+                    "did you mean `gap`?",
+                ],
+            ),
             ("starts = 3\nstarts = 4", &["duplicate key"]),
             ("scatter = 0,01", &["scatter = 0,01", "a number with a decimal point", "write scatter = 0.01"]),
         ] {

@@ -1,7 +1,7 @@
 //! Tables of a campaign that hold for all sweeps: what drives the rig, how it is predicted, what is computed and what is fitted.
 
-use super::Parameter;
 use crate::error::Error;
+use crate::model::Parameter;
 use crate::model::ladder::Model;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -155,6 +155,25 @@ pub struct FitEntry {
 const MOST_STARTS: usize = 1000;
 
 impl FitEntry {
+    fn known() -> String {
+        Parameter::all().filter(|p| p.can_be_fitted()).map(Parameter::name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The parameter of this name that a fit can find.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn parameter(name: &str) -> Result<Parameter, Error> {
+        Parameter::named(name).filter(|p| p.can_be_fitted()).ok_or_else(|| {
+            let error = Error::usage(format!("no parameter of a fit is named {name:?}"), FitEntry::known());
+            if name.contains("contact") {
+                error.hint("state it as `stiffness` in [contact]: a model corrected for it is then judged")
+            } else {
+                error
+            }
+        })
+    }
+
     /// That nothing in it is impossible.
     ///
     /// # Errors
@@ -171,6 +190,8 @@ impl FitEntry {
             let name = parameter.name();
             let once = !self.parameters[..i].contains(parameter);
             checks.push(("parameters", once, format!("{name} is named twice")));
+            let why = format!("a fit does not look for {name}, but for {}", FitEntry::known());
+            checks.push(("parameters", parameter.can_be_fitted(), why));
             let weighed = !parameter.is_mass() || self.prior.contains_key(parameter);
             let why = "while motion tells only the ratios of force, stiffness and damping to the masses: weigh it and give";
             let why = format!(
@@ -194,13 +215,11 @@ impl FitEntry {
             checks.push((name, inside, format!("{prior}, outside its bounds {low} to {high}")));
         }
         for (parameter, [low, high]) in &self.bounds {
-            let (name, (least, most)) = (parameter.name(), parameter.range());
-            // A gap may be negative: the masses are then pressed together.
-            let least = if *parameter == Parameter::Gap { f64::NEG_INFINITY } else { least };
-            let why = match parameter {
-                Parameter::Restitution if low < high => "it is from 0 to 1",
-                _ if low < high => "it is not below 0",
-                _ => "no value lies between",
+            let (name, (least, most)) = (parameter.name(), parameter.limits());
+            let why = match () {
+                () if low >= high => "no value lies between",
+                () if most.is_finite() => "it is from 0 to 1",
+                () => "it is not below 0",
             };
             let possible = low < high && *low >= least && *high <= most;
             checks.push((name, possible, format!("the bounds of {name} are {low} to {high}: {why}")));
@@ -210,6 +229,8 @@ impl FitEntry {
 
     /// Where a parameter may lie.
     pub fn range(&self, parameter: Parameter) -> (f64, f64) {
-        self.bounds.get(&parameter).map_or(parameter.range(), |[low, high]| (*low, *high))
+        let (least, most) = parameter.limits();
+        // Masses that are pressed together, with a gap below 0, are looked for where bounds say so.
+        self.bounds.get(&parameter).map_or((least.max(0.0), most), |[low, high]| (*low, *high))
     }
 }

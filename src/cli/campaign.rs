@@ -3,7 +3,7 @@
 use super::{complain, print};
 use crate::analysis::sweep::modelled;
 use crate::analysis::{self, JobOptions};
-use crate::campaign::Parameter;
+use crate::campaign::FitEntry;
 use crate::error::Result;
 use crate::report::words::{Voice, sentences};
 use crate::report::{Output, Table};
@@ -74,7 +74,7 @@ impl super::Run for Compare {
     fn run(&self, json: bool) -> Result<u8> {
         let mut campaign = analysis::open(&self.campaign)?;
         if !self.fit.is_empty() {
-            let names = self.fit.iter().map(|name| Parameter::from_name(name.trim()));
+            let names = self.fit.iter().map(|name| FitEntry::parameter(name.trim()));
             campaign.fit.parameters = names.collect::<Result<_>>()?;
             campaign.fit.usable()?;
         }

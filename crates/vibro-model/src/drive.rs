@@ -2,7 +2,6 @@
 
 use super::excitation::MOST_SINES;
 use super::forcing::Forcing;
-use super::receptance::receptance;
 use super::waves::Waves;
 use super::{Excitation, Rig, Sine, Steady, scales};
 use num_complex::Complex64;
@@ -36,11 +35,7 @@ impl Drive {
         let mut lines = [None; MOST_SINES];
         for (line, tone) in lines.iter_mut().zip(forcing.tones()) {
             let steady = Steady::new(rig, &Sine { force: tone.force, frequency: tone.frequency })?;
-            let compliance = if rig.has_wall() {
-                Complex64::ONE
-            } else {
-                receptance(rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2, steady.omega)
-            };
+            let compliance = rig.joined().map_or(Complex64::ONE, |both| both.receptance(steady.omega));
             let (alone, amplitude) = (steady.response, steady.amplitude());
             *line = Some(Line { alone, amplitude, together: compliance * tone.force });
         }

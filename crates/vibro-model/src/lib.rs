@@ -17,6 +17,7 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
+mod body;
 mod chirp;
 pub mod contact;
 pub mod continuation;
@@ -33,15 +34,16 @@ mod motion;
 mod observable;
 mod orbit;
 mod parallel;
+mod parameter;
 mod periodic;
 pub mod portrait;
-mod receptance;
 pub mod regime;
 pub mod response;
 mod rig;
 mod scales;
 mod scene;
 pub mod simulate;
+mod steady;
 mod stick;
 pub mod sweep;
 mod validity;
@@ -58,12 +60,13 @@ pub use observable::Observable;
 pub use orbit::{
     Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, shown, softened,
 };
+pub use parameter::Parameter;
 pub use periodic::{Beat, PeriodicOrbit};
-pub use receptance::{NoImpact, Steady};
 pub use regime::{Pattern, Regime, regime};
 pub use response::{Change, ChangeKind, Response, ResponsePoint, response};
 pub use rig::Rig;
 pub use scene::{Buffer, ContactKeys, Draft, Scene};
 pub use simulate::{Counts, Impact, Leg, Simulation};
+pub use steady::{NoImpact, Steady};
 pub use stick::Pair;
 pub use validity::{Loss, Validity};

@@ -3,77 +3,20 @@
 use super::forcing::Forcing;
 use super::regime::{Strike, Watch};
 use super::{
-    Excitation, Motion, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet, parallel,
-    scales,
+    Excitation, Motion, Parameter, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet,
+    parallel, scales,
 };
 use nalgebra::Matrix4;
 use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
-/// A parameter that can be varied: a key of the rig, or of the excitation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(transparent)]
-pub struct Key(&'static str);
-
-impl Key {
-    /// Names of all parameters, with their units.
-    pub const ALL: [(&'static str, &'static str); 12] = [
-        ("m1", "kg"),
-        ("m2", "kg"),
-        ("k1", "N/m"),
-        ("k2", "N/m"),
-        ("c1", "N s/m"),
-        ("c2", "N s/m"),
-        ("gap", "m"),
-        ("restitution", ""),
-        ("frequency", "Hz"),
-        ("force", "N"),
-        ("impulse", "N s"),
-        ("width", "s"),
-    ];
-
-    /// Name and unit.
-    pub fn label(self) -> (&'static str, &'static str) {
-        Key::ALL.into_iter().find(|k| k.0 == self.0).unwrap_or((self.0, ""))
-    }
-
-    /// The key of this name.
-    pub fn named(name: &str) -> Option<Key> {
-        Key::ALL.iter().find(|k| k.0 == name).map(|k| Key(k.0))
-    }
-
-    /// Enters a value; `None` where the excitation has no such number.
-    fn set(self, rig: &mut Rig, excitation: &mut Excitation, value: f64) -> Option<()> {
-        *match (self.0, excitation) {
-            ("m1", _) => &mut rig.m1,
-            ("m2", _) => &mut rig.m2,
-            ("k1", _) => &mut rig.k1,
-            ("k2", _) => &mut rig.k2,
-            ("c1", _) => &mut rig.c1,
-            ("c2", _) => &mut rig.c2,
-            ("gap", _) => &mut rig.gap,
-            ("restitution", _) => &mut rig.restitution,
-            ("frequency", excitation) => {
-                *excitation = excitation.at_frequency(value);
-                return Some(());
-            }
-            ("force", Excitation::Sine(sine)) => &mut sine.force,
-            ("force", Excitation::Pulse(pulses)) => &mut pulses.force,
-            ("impulse", Excitation::Impulse(impulses)) => &mut impulses.impulse,
-            ("width", Excitation::Pulse(pulses)) => &mut pulses.width,
-            _ => return None,
-        } = value;
-        Some(())
-    }
-}
-
 /// Values of one parameter with equal distances: the ends finite, the lower one first, and at least 2 values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Axis {
     /// The parameter.
-    pub key: Key,
+    pub key: Parameter,
     /// First value.
     pub low: f64,
     /// Last value.
@@ -101,14 +44,14 @@ impl std::str::FromStr for Axis {
     fn from_str(text: &str) -> Result<Axis> {
         let parse = || {
             let mut parts = text.split(':');
-            let key = Key::named(parts.next()?)?;
+            let key = Parameter::named(parts.next()?)?;
             let mut number = || parts.next()?.trim().parse::<f64>().ok().filter(|v| v.is_finite());
             let (low, high) = (number()?, number()?);
             let n = parts.next()?.trim().parse().ok()?;
             (parts.next().is_none() && low < high && n >= 2).then_some(Axis { key, low, high, n })
         };
         parse().ok_or_else(|| {
-            let names: Vec<_> = Key::ALL.iter().map(|k| k.0).collect();
+            let names: Vec<_> = Parameter::all().map(Parameter::name).collect();
             Error::usage(format!("axis {text:?}"), "NAME:LOW:HIGH:N with LOW below HIGH and N of 2 or more")
                 .hint(format!("NAME is one of {}", names.join(", ")))
         })
@@ -154,11 +97,11 @@ impl Plan {
     /// If both axes vary the same parameter, a corner of the map is impossible, or there are more than 1e8 cycles in all.
     pub fn check(&self) -> Result<()> {
         if self.x.key == self.y.key {
-            return Err(Error::usage(format!("both axes vary {}", self.x.key.label().0), "two parameters"));
+            return Err(Error::usage(format!("both axes vary {}", self.x.key.name()), "two parameters"));
         }
         for axis in [&self.x, &self.y] {
             if axis.key.set(&mut self.rig.clone(), &mut self.excitation.clone(), axis.low).is_none() {
-                let (found, kind) = (axis.key.label().0, self.excitation.kind());
+                let (found, kind) = (axis.key.name(), self.excitation.kind());
                 return Err(Error::usage(
                     format!("an axis of {found} under an excitation of kind {kind}"),
                     "a parameter that this excitation has",

@@ -1,7 +1,8 @@
 //! The rig: two masses on springs and dampers, a gap and a restitution.
 
-use super::State;
-use super::scales::{Least, number};
+use super::body::Body;
+use super::{Parameter, State};
+use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use vibro_math::Oscillator;
 use vibro_record::{Error, Result};
@@ -41,9 +42,6 @@ impl Default for Rig {
 }
 
 impl Rig {
-    /// Names of its values in files.
-    pub const KEYS: [&str; 8] = ["m1", "m2", "k1", "k2", "c1", "c2", "gap", "restitution"];
-
     /// The thesis' rig; its damping was estimated, its restitution is the one of its closed-form examples.
     pub fn thesis() -> Rig {
         Rig { m1: 0.125, m2: 0.094, k1: 135.0, k2: 128.0, c1: 0.1, c2: 0.1, gap: 1e-3, restitution: 0.7 }
@@ -60,25 +58,7 @@ impl Rig {
 
     /// The first value that no rig can have: its key, and the complaint.
     pub fn fault(&self) -> Option<(&'static str, Error)> {
-        for (key, value, unit, least) in [
-            ("m1", self.m1, "kg", Least::AboveZero),
-            ("m2", self.m2, "kg", Least::AboveZero),
-            ("k1", self.k1, "N/m", Least::AboveZero),
-            ("k2", self.k2, "N/m", Least::AboveZero),
-            ("c1", self.c1, "N s/m", Least::Zero),
-            ("c2", self.c2, "N s/m", Least::Zero),
-            ("gap", self.gap, "m", Least::Any),
-        ] {
-            let counts = !(self.has_wall() && key.ends_with('2'));
-            if let Some(error) = number(key, value, unit, least).err().filter(|_| counts) {
-                return Some((key, error));
-            }
-        }
-        if (0.0..=1.0).contains(&self.restitution) {
-            return None;
-        }
-        let found = format!("restitution is {}", self.restitution);
-        Some(("restitution", Error::usage(found, "a value from 0 (no rebound) to 1 (no loss)")))
+        Parameter::of_rig().find_map(|p| Some((p.name(), p.check(p.counting(self)?).err()?)))
     }
 
     /// Whether the passive mass is infinite: a wall.
@@ -111,15 +91,12 @@ impl Rig {
     /// Speed in m/s of both masses together with their common momentum.
     pub(super) fn common_speed(&self, state: &State) -> f64 {
         let momentum = self.m1 * state.v1 + self.m2 * state.v2;
-        if self.has_wall() { 0.0 } else { momentum / (self.m1 + self.m2) }
+        self.joined().map_or(0.0, |both| momentum / both.mass)
     }
 
     /// Reduced mass M = m₁m₂/(m₁ + m₂) in kg.
     pub fn reduced_mass(&self) -> f64 {
-        if self.has_wall() {
-            return self.m1;
-        }
-        self.m1 * self.m2 / (self.m1 + self.m2)
+        self.joined().map_or(self.m1, |both| self.m1 * self.m2 / both.mass)
     }
 
     /// Impulse of an impact over its approach speed, M(1 + R) in kg.
@@ -132,14 +109,33 @@ impl Rig {
         [(self.k1 / self.m1).sqrt(), (self.k2 / self.m2).sqrt()].map(|omega| omega / std::f64::consts::TAU)
     }
 
+    /// Mass 1 and mass 2, each alone.
+    pub(crate) fn bodies(&self) -> [Body; 2] {
+        let [damping, stiffness] = if self.has_wall() { [0.0; 2] } else { [self.c2, self.k2] };
+        [
+            Body { mass: self.m1, damping: self.c1, stiffness: self.k1 },
+            Body { mass: self.m2, damping, stiffness },
+        ]
+    }
+
+    /// Both masses held together; `None` against a wall.
+    pub(crate) fn joined(&self) -> Option<Body> {
+        let [first, second] = self.bodies();
+        (!self.has_wall()).then_some(Body {
+            mass: first.mass + second.mass,
+            damping: first.damping + second.damping,
+            stiffness: first.stiffness + second.stiffness,
+        })
+    }
+
     /// Free motion of each mass; a wall is free and rests.
     pub fn oscillators(&self) -> [Oscillator; 2] {
-        let second = if self.has_wall() {
-            Oscillator::new(1.0, 0.0, 0.0)
-        } else {
-            Oscillator::new(self.m2, self.c2, self.k2)
-        };
-        [Oscillator::new(self.m1, self.c1, self.k1), second]
+        self.bodies().map(|body| body.oscillator())
+    }
+
+    /// Receptances L₁(iω), L₂(iω) of the masses, each alone, in m/N.
+    pub fn receptances(&self, omega: f64) -> [Complex64; 2] {
+        self.bodies().map(|body| body.receptance(omega))
     }
 }
 

@@ -3,7 +3,7 @@
 //! Phases have the relative rounding ε = 2.2e-16. After n swings of a mass its phase is off by 2πnε; half of all digits,
 //! √ε, are left for n ≤ 1/(2π√ε) = 1.07e7. A flight is searched for contacts at each swing, so this bounds the work of a cycle as well.
 
-use super::{Excitation, Rig};
+use super::{Excitation, Parameter, Rig};
 use std::f64::consts::TAU;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
@@ -20,6 +20,8 @@ pub(super) enum Least {
     Any,
     Zero,
     AboveZero,
+    /// From 0 to 1.
+    Part,
 }
 
 /// Checks that a number is finite, and not too small.
@@ -31,6 +33,7 @@ pub(super) fn number(name: &str, value: f64, unit: &str, least: Least) -> Result
         Least::Any => (true, "a finite value"),
         Least::Zero => (value >= 0.0, "a finite value of 0 or more"),
         Least::AboveZero => (value > 0.0, "a finite value above 0"),
+        Least::Part => ((0.0..=1.0).contains(&value), "a value from 0 to 1"),
     };
     if fine && value.is_finite() {
         return Ok(());
@@ -46,11 +49,11 @@ pub(super) fn number(name: &str, value: f64, unit: &str, least: Least) -> Result
 pub(super) fn check(rig: &Rig, excitation: &Excitation) -> Result<()> {
     rig.check()?;
     excitation.check()?;
-    let Rig { m1, m2, k1, k2, c1, c2, gap, .. } = *rig;
-    let second = if rig.has_wall() { [0.0; 3] } else { [m2, k2, c2] };
-    let own = [m1, k1, c1, gap, excitation.size(), excitation.frequency()];
+    let own = Parameter::of_rig().filter(|p| *p != Parameter::Restitution).filter_map(|p| p.counting(rig));
     let in_range = |value: f64| value == 0.0 || (LARGEST.recip()..=LARGEST).contains(&value.abs());
-    if let Some(value) = own.into_iter().chain(second).find(|value| !in_range(*value)) {
+    if let Some(value) =
+        own.chain([excitation.size(), excitation.frequency()]).find(|value| !in_range(*value))
+    {
         return Err(Error::refused(format!(
             "a value of {value:e}: products of such values leave the range of numbers"
         ))

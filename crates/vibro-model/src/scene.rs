@@ -57,6 +57,9 @@ pub struct Buffer {
 }
 
 impl Scene {
+    /// Names of its tables in files; every other key is the rig's.
+    pub const TABLES: [&str; 3] = ["excitation", "contact", "buffer"];
+
     /// The thesis' rig, driven by nothing.
     pub fn thesis() -> Scene {
         Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None }

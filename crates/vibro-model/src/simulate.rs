@@ -148,10 +148,8 @@ impl Simulation {
         if rig.gap >= 0.0 {
             return State::REST;
         }
-        if rig.has_wall() {
-            return State { x1: rig.gap, ..State::REST };
-        }
-        let x1 = rig.k2 * rig.gap / (rig.k1 + rig.k2);
+        let Some(both) = rig.joined() else { return State { x1: rig.gap, ..State::REST } };
+        let x1 = rig.k2 * rig.gap / both.stiffness;
         State { x1, x2: x1 - rig.gap, ..State::REST }
     }
 

@@ -1,9 +1,9 @@
 //! Both masses together: their motion, the force between them, and how a chatter ends in it.
 
+use super::body::Body;
 use super::flow::Free;
 use super::waves::Waves;
 use super::{Flight, Rig, State};
-use vibro_math::Oscillator;
 use vibro_math::root::{Bounded, first_fall};
 
 /// Motion of both masses in contact, in closed form; time counts from its start.
@@ -27,8 +27,8 @@ enum Course {
         /// Where x₁ would rest, in m.
         rest: f64,
         free: Free,
-        /// m₂, c₂, k₂.
-        passive: [f64; 3],
+        /// Mass 2.
+        passive: Body,
     },
     /// Held against a wall.
     Still {
@@ -42,14 +42,13 @@ impl Pair {
     /// Motion from displacement `x1` (m) of mass 1 and the common velocity `v` (m/s), under a constant force (N) and with forced
     /// motion `waves` of the pair (m; against a wall, the sine forces in N).
     pub(super) fn new(rig: &Rig, waves: Waves, force: f64, x1: f64, v: f64) -> Pair {
-        if rig.has_wall() {
+        let ([_, passive], Some(both)) = (rig.bodies(), rig.joined()) else {
             return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: rig.k1 } };
-        }
+        };
         let [x, slope, ..] = waves.at(0.0);
-        let rest = (force + rig.k2 * rig.gap) / (rig.k1 + rig.k2);
-        let oscillator = Oscillator::new(rig.m1 + rig.m2, rig.c1 + rig.c2, rig.k1 + rig.k2);
-        let free = Free { oscillator, x: x1 - rest - x, v: v - slope };
-        let course = Course::Moving { rest, free, passive: [rig.m2, rig.c2, rig.k2] };
+        let rest = (force + passive.stiffness * rig.gap) / both.stiffness;
+        let free = Free { oscillator: both.oscillator(), x: x1 - rest - x, v: v - slope };
+        let course = Course::Moving { rest, free, passive };
         Pair { waves, gap: rig.gap, course }
     }
 
@@ -72,12 +71,12 @@ impl Pair {
                 let curvature = self.waves.limits.curvature;
                 Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
             }
-            Course::Moving { rest, free, passive: [m, c, k] } => {
+            Course::Moving { rest, free, passive } => {
                 let ([x, v, a, jerk, ..], [bend, third, fourth]) = self.series(*rest, free, t);
                 Bounded {
-                    value: m * a + c * v + k * (x - self.gap),
-                    slope: m * jerk + c * a + k * v,
-                    curvature: m * fourth + c * third + k * bend,
+                    value: passive.mass * a + passive.damping * v + passive.stiffness * (x - self.gap),
+                    slope: passive.mass * jerk + passive.damping * a + passive.stiffness * v,
+                    curvature: passive.mass * fourth + passive.damping * third + passive.stiffness * bend,
                 }
             }
         }
@@ -89,9 +88,9 @@ impl Pair {
             Course::Still { force, stiffness } => {
                 self.waves.amplitude + force.abs() + stiffness * self.gap.abs()
             }
-            Course::Moving { rest, free, passive: [m, _, k] } => {
+            Course::Moving { rest, free, passive } => {
                 let ([x, ..], [bend, ..]) = self.series(*rest, free, 0.0);
-                m * bend + k * (x.abs() + rest.abs() + self.gap.abs())
+                passive.mass * bend + passive.stiffness * (x.abs() + rest.abs() + self.gap.abs())
             }
         };
         8.0 * f64::EPSILON * size

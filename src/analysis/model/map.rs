@@ -37,7 +37,7 @@ impl Keys {
         let (x, y): (Axis, Axis) = (self.x.parse()?, self.y.parse()?);
         // What is varied needs not be given: the excitation then begins at its low end.
         let or_varied = |given: Option<f64>, name: &str| {
-            given.or_else(|| [&x, &y].into_iter().find(|a| a.key.label().0 == name).map(|a| a.low))
+            given.or_else(|| [&x, &y].into_iter().find(|a| a.key.name() == name).map(|a| a.low))
         };
         let scene = SceneKeys {
             force: or_varied(self.scene.force, "force"),
@@ -55,8 +55,8 @@ impl Keys {
         };
         let mut answer = Answer::of(&json!({
             "scene": scene,
-            "x_name": x.key.label().0,
-            "y_name": y.key.label().0,
+            "x_name": x.key.name(),
+            "y_name": y.key.name(),
             "x": x.values(),
             "y": y.values(),
             "regime": grid(&|c| json!(c.regime)),
@@ -77,11 +77,10 @@ impl Keys {
             .iter()
             .enumerate()
             .flat_map(|(row, cells)| cells.iter().enumerate().map(move |(column, cell)| (column, row, cell)));
-        let ((x_name, x_unit), (y_name, y_unit)) = (x.key.label(), y.key.label());
         let regime = |cell: &Cell| cell.regime.map_or_else(String::new, |r| r.to_string());
         let columns: [Shown<(usize, usize, &Cell)>; 4] = [
-            (y_name, y_unit, &|c| y.value(c.1).into()),
-            (x_name, x_unit, &|c| x.value(c.0).into()),
+            (y.key.name(), y.key.unit(), &|c| y.value(c.1).into()),
+            (x.key.name(), x.key.unit(), &|c| x.value(c.0).into()),
             ("regime", "", &|c| regime(c.2).into()),
             ("spectral radius", "", &|c| c.2.spectral_radius.into()),
         ];

@@ -7,8 +7,8 @@ use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::Response;
+use crate::model::Parameter;
 use crate::model::Rig;
-use crate::model::map::Key;
 use crate::record::Finding;
 use serde_json::{Value, json};
 
@@ -103,6 +103,8 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
 
 fn constants(rig: &Rig) -> Vec<(String, String)> {
     let Value::Object(keys) = json!(rig) else { return Vec::new() };
-    let unit = |key: &str| Key::named(key).map_or("", |key| key.label().1);
+    let unit = |key: &str| {
+        Parameter::named(key).map(Parameter::unit).filter(|unit| *unit != "1").unwrap_or_default()
+    };
     keys.iter().map(|(key, value)| (key.clone(), format!("{value} {}", unit(key)))).collect()
 }

@@ -6,11 +6,11 @@ use super::data::{GUESS, Step};
 use super::hold_out::Rung;
 use super::uncertainty::{NORMAL, Profile, Uncertainty, Unidentified, profile};
 use super::unknown::{Setting, Unknown};
-use crate::campaign::{FitEntry, Parameter};
+use crate::campaign::FitEntry;
 use crate::error::Result;
 use crate::measure::Estimate;
 use crate::measure::residuals::student;
-use crate::model::Rig;
+use crate::model::{Parameter, Rig};
 use crate::record::{Direction, Finding};
 use serde::Serialize;
 

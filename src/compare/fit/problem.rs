@@ -4,9 +4,9 @@ use super::super::forcing::range;
 use super::super::prediction::Kind;
 use super::data::{Data, Reading, Step};
 use super::unknown::{Setting, Unknown};
-use crate::campaign::Parameter;
 use crate::error::{Error, Result};
 use crate::math::{Minimum, minimise};
+use crate::model::Parameter;
 use nalgebra::{DMatrix, SVD};
 
 /// A sum of squares to be minimised: data with weights, and priors.

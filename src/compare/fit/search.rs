@@ -10,8 +10,8 @@ use super::super::prediction::Kind;
 use super::data::{Data, Step};
 use super::problem::Problem;
 use super::unknown::{Setting, Unknown};
-use crate::campaign::Parameter;
 use crate::math::minimise;
+use crate::model::Parameter;
 use rayon::prelude::*;
 
 /// κ of the search, in turn: the starts are off by up to a half.

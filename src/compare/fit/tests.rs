@@ -3,9 +3,9 @@ use super::converge::assigned;
 use super::data::{Reading, Step};
 use super::uncertainty::NORMAL;
 use super::*;
-use crate::campaign::Parameter;
 use crate::math::Noise;
 use crate::measure::Estimate;
+use crate::model::Parameter;
 use crate::record::Direction;
 
 /// Generator's settings of the example campaign in Hz.
@@ -106,7 +106,7 @@ fn noisy(truth: &Data, kinds: &[Option<Kind>], setting: &Setting, seed: u64) -> 
 }
 
 fn unknowns(names: &[&str], from: &Setting) -> Vec<Unknown> {
-    let parameters = names.iter().map(|n| Parameter::from_name(n).unwrap()).collect();
+    let parameters = names.iter().map(|n| FitEntry::parameter(n).unwrap()).collect();
     Unknown::all(&FitEntry { parameters, ..FitEntry::default() }, from).unwrap()
 }
 
@@ -236,7 +236,7 @@ fn with_weighed_masses(seeds: u64) {
         for _ in 0..16 {
             normal.normal();
         }
-        let parameters = Parameter::ALL.to_vec();
+        let parameters = ALL.iter().chain(&["m1", "m2"]).map(|n| FitEntry::parameter(n).unwrap()).collect();
         let mut weighed = |p: Parameter| {
             let (mass, std) = (setting.get(p), 5e-3 * setting.get(p));
             (p, [mass + std * normal.normal(), std])
@@ -264,7 +264,7 @@ fn wrong_starts_come_back() {
     for signs in [0b0101_0101, 0b0011_0110] {
         let off = |i: usize| if signs >> i & 1 == 1 { 1.3 } else { 0.7 };
         let start =
-            ALL.map(|n| Parameter::from_name(n).unwrap()).iter().enumerate().fold(setting, |s, (i, p)| {
+            ALL.map(|n| FitEntry::parameter(n).unwrap()).iter().enumerate().fold(setting, |s, (i, p)| {
                 let value = setting.get(*p);
                 // A loss of 2 % may be taken for 5 %; R itself cannot be 30 % higher.
                 let wrong = if *p == Parameter::Restitution { 0.95 } else { value * off(i) };

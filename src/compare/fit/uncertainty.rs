@@ -3,8 +3,8 @@
 use super::super::prediction::Kind;
 use super::converge::Least;
 use super::problem::Problem;
-use crate::campaign::Parameter;
 use crate::error::{Error, Result};
+use crate::model::Parameter;
 use nalgebra::{DMatrix, DVector, SVD};
 use rayon::prelude::*;
 use serde::Serialize;

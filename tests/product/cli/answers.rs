@@ -308,3 +308,18 @@ fn help_and_version_go_to_standard_output() {
         assert!(!output.stdout.is_empty() && output.stderr.is_empty());
     }
 }
+
+#[test]
+fn the_help_names_every_parameter_of_a_rig() {
+    use vibroimpact::model::Parameter;
+    let names_all = |command: &[&str], of: &dyn Fn(Parameter) -> bool| {
+        let help = String::from_utf8(vibro(command).stdout).unwrap();
+        let words: Vec<&str> = help.split(|c: char| !c.is_alphanumeric()).collect();
+        for name in Parameter::all().filter(|p| of(*p)).map(Parameter::name) {
+            assert!(words.contains(&name), "{command:?} says nothing of {name}");
+        }
+    };
+    names_all(&["model", "orbit", "--help"], &|p| Parameter::is_of_rig(p.name()));
+    names_all(&["model", "map", "--help"], &|_| true);
+    names_all(&["compare", "--help"], &|p| p.can_be_fitted());
+}

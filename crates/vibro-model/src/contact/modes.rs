@@ -27,16 +27,15 @@ impl Modes {
     /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper, the spring of mass 1 acting for
     /// x₁ < −`buffer`.
     pub fn new(rig: &Rig, law: Option<Law>, buffer: f64) -> Modes {
-        // A wall has neither spring nor damper.
-        let (k2, c2) = if rig.has_wall() { (0.0, 0.0) } else { (rig.k2, rig.c2) };
+        let [first, second] = rig.bodies();
         let inverse = [1.0 / rig.m1, 1.0 / rig.m2];
         let (k3, c3) = match law {
             Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
             _ => (0.0, 0.0),
         };
         let own = |acting: bool| {
-            let k1 = if acting { rig.k1 } else { 0.0 };
-            ([[-k1, -rig.c1, 0.0, 0.0], [0.0, 0.0, -k2, -c2]], -k1 * buffer)
+            let k1 = if acting { first.stiffness } else { 0.0 };
+            ([[-k1, -first.damping, 0.0, 0.0], [0.0, 0.0, -second.stiffness, -second.damping]], -k1 * buffer)
         };
         // With a spring k and a damper c between the masses.
         let free = |k: f64, c: f64| {

@@ -5,8 +5,8 @@ fn plan(n: usize) -> Plan {
     Plan {
         rig: Rig::thesis(),
         excitation: Sine { force: 0.5, frequency: 11.0 }.into(),
-        x: Axis { key: Key::named("frequency").unwrap(), low: 4.0, high: 14.0, n },
-        y: Axis { key: Key::named("restitution").unwrap(), low: 0.3, high: 0.95, n },
+        x: Axis { key: Parameter::Frequency, low: 4.0, high: 14.0, n },
+        y: Axis { key: Parameter::Restitution, low: 0.3, high: 0.95, n },
         cycles: 200,
     }
 }

@@ -131,8 +131,8 @@ fn soften(
     }
     let (mut at, mut restitution) = (orbit.clone(), rig.restitution);
     // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
-    let second = if rig.has_wall() { 0.0 } else { rig.c2 / (rig.m2 * rig.m2) };
-    let drag = rig.reduced_mass() * (rig.c1 / (rig.m1 * rig.m1) + second);
+    let [first, second] = rig.bodies().map(|body| body.damping / (body.mass * body.mass));
+    let drag = rig.reduced_mass() * (first + second);
     // Each round leaves about the share in contact of the change that is left: 0.025⁸ is nothing.
     for _ in 0..8 {
         // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by half of that.

@@ -1,13 +1,14 @@
 //! A scene in the making: keys from a file and from a command line, read alike.
 
 use super::{Buffer, ContactKeys, Scene};
-use crate::Rig;
 use crate::excitation::{Excitation, Part};
 use crate::scales::{Least, number};
+use crate::{Parameter, Rig};
 use serde::Deserialize;
+use serde::de::IntoDeserializer;
 use std::path::{Path, PathBuf};
-use toml::de::DeTable;
-use toml::{Table, Value};
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Table, Value};
 use vibro_record::{Error, Place, Result};
 
 /// Kinds of excitation, each with the keys that belong to it.
@@ -18,19 +19,10 @@ const KINDS: [(&str, &[&str]); 4] = [
     ("sines", &["parts", "frequency"]),
 ];
 
-/// All keys that a scene has; none is needed to read it.
+/// The tables beside the rig's own keys.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-#[expect(dead_code, reason = "of most, what is read is that each is known and of its kind")]
-struct Keys {
-    m1: Option<f64>,
-    m2: Option<f64>,
-    k1: Option<f64>,
-    k2: Option<f64>,
-    c1: Option<f64>,
-    c2: Option<f64>,
-    gap: Option<f64>,
-    restitution: Option<f64>,
+#[expect(dead_code, reason = "of the excitation, what is read is that each key is known and of its kind")]
+struct Sections {
     excitation: Option<Driven>,
     contact: Option<ContactKeys>,
     buffer: Option<Buffer>,
@@ -160,7 +152,7 @@ impl Draft {
 
     /// Keys of the rig that were not given and take the values of [`Rig::thesis`].
     pub fn left_out(&self) -> Vec<&'static str> {
-        Rig::KEYS.into_iter().filter(|key| !self.has(key)).collect()
+        Parameter::of_rig().map(Parameter::name).filter(|key| !self.has(key)).collect()
     }
 
     /// The scene, checked.
@@ -169,9 +161,10 @@ impl Draft {
     /// If a value is impossible, or a key of the excitation is missing or belongs to another kind; the complaint points at its line
     /// where it stands in the file.
     pub fn scene(&self) -> Result<Scene> {
-        let keys = Keys::deserialize(self.table.clone()).map_err(|e| complaint(&e, ""))?;
-        let own = self.table.clone().into_iter().filter(|(key, _)| Rig::KEYS.contains(&key.as_str()));
-        let rig = Rig::deserialize(own.collect::<Table>()).map_err(|e| complaint(&e, ""))?;
+        let (sections, own): (Table, Table) =
+            self.table.clone().into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.as_str()));
+        let rig = Rig::deserialize(own).map_err(|e| complaint(&e, ""))?;
+        let keys = Sections::deserialize(sections).map_err(|e| complaint(&e, ""))?;
         if let Some((key, error)) = rig.fault() {
             return Err(self.at(key, error));
         }
@@ -236,7 +229,7 @@ impl Draft {
                     Some(section) => all.get_ref().get(section)?.get_ref().as_table()?,
                     None => all.get_ref(),
                 };
-                place.keys().find(|name| name.get_ref() == inner).map(toml::Spanned::span)
+                place.keys().find(|name| name.get_ref() == inner).map(Spanned::span)
             },
         );
         match span {
@@ -248,7 +241,19 @@ impl Draft {
 
 /// Keys and values of a text, each known and of its kind.
 fn table(text: &str) -> Result<Table> {
-    toml::from_str::<Keys>(text).and_then(|_| toml::from_str(text)).map_err(|e| complaint(&e, text))
+    let wrong = |e: toml::de::Error| complaint(&e, text);
+    let all = DeTable::parse(text).map_err(wrong)?.into_inner();
+    let (sections, own): (DeTable<'_>, DeTable<'_>) =
+        all.into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.get_ref().as_ref()));
+    if let Some((key, _)) = own.iter().find(|(key, _)| !Parameter::is_of_rig(key.get_ref())) {
+        let known = Parameter::of_rig().map(Parameter::name).chain(Scene::TABLES).collect::<Vec<_>>();
+        let error = Error::usage(format!("unknown key `{}`", key.get_ref()), known.join(", "));
+        return Err(error.excerpt(text, key.span()));
+    }
+    let read = |table| Spanned::new(0..0, DeValue::Table(table)).into_deserializer();
+    Rig::deserialize(read(own)).map_err(wrong)?;
+    Sections::deserialize(read(sections)).map_err(wrong)?;
+    toml::from_str(text).map_err(wrong)
 }
 
 /// What serde complains of, with its place.

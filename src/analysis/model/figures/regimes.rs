@@ -32,7 +32,7 @@ pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
     let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(&own, r) as f64));
     let radius = cells(&|c| c.spectral_radius.unwrap_or(f64::NAN));
     let axis = |axis: &Axis| {
-        let (name, unit) = axis.key.label();
+        let (name, unit) = (axis.key.name(), axis.key.unit());
         // A letter with a number is a symbol.
         AxisSpec::new(if name.len() == 2 { name.to_owned() } else { capital(name) }, unit)
     };

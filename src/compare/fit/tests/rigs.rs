@@ -19,7 +19,7 @@ fn off(setting: &Setting, draw: u64) -> Setting {
     for _ in 0..16 {
         normal.normal();
     }
-    Parameter::ALL.iter().filter(|p| !p.is_mass()).fold(*setting, |s, p| {
+    ALL.map(|n| FitEntry::parameter(n).unwrap()).iter().fold(*setting, |s, p| {
         let value = setting.get(*p);
         let (sign, size) = (normal.normal().signum(), 0.2 + 0.3 * (normal.normal().abs() / 2.0).min(1.0));
         let factor = (1.0 + size).powf(sign);

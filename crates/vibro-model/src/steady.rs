@@ -1,23 +1,9 @@
-//! Receptance of one mass, and the motion without impacts.
+//! The motion without impacts.
 
 use super::{Rig, Sine};
 use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};
-
-/// Receptance L(iω) = 1/(k − mω² + icω) in m/N, for motion Re(X e^{iωt}).
-pub fn receptance(m: f64, c: f64, k: f64, omega: f64) -> Complex64 {
-    Complex64::new(k - m * omega * omega, c * omega).inv()
-}
-
-impl Rig {
-    /// Receptances L₁(iω), L₂(iω) of the masses, each alone, in m/N.
-    pub fn receptances(&self, omega: f64) -> [Complex64; 2] {
-        let second =
-            if self.has_wall() { Complex64::ZERO } else { receptance(self.m2, self.c2, self.k2, omega) };
-        [receptance(self.m1, self.c1, self.k1, omega), second]
-    }
-}
 
 /// Forced motion of mass 1 without impacts: x₁ = Re(X e^{iωt}) under the force F₀ cos ωt; mass 2 rests.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,21 +63,6 @@ impl NoImpact {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn limits_of_the_receptance() {
-        // Far below resonance 1/k, at it 1/(icω), far above −1/(mω²).
-        let (m, c, k) = (0.125, 0.1, 135.0);
-        let at = |omega| receptance(m, c, k, omega);
-        assert!((at(1e-9) * k - 1.0).norm() < 1e-12);
-        let resonance = f64::sqrt(k / m);
-        let expected = Complex64::new(0.0, -1.0 / (c * resonance));
-        // k − mω² is left with a rounding of k where c·ω should stand alone.
-        assert!((at(resonance) / expected - 1.0).norm() < 4.0 * f64::EPSILON * k / (c * resonance));
-        let high: f64 = 1e6;
-        // What is left out is k/(mω²) and c/(mω).
-        assert!((at(high) * (-m * high * high) - 1.0).norm() < 2.0 * (c / (m * high)));
-    }
 
     #[test]
     fn undamped_resonance_is_refused() {

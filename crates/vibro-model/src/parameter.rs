@@ -1,0 +1,182 @@
+//! The table of what can be varied: the rig's values and those of its excitation.
+
+use super::scales::{Least, number};
+use super::{Excitation, Rig};
+use serde::{Deserialize, Serialize};
+use vibro_record::Result;
+
+/// A value of the rig or of its excitation: what a map varies and, of those that can be read from a campaign, a fit finds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Parameter {
+    /// The excited mass.
+    M1,
+    /// The passive mass.
+    M2,
+    /// Stiffness of the excited mass' spring.
+    K1,
+    /// Stiffness of the passive mass' spring.
+    K2,
+    /// Damping of the excited mass.
+    C1,
+    /// Damping of the passive mass.
+    C2,
+    /// Gap at rest Δ.
+    Gap,
+    /// Coefficient of restitution R.
+    Restitution,
+    /// Frequency of the excitation.
+    #[serde(skip_deserializing)]
+    Frequency,
+    /// Force amplitude F₀; where each point has its own measured force, their median, all scaled together.
+    Force,
+    /// Impulse of each blow.
+    #[serde(skip_deserializing)]
+    Impulse,
+    /// Duration of each pulse.
+    #[serde(skip_deserializing)]
+    Width,
+}
+
+/// What a parameter belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    Mass1,
+    Mass2,
+    Contact,
+    Excitation,
+}
+
+/// A parameter's name, unit, least value, what it belongs to, and its place in a rig.
+type Row = (Parameter, &'static str, &'static str, Least, Of, Option<fn(&mut Rig) -> &mut f64>);
+
+/// One row for each, in the order of the names.
+const TABLE: [Row; 12] = [
+    (Parameter::M1, "m1", "kg", Least::AboveZero, Of::Mass1, Some(|rig| &mut rig.m1)),
+    (Parameter::M2, "m2", "kg", Least::AboveZero, Of::Mass2, Some(|rig| &mut rig.m2)),
+    (Parameter::K1, "k1", "N/m", Least::AboveZero, Of::Mass1, Some(|rig| &mut rig.k1)),
+    (Parameter::K2, "k2", "N/m", Least::AboveZero, Of::Mass2, Some(|rig| &mut rig.k2)),
+    (Parameter::C1, "c1", "N s/m", Least::Zero, Of::Mass1, Some(|rig| &mut rig.c1)),
+    (Parameter::C2, "c2", "N s/m", Least::Zero, Of::Mass2, Some(|rig| &mut rig.c2)),
+    (Parameter::Gap, "gap", "m", Least::Any, Of::Contact, Some(|rig| &mut rig.gap)),
+    (Parameter::Restitution, "restitution", "1", Least::Part, Of::Contact, Some(|rig| &mut rig.restitution)),
+    (Parameter::Frequency, "frequency", "Hz", Least::AboveZero, Of::Excitation, None),
+    (Parameter::Force, "force", "N", Least::Zero, Of::Excitation, None),
+    (Parameter::Impulse, "impulse", "N s", Least::Any, Of::Excitation, None),
+    (Parameter::Width, "width", "s", Least::AboveZero, Of::Excitation, None),
+];
+
+impl Parameter {
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Parameter> {
+        TABLE.iter().map(|row| row.0)
+    }
+
+    /// Those of the rig.
+    pub fn of_rig() -> impl Iterator<Item = Parameter> {
+        TABLE.iter().filter(|row| row.5.is_some()).map(|row| row.0)
+    }
+
+    /// Whether a value of the rig has this name.
+    pub fn is_of_rig(name: &str) -> bool {
+        Parameter::of_rig().any(|p| p.name() == name)
+    }
+
+    /// The parameter of this name.
+    pub fn named(name: &str) -> Option<Parameter> {
+        Parameter::all().find(|p| p.name() == name)
+    }
+
+    fn row(self) -> &'static Row {
+        &TABLE[self as usize]
+    }
+
+    /// Name as in files.
+    pub fn name(self) -> &'static str {
+        self.row().1
+    }
+
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        self.row().2
+    }
+
+    /// Least and largest value that it can have.
+    pub fn limits(self) -> (f64, f64) {
+        match self.row().3 {
+            Least::Any => (f64::NEG_INFINITY, f64::INFINITY),
+            Least::Zero | Least::AboveZero => (0.0, f64::INFINITY),
+            Least::Part => (0.0, 1.0),
+        }
+    }
+
+    /// Whether it is one of the masses.
+    pub fn is_mass(self) -> bool {
+        self.unit() == "kg"
+    }
+
+    /// Whether only motions with impacts depend on it.
+    pub fn needs_impacts(self) -> bool {
+        matches!(self.row().4, Of::Mass2 | Of::Contact)
+    }
+
+    /// Whether a fit can find it: the rig's values, and the force on it.
+    pub fn can_be_fitted(self) -> bool {
+        self.row().5.is_some() || self == Parameter::Force
+    }
+
+    /// Its place in a rig; `None` where it belongs to the excitation.
+    pub fn place(self, rig: &mut Rig) -> Option<&mut f64> {
+        self.row().5.map(|place| place(rig))
+    }
+
+    /// Its value in a rig, where it counts: not that of the excitation, nor of a wall.
+    pub(crate) fn counting(self, rig: &Rig) -> Option<f64> {
+        let counts = self.row().4 != Of::Mass2 || !rig.has_wall();
+        self.place(&mut rig.clone()).map(|value| *value).filter(|_| counts)
+    }
+
+    /// Checks a value of it.
+    pub(crate) fn check(self, value: f64) -> Result<()> {
+        number(self.name(), value, if self.unit() == "1" { "" } else { self.unit() }, self.row().3)
+    }
+
+    /// Enters a value; `None` where the excitation has no such number.
+    pub(crate) fn set(self, rig: &mut Rig, excitation: &mut Excitation, value: f64) -> Option<()> {
+        if self == Parameter::Frequency {
+            *excitation = excitation.at_frequency(value);
+            return Some(());
+        }
+        *match (self, excitation) {
+            (Parameter::Force, Excitation::Sine(sine)) => &mut sine.force,
+            (Parameter::Force, Excitation::Pulse(pulses)) => &mut pulses.force,
+            (Parameter::Impulse, Excitation::Impulse(impulses)) => &mut impulses.impulse,
+            (Parameter::Width, Excitation::Pulse(pulses)) => &mut pulses.width,
+            _ => self.place(rig)?,
+        } = value;
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_has_its_row_its_name_and_its_place() {
+        let keys = toml::Table::try_from(Rig::thesis()).unwrap();
+        assert_eq!(Parameter::of_rig().count(), keys.len());
+        for (i, parameter) in Parameter::all().enumerate() {
+            assert_eq!((parameter as usize, Parameter::named(parameter.name())), (i, Some(parameter)));
+            assert_eq!(serde_json::to_value(parameter).unwrap(), parameter.name());
+            let mut rig = Rig::thesis();
+            if let Some(place) = parameter.place(&mut rig) {
+                *place = 0.25;
+                let changed = toml::Table::try_from(rig).unwrap();
+                let differ = keys.iter().filter(|(key, value)| changed[*key] != **value);
+                assert_eq!(differ.map(|(key, _)| key).collect::<Vec<_>>(), [parameter.name()]);
+            }
+        }
+    }
+}
