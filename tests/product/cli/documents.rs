@@ -92,3 +92,21 @@ fn the_example_bench_gives_back_the_truth() {
     assert_eq!(results["drops"][0]["name"], "striker on piston");
     assert_eq!(results["pulses"][2]["name"], "screen");
 }
+
+#[test]
+fn every_command_and_every_key_of_a_campaign_is_described() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
+    let (readme, campaign) = (text("README.md"), text("docs/campaign.md"));
+    let help = String::from_utf8(super::vibro(&["--help"]).stdout).unwrap();
+    let listed = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
+    let commands: Vec<&str> = listed.filter_map(|l| l.split_whitespace().next()).collect();
+    assert!(commands.len() > 10, "{help}");
+    for command in commands.iter().filter(|c| **c != "help") {
+        assert!(readme.contains(&format!("vibro {command}")), "the README says nothing of `vibro {command}`");
+    }
+    for key in super::campaign::sections() {
+        let described = [format!("[{key}]"), format!("`{key}`")].iter().any(|k| campaign.contains(k));
+        assert!(described, "docs/campaign.md says nothing of {key}");
+    }
+}
