@@ -88,7 +88,7 @@ fn swept<M: Motion>(
 }
 
 /// Lets a motion settle and reads it.
-fn read(motion: &mut impl Motion, pace: Pace) -> Result<Simulated> {
+fn read(motion: &mut dyn Motion, pace: Pace) -> Result<Simulated> {
     let frequency = motion.frequency();
     motion.advance(motion.time() + f64::from(pace.settle) / frequency, &mut |_| {})?;
     let (mut gauge, mut watch) = (Gauge::new(Observable::Fundamental, motion.rig()), Watch::new(motion));

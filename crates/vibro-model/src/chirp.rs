@@ -41,9 +41,9 @@ impl Chirp {
     /// # Errors
     /// If rate or deviation is impossible, more than 20 million steps are needed, the frequency does not stay above 0, or as
     /// [`Motion::advance`].
-    pub fn advance<M: Motion>(
+    pub fn advance(
         &self,
-        motion: &mut M,
+        motion: &mut dyn Motion,
         until: f64,
         visit: &mut dyn FnMut(Piece<'_>),
     ) -> Result<()> {

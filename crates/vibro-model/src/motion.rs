@@ -1,6 +1,6 @@
 //! What all simulated motions have in common, whatever their contact law: they go from event to event.
 
-use super::{Excitation, Impact, Rig, State};
+use super::{Counts, Excitation, Impact, Rig, State};
 use vibro_record::Result;
 
 /// What ended a piece of a motion.
@@ -44,7 +44,7 @@ pub struct Piece<'a> {
 }
 
 /// A motion that is followed from event to event, whatever its contact law.
-pub trait Motion: Clone {
+pub trait Motion {
     /// The rig that moves.
     fn rig(&self) -> &Rig;
 
@@ -81,6 +81,11 @@ pub trait Motion: Clone {
     /// # Errors
     /// If `until` is not finite or in the past, or the motion needs more events than can be computed in bounded time.
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()>;
+
+    /// What it has met so far, where that is counted.
+    fn counted(&self) -> Option<Counts> {
+        None
+    }
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ impl Portrait {
     ///
     /// # Errors
     /// If no cycle or more than `MOST_CYCLES` are asked for, or as [`Motion::advance`].
-    pub fn take(motion: &mut impl Motion, sitting: &Sitting) -> Result<Portrait> {
+    pub fn take(motion: &mut dyn Motion, sitting: &Sitting) -> Result<Portrait> {
         if !(1..=MOST_CYCLES).contains(&sitting.cycles) {
             return Err(Error::usage(
                 format!("{} cycles to be looked at", sitting.cycles),

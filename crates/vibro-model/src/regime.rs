@@ -121,7 +121,7 @@ pub struct Watch {
 
 impl Watch {
     /// Watches `motion` from now on.
-    pub fn new(motion: &impl Motion) -> Watch {
+    pub fn new(motion: &dyn Motion) -> Watch {
         let (frequency, start, phase) = (motion.frequency(), motion.time(), motion.phase());
         let (strikes, sticks) = (VecDeque::with_capacity(KEPT), VecDeque::new());
         Watch { frequency, start, now: start, phase, strikes, sticks }
@@ -231,7 +231,7 @@ struct Repeated {
 ///
 /// # Errors
 /// As [`Motion::advance`].
-pub fn regime(motion: &mut impl Motion, settle: u32, cycles: u32) -> Result<Pattern> {
+pub fn regime(motion: &mut dyn Motion, settle: u32, cycles: u32) -> Result<Pattern> {
     motion.advance(motion.time() + f64::from(settle) / motion.frequency(), &mut |_| {})?;
     let mut watch = Watch::new(motion);
     motion

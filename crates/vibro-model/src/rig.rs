@@ -106,10 +106,11 @@ impl Rig {
 
     /// Natural frequencies in Hz of each mass alone, without its damper.
     pub fn natural_frequencies(&self) -> [f64; 2] {
-        [(self.k1 / self.m1).sqrt(), (self.k2 / self.m2).sqrt()].map(|omega| omega / std::f64::consts::TAU)
+        self.bodies().map(|body| (body.stiffness / body.mass).sqrt() / std::f64::consts::TAU)
     }
 
     /// Mass 1 and mass 2, each alone.
+    #[inline]
     pub(crate) fn bodies(&self) -> [Body; 2] {
         let [damping, stiffness] = if self.has_wall() { [0.0; 2] } else { [self.c2, self.k2] };
         [

@@ -149,7 +149,7 @@ impl Simulation {
             return State::REST;
         }
         let Some(both) = rig.joined() else { return State { x1: rig.gap, ..State::REST } };
-        let x1 = rig.k2 * rig.gap / both.stiffness;
+        let x1 = rig.bodies()[1].stiffness * rig.gap / both.stiffness;
         State { x1, x2: x1 - rig.gap, ..State::REST }
     }
 
@@ -287,7 +287,7 @@ impl Simulation {
     /// Motion of masses that are apart, from now on.
     #[inline]
     fn flight(&self) -> Flight {
-        let rest = self.drive.forcing.constant() / self.rig.k1;
+        let rest = self.drive.forcing.constant() / self.rig.bodies()[0].stiffness;
         Flight::with(self.oscillators, self.drive.alone(), rest, self.rig.gap, &self.state)
     }
 
@@ -363,6 +363,10 @@ impl Motion for Simulation {
         self.run(until, |leg| {
             visit(Piece { start: leg.start, duration: leg.duration, path: &leg.course, event: leg.event });
         })
+    }
+
+    fn counted(&self) -> Option<Counts> {
+        Some(self.counts)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The motion without impacts.
 
+use super::body::Body;
 use super::{Rig, Sine};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -24,7 +25,8 @@ impl Steady {
         sine.check()?;
         let omega = sine.omega();
         // k − mω² is a difference of numbers rounded to about 2ε of k: below that it is no number.
-        if rig.c1 == 0.0 && (rig.k1 - rig.m1 * omega * omega).abs() <= 4.0 * f64::EPSILON * rig.k1 {
+        let [Body { mass, damping, stiffness }, _] = rig.bodies();
+        if damping == 0.0 && (stiffness - mass * omega * omega).abs() <= 4.0 * f64::EPSILON * stiffness {
             return Err(Error::refused(format!(
                 "mass 1 has no damper and is driven at its natural frequency, {} Hz: its amplitude grows without end",
                 sine.frequency

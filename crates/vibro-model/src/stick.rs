@@ -42,8 +42,9 @@ impl Pair {
     /// Motion from displacement `x1` (m) of mass 1 and the common velocity `v` (m/s), under a constant force (N) and with forced
     /// motion `waves` of the pair (m; against a wall, the sine forces in N).
     pub(super) fn new(rig: &Rig, waves: Waves, force: f64, x1: f64, v: f64) -> Pair {
-        let ([_, passive], Some(both)) = (rig.bodies(), rig.joined()) else {
-            return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: rig.k1 } };
+        let [first, passive] = rig.bodies();
+        let Some(both) = rig.joined() else {
+            return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: first.stiffness } };
         };
         let [x, slope, ..] = waves.at(0.0);
         let rest = (force + passive.stiffness * rig.gap) / both.stiffness;

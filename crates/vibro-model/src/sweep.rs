@@ -103,12 +103,7 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Plan::check`] and [`Motion::advance`].
-    pub fn frequency<M: Motion>(
-        &self,
-        motion: &mut M,
-        force: f64,
-        direction: Direction,
-    ) -> Result<Vec<Point>> {
+    pub fn frequency(&self, motion: &mut dyn Motion, force: f64, direction: Direction) -> Result<Vec<Point>> {
         self.check()?;
         match self.pace {
             Pace::Steps { .. } => self.steps(motion, direction, |motion, value| {
@@ -123,11 +118,11 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Plan::check`] and [`Motion::advance`], if the pace is a rate, and what `set` complains of.
-    pub fn steps<M: Motion>(
+    pub fn steps(
         &self,
-        motion: &mut M,
+        motion: &mut dyn Motion,
         direction: Direction,
-        mut set: impl FnMut(&mut M, f64) -> Result<(f64, f64)>,
+        mut set: impl FnMut(&mut dyn Motion, f64) -> Result<(f64, f64)>,
     ) -> Result<Vec<Point>> {
         self.check()?;
         let Pace::Steps { points, settle, measure } = self.pace else {
@@ -159,9 +154,9 @@ impl Plan {
     }
 
     /// A continuous sweep: each cycle in [`STEPS`] steps of constant frequency.
-    fn rate<M: Motion>(
+    fn rate(
         &self,
-        motion: &mut M,
+        motion: &mut dyn Motion,
         force: f64,
         direction: Direction,
         rate: f64,
@@ -200,7 +195,7 @@ impl Plan {
 }
 
 /// Goes on by `cycles` of the present frequency and reads.
-fn pass<M: Motion>(motion: &mut M, cycles: f64, gauge: &mut Gauge) -> Result<()> {
+fn pass(motion: &mut dyn Motion, cycles: f64, gauge: &mut Gauge) -> Result<()> {
     let (start, phase, frequency) = (motion.time(), motion.phase(), motion.frequency());
     let omega = TAU * frequency;
     motion.advance(start + cycles / frequency, &mut |piece| {

@@ -1,7 +1,7 @@
 //! The contact law of a scene.
 
 use crate::error::{Error, Result};
-use crate::model::{Compliant, Excitation, Law, Scene, State};
+use crate::model::{Compliant, Excitation, Law, Motion, Scene, Simulation, State};
 use crate::record::Finding;
 use serde::Deserialize;
 
@@ -21,59 +21,81 @@ pub enum Contact {
     LooseMass,
 }
 
-/// The law that `[contact]` of the scene describes. A spring and a damper without a stated damping rebound with the rig's restitution.
-///
-/// # Errors
-/// If a number is missing that nothing else gives, or is impossible.
-fn law(scene: &Scene, wanted: Contact) -> Result<Law> {
-    let keys = scene.contact.unwrap_or_default();
-    let missing = |key: &str, unit: &str| {
-        Error::usage(format!("a contact without {key}"), format!("contact.{key} in {unit}"))
-            .hint(format!("state contact.{key}; no value fits all contacts, and the result depends on it"))
-            .setting("set")
-    };
-    // A key that the law has no place for is no detail: N/m and N/m^1.5 are different things.
-    let exponent = |law: f64| ("exponent", keys.exponent.filter(|n| *n != law), format!("{law}"));
-    let wrong = match wanted {
-        Contact::HuntCrossley => vec![],
-        Contact::Hertz => {
-            vec![exponent(1.5), ("damping", keys.damping, "none: Hertz has no losses".to_owned())]
-        }
-        _ => vec![exponent(1.0)],
-    };
-    if let Some((key, Some(value), expected)) = wrong.into_iter().find(|(_, value, _)| value.is_some()) {
-        return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected)
-            .hint("hunt-crossley takes stiffness, exponent and damping; hertz the stiffness alone; kelvin-voigt stiffness and damping"));
-    }
-    let stiffness = keys.stiffness.ok_or_else(|| missing("stiffness", "N/m, or N/mⁿ"))?;
-    let law = match wanted {
-        Contact::Hertz => Law::Hertz { stiffness },
-        Contact::HuntCrossley => Law::HuntCrossley {
-            stiffness,
-            exponent: keys.exponent.unwrap_or(1.5),
-            damping: keys.damping.ok_or_else(|| missing("damping", "s/m"))?,
-        },
-        _ => scene.spring(stiffness)?,
-    };
-    law.check()?;
-    Ok(law)
+/// What the option that chooses one says.
+pub(super) const HELP: &str = "Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass";
+
+/// A motion, whatever its law.
+pub(super) type Moving = Box<dyn Motion>;
+
+/// How masses meet.
+enum Meeting {
+    AtOnce,
+    Giving(Law),
+    /// A loose mass, with impacts where it has no law.
+    Loose(Option<Law>),
 }
 
-/// Makes motions of a contact that gives way, or of a loose mass, from an excitation, a state and a phase (rad). A loose mass has impacts, or
-/// a spring and a damper where the scene has a contact.
+/// How the masses of a scene meet. A spring and a damper without a stated damping rebound with the rig's restitution.
+fn meeting(scene: &Scene, wanted: Contact) -> Result<Meeting> {
+    let keys = scene.contact.unwrap_or_default();
+    // Keys of `[contact]` that the law has a place for, and the exponent that it has by itself.
+    let (takes, own): (&[&str], _) = match wanted {
+        Contact::Restitution | Contact::HuntCrossley => (&["stiffness", "exponent", "damping"], None),
+        Contact::KelvinVoigt | Contact::LooseMass => (&["stiffness", "damping"], Some(1.0)),
+        Contact::Hertz => (&["stiffness"], Some(1.5)),
+    };
+    // A key that the law has no place for is no detail: N/m and N/m^1.5 are different things.
+    let exponent = keys.exponent.filter(|n| Some(*n) != own);
+    let given = [("stiffness", keys.stiffness), ("exponent", exponent), ("damping", keys.damping)];
+    if let Some((key, value)) =
+        given.iter().find_map(|(k, v)| v.filter(|_| !takes.contains(k)).map(|v| (k, v)))
+    {
+        let expected = format!("what this law takes: {}", takes.join(" and "));
+        return Err(Error::usage(format!("contact.{key} = {value} for this law"), expected)
+            .hint("remove the key, or choose the law that has it: hunt-crossley takes all three"));
+    }
+    let stated = |value: Option<f64>, key: &str, unit: &str| {
+        value.ok_or_else(|| {
+            Error::usage(format!("a contact without {key}"), format!("contact.{key} in {unit}"))
+                .hint(format!(
+                    "state contact.{key}; no value fits all contacts, and the result depends on it"
+                ))
+                .setting("set")
+        })
+    };
+    let stiffness = || stated(keys.stiffness, "stiffness", "N/m, or N/mⁿ");
+    Ok(match wanted {
+        Contact::Restitution => Meeting::AtOnce,
+        Contact::KelvinVoigt => Meeting::Giving(scene.spring(stiffness()?)?),
+        Contact::Hertz => Meeting::Giving(Law::Hertz { stiffness: stiffness()? }),
+        Contact::HuntCrossley => Meeting::Giving(Law::HuntCrossley {
+            stiffness: stiffness()?,
+            exponent: keys.exponent.unwrap_or(1.5),
+            damping: stated(keys.damping, "damping", "s/m")?,
+        }),
+        Contact::LooseMass => Meeting::Loose(scene.contact.map(|_| scene.spring(stiffness()?)).transpose()?),
+    })
+}
+
+/// Makes motions of a scene from an excitation, a state and a phase (rad). Impacts below `grazing` (m/s) count as such, where they are at once.
 ///
 /// # Errors
-/// As [`law`].
-pub(super) fn compliant(
+/// If a number of the contact is missing that nothing else gives, or is impossible.
+pub(super) fn motions(
     scene: &Scene,
     wanted: Contact,
-) -> Result<impl Fn(&Excitation, State, f64) -> Result<Compliant>> {
-    let loose = wanted == Contact::LooseMass;
-    let law = if loose && scene.contact.is_none() { None } else { Some(law(scene, wanted)?) };
+    grazing: f64,
+) -> Result<impl Fn(&Excitation, State, f64) -> Result<Moving>> {
     let (rig, gap) = (&scene.rig, scene.buffer.map_or(0.0, |b| b.gap));
-    Ok(move |excitation: &Excitation, state, phase| match law {
-        Some(law) if !loose => Compliant::new(rig, excitation, law, state, phase),
-        law => Compliant::loose(rig, excitation, gap, law, state, phase),
+    let meeting = meeting(scene, wanted)?;
+    Ok(move |excitation: &Excitation, state, phase| -> Result<Moving> {
+        Ok(match meeting {
+            Meeting::AtOnce => {
+                Box::new(Simulation::from_state(rig, excitation, state, phase)?.grazing_below(grazing))
+            }
+            Meeting::Giving(law) => Box::new(Compliant::new(rig, excitation, law, state, phase)?),
+            Meeting::Loose(law) => Box::new(Compliant::loose(rig, excitation, gap, law, state, phase)?),
+        })
     })
 }
 

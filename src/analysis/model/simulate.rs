@@ -21,8 +21,8 @@ pub struct Keys {
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
     pub frequency: Option<f64>,
-    /// Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
-    #[cfg_attr(feature = "cli", arg(value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    /// The contact law.
+    #[cfg_attr(feature = "cli", arg(help = contact::HELP, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
     /// Excitation cycles analysed
     #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
@@ -67,19 +67,9 @@ impl Keys {
     pub fn answer(&self) -> Result<Answer> {
         let Driven { scene, excitation, finding } = self.scene.driven(self.frequency)?;
         let start = self.start(&scene.rig)?;
-        let seen = match self.model {
-            Contact::Restitution => {
-                above_zero("grazing", Some(self.grazing))?;
-                let motion = Simulation::from_state(&scene.rig, &excitation, start, self.phase)?;
-                let mut motion = motion.grazing_below(self.grazing);
-                self.settle(&mut motion)?;
-                let before = motion.counts().grazing;
-                let seen = self.seen(&mut motion)?;
-                let counts = motion.counts();
-                Seen { grazing: Some(counts.grazing - before), flights: Some(counts.flights), ..seen }
-            }
-            _ => self.settled(contact::compliant(&scene, self.model)?(&excitation, start, self.phase)?)?,
-        };
+        above_zero("grazing", Some(self.grazing))?;
+        let make = contact::motions(&scene, self.model, self.grazing)?;
+        let seen = self.seen(&mut *make(&excitation, start, self.phase)?)?;
         let Seen { portrait, end: (time, phase, state), grazing, flights } = &seen;
         let State { x1, v1, x2, v2 } = state;
         let mut answer = Answer::of(&json!({
@@ -116,22 +106,16 @@ impl Keys {
         }
     }
 
-    fn settle(&self, motion: &mut impl Motion) -> Result<()> {
+    /// What a motion does after it has settled.
+    fn seen(&self, motion: &mut dyn Motion) -> Result<Seen> {
         let end = motion.time() + f64::from(self.settle) / motion.frequency();
-        motion.advance(end, &mut |_| {})
-    }
-
-    fn seen(&self, motion: &mut impl Motion) -> Result<Seen> {
+        motion.advance(end, &mut |_| {})?;
+        let before = motion.counted().map(|counts| counts.grazing);
         let sitting = Sitting { cycles: self.cycles, samples: SAMPLES, shown: SHOWN };
         let portrait = Portrait::take(motion, &sitting)?;
-        let end = (motion.time(), motion.phase(), motion.state());
-        Ok(Seen { portrait, end, grazing: None, flights: None })
-    }
-
-    /// What a motion does after it has settled.
-    fn settled(&self, mut motion: impl Motion) -> Result<Seen> {
-        self.settle(&mut motion)?;
-        self.seen(&mut motion)
+        let (end, counts) = ((motion.time(), motion.phase(), motion.state()), motion.counted());
+        let grazing = counts.zip(before).map(|(counts, before)| counts.grazing - before);
+        Ok(Seen { portrait, end, grazing, flights: counts.map(|counts| counts.flights) })
     }
 
     /// What is not to be relied on.

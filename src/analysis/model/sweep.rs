@@ -1,14 +1,15 @@
 //! Sweeps of frequency or force, the motion carried on from step to step: `vibro model sweep`.
 
-use super::contact::{self, Contact};
+use super::contact::{self, Contact, Moving};
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::Answer;
 use crate::compare::{Named, named};
 use crate::error::Result;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::Resonance;
+use crate::model::simulate::GRAZING_SPEED;
 use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
-use crate::model::{Excitation, Motion, Rig, Simulation, State};
+use crate::model::{Excitation, Rig, Simulation, State};
 use crate::record::{Direction, Finding};
 use crate::report::Table;
 use crate::report::layout::{headed, pair, table};
@@ -31,8 +32,8 @@ pub struct Keys {
     pub to: f64,
     /// Excitation frequency in Hz of a sweep of the force
     pub frequency: Option<f64>,
-    /// Contact law: restitution, kelvin-voigt, hertz, hunt-crossley, loose-mass
-    #[cfg_attr(feature = "cli", arg(value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
+    /// The contact law.
+    #[cfg_attr(feature = "cli", arg(help = contact::HELP, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
     /// Direction: up, down, both
     #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Way>, default_value = "both"))]
@@ -93,12 +94,8 @@ impl Keys {
         };
         let plan = Plan { from: self.from, to: self.to, pace, observable: self.observable };
         plan.check()?;
-        let rig = &scene.rig;
-        let rigid = |e: &Excitation, state, phase| Simulation::from_state(rig, e, state, phase);
-        let swept = match self.model {
-            Contact::Restitution => self.swept(rigid, rig, &excitation, &plan),
-            law => self.swept(contact::compliant(&scene, law)?, rig, &excitation, &plan),
-        }?;
+        let make = contact::motions(&scene, self.model, GRAZING_SPEED)?;
+        let swept = self.swept(make, &scene.rig, &excitation, &plan)?;
         let (resonances, jumps) = if over_force { (Vec::new(), Vec::new()) } else { named(&swept) };
         let mut answer = Answer::of(&json!({
             "scene": scene,
@@ -118,9 +115,9 @@ impl Keys {
     }
 
     /// The sweep of the motions that `make` makes of an excitation, a state and a phase.
-    fn swept<M: Motion>(
+    fn swept(
         &self,
-        make: impl Fn(&Excitation, State, f64) -> Result<M> + Sync,
+        make: impl Fn(&Excitation, State, f64) -> Result<Moving> + Sync,
         rig: &Rig,
         excitation: &Excitation,
         plan: &Plan,
@@ -135,11 +132,11 @@ impl Keys {
             let start = if direction == Direction::Up { plan.from } else { plan.to };
             if self.over == Over::Frequency {
                 let mut motion = make(&excitation.at_frequency(start), rest, 0.0)?;
-                return plan.frequency(&mut motion, excitation.size(), direction);
+                return plan.frequency(&mut *motion, excitation.size(), direction);
             }
             let mut motion = make(&excitation.at_size(start), rest, 0.0)?;
             let frequency = excitation.frequency();
-            plan.steps(&mut motion, direction, |motion, value| {
+            plan.steps(&mut *motion, direction, |motion, value| {
                 motion.set_excitation(&excitation.at_size(value))?;
                 Ok((frequency, value))
             })

@@ -105,7 +105,8 @@ fn every_command_and_every_key_of_a_campaign_is_described() {
     for command in commands.iter().filter(|c| **c != "help") {
         assert!(readme.contains(&format!("vibro {command}")), "the README says nothing of `vibro {command}`");
     }
-    for key in super::campaign::sections() {
+    let of_rig = vibroimpact::model::Parameter::of_rig().map(|p| p.name().to_owned());
+    for key in super::campaign::sections().into_iter().chain(of_rig) {
         let described = [format!("[{key}]"), format!("`{key}`")].iter().any(|k| campaign.contains(k));
         assert!(described, "docs/campaign.md says nothing of {key}");
     }

@@ -102,7 +102,7 @@ impl Reader {
 
     /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of it holds still; where it does
     /// not settle, the second half of all is averaged.
-    pub fn read<M: Motion>(&self, motion: &mut M) -> Result<Reading> {
+    pub fn read(&self, motion: &mut dyn Motion) -> Result<Reading> {
         let mut blocks: Vec<Block> = Vec::with_capacity(self.blocks);
         let mut watch = Watch::new(motion);
         let mut states = Vec::new();
@@ -153,12 +153,7 @@ impl Reader {
     }
 
     /// One block, and the states at the ends of its cycles: x₁, v₁/ω, x₂, v₂/ω in m.
-    fn block<M: Motion>(
-        &self,
-        motion: &mut M,
-        watch: &mut Watch,
-        states: &mut Vec<[f64; 4]>,
-    ) -> Result<Block> {
+    fn block(&self, motion: &mut dyn Motion, watch: &mut Watch, states: &mut Vec<[f64; 4]>) -> Result<Block> {
         let (observable, frequency) = (self.observable, motion.frequency());
         let omega = TAU * frequency;
         let read = match observable {

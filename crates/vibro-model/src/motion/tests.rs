@@ -41,7 +41,7 @@ fn swept<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
             let plan = Plan { from: 1e-5, to: 1e-4, pace, observable: Observable::Peak };
             let phi = exponential(&rig, 1.0 / frequency);
             let (mut z, mut steps): ([f64; 2], _) = ([0.0, 0.0], 0);
-            let mut compare = |motion: &M, impulse: Option<f64>| {
+            let mut compare = |motion: &dyn Motion, impulse: Option<f64>| {
                 let State { x1, v1, x2, v2 } = motion.state();
                 // Some 60 cycles, each with a few roundings of at most 0.1 mm and 4 mm/s (1e-20 m and 1e-18 m/s), the exponential's
                 // ten squarings with a relative 1e-13.

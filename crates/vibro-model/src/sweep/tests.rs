@@ -1,7 +1,12 @@
 use super::*;
 use crate::{Compliant, Excitation, Law, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
 
-fn both<M: Motion + Sync>(plan: &Plan, motion: &M, force: f64, directions: &[Direction]) -> Result<Swept> {
+fn both<M: Motion + Clone + Sync>(
+    plan: &Plan,
+    motion: &M,
+    force: f64,
+    directions: &[Direction],
+) -> Result<Swept> {
     apart(directions, |direction| plan.frequency(&mut motion.clone(), force, direction))
 }
 
@@ -153,7 +158,7 @@ fn the_force_is_swept_like_the_frequency() {
     let swept = apart(&[Direction::Down], |direction| {
         plan.steps(&mut start.clone(), direction, |motion, force| {
             let sine = Sine { force, frequency: 10.0 };
-            *motion = Simulation::from_state(&rig, &sine, motion.state(), motion.phase())?;
+            motion.set_excitation(&Excitation::Sine(sine))?;
             Ok((10.0, force))
         })
     });
