@@ -25,7 +25,7 @@ fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
 fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
     let share = rig.reduced_mass() * (1.0 + rig.restitution);
     let mut jump = Matrix4::identity();
-    let (first, second) = (share / rig.m1, share / rig.m2);
+    let (first, second) = (share / rig.masses()[0], share / rig.masses()[1]);
     jump[(1, 1)] -= first;
     jump[(1, 3)] += first;
     jump[(3, 1)] += second;

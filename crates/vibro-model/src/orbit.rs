@@ -220,7 +220,7 @@ fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<
 /// Response of mass 1 alone to a train of impulses or pulses.
 fn train(rig: &Rig, excitation: &Excitation) -> Result<Response> {
     driven(excitation.size())?;
-    let (m, oscillator, cycle) = (rig.m1, rig.oscillators()[0], 1.0 / excitation.frequency());
+    let (m, oscillator, cycle) = (rig.masses()[0], rig.oscillators()[0], 1.0 / excitation.frequency());
     match *excitation {
         Excitation::Impulse(train) => Response::impulse(m, oscillator, cycle, train.impulse),
         Excitation::Pulse(train) => Response::pulse(m, oscillator, cycle, train.force, train.width),

@@ -39,32 +39,23 @@ pub enum Parameter {
     Width,
 }
 
-/// What a parameter belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Of {
-    Mass1,
-    Mass2,
-    Contact,
-    Excitation,
-}
-
-/// A parameter's name, unit, least value, what it belongs to, and its place in a rig.
-type Row = (Parameter, &'static str, &'static str, Least, Of, Option<fn(&mut Rig) -> &mut f64>);
+/// A parameter's name, unit, least value, the mass that it belongs to (0 or 1; none of the contact and the excitation), and its place in a rig.
+type Row = (Parameter, &'static str, &'static str, Least, Option<u8>, Option<fn(&mut Rig) -> &mut f64>);
 
 /// One row for each, in the order of the names.
 const TABLE: [Row; 12] = [
-    (Parameter::M1, "m1", "kg", Least::AboveZero, Of::Mass1, Some(|rig| &mut rig.m1)),
-    (Parameter::M2, "m2", "kg", Least::AboveZero, Of::Mass2, Some(|rig| &mut rig.m2)),
-    (Parameter::K1, "k1", "N/m", Least::AboveZero, Of::Mass1, Some(|rig| &mut rig.k1)),
-    (Parameter::K2, "k2", "N/m", Least::AboveZero, Of::Mass2, Some(|rig| &mut rig.k2)),
-    (Parameter::C1, "c1", "N s/m", Least::Zero, Of::Mass1, Some(|rig| &mut rig.c1)),
-    (Parameter::C2, "c2", "N s/m", Least::Zero, Of::Mass2, Some(|rig| &mut rig.c2)),
-    (Parameter::Gap, "gap", "m", Least::Any, Of::Contact, Some(|rig| &mut rig.gap)),
-    (Parameter::Restitution, "restitution", "1", Least::Part, Of::Contact, Some(|rig| &mut rig.restitution)),
-    (Parameter::Frequency, "frequency", "Hz", Least::AboveZero, Of::Excitation, None),
-    (Parameter::Force, "force", "N", Least::Zero, Of::Excitation, None),
-    (Parameter::Impulse, "impulse", "N s", Least::Any, Of::Excitation, None),
-    (Parameter::Width, "width", "s", Least::AboveZero, Of::Excitation, None),
+    (Parameter::M1, "m1", "kg", Least::AboveZero, Some(0), Some(|rig| &mut rig.m1)),
+    (Parameter::M2, "m2", "kg", Least::AboveZero, Some(1), Some(|rig| &mut rig.m2)),
+    (Parameter::K1, "k1", "N/m", Least::AboveZero, Some(0), Some(|rig| &mut rig.k1)),
+    (Parameter::K2, "k2", "N/m", Least::AboveZero, Some(1), Some(|rig| &mut rig.k2)),
+    (Parameter::C1, "c1", "N s/m", Least::Zero, Some(0), Some(|rig| &mut rig.c1)),
+    (Parameter::C2, "c2", "N s/m", Least::Zero, Some(1), Some(|rig| &mut rig.c2)),
+    (Parameter::Gap, "gap", "m", Least::Any, None, Some(|rig| &mut rig.gap)),
+    (Parameter::Restitution, "restitution", "1", Least::Part, None, Some(|rig| &mut rig.restitution)),
+    (Parameter::Frequency, "frequency", "Hz", Least::AboveZero, None, None),
+    (Parameter::Force, "force", "N", Least::Zero, None, None),
+    (Parameter::Impulse, "impulse", "N s", Least::Any, None, None),
+    (Parameter::Width, "width", "s", Least::AboveZero, None, None),
 ];
 
 impl Parameter {
@@ -118,7 +109,7 @@ impl Parameter {
 
     /// Whether only motions with impacts depend on it.
     pub fn needs_impacts(self) -> bool {
-        matches!(self.row().4, Of::Mass2 | Of::Contact)
+        self.row().5.is_some() && self.row().4 != Some(0)
     }
 
     /// Whether a fit can find it: the rig's values, and the force on it.
@@ -133,7 +124,7 @@ impl Parameter {
 
     /// Its value in a rig, where it counts: not that of the excitation, nor of a wall.
     pub(crate) fn counting(self, rig: &Rig) -> Option<f64> {
-        let counts = self.row().4 != Of::Mass2 || !rig.has_wall();
+        let counts = self.row().4 != Some(1) || !rig.has_wall();
         self.place(&mut rig.clone()).map(|value| *value).filter(|_| counts)
     }
 

@@ -90,13 +90,15 @@ impl Rig {
 
     /// Speed in m/s of both masses together with their common momentum.
     pub(super) fn common_speed(&self, state: &State) -> f64 {
-        let momentum = self.m1 * state.v1 + self.m2 * state.v2;
+        let [m1, m2] = self.masses();
+        let momentum = m1 * state.v1 + m2 * state.v2;
         self.joined().map_or(0.0, |both| momentum / both.mass)
     }
 
     /// Reduced mass M = m₁m₂/(m₁ + m₂) in kg.
     pub fn reduced_mass(&self) -> f64 {
-        self.joined().map_or(self.m1, |both| self.m1 * self.m2 / both.mass)
+        let [m1, m2] = self.masses();
+        self.joined().map_or(m1, |both| m1 * m2 / both.mass)
     }
 
     /// Impulse of an impact over its approach speed, M(1 + R) in kg.
@@ -117,6 +119,12 @@ impl Rig {
             Body { mass: self.m1, damping: self.c1, stiffness: self.k1 },
             Body { mass: self.m2, damping, stiffness },
         ]
+    }
+
+    /// What of each mass has to be moved, in kg.
+    #[inline]
+    pub(crate) fn masses(&self) -> [f64; 2] {
+        self.bodies().map(|body| body.mass)
     }
 
     /// Both masses held together; `None` against a wall.

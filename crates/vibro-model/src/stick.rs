@@ -161,8 +161,8 @@ impl Press {
     pub(crate) fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
         let (a, r) = (self.acceleration, rig.restitution);
         let lost = 1.0 - r;
-        let [first, second] = rig.oscillators();
-        let kappa = 2.0 * rig.reduced_mass() * (first.decay() / rig.m1 + second.decay() / rig.m2);
+        let ([first, second], [m1, m2]) = (rig.oscillators(), rig.masses());
+        let kappa = 2.0 * rig.reduced_mass() * (first.decay() / m1 + second.decay() / m2);
         let leading = 2.0 * w / (a * lost);
         let correction = (4.0 / 3.0 * self.jerk / a - 2.0 * r * kappa) / (a * a) * (w / lost) * (w / lost);
         let scale = first.omega2().sqrt() + second.omega2().sqrt() + first.decay() + second.decay();

@@ -59,8 +59,8 @@ impl Compliant {
         let met = self.met();
         let impulse = self.rig.exchange() * met.approach_velocity;
         self.slack = 0.0;
-        self.state.v1 -= impulse / self.rig.m1;
-        self.state.v2 += impulse / self.rig.m2;
+        self.state.v1 -= impulse / self.rig.masses()[0];
+        self.state.v2 += impulse / self.rig.masses()[1];
         Event::Impact(Impact { impulse, ..met })
     }
 
@@ -90,7 +90,7 @@ impl Compliant {
         self.drive.tick(tick);
         let event = match tick {
             Tick::Kick(impulse) => {
-                self.state.v1 += impulse / self.rig.m1;
+                self.state.v1 += impulse / self.rig.masses()[0];
                 Event::Kick
             }
             Tick::On | Tick::Off => Event::Switch,

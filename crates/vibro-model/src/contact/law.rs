@@ -91,8 +91,10 @@ impl Law {
         let force = match self {
             Law::KelvinVoigt { .. } => stiffness * indentation + damping * rate,
             Law::Hertz { .. } => stiffness * indentation * indentation.sqrt(),
-            _ if exponent == 1.5 => stiffness * (indentation * indentation.sqrt()) * (1.0 + damping * rate),
-            _ => stiffness * indentation.powf(exponent) * (1.0 + damping * rate),
+            Law::HuntCrossley { .. } if exponent == 1.5 => {
+                stiffness * (indentation * indentation.sqrt()) * (1.0 + damping * rate)
+            }
+            Law::HuntCrossley { .. } => stiffness * indentation.powf(exponent) * (1.0 + damping * rate),
         };
         force.max(0.0)
     }

@@ -53,8 +53,8 @@ impl Conditions {
         }
         let period = f64::from(cycles) / frequency;
         scales::check_swings(rig, 1.0 / period, MOST_SWINGS)?;
-        let [first, second] = rig.oscillators();
-        let greens = [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?];
+        let ([first, second], [m1, m2]) = (rig.oscillators(), rig.masses());
+        let greens = [Green::new(m1, first, period)?, Green::new(m2, second, period)?];
         let [first, second] = &greens;
         Ok(Conditions {
             rig: *rig,

@@ -28,13 +28,13 @@ impl System {
     pub fn new(rig: &Rig, sine: &Sine, cycles: u32) -> Result<System> {
         let steady = Steady::new(rig, sine)?;
         let period = f64::from(cycles) * TAU / steady.omega;
-        let [first, second] = rig.oscillators();
+        let ([first, second], [m1, m2]) = (rig.oscillators(), rig.masses());
         Ok(System {
             rig: *rig,
             omega: steady.omega,
             period,
             response: steady.response,
-            greens: [Green::new(rig.m1, first, period)?, Green::new(rig.m2, second, period)?],
+            greens: [Green::new(m1, first, period)?, Green::new(m2, second, period)?],
             contact: 1.0 / rig.exchange(),
             length: rig.gap.abs().max(steady.amplitude()).max(f64::MIN_POSITIVE),
         })

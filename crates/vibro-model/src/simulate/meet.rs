@@ -18,8 +18,8 @@ impl Simulation {
     pub(super) fn collide(&mut self) -> Result<Impact> {
         let approach = self.state.approach();
         let impulse = self.exchange * approach;
-        self.state.v1 -= impulse / self.rig.m1;
-        self.state.v2 += impulse / self.rig.m2;
+        self.state.v1 -= impulse / self.rig.masses()[0];
+        self.state.v2 += impulse / self.rig.masses()[1];
         self.hold = Hold::Apart;
         if approach < SLOW.max(self.grazing_speed).max(SLOW_PART * self.speed())
             || self.rig.restitution == 0.0
@@ -78,7 +78,7 @@ impl Simulation {
     pub(super) fn tick(&mut self, tick: Tick) -> Result<Event> {
         self.drive.forcing.tick(tick);
         if let Tick::Kick(impulse) = tick {
-            self.state.v1 += impulse / self.rig.m1;
+            self.state.v1 += impulse / self.rig.masses()[0];
             if impulse != 0.0 {
                 self.hold = Hold::Apart;
             }
