@@ -27,6 +27,11 @@ pub struct Reading {
     pub decimal: Option<Decimal>,
     /// Two columns of values are real and imaginary part
     pub complex: bool,
+    /// Rows of several columns continue each other as one series
+    #[cfg_attr(feature = "cli", arg(conflicts_with = "columns"))]
+    pub wrapped: bool,
+    /// Each column is a channel, however much the rows look like one series
+    pub columns: bool,
 }
 
 /// Which record of a file is meant, and its calibration.
@@ -66,8 +71,8 @@ pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
 
 impl Reading {
     /// Its keys.
-    pub const KEYS: [&str; 7] =
-        ["format", "allow_missing", "rate", "base_band", "unit", "decimal", "complex"];
+    pub const KEYS: [&str; 9] =
+        ["format", "allow_missing", "rate", "base_band", "unit", "decimal", "complex", "wrapped", "columns"];
 
     /// A reader that knows what is stated.
     ///
@@ -93,7 +98,8 @@ impl Reading {
             .base_band(self.base_band)
             .unit(self.unit.as_ref().map(unit).transpose()?)
             .decimal_comma(self.decimal.map(|d| d == Decimal::Comma))
-            .complex(self.complex))
+            .complex(self.complex)
+            .wrapped((self.wrapped || self.columns).then_some(self.wrapped)))
     }
 }
 

@@ -86,8 +86,11 @@ fn line(text: &mut String, r: &Header, numbered: bool) {
         Some(dx) => format!("step {}", known(dx, axis)),
         None => "uneven steps".to_owned(),
     };
-    let max = match (r.max_abs, r.max_at) {
-        (Some(max), Some(at)) => format!("max {} at {}", known(max, &r.unit), known(at, axis)),
+    let max = match (r.max_abs.zip(r.max_at), r.min.zip(r.max)) {
+        (Some((_, at)), Some((min, max))) => {
+            format!("{} to {}, largest at {}", known(min, ""), known(max, &r.unit), known(at, axis))
+        }
+        (Some((max, at)), None) => format!("max {} at {}", known(max, &r.unit), known(at, axis)),
         _ => "max not known".to_owned(),
     };
     let complex = if r.complex { "complex " } else { "" };

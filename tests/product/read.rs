@@ -3,6 +3,7 @@
 mod ascii_rows;
 mod ascii_statements;
 mod formats;
+mod lab_files;
 mod stated_axes;
 mod sweep_units;
 mod traces;

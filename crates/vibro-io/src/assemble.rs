@@ -141,6 +141,69 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     (axis, finding)
 }
 
+/// What a file says of an abscissa.
+pub struct Abscissa {
+    pub kind: AxisKind,
+    /// Start and step.
+    pub even: Option<(f64, f64)>,
+    /// Instants or lines that are stored one by one; empty where there are none.
+    pub stored: Vec<f64>,
+    /// Half a unit in the last digit of those.
+    pub resolution: f64,
+}
+
+impl Abscissa {
+    /// Values at equal distances.
+    pub fn even(kind: AxisKind, even: Option<(f64, f64)>) -> Abscissa {
+        Abscissa { kind, even, stored: Vec::new(), resolution: 0.0 }
+    }
+
+    /// The axis of `n` values. A stated rate wins, then a step, then what is stored. A step that is no step leaves numbered values, and so
+    /// does a file that says nothing.
+    pub fn axis(self, n: usize, options: &Options, meta: &mut Meta) -> Axis {
+        let Abscissa { kind, even, stored, resolution } = self;
+        let silent = even.is_none() && stored.len() != n;
+        if let (Some(band), true) = (options.base_band, silent && options.rate.is_none()) {
+            return Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n);
+        }
+        if options.base_band.is_some() && kind == AxisKind::Frequency {
+            meta.found(Finding::caution("band-unused"));
+        }
+        let (start, step) = match (options.rate.filter(|_| kind == AxisKind::Time), even) {
+            (Some(rate), _) => {
+                let (start, step) = even.unzip();
+                let said = 1.0 / rate;
+                // Files print six digits.
+                if !silent && step.is_none_or(|step| (step / said - 1.0).abs() > 1e-5) {
+                    let found = match step {
+                        Some(step) => Finding::caution("rate-overrides-step").number("step", step),
+                        None => Finding::caution("rate-overrides-instants"),
+                    };
+                    meta.found(found.number("rate", rate));
+                }
+                (start.unwrap_or(0.0), said)
+            }
+            (None, Some(even)) => even,
+            (None, None) if silent => {
+                meta.found(Finding::caution("abscissa-unsaid"));
+                return Axis::index(n);
+            }
+            // Lines of a spectrum are used one by one and keep their frequencies.
+            (None, None) if kind != AxisKind::Time => return Axis { kind, grid: Grid::Uneven(stored) },
+            (None, None) => {
+                let (axis, found) = from_values(kind, stored, resolution, "abscissa");
+                meta.findings.extend(found);
+                return axis;
+            }
+        };
+        if step > 0.0 && step.is_finite() && start.is_finite() {
+            return Axis { kind, grid: Grid::Even { start, step, n } };
+        }
+        meta.found(Finding::caution("increment-impossible").number("step", step));
+        Axis::index(n)
+    }
+}
+
 /// Whether the longer steps come as regularly as rounding an even grid makes them: the distances between them differ by one
 /// at most. Fewer than three of them prove nothing.
 fn is_rounding(steps: &[f64], middle: f64) -> bool {

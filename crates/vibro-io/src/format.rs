@@ -1,7 +1,7 @@
 //! The ordered table of formats.
 
 use super::reader::{Options, Recording};
-use super::{Header, Source, mat, text, uff, wav};
+use super::{Header, Source, lvm, mat, tdms, text, uff, wav};
 use vibro_record::{Finding, Result};
 
 /// A readable format.
@@ -13,6 +13,10 @@ pub enum Format {
     Wav,
     /// MATLAB level 5 MAT-file.
     Mat,
+    /// NI's TDMS.
+    Tdms,
+    /// LabVIEW measurement.
+    Lvm,
     /// Named columns.
     Csv,
     /// Columns of numbers, with or without header lines.
@@ -39,6 +43,8 @@ pub(super) struct Entry {
 pub(super) const TABLE: &[Entry] = &[
     Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: Some(wav::survey) },
     Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: None },
+    Entry { format: Format::Tdms, name: "tdms", sniff: tdms::sniff, read: tdms::read, survey: None },
+    Entry { format: Format::Lvm, name: "lvm", sniff: lvm::sniff, read: lvm::read, survey: None },
     Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: None },
     Entry { format: Format::Csv, name: "csv", sniff: text::is_table, read: text::read_table, survey: None },
     Entry {

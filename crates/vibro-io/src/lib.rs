@@ -20,6 +20,8 @@
 //! |---|---|---|
 //! | `wav` | `wav` | RIFF and RF64 wave |
 //! | `mat` | `mat` | MATLAB level 5 |
+//! | `tdms` | `tdms` | LabVIEW's and NI-DAQmx' TDMS |
+//! | `lvm` | `lvm` | LabVIEW measurement |
 //! | `uff` | `uff`, `uff58` | Universal File Format, data sets 58 and 58b |
 //! | `csv`, `ascii` | `text` | tables with names; columns of numbers |
 //!
@@ -28,7 +30,9 @@
 
 mod assemble;
 mod choose;
+mod foreign;
 mod format;
+mod lvm;
 mod mat;
 mod missing;
 mod number;
@@ -36,6 +40,7 @@ mod reader;
 mod source;
 mod sweep;
 mod sweep_list;
+mod tdms;
 mod text;
 mod uff;
 mod uff58;

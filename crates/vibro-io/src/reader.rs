@@ -2,12 +2,12 @@
 
 use super::format::{Entry, Format, TABLE};
 use super::missing::LISTED;
-use super::{Source, SweepList};
+use super::{Source, SweepList, foreign};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use vibro_record::units::Unit;
-use vibro_record::{Error, Finding, Meta, Place, Record, Result};
+use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result};
 
 /// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
 pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
@@ -28,6 +28,8 @@ pub(crate) struct Options {
     pub decimal_comma: Option<bool>,
     /// Two value columns are real and imaginary part.
     pub complex: bool,
+    /// Whether rows continue each other as one series; `None` to find out.
+    pub wrapped: Option<bool>,
 }
 
 /// Everything a file holds.
@@ -115,6 +117,13 @@ impl Reader {
         self
     }
 
+    /// States whether rows of several columns continue each other as one series. Default: the header says it; where it does not and they look
+    /// so, it is asked.
+    pub fn wrapped(mut self, wrapped: Option<bool>) -> Reader {
+        self.options.wrapped = wrapped;
+        self
+    }
+
     /// Reads a file.
     ///
     /// # Errors
@@ -185,6 +194,9 @@ impl Reader {
                 return Err(Error::input(Place::file(source.path()), found, "a possible number of hertz"));
             }
         }
+        if let Some(foreign) = foreign::complaint(source).filter(|_| self.format.is_none()) {
+            return Err(foreign);
+        }
         let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
         forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(source.head(), source))).ok_or_else(|| {
             let names = Format::names().join(", ");
@@ -223,8 +235,16 @@ pub struct Header {
     pub x0: f64,
     /// Distance of abscissa values; `None` if uneven.
     pub dx: Option<f64>,
+    /// Sampling rate in Hz and duration in s of an even trace.
+    pub rate: Option<f64>,
+    /// See `rate`.
+    pub duration: Option<f64>,
     /// Whether values are complex.
     pub complex: bool,
+    /// Least and largest value in SI units; `None` of complex values, or as `max_abs`.
+    pub min: Option<f64>,
+    /// See `min`.
+    pub max: Option<f64>,
     /// Largest magnitude in SI units; `None` where the values were not read or are all missing.
     pub max_abs: Option<f64>,
     /// Abscissa of the largest magnitude.
@@ -239,8 +259,13 @@ impl Header {
     /// Header of a record that is in memory.
     pub fn of(record: &Record) -> Header {
         let (meta, axis) = (record.meta(), record.axis());
-        let max = record.max_abs();
+        let (largest, range) = (record.max_abs(), record.range());
+        let step = axis.step().filter(|_| axis.kind == AxisKind::Time);
         Header {
+            rate: step.map(|step| 1.0 / step),
+            duration: step.map(|step| step * axis.len() as f64),
+            min: range.map(|(min, _)| min),
+            max: range.map(|(_, max)| max),
             name: meta.name.clone(),
             kind: record.kind(),
             quantity: meta.quantity.name(),
@@ -250,8 +275,8 @@ impl Header {
             x0: axis.start(),
             dx: axis.step(),
             complex: record.is_complex(),
-            max_abs: max.map(|(_, m)| m),
-            max_at: max.map(|(i, _)| axis.at(i)),
+            max_abs: largest.map(|(_, m)| m),
+            max_at: largest.map(|(i, _)| axis.at(i)),
             notes: notes(meta),
             findings: meta.findings.clone(),
         }

@@ -11,20 +11,24 @@ pub(crate) mod encoding;
 mod fast;
 mod header;
 mod lines;
-mod names;
+pub(crate) mod names;
 mod numbers;
 mod records;
 mod rows;
 mod table;
 mod tail;
+mod wrapped;
 
 use crate::reader::{Options, Recording};
 use crate::{Format, Source, missing};
 use dialect::Dialect;
 use fast::Shape;
+use header::Stated;
+use names::Name;
 use rows::Rows;
 use std::borrow::Cow;
-use vibro_record::{Error, Finding, Place, Result};
+pub(crate) use tail::Digits;
+use vibro_record::{AxisKind, Error, Finding, Place, Result, Values};
 
 /// A text and what is known of it before its rows are read.
 pub(crate) struct Text<'a> {
@@ -99,6 +103,15 @@ pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recordi
 }
 
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
+    let plain = dialect.columns > 1 && dialect.names.is_none() && !dialect.complex;
+    let declared = Stated::of(dialect.header.iter().map(String::as_str)).values;
+    if plain && (options.wrapped == Some(true) || options.wrapped.is_none() && declared.is_some()) {
+        let values = wrapped::flat(text, dialect)?;
+        if let Some(values) = values.filter(|v| options.wrapped.is_some() || declared == Some(v.len())) {
+            let rows = Rows { columns: vec![Values::Real(values)], ..Rows::default() };
+            return records_of(text, &Dialect { columns: 1, ..dialect.clone() }, rows, options);
+        }
+    }
     let shape = Shape::of(dialect, text.source.head());
     let tail = tail::of(text.source)?;
     let end = text.source.len() - (tail.len() - tail.trim_ascii_end().len()) as u64;
@@ -107,6 +120,14 @@ fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> 
         Some(columns) => Rows { columns, ..Rows::default() },
         None => carefully(text, dialect, options)?,
     };
+    if plain && options.wrapped.is_none() && wrapped::continues(&rows.columns) {
+        return Err(wrapped::question(dialect.columns));
+    }
+    records_of(text, dialect, rows, options)
+}
+
+fn records_of(text: &Text, dialect: &Dialect, rows: Rows, options: &Options) -> Result<Recording> {
+    let tail = tail::of(text.source)?;
     let mut findings: Vec<Finding> =
         tail::cut_off(&tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
@@ -124,6 +145,14 @@ fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> 
         if encoding::lone_cr(&bytes, false) { encoding::with_lf(bytes.into_owned()).into() } else { bytes };
     let whole = encoding::decode(&bytes);
     rows::read(whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)
+}
+
+/// What a channel of this name and unit is where it is an abscissa, and the factor of its values to s or Hz.
+pub(crate) fn abscissa(name: &str, unit: Option<&str>) -> Option<(AxisKind, f64)> {
+    let name = Name { unit: unit.filter(|unit| !unit.is_empty()).map(str::to_owned), ..Name::parse(name) };
+    let kind = name.axis(true).filter(|_| !name.is_vague())?;
+    let (factor, _) = name.to_axis(&kind).ok()?;
+    Some((kind, factor))
 }
 
 /// The place of a complaint; the reader adds the file.

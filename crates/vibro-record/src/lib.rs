@@ -92,6 +92,20 @@ impl Record {
         }
     }
 
+    /// Least and largest value; `None` of complex values, and where all are missing.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        let values = match self {
+            Record::Trace(Trace { values, .. })
+            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => values,
+            _ => return None,
+        };
+        let ends = values
+            .iter()
+            .filter(|v| !v.is_nan())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+        (ends.0 <= ends.1).then_some(ends)
+    }
+
     /// Largest magnitude and its index; `None` for no values or only missing ones.
     pub fn max_abs(&self) -> Option<(usize, f64)> {
         fn largest(magnitudes: impl Iterator<Item = f64>) -> Option<(usize, f64)> {

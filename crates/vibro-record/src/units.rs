@@ -11,6 +11,7 @@ mod parse;
 mod quantity;
 
 use crate::{Error, Result};
+pub use parse::spelled;
 pub use quantity::Quantity;
 
 /// Exponents of m, kg, s, A, K and rad, doubled so that `√Hz` is a whole number.

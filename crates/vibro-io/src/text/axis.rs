@@ -211,7 +211,7 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             if spacing.is_some() {
                 findings.push(Finding::caution("rate-and-spectrum-in-header").number("rate", rate));
             }
-            Axis::time(0.0, 1.0 / rate, n)
+            Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {
             findings.push(Finding::caution("abscissa-unsaid"));

@@ -16,6 +16,10 @@ pub struct Stated {
     pub base_band: Option<f64>,
     /// Sampling rate in Hz.
     pub rate: Option<f64>,
+    /// Number of values of a series.
+    pub values: Option<usize>,
+    /// First instant in s.
+    pub start: Option<f64>,
     /// Distance of spectral lines in Hz.
     pub line_width: Option<f64>,
     /// Unit as written.
@@ -36,12 +40,16 @@ impl Stated {
     pub fn of<'a>(lines: impl Iterator<Item = &'a str>) -> Stated {
         let mut stated = Stated::default();
         for line in lines {
-            let (key, value) = split(line);
-            stated.notes.push((key.to_owned(), value.to_owned()));
-            if key.is_empty() {
-                free_text(line, &mut stated);
-            } else {
-                keyed(&key.to_lowercase(), value, &mut stated);
+            // `NPTS= 6000, DT= .01 SEC` are two statements.
+            let several = line.split(',').all(|part| part.contains('='));
+            for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
+                let (key, value) = split(line.trim());
+                stated.notes.push((key.to_owned(), value.to_owned()));
+                if key.is_empty() {
+                    free_text(line, &mut stated);
+                } else {
+                    keyed(&key.to_lowercase(), value, &mut stated);
+                }
             }
         }
         stated
@@ -95,9 +103,25 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "rate" => {
             stated.rate = hertz();
         }
-        "dt" | "delta t" | "sampling interval" | "sample interval" | "time step" | "delta time" => {
-            let units = [("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("", 1.0)];
-            stated.rate = quantity(value, unit_in_key, &units).and_then(|dt| checked(1.0 / dt));
+        "dt"
+        | "delta t"
+        | "sampling interval"
+        | "sample interval"
+        | "sampling period"
+        | "time step"
+        | "delta time"
+        | "increment"
+        | "tinc"
+        | "x increment"
+        | "horizontal interval" => {
+            stated.rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
+        }
+        "npts" | "number of points" | "number of samples" | "record length" => {
+            stated.values = quantity(value, "", &[("", 1.0)]).and_then(line_count).map(|n| n as usize);
+        }
+        "start" | "t0" | "x origin" => {
+            let parsed = scaled(value, unit_in_key, &SECONDS);
+            stated.start = parsed.filter(|start| *start == 0.0 || checked(start.abs()).is_some());
         }
         "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
             stated.line_width = hertz();
@@ -109,7 +133,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
                 .or_else(|| Window::from_name(value));
         }
-        "channel" | "name" | "title" | "channel name" | "signal" => {
+        "channel" | "name" | "title" | "channel name" | "signal" | "source" => {
             stated.name = Some(value.to_owned()).filter(|v| !v.is_empty());
         }
         _ => {}
@@ -123,20 +147,32 @@ fn free_text(line: &str, stated: &mut Stated) {
         let pair = words.windows(2).find(|w| w[1].trim_end_matches(',') == name)?;
         pair[0].parse::<f64>().ok()
     };
+    if let Some([.., unit]) =
+        words.windows(3).find(|w| matches!(w[0].as_str(), "units" | "unit") && w[1] == "of")
+    {
+        stated.unit = Some(unit.trim_end_matches(['.', ',', ';']).to_owned());
+    }
     let (band, lines) = (before("hz").and_then(checked), before("lines").and_then(line_count));
     if band.is_some() && lines.is_some() {
         (stated.base_band, stated.lines) = (band, lines);
     }
 }
 
+const SECONDS: [(&str, f64); 7] =
+    [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
+
 /// A number with one of `units` behind it (or the unit from the key), checked.
 fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> {
+    scaled(value, unit_in_key, units).and_then(checked)
+}
+
+fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> {
     let value = value.trim();
     let (number, used) = number::prefix(value.as_bytes(), b'.')?;
     let rest = value.get(used..)?.trim().trim_matches(['[', ']']).to_lowercase();
     let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
     let factor = units.iter().find(|u| u.0 == unit)?.1;
-    checked(number * factor)
+    Some(number * factor)
 }
 
 fn checked(value: f64) -> Option<f64> {

@@ -3,7 +3,7 @@
 use super::dialect::Separator;
 use super::header;
 use crate::assemble::domain;
-use vibro_record::units::{Quantity, Unit};
+use vibro_record::units::{Quantity, Unit, spelled};
 use vibro_record::{AxisKind, Error, Finding, Result};
 
 /// Name and unit of a column.
@@ -96,6 +96,7 @@ impl Name {
             "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" => Some(AxisKind::Time),
             "frequency" | "freq" | "freq." | "frequenz" | "fréquence" => Some(AxisKind::Frequency),
             _ if first && begins(&key, "time") => Some(AxisKind::Time),
+            _ if first && self.is_vague() && !self.counts() => Some(AxisKind::Time),
             _ if first && begins(&key, "freq") => Some(AxisKind::Frequency),
             _ if self.name == "t" && (first || by_unit.is_some()) => Some(AxisKind::Time),
             _ if self.name == "f" && (first || by_unit.is_some()) => Some(AxisKind::Frequency),
@@ -113,11 +114,16 @@ impl Name {
     pub fn counts(&self) -> bool {
         let key = self.name.to_lowercase();
         let key = key.trim_end_matches('.');
-        self.unit.is_none()
-            && matches!(
-                key,
-                "" | "#" | "index" | "i" | "n" | "no" | "nr" | "sample" | "samples" | "sample no" | "point"
-            )
+        let named = matches!(
+            key,
+            "" | "#" | "index" | "i" | "n" | "no" | "nr" | "sample" | "samples" | "sample no" | "point"
+        );
+        self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
+    }
+
+    /// Whether the name is one of an abscissa and may be one of values, such as `x`.
+    pub(crate) fn is_vague(&self) -> bool {
+        ABSCISSAE.contains(&self.name.to_lowercase().as_str())
     }
 
     /// Real or imaginary part, and the name of the whole: `H_re`, `H (imag)`, `re(H)`, `Imaginary`, …
@@ -184,6 +190,12 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words).filter(|_| sure))
 }
 
+/// Names of an abscissa that do not say of what: it rises, or it is none.
+const ABSCISSAE: [&str; 3] = ["x", "x-axis", "x axis"];
+
+/// What stands in place of a unit over numbered samples.
+const COUNTERS: [&str; 3] = ["sequence", "samples", "points"];
+
 /// Hours have no symbol among the units of values.
 const HOUR: &str = "hour";
 
@@ -207,16 +219,23 @@ fn is_angular(unit: &str) -> bool {
     Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
 }
 
+/// A unit that stands where a name does: `Second`, `Volts`.
+pub(crate) fn unit_word(field: &str) -> Option<Name> {
+    let unit = symbol(field.trim());
+    let word = unit != field.trim() || spelled(unit).is_some();
+    word.then(|| Name { name: String::new(), unit: Some(unit.to_owned()) })
+}
+
 /// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least
 /// half of them known and the others short, such as `EU`.
 pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {
-        let unit = bare_unit(field);
-        let understood = Unit::parse(unit).is_some();
+        let unit = symbol(bare_unit(field));
+        let understood = Unit::parse(unit).is_some() || COUNTERS.contains(&unit.to_lowercase().as_str());
         total += 1;
         known += usize::from(understood);
-        sure += usize::from(understood || unit.len() < field.trim().len());
+        sure += usize::from(understood || bare_unit(field).len() < field.trim().len());
         short += usize::from(understood || unit.chars().count() <= 4);
         first.get_or_insert(understood);
     }

@@ -118,7 +118,8 @@ impl Made<'_> {
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
-            Name { unit: None, ..column.name.clone() }.axis(column.at == 1).is_some()
+            !column.name.is_vague()
+                && Name { unit: None, ..column.name.clone() }.axis(column.at == 1).is_some()
                 && column.reals().iter().all(|v| v.is_finite())
         };
         if self.is_table {
@@ -151,7 +152,10 @@ impl Made<'_> {
                 (AxisKind::Other(name.to_owned()), 1.0, Some(Finding::caution("axis-kind-unsaid")))
             }
         };
-        let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
+        // Instruments print times of single precision, too.
+        let largest = values.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
+        let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1)
+            .max(largest * f64::from(f32::EPSILON) / 2.0);
         one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| v * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
@@ -221,6 +225,7 @@ impl Made<'_> {
             (1, false) if !title.is_empty() => title.to_owned(),
             (1, false) => name,
             _ if !name.is_empty() => name,
+            (2, true) if !title.is_empty() => title.to_owned(),
             (_, true) => format!("column {at}"),
             _ if title.is_empty() => format!("column {}", i + 1),
             _ if i == 0 => title.to_owned(),

@@ -13,8 +13,9 @@
 use super::Text;
 use super::dialect::{Dialect, Separator};
 use super::lines::{Fields, Line, Lines, fields};
-use super::names::{Name, is_unit_row};
+use super::names::{Name, is_unit_row, unit_word};
 use crate::{Format, Options, number};
+use std::borrow::Cow;
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
@@ -85,14 +86,15 @@ fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Optio
     let mut spoken = above.iter().filter(|l| l.remark.is_none()).rev();
     let last = spoken.next()?;
     let values = fields(first.text, separator).ok()?;
-    let names = headings(last, separator, &values)?;
+    let mut names = headings(last, separator, &values)?;
+    let mut upper = spoken.next().and_then(|l| Some((l, headings(l, separator, &values)?)));
+    let width = values.iter().rposition(|(_, f)| !f.is_empty()).map_or(0, |last| last + 1);
+    let stated = beside(upper.as_mut().map(|(_, fields)| fields), &mut names, width);
     let columns = names.len();
     if columns == 1 && count > 1 {
         return None;
     }
-    let blank_end = values.last().is_some_and(|(_, f)| f.is_empty());
-    let fits = count == columns || (count == columns + 1 && blank_end);
-    let upper = spoken.next().and_then(|l| Some((l, headings(l, separator, &values)?)));
+    let fits = count == columns || width == columns;
     let (line, names) = match upper {
         Some((line, upper))
             if upper.len() == columns
@@ -102,7 +104,11 @@ fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Optio
             let pairs = upper.iter().zip(&names);
             (line, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect::<Vec<Name>>())
         }
-        _ if named(&names) => (last, names.iter().map(|(_, n)| Name::parse(n)).collect()),
+        _ if named(&names) => {
+            // `Second,Volt` under a preamble: units, and no names.
+            let units: Option<Vec<Name>> = names.iter().map(|(_, n)| unit_word(n)).collect();
+            (last, units.unwrap_or_else(|| names.iter().map(|(_, n)| Name::parse(n)).collect()))
+        }
         _ => return None,
     };
     let preamble = above.iter().filter(|l| *l != last && *l != line).map(|l| said(l, separator));
@@ -114,11 +120,36 @@ fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Optio
         columns,
         names: Some(names),
         remarks: REMARKS,
-        header: preamble.collect(),
+        header: preamble.chain(stated).collect(),
         columns_from: line.number,
         first_line: first.number,
     };
     Some((dialect, fits))
+}
+
+/// Statements in cells beyond the `width` of the rows: a word over a number, `Start` over `-2e-3`, or `t0 = -5e-7`. They are taken out.
+fn beside(upper: Option<&mut Fields>, lower: &mut Fields, width: usize) -> Vec<String> {
+    let over = |upper: &Fields| {
+        let pair = |(key, value): (&(usize, Cow<str>), &(usize, Cow<str>))| is_pair(&key.1, &value.1);
+        upper.len() == lower.len() && upper.iter().zip(&*lower).skip(width).all(pair)
+    };
+    if width == 0 || lower.len() <= width {
+        return Vec::new();
+    }
+    match upper {
+        Some(upper) if over(upper) => {
+            let keys = upper.split_off(width).into_iter().zip(lower.split_off(width));
+            keys.map(|((_, key), (_, value))| format!("{key}: {value}")).collect()
+        }
+        _ if lower[width..].iter().all(|(_, f)| f.is_empty() || f.contains('=')) => {
+            lower.split_off(width).into_iter().map(|(_, field)| field.into_owned()).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn is_pair(key: &str, value: &str) -> bool {
+    key.contains(char::is_alphabetic) && number::parse(value.as_bytes()).is_some()
 }
 
 /// The fields of a line above the row `values`, without a blank one at the end that the row has no value for.

@@ -83,14 +83,14 @@ pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) ->
 
 /// How precisely a column is printed: with a fixed number of decimals, or of significant digits.
 #[derive(Debug, Default)]
-struct Digits {
+pub(crate) struct Digits {
     significant: i32,
     decimals: i32,
     largest: f64,
 }
 
 impl Digits {
-    fn take(&mut self, field: &[u8], decimal: u8, value: f64) {
+    pub fn take(&mut self, field: &[u8], decimal: u8, value: f64) {
         let end = field.iter().position(u8::is_ascii_alphabetic).unwrap_or(field.len());
         let (mantissa, exponent) = field.split_at(end);
         let exponent =
@@ -105,7 +105,8 @@ impl Digits {
 
     /// Numbers printed with `%.3f` share their last decimal, those of `%.6g` their number of digits: the coarser of both
     /// bounds is right for either, and for the shortest form that reads back.
-    fn resolution(&self) -> f64 {
+    /// Half a unit in the last digit.
+    pub fn resolution(&self) -> f64 {
         let leading = if self.largest > 0.0 { self.largest.log10().floor() as i32 + 1 } else { 0 };
         let unit = |exponent: i32| 10f64.powi(exponent);
         0.5 * unit(-self.decimals).max(unit(leading.saturating_sub(self.significant)))

@@ -4,11 +4,11 @@ use super::codes::{self, Kind};
 use super::heading::Heading;
 use super::ordinate::{Ordinate, System};
 use super::values::Layout;
-use crate::assemble::{self, Spectral, domain, from_values, to_si};
+use crate::assemble::{self, Abscissa, Spectral, domain, to_si};
 use crate::{Options, missing};
 use num_complex::Complex64;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{Axis, AxisKind, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
+use vibro_record::{AxisKind, Finding, Meta, Record, Result, Scaling, Values, Window};
 
 /// The record of the `numbers` that stand behind a heading; `more` findings are about how they stand there.
 ///
@@ -53,7 +53,10 @@ pub fn build(
     meta.findings.extend(missing::kept(missing).into_iter().chain(more));
     let even =
         heading.layout.even.then_some((heading.start * abscissa_factor, heading.step * abscissa_factor));
-    let axis = axis(kind, even, stored, n, options, &mut meta);
+    // Half a unit in the last of six digits, which is more than the rounding of single precision.
+    let largest = stored.iter().fold(0.0f64, |max, x| max.max(x.abs()));
+    let resolution = 0.5e-5 * 10f64.powf(largest.max(f64::MIN_POSITIVE).log10().floor());
+    let axis = Abscissa { kind, even, stored, resolution }.axis(n, options, &mut meta);
     to_si(&mut values, factor)?;
     assemble::record(meta, axis, values, said)
 }
@@ -177,52 +180,6 @@ fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
     }
     meta.found(Finding::caution("axis-kind-unsaid").name("column", "abscissa"));
     AxisKind::Index
-}
-
-/// The axis of `n` values with this start and step, or with `stored` instants. A step that is given wins; a step that is no
-/// step leaves numbered values.
-fn axis(
-    kind: AxisKind,
-    even: Option<(f64, f64)>,
-    stored: Vec<f64>,
-    n: usize,
-    options: &Options,
-    meta: &mut Meta,
-) -> Axis {
-    if options.base_band.is_some() && kind == AxisKind::Frequency {
-        meta.found(Finding::caution("band-unused"));
-    }
-    let (start, step) = match (options.rate.filter(|_| kind == AxisKind::Time), even) {
-        (Some(rate), _) => {
-            let (start, step) = even.unzip();
-            let said = 1.0 / rate;
-            // Record 7 prints six digits.
-            if step.is_none_or(|step| (step / said - 1.0).abs() > 1e-5) {
-                let found = match step {
-                    Some(step) => Finding::caution("rate-overrides-step").number("step", step),
-                    None => Finding::caution("rate-overrides-instants"),
-                };
-                meta.found(found.number("rate", rate));
-            }
-            (start.unwrap_or(0.0), said)
-        }
-        (None, Some(even)) => even,
-        // Lines of a spectrum are used one by one and keep their frequencies.
-        (None, None) if kind != AxisKind::Time => return Axis { kind, grid: Grid::Uneven(stored) },
-        (None, None) => {
-            // Half a unit in the last of six digits, which is more than the rounding of single precision.
-            let largest = stored.iter().fold(0.0f64, |max, x| max.max(x.abs()));
-            let resolution = 0.5e-5 * 10f64.powf(largest.max(f64::MIN_POSITIVE).log10().floor());
-            let (axis, found) = from_values(kind, stored, resolution, "abscissa");
-            meta.findings.extend(found);
-            return axis;
-        }
-    };
-    if step > 0.0 && step.is_finite() && start.is_finite() {
-        return Axis { kind, grid: Grid::Even { start, step, n } };
-    }
-    meta.found(Finding::caution("increment-impossible").number("step", step));
-    Axis::index(n)
 }
 
 /// Settles unit and quantity; gives the factor to SI.

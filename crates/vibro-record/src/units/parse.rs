@@ -50,6 +50,30 @@ const PREFIXES: &[(&str, f64)] = &[
     ("G", 1e9),
 ];
 
+/// Units that instruments spell out.
+const WORDS: &[(&str, &str)] = &[
+    ("metre", "m"),
+    ("meter", "m"),
+    ("second", "s"),
+    ("hertz", "Hz"),
+    ("newton", "N"),
+    ("pascal", "Pa"),
+    ("volt", "V"),
+    ("ampere", "A"),
+    ("amp", "A"),
+];
+
+/// The symbol of a unit that is spelled out: `Newtons` is N, `millivolts` are mV.
+pub fn spelled(text: &str) -> Option<String> {
+    let lower = text.trim().to_lowercase();
+    let word = lower.strip_suffix('s').unwrap_or(&lower);
+    let prefixes = [("nano", "n"), ("micro", "µ"), ("milli", "m"), ("kilo", "k"), ("mega", "M"), ("", "")];
+    prefixes.iter().find_map(|(prefix, letter)| {
+        let (_, symbol) = WORDS.iter().find(|(name, _)| word.strip_prefix(prefix) == Some(name))?;
+        Some(format!("{letter}{symbol}"))
+    })
+}
+
 /// Brackets and roots of a text at most.
 const MAX_BRACKETS: usize = 16;
 
@@ -62,7 +86,8 @@ pub fn parse(text: &str) -> Option<Parsed> {
     if text == "-" {
         return Some((Dimension::NONE, 1.0));
     }
-    let mut reader = Reader { rest: text, brackets: 0 };
+    let whole = spelled(text);
+    let mut reader = Reader { rest: whole.as_deref().unwrap_or(text), brackets: 0 };
     let unit = reader.product()?;
     (reader.rest.is_empty() && unit.1.is_finite() && unit.1 > 0.0).then_some(unit)
 }

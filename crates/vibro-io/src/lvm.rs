@@ -1,0 +1,295 @@
+//! LabVIEW measurement files (`.lvm`), versions 1 and 2.
+//!
+//! ```text
+//! LabVIEW Measurement                          tags and values, one a line, between separators
+//! Separator       Tab
+//! X_Columns       No                           one X column for all channels, one for each (Multi), or none
+//! ***End_of_Header***
+//!
+//! Channels        2                            the head of a segment, one value a channel
+//! Y_Unit_Label    N         m/s^2
+//! Delta_X         3.9E-5    3.9E-5
+//! ***End_of_Header***
+//! X_Value         Force     Response   Comment
+//!                 0.914018  1.204792
+//! ```
+//! Source: National Instruments, "Specification for the LabVIEW Measurement File". A later segment begins with a head of its own behind a
+//! blank line; its channels are records of their own. What stands between `***Start_Special***` and `***End_Special***` is passed over.
+
+use super::format::Format;
+use super::missing::{self, Missing};
+use super::reader::{Options, Recording};
+use super::text::encoding;
+use super::text::names::Name;
+use super::{Source, number};
+use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
+use std::collections::HashMap;
+use vibro_record::units::Unit;
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Place, Record, Result, Values};
+
+const BEGIN: &str = "LabVIEW Measurement";
+const END_OF_HEADER: &str = "***End_of_Header***";
+const SPECIAL: [&str; 2] = ["***Start_Special***", "***End_Special***"];
+/// Comments that are kept of a segment.
+const MOST_COMMENTS: usize = 100;
+
+pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
+    head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).starts_with(BEGIN.as_bytes())
+}
+
+pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+    let bytes = source.all()?;
+    let bytes = encoding::with_lf(bytes.into_owned());
+    let text = encoding::decode(&bytes);
+    let mut lines = Lines { rest: text.lines(), number: 0 };
+    let general = Head::of(&mut lines);
+    let separator = match general.said("separator").map(str::to_lowercase).as_deref() {
+        Some("comma") => ',',
+        Some("semicolon") => ';',
+        _ => '\t',
+    };
+    let columns = general.said("x_columns").unwrap_or("One").to_lowercase();
+    let (mut records, mut findings, mut missed) = (Vec::new(), Vec::new(), Missing::default());
+    let mut segments = 0;
+    loop {
+        let head = Head::of(&mut lines);
+        if !head.ended {
+            break;
+        }
+        segments += 1;
+        let segment = Segment::read(&mut lines, &general, &head, separator, &columns)?;
+        let number = (segments > 1).then_some(segments);
+        records.extend(segment.records(source, number, options, &mut findings, &mut missed)?);
+    }
+    if records.is_empty() {
+        return Err(Error::usage("a LabVIEW measurement without values", "at least one segment with values"));
+    }
+    findings.extend(missing::kept(missed.check("value(s) are missing:", options.allow_missing)?));
+    Ok(Recording { path: source.path().to_owned(), format: Format::Lvm, records, findings })
+}
+
+/// Lines with their numbers.
+struct Lines<'a> {
+    rest: std::str::Lines<'a>,
+    number: u64,
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = &'a str;
+
+    /// The next line outside of special blocks.
+    fn next(&mut self) -> Option<&'a str> {
+        let mut special = false;
+        loop {
+            self.number += 1;
+            let line = self.rest.next()?;
+            let mark = |mark: &str| line.trim_start().starts_with(mark);
+            match special {
+                false if !mark(SPECIAL[0]) => return Some(line),
+                _ => special = !mark(SPECIAL[1]),
+            }
+        }
+    }
+}
+
+/// Tags in lower case, each with its values; those of a channel stand above its column.
+#[derive(Debug, Default)]
+struct Head<'a> {
+    tags: HashMap<String, Vec<&'a str>>,
+    /// Tags as they stand, for notes.
+    notes: Vec<(String, String)>,
+    /// Whether it has an end: behind the last segment there is none.
+    ended: bool,
+}
+
+impl<'a> Head<'a> {
+    fn of(lines: &mut Lines<'a>) -> Head<'a> {
+        let mut head = Head::default();
+        for line in lines {
+            if line.starts_with(END_OF_HEADER) {
+                head.ended = true;
+                break;
+            }
+            // The separator is a tag itself; none of the others holds it in its name.
+            let mark = line.find(['\t', ',', ';']).unwrap_or(line.len());
+            let (tag, values) = line.split_at(mark);
+            let separator = values.chars().next().unwrap_or('\t');
+            let values: Vec<&str> = values.split(separator).map(str::trim).collect();
+            let said: Vec<&str> = values.iter().copied().filter(|value| !value.is_empty()).collect();
+            if !said.is_empty() {
+                head.notes.push((tag.to_owned(), said.join(" ")));
+                head.tags.insert(tag.trim().to_lowercase(), values);
+            }
+        }
+        head
+    }
+
+    /// The value of a tag that has one.
+    fn said(&self, tag: &str) -> Option<&'a str> {
+        self.tags.get(tag)?.iter().copied().find(|value| !value.is_empty())
+    }
+
+    /// The value of a tag above a column.
+    fn above(&self, tag: &str, column: usize) -> Option<&'a str> {
+        self.tags.get(tag)?.get(column).copied().filter(|value| !value.is_empty())
+    }
+}
+
+/// A column of a segment.
+#[derive(Debug, Default)]
+struct Column {
+    name: String,
+    values: Vec<f64>,
+    /// Half a unit in the last digit.
+    digits: super::text::Digits,
+}
+
+/// Heads and columns of a segment.
+struct Segment<'h, 'a> {
+    general: &'h Head<'a>,
+    head: &'h Head<'a>,
+    /// Columns of the rows: channels, and X columns before them.
+    columns: Vec<Column>,
+    /// Index of each channel's column and of its X column, where there is one.
+    channels: Vec<(usize, Option<usize>)>,
+    comments: Vec<String>,
+}
+
+impl<'h, 'a> Segment<'h, 'a> {
+    /// Reads the names and the rows behind a head, up to a blank line.
+    fn read(
+        lines: &mut Lines<'a>,
+        general: &'h Head<'a>,
+        head: &'h Head<'a>,
+        separator: char,
+        x_columns: &str,
+    ) -> Result<Segment<'h, 'a>> {
+        let names: Vec<&str> = lines.next().unwrap_or_default().split(separator).map(str::trim).collect();
+        let comment = names.iter().position(|name| *name == "Comment").unwrap_or(names.len());
+        let there = |column: &usize| *column < comment && !names[*column].is_empty();
+        let channels: Vec<(usize, Option<usize>)> = match x_columns {
+            "multi" => (1..comment).step_by(2).filter(there).map(|c| (c, Some(c - 1))).collect(),
+            "one" => (1..comment).filter(there).map(|c| (c, Some(0))).collect(),
+            _ => (1..comment).filter(there).map(|c| (c, None)).collect(),
+        };
+        if channels.is_empty() {
+            let place = Place { line: Some(lines.number), ..Place::default() };
+            return Err(Error::input(
+                place,
+                "no names of channels",
+                "a line X_Value, then one name a channel",
+            ));
+        }
+        let column = |name: &&str| Column { name: (*name).to_owned(), ..Column::default() };
+        let mut columns: Vec<Column> = names[..comment].iter().map(column).collect();
+        let mut comments = Vec::new();
+        let mut decimal = general.said("decimal_separator").and_then(|mark| mark.bytes().next());
+        let mut row = 0;
+        while let Some(line) = lines.next().filter(|line| !line.trim().is_empty()) {
+            let decimal =
+                *decimal.get_or_insert(if line.contains('.') || separator == ',' { b'.' } else { b',' });
+            for (i, field) in line.split(separator).map(str::trim).enumerate() {
+                let Some(column) = columns.get_mut(i) else {
+                    if !field.is_empty() && comments.len() < MOST_COMMENTS {
+                        comments.push(format!("row {}: {field}", row + 1));
+                    }
+                    continue;
+                };
+                let value = match number::parse_with(field.as_bytes(), decimal) {
+                    Some(value) => value,
+                    None if field.is_empty() => continue,
+                    None if number::is_missing(field.as_bytes()) => f64::NAN,
+                    None => {
+                        let place = Place { line: Some(lines.number), ..Place::default() };
+                        let found = format!("{field:?} in the column {:?}", column.name);
+                        return Err(Error::input(place, found, "a number"));
+                    }
+                };
+                // A blank between values is one that is missing, one behind them is none.
+                column.values.resize(row, f64::NAN);
+                column.values.push(value);
+                column.digits.take(field.as_bytes(), decimal, value);
+            }
+            row += 1;
+        }
+        Ok(Segment { general, head, columns, channels, comments })
+    }
+
+    /// One record a channel that has values; those of a segment behind the first have its number behind their names.
+    fn records(
+        self,
+        source: &Source,
+        number: Option<usize>,
+        options: &Options,
+        findings: &mut Vec<Finding>,
+        missed: &mut Missing,
+    ) -> Result<Vec<Record>> {
+        let mut records = Vec::new();
+        for (c, x) in &self.channels {
+            let column = &self.columns[*c];
+            let said = |tag: &str| self.head.above(tag, *c);
+            if column.values.is_empty() {
+                findings.push(Finding::note("variable-empty").name("variable", column.name.as_str()));
+                continue;
+            }
+            let Name { name, unit } = Name::parse(&column.name);
+            let name = number.map_or(name.clone(), |n| format!("{name} ({n})"));
+            let mut meta = Meta::new(name, Unit::opaque(""));
+            meta.notes = [&self.general.notes[..], &self.head.notes].concat();
+            meta.notes.extend(self.comments.iter().map(|text| ("Comment".to_owned(), text.clone())));
+            meta.step("read", &[("file", &source.name()), ("format", &"lvm")]);
+            let mut values = Values::Real(column.values.clone());
+            for i in missing::mark(&mut values) {
+                missed.take(&Place::default(), format!("{} of {:?}", i + 1, column.name));
+            }
+            let n = values.len();
+            let declared = said("samples").and_then(|text| text.parse::<usize>().ok()).filter(|d| *d > n);
+            meta.declared_n = declared;
+            meta.findings.extend(
+                declared.map(|declared| {
+                    Finding::caution("fewer-values").count("declared", declared).count("n", n)
+                }),
+            );
+            let factor = options.adopt(&mut meta, said("y_unit_label").or(unit.as_deref()));
+            to_si(&mut values, factor)?;
+            let axis =
+                self.abscissa(*c, x.map(|x| &self.columns[x]), n, &mut meta).axis(n, options, &mut meta);
+            records.push(assemble::record(meta, axis, values, Spectral::default())?);
+        }
+        Ok(records)
+    }
+
+    /// The X column of a channel; where it is even, start and step as the head states them with more digits.
+    fn abscissa(&self, channel: usize, x: Option<&Column>, n: usize, meta: &mut Meta) -> Abscissa {
+        let frequency =
+            self.head.above("x_dimension", channel).is_some_and(|d| d.eq_ignore_ascii_case("frequency"));
+        let kind = if frequency { AxisKind::Frequency } else { AxisKind::Time };
+        let number = |tag: &str| {
+            let text = self.head.above(tag, channel)?.as_bytes();
+            number::parse(text).or_else(|| number::parse_with(text, b','))
+        };
+        let (start, step) = (number("x0").unwrap_or(0.0), number("delta_x"));
+        let stated = step.map(|step| (start, step));
+        let Some(x) = x.filter(|x| n > 1 && x.values.len() >= n) else { return Abscissa::even(kind, stated) };
+        let (values, resolution) = (&x.values[..n], x.digits.resolution());
+        let agrees = |(start, step): &(f64, f64)| {
+            let last = start + step * (n - 1) as f64;
+            (start - values[0]).abs() <= resolution && (last - values[n - 1]).abs() <= 2.0 * resolution
+        };
+        let (axis, found) =
+            from_values(kind.clone(), values.to_vec(), resolution, &format!("column {:?}", x.name));
+        if let Some(stated) = stated.filter(|stated| axis.step().is_some() && agrees(stated)) {
+            return Abscissa::even(kind, Some(stated));
+        }
+        match axis {
+            Axis { grid: Grid::Even { start, step, .. }, .. } => {
+                meta.findings.extend(found);
+                Abscissa::even(kind, Some((start, step)))
+            }
+            uneven => Abscissa { stored: uneven.values(), ..Abscissa::even(kind, None) },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,96 @@
+//! One series over many columns: rows that continue each other, as PEER's AT2 and other Fortran programs write them.
+
+use super::Text;
+use super::dialect::Dialect;
+use super::encoding;
+use super::lines::fields;
+use crate::number;
+use vibro_record::{Error, Result, Values};
+
+/// Rows that tell whether columns continue each other.
+const LOOK: usize = 100_000;
+/// Fewest rows that do.
+const FEWEST: usize = 12;
+
+/// All values, row after row, where the text holds nothing else.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn flat(text: &Text, dialect: &Dialect) -> Result<Option<Vec<f64>>> {
+    let bytes = text.source.all()?;
+    let whole = encoding::decode(&bytes);
+    let mut values = Vec::new();
+    for line in dialect.rows(whole.trim_end_matches('\u{1a}')).filter(|line| line.remark.is_none()) {
+        for (_, field) in fields(line.text, dialect.separator).unwrap_or_default() {
+            match number::parse_with(field.as_bytes(), dialect.decimal) {
+                Some(value) => values.push(value),
+                None if field.is_empty() => {}
+                None => return Ok(None),
+            }
+        }
+    }
+    Ok(Some(values))
+}
+
+/// Whether columns look like one series, row after row: from one value to the next, also to the first of the next row, it goes less far than
+/// down a column.
+pub fn continues(columns: &[Values]) -> bool {
+    let mut reals: Vec<&[f64]> = Vec::new();
+    for values in columns {
+        let Values::Real(values) = values else { return false };
+        reals.push(values);
+    }
+    let columns = reals;
+    if columns.len() < 3 || columns[0].len() < FEWEST {
+        return false;
+    }
+    let rows = columns[0].len().min(LOOK);
+    let last = columns.len() - 1;
+    let step = |a: f64, b: f64| (b - a).abs();
+    let within = columns.windows(2).flat_map(|w| (0..rows).map(|i| step(w[0][i], w[1][i])));
+    let over = (1..rows).map(|i| step(columns[last][i - 1], columns[0][i]));
+    let down = columns.iter().flat_map(|c| (1..rows).map(|i| step(c[i - 1], c[i])));
+    let (within, over, down) = (mean(within), mean(over), mean(down));
+    // Channels of one level that change slowly go less far down than across.
+    within > 0.0 && over < 2.0 * within && within < 0.7 * down && over < 0.7 * down
+}
+
+fn mean(steps: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = steps.fold((0.0, 0usize), |(sum, n), step| (sum + step, n + 1));
+    sum / n as f64
+}
+
+/// Asks what a person must say.
+pub fn question(columns: usize) -> Error {
+    let found =
+        format!("{columns} columns that continue each other, and nothing says that they are one series");
+    Error::usage(found, "channels, or one series row after row")
+        .hint("say that the rows continue each other, or that each column is a channel")
+        .setting("wrapped")
+        .setting("columns")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vibro_math::Noise;
+
+    /// Rows of so many columns.
+    fn columns(n: usize, value: impl Fn(usize) -> f64) -> Vec<Values> {
+        (0..n).map(|c| Values::Real((0..200).map(|i| value(n * i + c)).collect())).collect()
+    }
+
+    #[test]
+    fn a_series_is_told_from_channels() {
+        assert!(continues(&columns(5, |i| (0.05 * i as f64).sin())));
+        assert!(continues(&columns(8, |i| (0.02 * i as f64).sin() + 0.3 * (0.11 * i as f64).cos())));
+        // Three axes of one motion, each at a level of its own; a sine with its harmonics; noise.
+        let channel = |i: usize| (0.05 * (i / 3) as f64 + (i % 3) as f64).sin() + 0.2 * (i % 3) as f64;
+        assert!(!continues(&columns(3, channel)));
+        assert!(!continues(&columns(4, |i| (0.05 * (i / 4) as f64 * (1 + i % 4) as f64).sin())));
+        let mut noise = Noise::new(3);
+        let drawn: Vec<f64> = (0..1000).map(|_| noise.normal()).collect();
+        assert!(!continues(&columns(5, |i| drawn[i])));
+        assert!(!continues(&columns(2, |i| (0.05 * i as f64).sin())));
+    }
+}
