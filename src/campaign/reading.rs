@@ -9,6 +9,7 @@ use serde::Deserialize;
 /// How a measurement file is to be read, where it does not say itself.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Reading {
     /// File format, instead of detecting it

@@ -84,10 +84,10 @@ impl<'a> Iterator for Lines<'a> {
             self.number += 1;
             let line = self.rest.next()?;
             let mark = |mark: &str| line.trim_start().starts_with(mark);
-            match special {
-                false if !mark(SPECIAL[0]) => return Some(line),
-                _ => special = !mark(SPECIAL[1]),
+            if !special && !mark(SPECIAL[0]) {
+                return Some(line);
             }
+            special = !mark(SPECIAL[1]);
         }
     }
 }

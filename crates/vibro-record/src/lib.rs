@@ -94,10 +94,10 @@ impl Record {
 
     /// Least and largest value; `None` of complex values, and where all are missing.
     pub fn range(&self) -> Option<(f64, f64)> {
-        let values = match self {
-            Record::Trace(Trace { values, .. })
-            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => values,
-            _ => return None,
+        let (Record::Trace(Trace { values, .. })
+        | Record::Spectrum(Spectrum { values: Values::Real(values), .. })) = self
+        else {
+            return None;
         };
         let ends = values
             .iter()

@@ -2,6 +2,8 @@
 //!
 //! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g, the factor stands in the test.
 
+#![expect(clippy::unreadable_literal, reason = "digits as the files print them")]
+
 use crate::others_files::folder;
 use std::path::PathBuf;
 use vibroimpact::read::{Reader, Recording};

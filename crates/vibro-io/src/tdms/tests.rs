@@ -83,7 +83,9 @@ impl Writer {
                         word(&mut meta, *id);
                     }
                     word(&mut meta, widths.len() as u32);
-                    widths.iter().for_each(|w| word(&mut meta, *w));
+                    for width in widths {
+                        word(&mut meta, *width);
+                    }
                 }
             }
             word(&mut meta, properties.len() as u32);

@@ -17,6 +17,8 @@ pub struct Dialect {
     pub complex: bool,
     /// Columns of a row.
     pub columns: usize,
+    /// Columns before those, which hold a preamble beside the first rows.
+    pub skipped: usize,
     /// One a column, where the text has them.
     pub names: Option<Vec<Name>>,
     /// What begins a remark.
@@ -67,6 +69,7 @@ impl Dialect {
             return Ok(vec![(line.text.len() - line.text.trim_start().len(), text.into())]);
         }
         let mut fields = fields(line.text, self.separator)?;
+        fields.drain(..self.skipped.min(fields.len()));
         while fields.len() > self.columns && fields.last().is_some_and(|(_, f)| f.is_empty()) {
             fields.pop();
         }

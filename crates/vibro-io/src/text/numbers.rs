@@ -67,6 +67,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
         decimal,
         complex,
         columns,
+        skipped: 0,
         names: names::above(&header, columns, separator),
         remarks: REMARKS,
         columns_from: first.number,

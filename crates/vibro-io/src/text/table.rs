@@ -22,11 +22,17 @@ const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
 
+/// Rows that have a preamble beside them, at most.
+const BESIDE: usize = 40;
+
 /// Finds the first row of numbers with names right above it; `None` where there is none.
 ///
 /// Where the file calls itself CSV a single column will do, and a header that does not fit its rows is still a header, so that
 /// reading can name the row at fault.
 pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
+    if let Some(found) = beside_rows(text) {
+        return Some(found);
+    }
     let mut above: Vec<Line> = Vec::new();
     let mut misfit = None;
     for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
@@ -52,6 +58,55 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
         above.push(line);
     }
     misfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
+}
+
+/// A preamble in the first columns of the first rows, as oscilloscopes of Tektronix write it: key, value and unit, then time and value, with
+/// nothing before them further down.
+fn beside_rows(text: &Text) -> Option<Dialect> {
+    let separator = Separator::Char(b',');
+    let lines = Lines::new(&text.head, 0, 1, &[]).filter(|line| !line.is_blank()).take(BESIDE);
+    let rows: Vec<(u64, Fields)> =
+        lines.map_while(|l| Some((l.number, fields(l.text, separator).ok()?))).collect();
+    let number = |field: &(usize, Cow<str>)| number::parse(field.1.as_bytes()).is_some();
+    let blank = |field: &&(usize, Cow<str>)| field.1.is_empty();
+    let (first_line, first) = rows.first()?;
+    let last = &rows.last()?.1;
+    let skipped = last.iter().take_while(blank).count();
+    let columns = last.len().checked_sub(skipped)?
+        - last.iter().rev().take_while(blank).count().min(last.len() - skipped);
+    let whole = |row: &Fields| {
+        row.get(skipped..skipped + columns).is_some_and(|cells| cells.iter().all(number))
+            && row.iter().skip(skipped + columns).all(|field| blank(&field))
+    };
+    let keyed = first.first().is_some_and(|(_, key)| key.contains(char::is_alphabetic));
+    if skipped < 2 || columns == 0 || !keyed || !rows.iter().all(|(_, row)| whole(row)) {
+        return None;
+    }
+    let cells =
+        rows.iter().map(|(_, row)| row[..skipped].iter().map(|(_, f)| f.trim()).filter(|f| !f.is_empty()));
+    let said: Vec<Vec<&str>> =
+        cells.map(Iterator::collect).filter(|cells: &Vec<&str>| cells.len() > 1).collect();
+    let value = |key: &str| {
+        said.iter().find(|cells| cells[0].eq_ignore_ascii_case(key)).map(|cells| cells[1].to_owned())
+    };
+    let name = |name: Option<String>, unit| Name { name: name.unwrap_or_default(), unit: value(unit) };
+    let names = match columns {
+        2 => vec![name(Some("time".to_owned()), "horizontal units"), name(value("source"), "vertical units")],
+        _ => vec![Name::default(); columns],
+    };
+    Some(Dialect {
+        format: Format::Csv,
+        separator,
+        decimal: b'.',
+        complex: false,
+        columns,
+        skipped,
+        names: Some(names),
+        remarks: &[],
+        header: said.iter().map(|cells| format!("{}: {}", cells[0], cells[1..].join(" "))).collect(),
+        columns_from: *first_line,
+        first_line: *first_line,
+    })
 }
 
 /// Number of fields, where all are numbers or missing and at least one is a number.
@@ -118,6 +173,7 @@ fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Optio
         decimal: b'.',
         complex: false,
         columns,
+        skipped: 0,
         names: Some(names),
         remarks: REMARKS,
         header: preamble.chain(stated).collect(),
@@ -130,8 +186,8 @@ fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Optio
 /// Statements in cells beyond the `width` of the rows: a word over a number, `Start` over `-2e-3`, or `t0 = -5e-7`. They are taken out.
 fn beside(upper: Option<&mut Fields>, lower: &mut Fields, width: usize) -> Vec<String> {
     let over = |upper: &Fields| {
-        let pair = |(key, value): (&(usize, Cow<str>), &(usize, Cow<str>))| is_pair(&key.1, &value.1);
-        upper.len() == lower.len() && upper.iter().zip(&*lower).skip(width).all(pair)
+        let mut pairs = upper.iter().zip(&*lower).skip(width);
+        upper.len() == lower.len() && pairs.all(|(key, value)| is_pair(&key.1, &value.1))
     };
     if width == 0 || lower.len() <= width {
         return Vec::new();

@@ -373,3 +373,41 @@ proptest! {
         let _ = read_table(&source, &Options { allow_missing: true, ..Options::default() });
     }
 }
+
+#[test]
+fn a_preamble_in_the_first_columns() {
+    // As oscilloscopes of Tektronix write it: the last key stands beside the last but one row here.
+    let text = "Record Length,6.0e+00,,-0.002,0.5,\nSample Interval,1.0e-03,,-0.001,1.5,\n,,,0,-0.25,\nSource,CH1,,0.001,0,\n\
+                Vertical Units,V,,0.002,2,\nHorizontal Units,s,,0.003,1,\n,,,0.004,7,\n";
+    let found = Reader::new().from_reader("F0000CH1.CSV", text.as_bytes()).unwrap();
+    let [Record::Trace(trace)] = &found.records[..] else { panic!("{found:?}") };
+    assert_eq!((trace.meta.name.as_str(), trace.meta.unit.symbol()), ("CH1", "V"));
+    assert_eq!((&trace.values[..3], trace.values.len()), (&[0.5, 1.5, -0.25][..], 7));
+    assert_eq!((trace.axis.start(), trace.axis.step()), (-0.002, Some(0.001)));
+}
+
+#[test]
+fn names_and_units_of_oscilloscopes() {
+    for (text, name, start, step) in [
+        ("x-axis,1,2\nsecond,Volt,Volt\n-1.0E-03,-250.0000E-03,1\n-0.5E-03,1,2\n0,2,1\n", "1", -1e-3, 5e-4),
+        ("X,CH1,Start,Increment,\nSequence,Volt,-2.0e-03,2.0e-05,\n0,1,\n1,2,\n2,3,\n", "CH1", -2e-3, 2e-5),
+        (
+            "Record Length,Analog:3\nVertical Units,V\nSource,CH2\nSecond,Volt\n0.0,1\n0.1,2\n0.2,3\n",
+            "CH2",
+            0.0,
+            0.1,
+        ),
+        (
+            "sep=,\n\"Time\",\"A\"\n\"(ms)\",\"(V)\"\n\n\"0.0\",\"1\"\n\"0.5\",\"2\"\n\"1.0\",\"3\"\n",
+            "A",
+            0.0,
+            5e-4,
+        ),
+    ] {
+        let found = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap();
+        let Some(Record::Trace(trace)) = found.records.first() else { panic!("{found:?}") };
+        assert_eq!((trace.meta.name.as_str(), trace.meta.unit.symbol()), (name, "V"), "{text}");
+        let close = (trace.axis.step().unwrap() / step - 1.0).abs() < 1e-9;
+        assert!(close && (trace.axis.start() - start).abs() < 1e-12, "{text}: {:?}", trace.axis);
+    }
+}
