@@ -62,7 +62,7 @@ fn info_says_what_was_passed_over_and_how_text_was_read() {
     // 0.1 + 0.2 is no number that a person wants to see.
     fs::write(&path, "unit: mm\nrate: 3 Hz\n0.30000000000000004\n0.1\n").unwrap();
     let table = String::from_utf8(vibro(&["info", text(&path)]).stdout).unwrap();
-    assert!(table.contains("3 Hz, 0.666667 s, max 0.0003 m at 0 s"), "{table}");
+    assert!(table.contains("3 Hz, 0.666667 s, 0.0001 to 0.0003 m, largest at 0 s"), "{table}");
 }
 
 #[test]

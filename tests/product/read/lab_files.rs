@@ -5,13 +5,13 @@
 #![expect(clippy::unreadable_literal, reason = "digits as the files print them")]
 
 use crate::others_files::folder;
-use std::path::PathBuf;
+use std::path::Path;
 use vibroimpact::read::{Reader, Recording};
 use vibroimpact::record::{Record, Trace};
 
 const G: f64 = 9.80665;
 
-fn read(folder: &PathBuf, name: &str) -> Recording {
+fn read(folder: &Path, name: &str) -> Recording {
     Reader::new().from_path(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
