@@ -59,8 +59,16 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
                 .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
         })?;
     let bytes = source.all()?;
-    let variables = variable::all(&bytes, HEADER, big_endian)?;
-    let mut findings = Vec::new();
+    recording(source, variable::all(&bytes, HEADER, big_endian)?, Vec::new(), options)
+}
+
+/// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are those of the file.
+fn recording(
+    source: &Source,
+    variables: Vec<(String, Content)>,
+    mut findings: Vec<Finding>,
+    options: &Options,
+) -> Result<Recording> {
     let (mut arrays, mut notes, mut rates) = (Vec::new(), Vec::new(), Vec::new());
     for (name, content) in variables {
         match content {
