@@ -64,24 +64,18 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
 
 /// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean.
 pub fn read(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<Values>>> {
-    let values = match values(source, shape, end)? {
-        None if shape.fixed.is_some() => values(source, &Shape { fixed: None, ..*shape }, end)?,
-        values => values,
+    let columns = match columns(source, shape, end)? {
+        None if shape.fixed.is_some() => columns(source, &Shape { fixed: None, ..*shape }, end)?,
+        columns => columns,
     };
-    let columns = shape.dialect.columns;
-    Ok(values.map(|values| match columns {
-        1 => vec![Values::Real(values)],
-        _ => (0..columns)
-            .map(|c| Values::Real(values.iter().skip(c).step_by(columns).copied().collect()))
-            .collect(),
-    }))
+    Ok(columns.map(|columns| columns.into_iter().map(Values::Real).collect()))
 }
 
-/// All values, row by row; `None` where the file is not clean.
+/// All columns; `None` where the file is not clean.
 ///
 /// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes twice costs less
 /// than joining vectors.
-fn values(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<f64>>> {
+fn columns(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<Vec<f64>>>> {
     let from = shape.first_byte;
     let to = end.max(from);
     let pieces = ((to - from) / SMALLEST_PIECE).clamp(1, rayon::current_num_threads().max(1) as u64);
@@ -90,27 +84,30 @@ fn values(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<f64>>> 
     let bounds: Vec<u64> = (0..pieces).map(start).chain([Ok(to)]).collect::<Result<_>>()?;
     let pieces: Vec<(u64, u64)> = bounds.windows(2).map(|w| (w[0], w[1])).collect();
     let counts: Vec<usize> = pieces.par_iter().map(|p| rows_in(source, shape, *p)).collect::<Result<_>>()?;
-    let total = counts.iter().sum::<usize>().saturating_mul(shape.dialect.columns);
+    let total = counts.iter().sum::<usize>();
     // A value takes two bytes with what ends it: blank lines must not claim room for rows of many columns.
-    if total == 0 || total as u64 > (to - from) / 2 + 1 {
+    if total == 0 || total.saturating_mul(shape.dialect.columns) as u64 > (to - from) / 2 + 1 {
         return Ok(None);
     }
-    let mut values = vec![0.0; total];
-    let mut rest = values.as_mut_slice();
+    let mut columns: Vec<Vec<f64>> = (0..shape.dialect.columns).map(|_| vec![0.0; total]).collect();
+    let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
     let mut parts = Vec::new();
     for (rows, piece) in counts.iter().zip(pieces) {
-        let (part, behind) = std::mem::take(&mut rest).split_at_mut(rows * shape.dialect.columns);
-        rest = behind;
-        parts.push((part.iter_mut(), piece));
+        let part = rest.iter_mut().map(|column| {
+            let (part, behind) = std::mem::take(column).split_at_mut(*rows);
+            *column = behind;
+            part.iter_mut()
+        });
+        parts.push((part.collect::<Vec<_>>(), piece));
     }
     let clean: Vec<bool> = parts
         .into_par_iter()
         .map(|(mut part, piece)| {
             let clean = blocks(source, piece, |block| rows(block, shape, &mut part))?;
-            Ok(clean.is_some() && part.len() == 0)
+            Ok(clean.is_some() && part.iter().all(|column| column.len() == 0))
         })
         .collect::<Result<_>>()?;
-    Ok(clean.into_iter().all(|clean| clean).then_some(values))
+    Ok(clean.into_iter().all(|clean| clean).then_some(columns))
 }
 
 /// The first row that starts at `at` or behind, before `to`.
@@ -176,18 +173,18 @@ fn blocks(
 }
 
 /// Reads whole rows; `None` where one is not clean or there are more than were counted.
-fn rows(block: &[u8], shape: &Shape, values: &mut IterMut<f64>) -> Option<()> {
+fn rows(block: &[u8], shape: &Shape, columns: &mut [IterMut<f64>]) -> Option<()> {
     let mut at = 0;
     while at < block.len() {
         if let (Some((length, end)), Some((parse, width))) = (shape.fixed, shape.exponential)
             && let Some(value) =
                 block.get(at..at + length).and_then(|row| fixed(row, (end - width, end), parse))
         {
-            *values.next()? = value;
+            *columns.first_mut()?.next()? = value;
             at += length;
             continue;
         }
-        at += row(&block[at..], shape, values)?;
+        at += row(&block[at..], shape, columns)?;
     }
     Some(())
 }
@@ -229,7 +226,7 @@ fn value(bytes: &[u8], shape: &Shape) -> Option<(f64, usize)> {
 
 /// Reads one row; gives its bytes with its line end.
 #[inline]
-fn row(bytes: &[u8], shape: &Shape, values: &mut IterMut<f64>) -> Option<usize> {
+fn row(bytes: &[u8], shape: &Shape, columns: &mut [IterMut<f64>]) -> Option<usize> {
     let blank = |at: &mut usize| {
         while bytes.get(*at).is_some_and(|b| matches!(b, b' ' | b'\t')) {
             *at += 1;
@@ -245,7 +242,8 @@ fn row(bytes: &[u8], shape: &Shape, values: &mut IterMut<f64>) -> Option<usize> 
     let mut at = usize::from(bytes.first() == Some(&b' '));
     at += usize::from(bytes.get(at) == Some(&b' '));
     blank(&mut at);
-    for column in 0..shape.dialect.columns {
+    let last = columns.len() - 1;
+    for (column, values) in columns.iter_mut().enumerate() {
         if column > 0
             && let Separator::Char(mark) = shape.dialect.separator
             && mark != b'\t'
@@ -263,7 +261,7 @@ fn row(bytes: &[u8], shape: &Shape, values: &mut IterMut<f64>) -> Option<usize> 
         let before = at;
         blank(&mut at);
         let touching = before == at
-            && column + 1 < shape.dialect.columns
+            && column < last
             && !matches!(shape.dialect.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
         if touching {
             return None;
