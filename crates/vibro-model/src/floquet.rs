@@ -23,9 +23,8 @@ fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
 ///
 /// Its determinant is R². Its elements grow like 1/vᵣ when the impact grazes.
 fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
-    let share = rig.reduced_mass() * (1.0 + rig.restitution);
     let mut jump = Matrix4::identity();
-    let (first, second) = (share / rig.masses()[0], share / rig.masses()[1]);
+    let [first, second] = rig.masses().map(|mass| rig.exchange() / mass);
     jump[(1, 1)] -= first;
     jump[(1, 3)] += first;
     jump[(3, 1)] += second;

@@ -234,7 +234,7 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
     if matches!(excitation, Excitation::Sines(_)) {
         return None;
     }
-    let ([first, second], [m1, m2]) = (rig.oscillators(), rig.masses());
+    let ([first, second], [m1, _]) = (rig.oscillators(), rig.masses());
     let rate = |s: &State, force: f64| {
         [s.v1, force / m1 + first.acceleration(s.x1, s.v1), s.v2, second.acceleration(s.x2, s.v2)]
     };
@@ -242,7 +242,7 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
     for (i, strike) in strikes.iter().enumerate() {
         let impulse = rig.exchange() * strike.approach_velocity;
         let before = strike.before;
-        let after = State { v1: before.v1 - impulse / m1, v2: before.v2 + impulse / m2, ..before };
+        let after = rig.struck(before, impulse);
         let end = strikes
             .get(i + 1)
             .map_or_else(|| strikes[0].time + f64::from(cycles) / excitation.frequency(), |next| next.time);

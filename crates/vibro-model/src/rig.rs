@@ -106,6 +106,13 @@ impl Rig {
         self.reduced_mass() * (1.0 + self.restitution)
     }
 
+    /// The state just behind an impact.
+    #[inline]
+    pub(crate) fn struck(&self, before: State, impulse: f64) -> State {
+        let [m1, m2] = self.masses();
+        State { v1: before.v1 - impulse / m1, v2: before.v2 + impulse / m2, ..before }
+    }
+
     /// Natural frequencies in Hz of each mass alone, without its damper.
     pub fn natural_frequencies(&self) -> [f64; 2] {
         self.bodies().map(|body| (body.stiffness / body.mass).sqrt() / std::f64::consts::TAU)

@@ -45,6 +45,36 @@ fn modes_of_a_file() {
     complaint(&["modal", text(&path), "--complex", "--band", "120"], 2);
 }
 
+/// Lines without frequencies have no answer in Hz, and a spectrum of one signal has no modal constants: what the message says to state helps.
+#[test]
+fn lines_that_are_no_function_are_refused_until_it_is_stated() {
+    let folder = tempfile::tempdir().unwrap();
+    let (numbered, spectrum) = (folder.path().join("numbered.txt"), folder.path().join("spectrum.csv"));
+    let rows = accelerance();
+    let lines: Vec<[f64; 3]> = rows
+        .lines()
+        .skip(1)
+        .map(|row| std::array::from_fn(|i| row.split(',').nth(i).unwrap().parse().unwrap()))
+        .collect();
+    fs::write(&numbered, lines.iter().map(|[_, re, im]| format!("({re:e}{im:+e}j)\n")).collect::<String>())
+        .unwrap();
+    fs::write(&spectrum, rows.replace("(m/s²)/N", "m/s²")).unwrap();
+    let frequency =
+        |args: &[&str]| json(args)["modes"][0]["frequency"]["value"].as_f64().expect("a frequency");
+
+    let refused = complaint(&["modal", text(&numbered)], 1);
+    assert!(refused.contains("(--base-band)") && refused.contains("frequencies"), "{refused}");
+    // The last line stands at 199.5 Hz; numbers of nine digits.
+    assert!(
+        (frequency(&["modal", text(&numbered), "--base-band", "199.5", "--unit", "(m/s²)/N"]) - 80.3).abs()
+            < 1e-5
+    );
+
+    let refused = complaint(&["modal", text(&spectrum)], 1);
+    assert!(refused.contains("spectrum of acceleration [m/s²]") && refused.contains("--unit"), "{refused}");
+    assert!((frequency(&["modal", text(&spectrum), "--unit", "(m/s²)/N"]) - 80.3).abs() < 1e-5);
+}
+
 #[test]
 fn a_campaign_takes_a_coherence_of_another_file() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,9 @@
 //! The lines of a frequency response function that may be fitted.
 
 use num_complex::Complex64;
+use vibro_record::units::Quantity;
 use vibro_record::{
-    Axis, Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values,
+    Axis, AxisKind, Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values,
 };
 
 /// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
@@ -30,34 +31,58 @@ impl Measured {
         Measured { frequency: axis.values(), values, magnitude_only: false, kind, coherence: None }
     }
 
-    /// A record that may be one: a function, a complex spectrum, or magnitudes in the unit of a response over a force.
-    fn record(record: &Record) -> Option<Measured> {
+    /// The function that a record is: a response over a force, complex or in magnitude, or complex values of which the file does not
+    /// say what they are. Complex lines that have no frequencies, or are a spectrum by their unit or scaling, are refused.
+    fn record(record: &Record) -> Result<Option<Measured>> {
         let spectrum = match record {
-            Record::Frf(frf) => return Some(Measured::complex(frf)),
+            Record::Frf(frf) => return Ok(Some(Measured::complex(frf))),
             Record::Spectrum(spectrum) => spectrum,
-            Record::Trace(_) => return None,
+            Record::Trace(_) => return Ok(None),
         };
-        let kind = FrfKind::of(spectrum.meta.quantity);
-        match &spectrum.values {
-            Values::Complex(values) => Some(Measured::of(&spectrum.axis, values.clone(), kind)),
-            Values::Real(values) if kind != FrfKind::Other => {
+        let Spectrum { meta, axis, scaling, .. } = spectrum;
+        let kind = FrfKind::of(meta.quantity);
+        let values = match &spectrum.values {
+            Values::Complex(values) => values,
+            Values::Real(values) if kind != FrfKind::Other && axis.kind == AxisKind::Frequency => {
                 let values = values.iter().map(|v| Complex64::new(v.abs(), 0.0)).collect();
-                Some(Measured { magnitude_only: true, ..Measured::of(&spectrum.axis, values, kind) })
+                let measured = Measured::of(axis, values, kind);
+                return Ok(Some(Measured { magnitude_only: true, ..measured }));
             }
-            Values::Real(_) => None,
+            Values::Real(_) => return Ok(None),
+        };
+        if axis.kind != AxisKind::Frequency {
+            return Err(Error::refused("the file does not say the frequencies of these lines")
+                .hint("state the base band: the frequency of the last line")
+                .setting("base_band"));
         }
+        let one_signal = !matches!(meta.quantity, Quantity::Ratio | Quantity::Other);
+        if kind == FrfKind::Other && (one_signal || *scaling != Scaling::Unknown) {
+            let of = format!(" of {} [{}]", meta.quantity.name(), meta.unit.symbol());
+            let of = if one_signal { of } else { String::new() };
+            let why = format!("a spectrum{of}, which is no response over a force");
+            return Err(Error::refused(why)
+                .hint("take the function from the two channels over time, or state its unit, e.g. m/N")
+                .setting("reference")
+                .setting("unit"));
+        }
+        Ok(Some(Measured::of(axis, values.clone(), kind)))
     }
 
-    /// All functions among records, or those of one name or number, each with its record's meta data: complex ones, and magnitudes in
-    /// the unit of a response over a force. A coherence of the same lines among them is theirs where there is just one of each.
+    /// All functions among records, or those of one name or number, each with its record's meta data. A coherence of the same lines among
+    /// them is theirs where there is just one of each.
     ///
     /// # Errors
     /// If there is none.
     pub fn all(records: &[Record], channel: Option<&str>) -> Result<Vec<(Meta, Measured)>> {
-        let functions = records.iter().filter_map(|r| Some((r.meta().clone(), Measured::record(r)?)));
-        let mut found: Vec<(Meta, Measured)> = functions.collect();
+        let (mut found, mut refused) = (Vec::new(), None);
+        for record in records {
+            match Measured::record(record) {
+                Ok(function) => found.extend(function.map(|function| (record.meta().clone(), function))),
+                Err(error) => refused = Some(error),
+            }
+        }
         if let Some(name) = channel {
-            let named = found.iter().any(|f| f.0.name == name);
+            let named = found.iter().any(|(meta, _)| meta.name == name);
             let number = name.parse::<usize>().ok().filter(|_| !named);
             let chosen = found.into_iter().enumerate();
             let chosen = chosen.filter(|(i, f)| number.map_or(f.0.name == name, |n| n == i + 1));
@@ -65,8 +90,10 @@ impl Measured {
         }
         if found.is_empty() {
             let what = channel.map_or_else(String::new, |c| format!(" named {c:?}"));
-            return Err(Error::refused(format!("no frequency response function{what}"))
-                .hint("`vibro info` lists what is in the file"));
+            return Err(refused.unwrap_or_else(|| {
+                Error::refused(format!("no frequency response function{what}"))
+                    .hint("`vibro info` lists what is in the file")
+            }));
         }
         if let [(_, only)] = found.as_mut_slice()
             && records.iter().filter_map(coherence).count() == 1

@@ -59,8 +59,7 @@ impl Compliant {
         let met = self.met();
         let impulse = self.rig.exchange() * met.approach_velocity;
         self.slack = 0.0;
-        self.state.v1 -= impulse / self.rig.masses()[0];
-        self.state.v2 += impulse / self.rig.masses()[1];
+        self.state = self.rig.struck(self.state, impulse);
         Event::Impact(Impact { impulse, ..met })
     }
 

@@ -28,7 +28,7 @@ impl Modes {
     /// x₁ < −`buffer`.
     pub fn new(rig: &Rig, law: Option<Law>, buffer: f64) -> Modes {
         let [first, second] = rig.bodies();
-        let inverse = [1.0 / rig.masses()[0], 1.0 / rig.masses()[1]];
+        let inverse = rig.masses().map(|mass| 1.0 / mass);
         let (k3, c3) = match law {
             Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
             _ => (0.0, 0.0),
@@ -50,7 +50,7 @@ impl Modes {
         };
         let together = [false, true].map(|acting| {
             let (own, preload) = own(acting);
-            let total = 1.0 / (rig.masses()[0] + rig.masses()[1]);
+            let total = 1.0 / rig.masses().iter().sum::<f64>();
             let both = std::array::from_fn(|j| (own[0][j] + own[1][j]) * total);
             Linear::new([both, both], [preload * total; 2], [total; 2])
         });

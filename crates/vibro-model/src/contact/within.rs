@@ -32,7 +32,7 @@ pub(super) struct Within {
 impl Within {
     pub fn new(rig: &Rig, law: Option<Law>, reduced_mass: f64) -> Within {
         let law = law.filter(|law| !matches!(law, Law::KelvinVoigt { .. }));
-        let inverse = [1.0 / rig.masses()[0], 1.0 / rig.masses()[1]];
+        let inverse = rig.masses().map(|mass| 1.0 / mass);
         Within { law, inverse, gap: rig.gap, reduced_mass, speed: 0.0, scale: 0.0, next: 0.0 }
     }
 

@@ -18,8 +18,7 @@ impl Simulation {
     pub(super) fn collide(&mut self) -> Result<Impact> {
         let approach = self.state.approach();
         let impulse = self.exchange * approach;
-        self.state.v1 -= impulse / self.rig.masses()[0];
-        self.state.v2 += impulse / self.rig.masses()[1];
+        self.state = self.rig.struck(self.state, impulse);
         self.hold = Hold::Apart;
         if approach < SLOW.max(self.grazing_speed).max(SLOW_PART * self.speed())
             || self.rig.restitution == 0.0
