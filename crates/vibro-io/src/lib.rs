@@ -1,19 +1,29 @@
 //! Files of analysers, vibrometers and recorders to records, and records to files.
 //!
-//! A [`Reader`] finds out the format from the first bytes, reads all records of a file in SI units, and says as
-//! [findings](vibro_record::Finding) what it assumed. What the file does not say is stated on the reader.
+//! After `cargo add vibro-io`, a channel of any file is an array in SI units:
+//!
+//! ```no_run
+//! fn main() -> vibro_io::record::Result<()> {
+//!     let recording = vibro_io::Reader::new().from_path("bench.tdms")?;
+//!     let velocity = recording.trace(Some("velocity"), None)?; // by its name, or its number from 1
+//!     println!("{:?} Hz, {} values in {}", velocity.rate(), velocity.values.len(), velocity.meta.unit.symbol());
+//!     Ok(())
+//! }
+//! ```
+//!
+//! A [`Reader`] finds out the format from the first bytes, reads all records of a file, and says as
+//! [findings](record::Finding) what it assumed. What the file does not say is stated on the reader.
 //!
 //! ```
-//! use vibro_io::Reader;
-//! use vibro_record::Record;
+//! use vibro_io::{Reader, record::Record};
 //!
 //! let text = "Messung: 7\nZeit [ms];Weg [mm]\n0,0;1,5\n0,5;-2\n1,0;0,25\n";
-//! let recording = Reader::new().from_reader("bench.csv", text.as_bytes())?; // or from_path("bench.csv")
+//! let recording = Reader::new().from_reader("bench.csv", text.as_bytes())?;
 //! let Record::Trace(trace) = &recording.records[0] else { panic!("a time trace") };
 //! assert_eq!((trace.meta.name.as_str(), trace.meta.unit.symbol()), ("Weg", "m"));
 //! assert_eq!((trace.rate(), trace.values[1]), (Some(2000.0), -2e-3));
 //! assert!(recording.all_findings().is_empty());
-//! # Ok::<(), vibro_record::Error>(())
+//! # Ok::<(), vibro_io::record::Error>(())
 //! ```
 //!
 //! | format | module | what it is |
@@ -52,6 +62,7 @@ pub use format::Format;
 pub use reader::{Header, Reader, Recording};
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
+pub use vibro_record as record;
 
 pub(crate) use reader::Options;
 pub(crate) use source::Source;

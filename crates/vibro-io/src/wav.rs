@@ -23,7 +23,7 @@ use super::{Header, Source};
 use layout::Layout;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
-use vibro_math::lanes;
+use vibro_record::lanes;
 use vibro_record::units::{self, Unit};
 use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Trace};
 

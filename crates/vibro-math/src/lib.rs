@@ -8,7 +8,6 @@
 //! ```
 
 pub mod cis;
-pub mod lanes;
 mod least_squares;
 mod noise;
 pub mod oscillator;

@@ -7,6 +7,7 @@
 mod axis;
 mod error;
 mod finding;
+pub mod lanes;
 mod meta;
 mod spectrum;
 mod sweep;
@@ -99,11 +100,8 @@ impl Record {
         else {
             return None;
         };
-        let ends = values
-            .iter()
-            .filter(|v| !v.is_nan())
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
-        (ends.0 <= ends.1).then_some(ends)
+        let seen = lanes::survey(values);
+        (seen.low <= seen.high).then_some((seen.low, seen.high))
     }
 
     /// Largest magnitude and its index; `None` for no values or only missing ones.

@@ -13,7 +13,7 @@ use super::welch::Sums;
 use left::Left;
 use serde::Serialize;
 use std::f64::consts::PI;
-use vibro_math::lanes;
+use vibro_record::lanes;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Meta, Result, Trace};
 

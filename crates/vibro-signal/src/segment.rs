@@ -1,7 +1,7 @@
 //! Records cut into overlapping segments, a batch of them at a time.
 
 use super::sound::no_gaps;
-use vibro_math::lanes::{self, Survey};
+use vibro_record::lanes::{self, Survey};
 use vibro_record::{Error, Result, Traces};
 
 /// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache holds.

@@ -9,7 +9,7 @@ use super::sound::constant;
 use super::window;
 use num_complex::Complex64;
 use rayon::prelude::*;
-use vibro_math::lanes;
+use vibro_record::lanes;
 use vibro_record::{Error, Result, Traces, Window};
 
 /// Segments that one core sums up at a time.

@@ -1,7 +1,7 @@
 //! Level and noise of a trace between its impacts, and its bursts with the ringing that each impact leaves behind.
 
 use std::ops::Range;
-use vibro_math::lanes::{Survey, survey};
+use vibro_record::lanes::{Survey, survey};
 
 /// An impact rises above what is left of the ringing before it by this factor.
 const RISE: f64 = 2.0;
