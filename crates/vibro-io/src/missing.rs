@@ -1,7 +1,7 @@
 //! The complaint about values that are missing.
 
 use num_complex::Complex64;
-use vibro_record::{Error, Finding, Place, Result, Values};
+use vibro_record::{Error, Finding, Place, Result, Values, lanes};
 
 /// How many places a complaint lists.
 pub(super) const LISTED: usize = 8;
@@ -28,6 +28,7 @@ pub(super) fn mark(values: &mut Values) -> Vec<usize> {
         odd
     }
     match values {
+        Values::Real(values) if lanes::survey(values).finite => Vec::new(),
         Values::Real(values) => of(values, |v| v.is_finite(), f64::NAN),
         Values::Complex(values) => of(values, |v| v.is_finite(), Complex64::new(f64::NAN, f64::NAN)),
     }

@@ -19,6 +19,7 @@ use super::missing::{self, Missing};
 use super::reader::{Options, Recording};
 use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
 use layout::Layout;
+use rayon::prelude::*;
 use scale::Scales;
 use segment::{Object, Segments, Value};
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -39,10 +40,17 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     }
     let mut file = BufReader::with_capacity(BLOCK, source.open()?);
     let Segments { objects, layouts, mut findings } = segment::all(&mut file, source.len())?;
-    let mut raw: Vec<Vec<Vec<f64>>> = objects.iter().map(|_| Vec::new()).collect();
-    for layout in &layouts {
-        values(&mut file, layout, &mut raw).map_err(|e| Error::io("read", source.path(), e))?;
-    }
+    let mut raw: Vec<Columns> = objects.iter().map(|_| Columns::new()).collect();
+    // Channels that lie one after the other are read side by side.
+    let apart = layouts.iter().flat_map(|layout| &layout.parts).all(|part| part.fields.len() <= 1);
+    let each = raw.len().div_ceil(if apart { rayon::current_num_threads() } else { 1 }).max(1);
+    let read = |(i, raw): (usize, &mut [Columns])| {
+        let mut file = BufReader::with_capacity(BLOCK, source.open()?);
+        let mut all = layouts.iter();
+        all.try_for_each(|layout| values(&mut file, layout, i * each, raw))
+            .map_err(|e| Error::io("read", source.path(), e))
+    };
+    raw.par_chunks_mut(each).enumerate().try_for_each(read)?;
     let mut channels = Vec::new();
     for (object, columns) in objects.iter().zip(raw) {
         let [group, name] = &object.path[..] else { continue };
@@ -96,8 +104,17 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 /// An object with its group, its name and its values.
 type Channel<'a> = (&'a Object, &'a String, &'a String, Values);
 
-/// Reads the raw data of a segment behind what `raw` holds of each object and slot.
-fn values(file: &mut (impl Read + Seek), layout: &Layout, raw: &mut [Vec<Vec<f64>>]) -> std::io::Result<()> {
+/// Raw values of an object, one column a slot.
+type Columns = Vec<Vec<f64>>;
+
+/// Reads what a segment has of the objects from `first` on behind what `raw` holds of them.
+fn values(
+    file: &mut (impl Read + Seek),
+    layout: &Layout,
+    first: usize,
+    raw: &mut [Columns],
+) -> std::io::Result<()> {
+    let wanted = first..first + raw.len();
     file.seek(SeekFrom::Start(layout.at))?;
     let (mut left, mut block) = (layout.len, Vec::new());
     while left > 0 {
@@ -109,14 +126,14 @@ fn values(file: &mut (impl Read + Seek), layout: &Layout, raw: &mut [Vec<Vec<f64
             while rows > 0 {
                 let now = rows.min(most);
                 rows -= now;
-                if part.fields.is_empty() {
+                if !part.fields.iter().any(|field| wanted.contains(&field.object)) {
                     file.seek_relative((now * part.width) as i64)?;
                     continue;
                 }
                 block.resize((now * part.width) as usize, 0);
                 file.read_exact(&mut block)?;
                 for field in &part.fields {
-                    let columns = &mut raw[field.object];
+                    let columns = &mut raw[field.object - first];
                     if columns.len() <= field.slot {
                         columns.resize(field.slot + 1, Vec::new());
                     }

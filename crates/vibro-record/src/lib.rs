@@ -16,6 +16,8 @@ mod traces;
 pub mod units;
 mod window;
 
+use num_complex::Complex64;
+
 pub use axis::{Axis, AxisKind, Grid};
 pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
@@ -25,6 +27,13 @@ pub use sweep::{Direction, Sweep, SweepPoint};
 pub use trace::Trace;
 pub use traces::{Stream, Traces, find_channel};
 pub use window::Window;
+
+/// Largest magnitude and its first index.
+fn largest(values: &[f64]) -> Option<(usize, f64)> {
+    let seen = lanes::survey(values);
+    let most = seen.high.max(-seen.low);
+    Some((values.iter().position(|v| v.abs() == most)?, most))
+}
 
 /// Anything a file can hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,18 +113,17 @@ impl Record {
         (seen.low <= seen.high).then_some((seen.low, seen.high))
     }
 
-    /// Largest magnitude and its index; `None` for no values or only missing ones.
+    /// Largest magnitude and the index of the first that has it; `None` for no values or only missing ones.
     pub fn max_abs(&self) -> Option<(usize, f64)> {
-        fn largest(magnitudes: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
-            magnitudes.enumerate().filter(|(_, m)| !m.is_nan()).fold(None, |best, (i, m)| match best {
-                Some((_, b)) if b >= m => best,
-                _ => Some((i, m)),
-            })
-        }
+        let complex = |values: &[Complex64]| {
+            let sizes: Vec<f64> = values.iter().map(|v| v.norm()).collect();
+            largest(&sizes)
+        };
         match self {
-            Record::Trace(r) => largest(r.values.iter().map(|v| v.abs())),
-            Record::Spectrum(r) => largest((0..r.values.len()).map(|i| r.values.magnitude(i))),
-            Record::Frf(r) => largest(r.values.iter().map(|v| v.norm())),
+            Record::Trace(Trace { values, .. })
+            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => largest(values),
+            Record::Spectrum(Spectrum { values: Values::Complex(values), .. }) => complex(values),
+            Record::Frf(r) => complex(&r.values),
         }
     }
 }
