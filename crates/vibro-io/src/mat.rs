@@ -157,8 +157,9 @@ fn split(
     };
     let has = |n: u64| axes.has(&name, n);
     let wide = columns > rows.max(MOST_COLUMNS);
-    let lying = !has(rows) && (wide || (has(columns) && rows <= columns.max(MOST_COLUMNS)));
-    if lying && !has(columns) {
+    let pair = options.complex && rows == 2 && columns > 2;
+    let lying = !has(rows) && (wide || pair || (has(columns) && rows <= columns.max(MOST_COLUMNS)));
+    if lying && !pair && !has(columns) {
         let found = Finding::caution("matrix-by-rows").name("variable", name.as_str());
         findings.push(found.number("rows", rows as f64).number("columns", columns as f64));
     }

@@ -133,12 +133,11 @@ impl Scalar {
         if matches!(meaning, Increment | Start) {
             let inside = container(name);
             let labels = notes.iter().filter(|(label, _)| {
-                !inside.is_empty()
-                    && label.starts_with(inside)
-                    && matches!(key(label).to_lowercase().as_str(), "unit" | "units" | "label")
+                label.starts_with(inside) && (is_unit(key(label)) || key(label) == "label")
             });
+            let mut labels = labels.filter(|_| !inside.is_empty());
             scalar.kind = None;
-            if let Some(unit) = labels.filter_map(|(_, text)| Unit::parse(text)).next() {
+            if let Some(unit) = labels.find_map(|(_, text)| Unit::parse(text)) {
                 scalar.kind = Some(match unit.quantity() {
                     Quantity::Time => AxisKind::Time,
                     Quantity::Frequency if unit.symbol().ends_with("Hz") => AxisKind::Frequency,
@@ -183,7 +182,8 @@ impl<'a> Axes<'a> {
         findings: &mut Vec<Finding>,
     ) -> Axes<'a> {
         let kinds: Vec<_> = arrays.iter().map(|(name, _)| kind(name, unit(name, notes, arrays))).collect();
-        let values = arrays.iter().zip(&kinds).filter(|(_, kind)| kind.is_none());
+        let values = arrays.iter().zip(&kinds);
+        let values = values.filter(|((_, array), kind)| kind.is_none() || rises(&array.values).is_none());
         let values: Vec<String> = values.map(|((name, _), _)| name.clone()).collect();
         let scalars = notes.iter().filter_map(|(name, said)| Scalar::of(name, said, notes, &values));
         let mut axes = Axes { options, vectors: Vec::new(), scalars: scalars.collect(), even: Vec::new() };
@@ -210,8 +210,10 @@ impl<'a> Axes<'a> {
             let drift = drift(&vector, *single);
             let (axis, finding) = from_values(kind, vector, drift, &format!("vector {name:?}"));
             findings.extend(finding);
-            let said = axes.chosen(name, false).first().map(|scalar| 1.0 / scalar.value);
-            if let Some(rate) = options.rate.or(said).filter(|_| axis.kind == AxisKind::Time)
+            let said = axes.chosen(name, false);
+            let said = said.iter().find(|s| s.kind == Some(AxisKind::Time) && s.scope == scope);
+            if let Some(rate) =
+                options.rate.or(said.map(|s| 1.0 / s.value)).filter(|_| axis.kind == AxisKind::Time)
                 && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
             {
                 let used = if options.rate.is_some() { "rate" } else { "vector" };
@@ -257,9 +259,17 @@ impl<'a> Axes<'a> {
         };
         let mut fitting: Vec<&Vector> = self.vectors.iter().filter(over).collect();
         fitting.sort_by_key(|vector| Reverse(vector.scope.len()));
-        let vector = fitting.first().map(|vector| &vector.axis);
+        let said = self.chosen(&name, complex);
+        // What stands nearer is meant.
+        let nearer = |vector: &&&Vector| said.first().is_none_or(|s| s.scope.len() <= vector.scope.len());
+        let vector = fitting.first().filter(nearer).map(|vector| &vector.axis);
         match (self.options.rate, self.options.base_band) {
             (Some(rate), _) if !complex => {
+                let step = said.first().map_or(1.0 / rate, |scalar| scalar.value);
+                if vector.is_none() && (step * rate - 1.0).abs() > 1e-5 {
+                    let found = Finding::caution("rate-overrides-step").number("step", step);
+                    meta.found(found.number("rate", rate));
+                }
                 let time = vector.filter(|axis| axis.kind == AxisKind::Time);
                 return Ok(Axis::time(time.map_or(0.0, Axis::start), 1.0 / rate, n));
             }
@@ -268,28 +278,16 @@ impl<'a> Axes<'a> {
             }
             _ => {}
         }
-        if let [first, second, ..] = fitting[..]
-            && first.scope == second.scope
-            && first.axis != second.axis
-        {
-            let found = Finding::caution("time-or-frequency").name("variable", name.as_str());
-            findings.push(found.name("used", first.name.as_str()).name("other", second.name.as_str()));
-        }
         if let Some(axis) = vector {
+            let (first, rest) = (fitting[0], &fitting[1..]);
+            if let Some(other) = rest.iter().find(|other| other.scope == first.scope && other.axis != *axis) {
+                let found = Finding::caution("time-or-frequency").name("variable", name);
+                findings.push(found.name("used", first.name.as_str()).name("other", other.name.as_str()));
+            }
             return Ok(axis.clone());
         }
-        let said = self.chosen(&name, complex);
         let Some(scalar) = said.first() else {
-            let mut found = Finding::caution("abscissa-unsaid");
-            let offered = |s: &&Scalar| s.trust >= Vague && name.starts_with(&s.scope);
-            if let Some(scalar) = self.scalars.iter().filter(offered).max_by_key(|s| s.name.contains("ampl"))
-            {
-                found = found.name("variable", scalar.name.as_str()).number("rate", 1.0 / scalar.value);
-            }
-            if let Some((vector, _, step)) = self.even.iter().find(|(of, len, _)| *len == n && *of != name) {
-                found = found.name("vector", vector).number("rises", 1.0 / step);
-            }
-            meta.found(found);
+            meta.found(self.unsaid(&name, n));
             return Ok(Axis::index(n));
         };
         let rival = said.iter().find(|other| other.scope == scalar.scope && !other.agrees(scalar));
@@ -297,27 +295,34 @@ impl<'a> Axes<'a> {
             let hertz = |of: &Scalar| format!("{} Hz", short(1.0 / of.value));
             let (a, b) = (hertz(scalar), hertz(other));
             let found = format!("{:?} says a sampling rate of {a}, {:?} {b}", scalar.name, other.name);
-            return Err(Error::usage(found, "one sampling rate")
-                .hint("state the sampling rate")
-                .setting("rate"));
+            let error = Error::usage(found, "one sampling rate");
+            return Err(error.hint("state the sampling rate").setting("rate"));
         }
         let over_frequency = scalar.kind.as_ref().map_or(complex, |kind| *kind == AxisKind::Frequency);
-        if scalar.trust != Sure || rival.is_some() {
-            let found = if scalar.trust == Sure { Finding::note } else { Finding::caution };
-            let found = found("step-by-name").name("variable", scalar.name.as_str());
-            let found = match over_frequency {
-                true => found.number("step", scalar.value),
-                false => found.number("rate", 1.0 / scalar.value),
-            };
-            meta.found(match rival {
-                Some(other) => found.name("other", other.name.as_str()),
-                None => found,
-            });
+        if scalar.trust != Sure {
+            let (fact, value) =
+                if over_frequency { ("step", scalar.value) } else { ("rate", 1.0 / scalar.value) };
+            let found = Finding::caution("step-by-name").name("variable", scalar.name.as_str());
+            let found = found.number(fact, value);
+            meta.found(if let Some(other) = rival { found.name("other", &other.name) } else { found });
         }
         let beside = |s: &&Scalar| s.meaning == Start && container(&s.name) == container(&scalar.name);
         let start = self.scalars.iter().find(beside).map_or(0.0, |s| s.value);
         let axis = if over_frequency { Axis::frequency } else { Axis::time };
         Ok(axis(start, scalar.value, n))
+    }
+
+    /// What to say of `n` values without an abscissa: which variables may hold it.
+    fn unsaid(&self, name: &str, n: usize) -> Finding {
+        let mut found = Finding::caution("abscissa-unsaid");
+        let offered = self.scalars.iter().filter(|s| s.trust >= Vague && name.starts_with(&s.scope));
+        if let Some(scalar) = offered.max_by_key(|s| s.name.contains("ampl")) {
+            found = found.name("variable", scalar.name.as_str()).number("rate", 1.0 / scalar.value);
+        }
+        if let Some((vector, _, step)) = self.even.iter().find(|(of, len, _)| *len == n && of != name) {
+            found = found.name("vector", vector).number("rises", 1.0 / step);
+        }
+        found
     }
 
     /// Whether an abscissa of `n` values is known for an array.
@@ -326,13 +331,15 @@ impl<'a> Axes<'a> {
     }
 }
 
+fn is_unit(key: &str) -> bool {
+    matches!(key, "Unit" | "unit" | "Units" | "units")
+}
+
 /// The unit that a struct states of its only vector.
 pub fn unit<'n>(name: &str, notes: &'n [(String, String)], arrays: &[(String, Array)]) -> Option<&'n str> {
     let inside = container(name);
     let stated = |(of, text): &&(String, String)| {
-        let word =
-            of.strip_prefix(inside).is_some_and(|word| matches!(word, "Unit" | "unit" | "Units" | "units"));
-        word && Unit::parse(text).is_some()
+        of.strip_prefix(inside).is_some_and(is_unit) && Unit::parse(text).is_some()
     };
     let alone = !inside.is_empty() && arrays.iter().filter(|(of, _)| container(of) == inside).count() == 1;
     notes.iter().filter(|_| alone).find(stated).map(|(_, text)| text.as_str())

@@ -488,8 +488,8 @@ fn any_damage_to_what_is_packed_is_found() {
             }
         }
     }
-    // Before its checksum a stream is filled up to a whole byte.
-    assert!(unused < 8);
+    // A few bits fill up the last byte or belong to codes that no value has.
+    assert!(unused < packed.len() * 8 / 20, "{unused}");
     // Cut off, with the size of what is left.
     for n in 8..packed.len() {
         let mut cut = packed[..n].to_vec();
