@@ -146,17 +146,14 @@ fn unpacked(file: &Elements, packed: &[u8]) -> Result<Vec<u8>> {
     };
     let (mut zlib, mut tag, mut inflated) = (ZlibDecoder::new(packed), [0; 8], Vec::new());
     zlib.read_exact(&mut tag).map_err(damaged)?;
-    let declared = file.words(&tag[4..]).next().unwrap_or(0);
+    let declared = u64::from(file.words(&tag[4..]).next().unwrap_or(0));
     // Up to its end the stream is not compared with its checksum: eight bytes are more than any padding.
-    zlib.by_ref().take(u64::from(declared) + 8).read_to_end(&mut inflated).map_err(damaged)?;
+    zlib.by_ref().take(declared + 8).read_to_end(&mut inflated).map_err(damaged)?;
     let behind = packed.get(zlib.total_in() as usize..).unwrap_or_default();
-    let (there, more) = (inflated.len(), inflated.len() as u64 > u64::from(declared) + 7);
-    if more || there < declared as usize || behind.iter().any(|b| *b != 0) {
-        let found = if there < declared as usize {
-            format!("a packed variable that ends early: {there} of {declared} bytes are there")
-        } else {
-            format!("a packed variable that holds more than the {declared} bytes that it declares")
-        };
+    let there = inflated.len() as u64;
+    if !(declared..declared + 8).contains(&there) || behind.iter().any(|b| *b != 0) {
+        let found =
+            format!("a packed variable that ends early or late: {there} of {declared} bytes are there");
         return Err(file.fault(found, "as many bytes as it declares"));
     }
     inflated.truncate(declared as usize);
