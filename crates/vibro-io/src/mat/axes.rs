@@ -224,10 +224,10 @@ impl<'a> Axes<'a> {
             let drift = drift(&vector, *single);
             let (axis, finding) = from_values(kind, vector, drift, &format!("vector {name:?}"));
             findings.extend(finding);
-            let said = axes.chosen(name, false);
-            let said = said.iter().find(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
-            if let Some(rate) =
-                options.rate.or(said.map(|(_, s)| 1.0 / s.value)).filter(|_| axis.kind == AxisKind::Time)
+            let said = axes.chosen(name, false).into_iter();
+            let mut said = said.filter(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
+            let said = options.rate.or_else(|| Some(1.0 / said.next()?.1.value));
+            if let Some(rate) = said.filter(|_| axis.kind == AxisKind::Time)
                 && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
             {
                 let used = if options.rate.is_some() { "rate" } else { "vector" };
@@ -311,10 +311,9 @@ impl<'a> Axes<'a> {
         }
         let over_frequency = scalar.kind.as_ref().map_or(complex, |kind| *kind == AxisKind::Frequency);
         if scalar.trust != Sure {
-            let (fact, value) =
-                if over_frequency { ("step", scalar.value) } else { ("rate", 1.0 / scalar.value) };
-            let found = Finding::caution("step-by-name").name("variable", scalar.name.as_str());
-            let found = found.number(fact, value);
+            let step = scalar.value;
+            let (fact, value) = if over_frequency { ("step", step) } else { ("rate", 1.0 / step) };
+            let found = Finding::caution("step-by-name").name("variable", &scalar.name).number(fact, value);
             meta.found(if let Some(other) = rival { found.name("other", &other.name) } else { found });
         }
         let beside = |s: &&Scalar| s.meaning == Start && container(&s.name) == container(&scalar.name);
