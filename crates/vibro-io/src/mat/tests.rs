@@ -472,6 +472,36 @@ fn x_and_y_of_a_control_system() {
 }
 
 #[test]
+fn a_unit_in_a_struct_is_that_of_its_only_vector() {
+    let unit = || ("unit", LITTLE.text("", "mm"));
+    let x = || LITTLE.column("", &SOME);
+    let recording = of(&[
+        LITTLE.one("a", &[unit(), ("t", LITTLE.column("", &[0.0, 0.5, 1.0, 1.5])), ("x", x())]),
+        LITTLE.one("b", &[unit(), ("x", x()), ("y", x())]),
+        LITTLE.text("unit", "mm"),
+        LITTLE.column("c", &SOME),
+    ]);
+    let recording = recording.unwrap();
+    assert_eq!(values(&recording.records[0]), SOME.map(|v| v * 1e-3));
+    assert!(recording.records[1..].iter().all(|record| values(record) == SOME));
+    assert!(has_finding(&recording.findings, "format-without-units", &[]));
+    let stated = Reader::new()
+        .unit(Unit::parse("m"))
+        .from_reader("x.mat", LITTLE.file(&[LITTLE.one("a", &[unit(), ("x", x())])]).as_slice());
+    let stated = stated.unwrap();
+    assert_eq!(values(&stated.records[0]), SOME);
+    assert!(has_finding(&stated.records[0].meta().findings, "unit-overrides-file", &["file=mm", "used=m"]));
+}
+
+#[test]
+fn notes_do_not_fill_the_memory() {
+    let texts: Vec<Vec<u8>> = (0..1000).map(|i| LITTLE.text("", &i.to_string())).collect();
+    let recording = of(&[LITTLE.cells("c", &texts), LITTLE.column("x", &SOME)]).unwrap();
+    let notes = &recording.records[0].meta().notes;
+    assert_eq!((notes.len(), &notes[199]), (200, &("c{200}".to_owned(), "199".to_owned())));
+}
+
+#[test]
 fn what_may_be_a_rate_is_offered() {
     let recording = of(&[
         LITTLE.scalar("carrier_freq", 40.0),
