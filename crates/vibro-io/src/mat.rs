@@ -9,7 +9,7 @@
 //! abscissa comes from a vector `t` or `time` (`f`, `freq` or `frequency`) of the same length, or from a scalar `fs`,
 //! `rate`, `SampleRate`, `dt` or `Ts`; the file knows no units.
 
-mod variable;
+pub(crate) mod variable;
 
 use super::Source;
 use super::format::Format;
@@ -53,6 +53,10 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+    #[cfg(feature = "hdf5")]
+    if super::hdf5::sniff(source.head(), source) {
+        return super::hdf5::read(source, options);
+    }
     let big_endian =
         big_endian(source.head(), source).unwrap_or(Err("no MAT-file header")).map_err(|found| {
             Error::usage(found, "a level 5 MAT-file")
@@ -63,7 +67,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 }
 
 /// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are those of the file.
-fn recording(
+pub(super) fn recording(
     source: &Source,
     variables: Vec<(String, Content)>,
     mut findings: Vec<Finding>,
@@ -131,7 +135,7 @@ fn recording(
 }
 
 /// Sampling rate in Hz that a scalar of this name states.
-fn rate(name: &str, value: f64) -> Option<f64> {
+pub(super) fn rate(name: &str, value: f64) -> Option<f64> {
     let key = name.replace('_', "").to_lowercase();
     let rate = match key.as_str() {
         "fs" | "rate" | "samplerate" | "samplingrate" | "samplefrequency" | "samplingfrequency" => value,
@@ -269,7 +273,7 @@ impl<'a> Axes<'a> {
     }
 }
 
-fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
+pub(super) fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
     all.iter().skip(from).step_by(step).take(n).copied().collect()
 }
 
