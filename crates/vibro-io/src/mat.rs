@@ -135,7 +135,7 @@ pub(super) fn recording(
 }
 
 /// Sampling rate in Hz that a scalar of this name states.
-pub(super) fn rate(name: &str, value: f64) -> Option<f64> {
+fn rate(name: &str, value: f64) -> Option<f64> {
     let key = name.replace('_', "").to_lowercase();
     let rate = match key.as_str() {
         "fs" | "rate" | "samplerate" | "samplingrate" | "samplefrequency" | "samplingfrequency" => value,

@@ -157,6 +157,7 @@ impl File {
             return Err(Fault::InvalidData(found));
         }
         match dataset.dtype() {
+            _ if dataset.num_elements()? == 0 => Ok(Data::Numbers(Values::Real(Vec::new()))),
             Datatype::String { .. } | Datatype::VarLen { kind: VarLenKind::String, .. } => {
                 Ok(Data::Texts(dataset.read_strings()?))
             }

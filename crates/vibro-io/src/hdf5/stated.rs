@@ -2,15 +2,29 @@
 
 use super::file::{self, Data};
 use crate::assemble::Abscissa;
-use crate::{mat, text};
+use crate::text;
 use hdf5_reader::Attribute;
 use vibro_record::{AxisKind, Values};
 
-/// Names, in lower case and without separators: of the unit of values; of that of their abscissa, its step and its start; of a factor and an
-/// offset that make values of what is stored, and of those that do so of integers alone.
+/// Names, in lower case and without separators: of the unit of values; of that of their abscissa, its rate, its step and its start; of a factor
+/// and an offset that make values of what is stored, and of those that do so of integers alone.
 const UNIT: &[&str] = &["unit", "units", "yunit", "yunits", "unitstring", "unity"];
 const X_UNIT: &[&str] = &["xunit", "xunits", "unitx"];
-const STEP: &[&str] = &["dx", "deltax", "deltat", "xspacing", "xinc", "xincrement", "wfincrement"];
+const RATE: &[&str] =
+    &["fs", "sr", "rate", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency"];
+const STEP: &[&str] = &[
+    "dt",
+    "dx",
+    "deltat",
+    "deltax",
+    "sampletime",
+    "sampleinterval",
+    "samplinginterval",
+    "xspacing",
+    "xinc",
+    "xincrement",
+    "wfincrement",
+];
 const START: &[&str] = &["x0", "t0", "xorg", "xorigin", "xstart", "xoffset", "wfstartoffset"];
 const FACTOR: &[&str] = &["scalefactor"];
 const OFFSET: &[&str] = &["addoffset"];
@@ -59,11 +73,11 @@ impl Stated {
     }
 
     pub fn number(&mut self, name: &str, value: f64) {
-        let key = key(name);
+        let (key, mut rate) = (key(name), None);
         let ([factor, offset], [of_integers, offset_of_integers]) =
             (&mut self.scale, &mut self.scale_of_integers);
-        let step = mat::rate(name, value).map(|rate| 1.0 / rate);
         let known = [
+            (RATE, &mut rate),
             (STEP, &mut self.step),
             (START, &mut self.start),
             (FACTOR, factor),
@@ -74,7 +88,7 @@ impl Stated {
         for (_, place) in known.into_iter().filter(|(names, _)| names.contains(&key.as_str())) {
             *place = Some(value);
         }
-        self.step = step.or(self.step);
+        self.step = rate.map(|rate| 1.0 / rate).or(self.step);
         self.note(name, &key, value.to_string());
     }
 
