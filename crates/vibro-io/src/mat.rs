@@ -5,26 +5,32 @@
 //! variable: kind 14, size, then elements: flags, dimensions, name, real part, imaginary part
 //! variable: kind 15, size, then the same packed by zlib
 //! ```
-//! A numeric vector is a record, and so is each column of a matrix. Scalars and texts are notes on every record. The
-//! abscissa comes from a vector `t` or `time` (`f`, `freq` or `frequency`) of the same length, or from a scalar `fs`,
-//! `rate`, `SampleRate`, `dt` or `Ts`; the file knows no units.
+//! A numeric vector is a record, and so is each column of a matrix; what stands in structs and cell arrays is named as MATLAB writes it:
+//! `bearing.gs`, `run(2).v`, `data{1}.x`. Scalars and texts are notes on the records of their struct. The abscissa comes from a vector
+//! `t` or `time` (`f`, `freq` or `frequency`) of the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and
+//! `Tstart` ([`axes`]). The file knows no units, but a struct may state that of its vector (`Unit`).
 
+mod axes;
 pub(crate) mod variable;
 
 use super::Source;
 use super::format::Format;
 use super::missing::{self, Missing};
 use super::reader::{Options, Recording};
-use crate::assemble::{self, Spectral, from_values, short, to_si};
+use crate::assemble::{self, Spectral, to_si};
+use axes::Axes;
+use num_complex::Complex64;
 use variable::{Array, Content};
 use vibro_record::units::Unit;
-use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
+use vibro_record::{Error, Finding, Meta, Place, Record, Result, Values};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Bytes before the first variable.
 const HEADER: usize = 128;
 /// More columns than this are taken for a matrix that lies on its side.
 const MOST_COLUMNS: u64 = 1000;
+/// Notes that a record takes at most: many scalars beside many vectors would fill the memory.
+const MOST_NOTES: usize = 200;
 
 /// Whether the numbers of a MAT-file are big endian, or which MAT-file it is that is not read here; `None` for other files.
 fn big_endian(head: &[u8], source: &Source) -> Option<std::result::Result<bool, &'static str>> {
@@ -73,7 +79,7 @@ pub(super) fn recording(
     mut findings: Vec<Finding>,
     options: &Options,
 ) -> Result<Recording> {
-    let (mut arrays, mut notes, mut rates) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut arrays, mut notes) = (Vec::new(), Vec::new());
     for (name, content) in variables {
         match content {
             Content::Text(text) => notes.push((name, text)),
@@ -88,10 +94,7 @@ pub(super) fn recording(
                 values if values.is_empty() => {
                     findings.push(Finding::note("variable-empty").name("variable", name));
                 }
-                Values::Real(values) if values.len() == 1 => {
-                    rates.extend(rate(&name, values[0]).map(|rate| (name.clone(), rate)));
-                    notes.push((name, values[0].to_string()));
-                }
+                Values::Real(values) if values.len() == 1 => notes.push((name, values[0].to_string())),
                 _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
                     let found = Finding::note("variable-many-dimensions").name("variable", name);
                     findings.push(found.count("dimensions", array.dimensions.len()));
@@ -100,177 +103,86 @@ pub(super) fn recording(
             },
         }
     }
-    let axes = Axes::find(&mut arrays, &rates, options, &mut findings)?;
-    let mut records = Vec::new();
-    for (name, array) in arrays {
-        records.extend(axes.split(name, array)?);
+    let mut axes = Axes::find(&mut arrays, &notes, options, &mut findings);
+    let units: Vec<Option<&str>> = arrays.iter().map(|(name, _)| axes::unit(name, &notes, &arrays)).collect();
+    let vectors: Vec<String> = arrays.iter().map(|(name, _)| name.clone()).collect();
+    let notes: Vec<_> = notes.iter().map(|note| (axes::scope(&note.0, &vectors), note)).collect();
+    let (mut records, mut missing) = (Vec::new(), Missing::default());
+    for ((name, array), unit) in arrays.into_iter().zip(units) {
+        for (name, mut values) in split(name, array, &axes, options, &mut findings) {
+            for i in missing::mark(&mut values) {
+                missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
+            }
+            records.push((name, values, unit));
+        }
     }
     if records.is_empty() {
         return Err(Error::usage("no numeric vector or matrix", "at least one to make a record of"));
     }
-    let mut missing = Missing::default();
-    for (name, values) in &mut records {
-        for i in missing::mark(values) {
-            missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
-        }
+    if options.complex && records.iter().all(|(_, values, _)| matches!(values, Values::Real(_))) {
+        return Err(Error::usage("no matrix of two columns", "one, for complex values were stated")
+            .hint("leave out that values are complex")
+            .setting("complex"));
     }
     findings.extend(missing::kept(missing.check("value(s) are NaN or infinite:", options.allow_missing)?));
-    if options.unit.is_none() {
+    if options.unit.is_none() && records.iter().any(|(.., unit)| unit.is_none()) {
         findings.push(Finding::caution("format-without-units"));
     }
-    let record = |(name, mut values): (String, Values)| {
-        let axis = axes.of(&values, &name, &mut findings);
+    axes.offer(records.iter().map(|(name, values, _)| (name, values)));
+    let record = |(name, mut values, unit): (String, Values, Option<&str>)| {
         let mut meta = Meta::new(name, Unit::opaque(""));
-        meta.notes.clone_from(&notes);
+        let axis = axes.of(&values, &mut meta, &mut findings)?;
+        let beside = notes.iter().filter(|(scope, _)| meta.name.starts_with(scope));
+        meta.notes = beside.map(|(_, note)| (*note).clone()).take(MOST_NOTES).collect();
         meta.step("read", &[("file", &source.name()), ("format", &"mat")]);
-        let factor = options.unit.as_ref().map_or(1.0, |unit| meta.adopt_unit(unit.symbol()));
+        let factor = match (&options.unit, unit) {
+            (None, None) => 1.0,
+            _ => options.adopt(&mut meta, unit),
+        };
         to_si(&mut values, factor)?;
-        if axis.kind == AxisKind::Index {
-            meta.found(Finding::caution("abscissa-unsaid"));
-        }
         assemble::record(meta, axis, values, Spectral::default())
     };
     let records = records.into_iter().map(record).collect::<Result<Vec<Record>>>()?;
     Ok(Recording { path: source.path().to_owned(), format: Format::Mat, records, findings })
 }
 
-/// Sampling rate in Hz that a scalar of this name states.
-fn rate(name: &str, value: f64) -> Option<f64> {
-    let key = name.replace('_', "").to_lowercase();
-    let rate = match key.as_str() {
-        "fs" | "rate" | "samplerate" | "samplingrate" | "samplefrequency" | "samplingfrequency" => value,
-        "dt" | "ts" | "sampletime" | "samplinginterval" => 1.0 / value,
-        _ => return None,
+/// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the abscissa. Where complex values
+/// were stated, two columns are one record.
+fn split(
+    name: String,
+    Array { dimensions, values, .. }: Array,
+    axes: &Axes,
+    options: &Options,
+    findings: &mut Vec<Finding>,
+) -> Vec<(String, Values)> {
+    let mut long = dimensions.into_iter().filter(|d| *d > 1);
+    let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
+        return vec![(name, values)];
     };
-    (rate.is_finite() && rate > 0.0).then_some(rate)
-}
-
-/// The kind of abscissa that a vector of this name holds.
-fn kind(name: &str) -> Option<AxisKind> {
-    match name {
-        "t" | "time" | "Time" => Some(AxisKind::Time),
-        "f" | "freq" | "Freq" | "frequency" | "Frequency" => Some(AxisKind::Frequency),
-        _ => None,
+    let has = |n: u64| axes.has(&name, n);
+    let wide = columns > rows.max(MOST_COLUMNS);
+    let pair = options.complex && rows == 2 && columns > 2;
+    let lying = !has(rows) && (wide || pair || (has(columns) && rows <= columns.max(MOST_COLUMNS)));
+    if lying && !pair && !has(columns) {
+        let found = Finding::caution("matrix-by-rows").name("variable", name.as_str());
+        findings.push(found.number("rows", rows as f64).number("columns", columns as f64));
     }
-}
-
-/// What the file and the person say of abscissae.
-struct Axes<'a> {
-    options: &'a Options,
-    /// Of vectors of the file: time, then frequency.
-    vectors: Vec<Axis>,
-    rate: Option<f64>,
-}
-
-impl<'a> Axes<'a> {
-    /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length.
-    fn find(
-        arrays: &mut Vec<(String, Array)>,
-        rates: &[(String, f64)],
-        options: &'a Options,
-        findings: &mut Vec<Finding>,
-    ) -> Result<Axes<'a>> {
-        let rate = rates.first().map(|(_, rate)| *rate);
-        let mut axes = Axes { options, vectors: Vec::new(), rate };
-        if let [(first, a), rest @ ..] = rates
-            && let Some((other, b)) = rest.iter().find(|(_, b)| (b / a - 1.0).abs() > 1e-6)
-            && options.rate.is_none()
-        {
-            let found =
-                format!("{first:?} says a sampling rate of {} Hz, {other:?} {} Hz", short(*a), short(*b));
-            return Err(Error::usage(found, "one sampling rate")
-                .hint("state the sampling rate")
-                .setting("rate"));
-        }
-        for axis_kind in [AxisKind::Time, AxisKind::Frequency] {
-            let Some(at) = arrays.iter().position(|(name, _)| kind(name).as_ref() == Some(&axis_kind)) else {
-                continue;
-            };
-            let (name, Array { dimensions, values, single }) = arrays.remove(at);
-            let n = values.len() as u64;
-            let fits = dimensions.contains(&n) && arrays.iter().any(|(_, a)| a.dimensions.contains(&n));
-            let values = match values {
-                Values::Real(values) if fits && values.is_sorted_by(|a, b| a < b) => values,
-                values => {
-                    let rises = matches!(&values, Values::Real(v) if v.is_sorted_by(|a, b| a < b));
-                    let code = if rises { "abscissa-of-other-length" } else { "abscissa-not-rising" };
-                    findings.push(Finding::caution(code).name("variable", name.as_str()));
-                    arrays.insert(at, (name, Array { dimensions, values, single }));
-                    continue;
-                }
-            };
-            let (first, last) = (values[0], values[values.len() - 1]);
-            // Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.
-            let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
-            let rounding =
-                if single { first.abs().max(last.abs()) * f64::from(f32::EPSILON) / 2.0 } else { 0.0 };
-            let label = format!("vector {name:?}");
-            let (axis, finding) = from_values(axis_kind, values, drift.max(rounding), &label);
-            findings.extend(finding);
-            if let Some(rate) = options.rate.or(rate).filter(|_| axis.kind == AxisKind::Time)
-                && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
-            {
-                let used = if options.rate.is_some() { "rate" } else { "vector" };
-                let found = Finding::caution("vector-against-rate").name("variable", name).name("used", used);
-                findings.push(found.number("rate", rate));
-            }
-            axes.vectors.push(axis);
-        }
-        Ok(axes)
+    let (rows, columns) = (rows as usize, columns as usize);
+    let (n, count) = if lying { (columns, rows) } else { (rows, columns) };
+    let (first, step) = if lying { (1, rows) } else { (rows, 1) };
+    let part = |k: usize| match &values {
+        Values::Real(all) => Values::Real(every(all, k * first, step, n)),
+        Values::Complex(all) => Values::Complex(every(all, k * first, step, n)),
+    };
+    if options.complex
+        && count == 2
+        && let (Values::Real(re), Values::Real(im)) = (part(0), part(1))
+    {
+        let pairs = re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im));
+        return vec![(name, Values::Complex(pairs.collect()))];
     }
-
-    /// The axis of a record.
-    fn of(&self, values: &Values, name: &str, findings: &mut Vec<Finding>) -> Axis {
-        let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
-        let over = |axis: &&Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
-        let fitting: Vec<&Axis> = self.vectors.iter().filter(over).collect();
-        match (self.options.rate, self.options.base_band) {
-            (Some(rate), _) if !complex => {
-                let time = fitting.first().filter(|axis| axis.kind == AxisKind::Time);
-                return Axis::time(time.map_or(0.0, |axis| axis.start()), 1.0 / rate, n);
-            }
-            (None, Some(band)) => return Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n),
-            _ => {}
-        }
-        if fitting.len() > 1 {
-            findings.push(Finding::caution("time-or-frequency").name("variable", name));
-        }
-        match (fitting.first(), self.rate.filter(|_| !complex)) {
-            (Some(axis), _) => (*axis).clone(),
-            (None, Some(rate)) => Axis::time(0.0, 1.0 / rate, n),
-            (None, None) => Axis::index(n),
-        }
-    }
-
-    /// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the abscissa.
-    fn split(&self, name: String, Array { dimensions, values, .. }: Array) -> Result<Vec<(String, Values)>> {
-        let mut long = dimensions.into_iter().filter(|d| *d > 1);
-        let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
-            return Ok(vec![(name, values)]);
-        };
-        let has = |n: u64| self.vectors.iter().any(|axis| axis.len() as u64 == n);
-        let lying = has(columns) && !has(rows) && rows <= columns.max(MOST_COLUMNS);
-        if !lying && columns > rows && columns > MOST_COLUMNS {
-            let found =
-                format!("{name:?} has {rows} rows and {columns} columns: {columns} records of {rows} values");
-            return Err(Error::usage(found, "one channel a column")
-                .hint(format!("transpose it and save it again: {name} = {name}.';")));
-        }
-        let (rows, columns) = (rows as usize, columns as usize);
-        let record = |k: usize| {
-            let (name, from, step, n) = if lying {
-                (format!("{name}({},:)", k + 1), k, rows, columns)
-            } else {
-                (format!("{name}(:,{})", k + 1), k * rows, 1, rows)
-            };
-            let values = match &values {
-                Values::Real(all) => Values::Real(every(all, from, step, n)),
-                Values::Complex(all) => Values::Complex(every(all, from, step, n)),
-            };
-            (name, values)
-        };
-        Ok((0..if lying { rows } else { columns }).map(record).collect())
-    }
+    let index = |k: usize| if lying { format!("({k},:)") } else { format!("(:,{k})") };
+    (0..count).map(|k| (format!("{name}{}", index(k + 1)), part(k))).collect()
 }
 
 pub(super) fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {

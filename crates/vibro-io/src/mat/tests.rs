@@ -56,6 +56,37 @@ impl Order {
         self.matrix(6, &[values.len() as u32, 1], name, &[self.doubles(values)])
     }
 
+    fn scalar(self, name: &str, value: f64) -> Vec<u8> {
+        self.column(name, &[value])
+    }
+
+    fn text(self, name: &str, text: &str) -> Vec<u8> {
+        self.matrix(4, &[1, text.len() as u32], name, &[self.element(16, text.as_bytes())])
+    }
+
+    /// `members` are nameless, field by field of one struct after the other.
+    fn structs(self, name: &str, n: u32, fields: &[&str], members: &[Vec<u8>]) -> Vec<u8> {
+        let names: Vec<u8> = fields
+            .iter()
+            .flat_map(|field| {
+                field.bytes().chain(std::iter::repeat_n(0, 32 - field.len())).collect::<Vec<u8>>()
+            })
+            .collect();
+        let width = self.element(5, &self.word(32));
+        self.matrix(2, &[1, n], name, &[width, self.element(1, &names), members.concat()])
+    }
+
+    /// One struct with its fields, each of them written under its name.
+    fn one(self, name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
+        let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
+        let members: Vec<Vec<u8>> = fields.iter().map(|(_, member)| member.clone()).collect();
+        self.structs(name, 1, &names, &members)
+    }
+
+    fn cells(self, name: &str, members: &[Vec<u8>]) -> Vec<u8> {
+        self.matrix(1, &[1, members.len() as u32], name, &[members.concat()])
+    }
+
     fn file(self, variables: &[Vec<u8>]) -> Vec<u8> {
         let mut out = vec![b' '; 124];
         out.extend(self.put(&0x0100u16.to_le_bytes()));
@@ -188,8 +219,11 @@ fn matrices_column_by_column() {
     let complex = of(&[LITTLE.matrix(6 | 0x800, &[2, 2], "H", &parts)]).unwrap();
     let Record::Spectrum(second) = &complex.records[1] else { panic!() };
     assert_eq!(second.values, Values::Complex(vec![Complex64::new(3.0, 7.0), Complex64::new(4.0, 8.0)]));
-    let wide = LITTLE.matrix(6, &[2, 1001], "w", &[LITTLE.doubles(&vec![0.0; 2002])]);
-    assert!(complaint(&[wide]).contains("try: transpose it and save it again: w = w.';"));
+    let values_of_two: Vec<f64> = (0..2002).map(f64::from).collect();
+    let wide = of(&[LITTLE.matrix(6, &[2, 1001], "w", &[LITTLE.doubles(&values_of_two)])]).unwrap();
+    assert_eq!((wide.records.len(), wide.records[1].meta().name.as_str()), (2, "w(2,:)"));
+    assert!(values(&wide.records[1]).iter().enumerate().all(|(i, v)| *v == (2 * i + 1) as f64));
+    assert!(has_finding(&wide.findings, "matrix-by-rows", &["variable=w", "rows=2", "columns=1001"]));
 }
 
 #[test]
@@ -214,7 +248,10 @@ fn texts_are_notes_and_the_rest_is_named() {
         LITTLE.matrix(4, &[1, 2], "unit", &[LITTLE.element(4, &utf16)]),
         LITTLE.matrix(4, &[1, 3], "rig", &[LITTLE.element(16, b"two")]),
         LITTLE.matrix(4, &[2, 3], "lines", &[LITTLE.element(16, b"twotwo")]),
-        LITTLE.matrix(2, &[1, 1], "setup", &[]),
+        LITTLE.one(
+            "setup",
+            &[("thin", LITTLE.matrix(5, &[1, 1], "", &[])), ("none", vec![14, 0, 0, 0, 0, 0, 0, 0])],
+        ),
         LITTLE.matrix(9 | 0x200, &[1, 1], "flag", &[LITTLE.element(2, &[1])]),
         LITTLE.matrix(5, &[1, 1], "thin", &[]),
         LITTLE.matrix(17, &[], "", &[]),
@@ -228,7 +265,7 @@ fn texts_are_notes_and_the_rest_is_named() {
     assert_eq!(*notes, [("unit".to_owned(), "µm".to_owned()), ("rig".to_owned(), "two".to_owned())]);
     for expected in [
         "variable-passed-over variable=lines class=char array of several rows or more than 4096 characters",
-        "variable-passed-over variable=setup class=struct",
+        "variable-passed-over variable=setup.thin class=sparse matrix",
         "variable-passed-over variable=flag class=logical array",
         "variable-passed-over variable=thin class=sparse matrix",
         "variable-passed-over class=object",
@@ -238,6 +275,259 @@ fn texts_are_notes_and_the_rest_is_named() {
         let found = texts(&recording.findings);
         assert!(found.iter().any(|t| t == expected), "{expected}: {found:?}");
     }
+}
+
+/// Names of the records, with the sampling rate of traces.
+fn rates(recording: &Recording) -> Vec<(&str, Option<f64>)> {
+    let of = |record: &'_ Record| match record {
+        Record::Trace(trace) => trace.rate(),
+        _ => None,
+    };
+    recording.records.iter().map(|record| (record.meta().name.as_str(), of(record))).collect()
+}
+
+const SOME: [f64; 4] = [1.0, -2.0, 5.0, 3.0];
+
+#[test]
+fn structs_and_cells_are_walked_and_say_their_own_rates() {
+    let x = || LITTLE.column("", &SOME);
+    let runs = [LITTLE.scalar("", 100.0), x(), LITTLE.scalar("", 200.0), x()];
+    let deep = LITTLE.one("", &[("y", x()), ("more", LITTLE.cells("", &[LITTLE.text("", "a"), x()]))]);
+    let recording = of(&[
+        LITTLE.structs("run", 2, &["fs", "v"], &runs),
+        LITTLE
+            .cells("data", &[LITTLE.one("", &[("x", x()), ("t", LITTLE.column("", &[0.0, 0.5, 1.0, 1.5]))])]),
+        LITTLE.one("rig", &[("fs", LITTLE.scalar("", 10.0)), ("deep", deep)]),
+        LITTLE.column("bare", &SOME),
+    ]);
+    let recording = recording.unwrap();
+    let expected = [
+        ("run(1).v", Some(100.0)),
+        ("run(2).v", Some(200.0)),
+        ("data{1}.x", Some(2.0)),
+        ("rig.deep.y", Some(10.0)),
+        ("rig.deep.more{2}", Some(10.0)),
+        ("bare", None),
+    ];
+    assert_eq!(rates(&recording), expected);
+    assert!(recording.records.iter().all(|record| values(record) == SOME));
+    let fs = ("rig.fs".to_owned(), "10".to_owned());
+    assert!(recording.records[3].meta().notes.contains(&fs) && recording.records[5].meta().notes.is_empty());
+    assert!(has_finding(&recording.records[5].meta().findings, "abscissa-unsaid", &[]));
+}
+
+#[test]
+fn a_sampling_rate_and_the_rate_of_a_shaft() {
+    let bearing = |sr: &[(&str, Vec<u8>)], rate: f64| {
+        let gs = [
+            ("rate", LITTLE.scalar("", rate)),
+            ("gs", LITTLE.column("", &SOME)),
+            ("load", LITTLE.scalar("", 270.0)),
+        ];
+        of(&[LITTLE.one("bearing", &[sr, &gs].concat())]).unwrap()
+    };
+    let sr = [("sr", LITTLE.scalar("", 97656.0))];
+    let both = bearing(&sr, 25.0);
+    let close =
+        |recording: &Recording, rate: f64| (rates(recording)[0].1.unwrap() / rate - 1.0).abs() < 1e-12;
+    assert!(close(&both, 97656.0) && rates(&both)[0].0 == "bearing.gs");
+    let said = &both.records[0].meta().findings;
+    assert!(has_finding(said, "step-by-name", &["variable=bearing.sr", "rate=97656", "other=bearing.rate"]));
+    // Alone, a rate below 1 kHz may be that of the shaft.
+    let shaft = bearing(&[], 25.0);
+    assert_eq!(rates(&shaft), [("bearing.gs", None)]);
+    assert!(has_finding(
+        &shaft.records[0].meta().findings,
+        "abscissa-unsaid",
+        &["variable=bearing.rate", "rate=25"]
+    ));
+    let alone = bearing(&[], 48000.0);
+    assert!(close(&alone, 48000.0));
+    assert!(has_finding(&alone.records[0].meta().findings, "step-by-name", &["variable=bearing.rate"]));
+}
+
+#[test]
+fn names_that_end_in_time_are_no_times() {
+    let recording = of(&[
+        LITTLE.column("X097_DE_time", &[1.0, 2.0, 5.0, 7.0]),
+        LITTLE.column("X097_FE_time", &SOME),
+        LITTLE.scalar("X097RPM", 1796.0),
+    ]);
+    let recording = recording.unwrap();
+    assert_eq!(rates(&recording), [("X097_DE_time", None), ("X097_FE_time", None)]);
+    assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
+    assert_eq!(texts(&recording.records[0].meta().findings), ["abscissa-unsaid "]);
+}
+
+#[test]
+fn start_and_interval_of_an_oscilloscope() {
+    let scalars = [("Tstart", -0.5), ("Tinterval", 0.25), ("Length", 4.0)];
+    let mut variables: Vec<Vec<u8>> = scalars.map(|(name, value)| LITTLE.scalar(name, value)).into();
+    variables.extend(["A", "B"].map(|name| LITTLE.column(name, &SOME)));
+    let recording = of(&variables).unwrap();
+    for (record, name) in recording.records.iter().zip(["A", "B"]) {
+        assert_eq!((record.meta().name.as_str(), record.axis()), (name, &Axis::time(-0.5, 0.25, 4)));
+        assert!(record.meta().findings.is_empty());
+    }
+}
+
+#[test]
+fn step_and_label_beside_the_values() {
+    let axis = |start: f64, step: f64, unit: &str| {
+        let quantity = LITTLE.one("", &[("label", LITTLE.text("", unit))]);
+        let (start, step) = (LITTLE.scalar("", start), LITTLE.scalar("", step));
+        ("x_values", LITTLE.one("", &[("start_value", start), ("increment", step), ("quantity", quantity)]))
+    };
+    let signal = |axis, values: Vec<u8>| {
+        let of = of(&[LITTLE.one("Signal", &[axis, ("y_values", LITTLE.one("", &[("values", values)]))])])
+            .unwrap();
+        (of.records[0].axis().clone(), of.records[0].kind(), of.records[0].meta().findings.clone())
+    };
+    let parts = [LITTLE.doubles(&SOME), LITTLE.doubles(&SOME)];
+    let complex = || LITTLE.matrix(6 | 0x800, &[4, 1], "", &parts);
+    let (time, kind, said) = signal(axis(1.0, 0.5, "s"), LITTLE.column("", &SOME));
+    assert_eq!((time, kind, said.len()), (Axis::time(1.0, 0.5, 4), "trace", 0));
+    assert_eq!(signal(axis(10.0, 500.0, "ms"), LITTLE.column("", &SOME)).0, Axis::time(0.01, 0.5, 4));
+    for values in [complex(), LITTLE.column("", &SOME)] {
+        assert_eq!(signal(axis(2.0, 0.5, "Hz"), values).0, Axis::frequency(2.0, 0.5, 4));
+    }
+    let (bare, _, said) = signal(axis(0.0, 0.5, "?"), complex());
+    assert_eq!(bare, Axis::frequency(0.0, 0.5, 4));
+    assert!(has_finding(&said, "step-by-name", &["variable=Signal.x_values.increment", "step=0.5"]));
+    // Over revolutions a step is neither time nor frequency.
+    assert_eq!(signal(axis(0.0, 0.5, "rpm"), LITTLE.column("", &SOME)).0.kind, AxisKind::Index);
+}
+
+#[test]
+fn a_header_speaks_of_the_vectors_beside_it() {
+    for (written, rate, certain) in [("65536", 65536.0, true), ("32768,0000", 32768.0, false)] {
+        let recording = of(&[
+            LITTLE.one("File_Header", &[("SampleFrequency", LITTLE.text("", written))]),
+            LITTLE.one("Channel_1_Header", &[("Unit", LITTLE.text("", "Pa"))]),
+            LITTLE.column("Channel_1_Data", &SOME),
+        ]);
+        let recording = recording.unwrap();
+        assert_eq!(rates(&recording), [("Channel_1_Data", Some(rate))]);
+        assert_eq!(recording.records[0].meta().has("step-by-name"), !certain, "{written}");
+        let notes = &recording.records[0].meta().notes;
+        assert!(notes.contains(&("Channel_1_Header.Unit".to_owned(), "Pa".to_owned())));
+    }
+}
+
+#[test]
+fn x_and_y_of_a_control_system() {
+    let half: Vec<f64> = (0..4).map(|i| 847.0 + 0.5 * f64::from(i)).collect();
+    let long = [1.0, 2.0, 0.0, 1.0, 5.0];
+    let data = |values: &[f64], unit: &str| [LITTLE.column("", values), LITTLE.text("", unit)];
+    let recorder = |unit: &str| {
+        let x = [data(&half, unit), data(&[0.0, 1.0, 2.0, 3.0, 4.0], unit)].concat();
+        let y = [data(&SOME, "mm/s"), data(&long, "no unit")].concat();
+        let fields = ["Data", "Unit"];
+        of(&[LITTLE.one(
+            "N15",
+            &[("X", LITTLE.structs("", 2, &fields, &x)), ("Y", LITTLE.structs("", 2, &fields, &y))],
+        )])
+    };
+    let recording = recorder("s").unwrap();
+    assert_eq!(rates(&recording), [("N15.Y(1).Data", Some(2.0)), ("N15.Y(2).Data", Some(1.0))]);
+    assert_eq!(recording.records[0].axis().start(), 847.0);
+    assert_eq!((values(&recording.records[0])[1], recording.records[0].meta().unit.symbol()), (-2e-3, "m/s"));
+    assert_eq!(values(&recording.records[1]), long);
+    assert!(!has_finding(&recording.findings, "axis-by-name", &[]));
+    assert!(has_finding(&recording.findings, "format-without-units", &[]));
+    let bare = recorder("").unwrap();
+    assert_eq!(rates(&bare)[0].1, Some(2.0));
+    assert!(has_finding(&bare.findings, "axis-by-name", &["variable=N15.X(1).Data"]));
+    assert_eq!(rates(&recorder("mm").unwrap()).len(), 4);
+}
+
+#[test]
+fn what_may_be_a_rate_is_offered() {
+    let recording = of(&[
+        LITTLE.scalar("carrier_freq", 40.0),
+        LITTLE.scalar("sampled_at", 512.0),
+        LITTLE.column("ramp", &[0.0, 0.25, 0.5, 0.75]),
+        LITTLE.column("number", &[1.0, 2.0, 3.0, 4.0]),
+        LITTLE.column("x", &SOME),
+    ]);
+    let found = recording.unwrap().records[2].meta().findings.clone();
+    assert_eq!(texts(&found), ["abscissa-unsaid variable=sampled_at rate=512 vector=ramp rises=4"]);
+}
+
+#[test]
+fn two_columns_are_complex_where_it_is_stated() {
+    let two = LITTLE.matrix(6, &[2, 2], "H", &[LITTLE.doubles(&[1.0, 2.0, -3.0, -4.0])]);
+    let file = LITTLE.file(&[two, LITTLE.column("f", &[5.0, 10.0])]);
+    let reader = Reader::new().complex(true);
+    let recording = reader.from_reader("x.mat", file.as_slice()).unwrap();
+    let [Record::Spectrum(spectrum)] = &recording.records[..] else { panic!() };
+    assert_eq!(spectrum.values, Values::Complex(vec![Complex64::new(1.0, -3.0), Complex64::new(2.0, -4.0)]));
+    assert_eq!((spectrum.meta.name.as_str(), &spectrum.axis), ("H", &Axis::frequency(5.0, 5.0, 2)));
+    assert_eq!(Reader::new().from_reader("x.mat", file.as_slice()).unwrap().records.len(), 2);
+    let single = LITTLE.file(&[LITTLE.column("x", &SOME)]);
+    let error = reader.from_reader("x.mat", single.as_slice()).unwrap_err().to_string();
+    assert!(error.contains("try: leave out that values are complex"), "{error}");
+}
+
+#[test]
+fn any_damage_to_what_is_packed_is_found() {
+    let matrix = LITTLE.one("s", &[("x", LITTLE.column("", &SOME)), ("fs", LITTLE.scalar("", 5.0))]);
+    let rest = LITTLE.column("y", &SOME);
+    let packed = packed(&matrix);
+    let whole = of(&[packed.clone(), rest.clone()]).unwrap();
+    assert_eq!(whole.records.len(), 2);
+    let mut unused = 0;
+    for bit in 0..packed.len() * 8 {
+        let mut damaged = packed.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        match of(&[damaged, rest.clone()]) {
+            Err(error) => assert!(error.to_string().contains("x.mat, byte 128"), "bit {bit}: {error}"),
+            Ok(read) => {
+                assert_eq!(read, whole);
+                unused += 1;
+            }
+        }
+    }
+    // A few bits fill up the last byte or belong to codes that no value has.
+    assert!(unused < packed.len() * 8 / 20, "{unused}");
+    // Cut off, with the size of what is left.
+    for n in 8..packed.len() {
+        let mut cut = packed[..n].to_vec();
+        cut[4..8].copy_from_slice(&(n as u32 - 8).to_le_bytes());
+        assert!(
+            of(&[cut, rest.clone()]).unwrap_err().to_string().contains("byte 128: a packed variable"),
+            "{n}"
+        );
+    }
+}
+
+#[test]
+fn memory_follows_what_is_there() {
+    // A hundred megabytes behind a variable that declares eight bytes.
+    let mut bomb = vec![0; 100 << 20];
+    bomb[..8].copy_from_slice(&[14, 0, 0, 0, 8, 0, 0, 0]);
+    assert!(complaint(&[packed(&bomb)]).contains("holds more than the 8 bytes"));
+    let width = |n: u32| LITTLE.element(5, &LITTLE.word(n));
+    let names = LITTLE.element(1, &[b'a'; 32]);
+    let huge = |parts: &[Vec<u8>]| LITTLE.matrix(2, &[u32::MAX, u32::MAX >> 1], "s", parts);
+    assert!(complaint(&[huge(&[width(32), names.clone()])]).contains("ends early, without its s(1).aaaa"));
+    let of_nothing = of(&[huge(&[width(32), LITTLE.element(1, &[])]), LITTLE.column("x", &SOME)]);
+    assert_eq!(of_nothing.unwrap().records.len(), 1);
+    assert!(
+        complaint(&[LITTLE.matrix(1, &[u32::MAX, 2], "c", &[])]).contains("ends early, without its c{1}")
+    );
+    for of in [0, 513] {
+        assert!(
+            complaint(&[huge(&[width(of), names.clone()])]).contains(&format!("field names of {of} bytes"))
+        );
+    }
+    let nested =
+        |depth: usize| (1..depth).fold(LITTLE.column("", &SOME), |inner, _| LITTLE.cells("", &[inner]));
+    let deep = of(&[LITTLE.cells("c", &[nested(32)]), LITTLE.cells("d", &[nested(5000)])]).unwrap();
+    assert_eq!(deep.records.len(), 1);
+    assert_eq!(deep.records[0].meta().name, format!("c{}", "{1}".repeat(32)));
+    let passed = format!("variable=d{}", "{1}".repeat(32));
+    assert!(has_finding(&deep.findings, "variable-passed-over", &[&passed, "struct or cell array too deep"]));
 }
 
 #[test]
@@ -344,8 +634,10 @@ proptest! {
     ) {
         let complex = LITTLE.matrix(6 | 0x800, &[2, 1], "H", &[LITTLE.doubles(&[1.0, 2.0]), LITTLE.doubles(&[3.0, 4.0])]);
         let text = LITTLE.matrix(4, &[1, 3], "rig", &[LITTLE.element(16, b"two")]);
-        let whole = LITTLE.file(&[LITTLE.column("t", &[0.0, 0.1]), complex.clone(), packed(&complex), text]);
-        let mut inner = complex;
+        let members = [LITTLE.scalar("", 5.0), LITTLE.cells("", &[LITTLE.column("", &SOME)])];
+        let structs = LITTLE.structs("s", 1, &["fs", "c"], &members);
+        let whole = LITTLE.file(&[LITTLE.column("t", &[0.0, 0.1]), complex.clone(), packed(&complex), text, structs.clone()]);
+        let mut inner = [complex, structs].concat();
         for (index, value) in &changes {
             let at = index.index(inner.len());
             inner[at] = *value;

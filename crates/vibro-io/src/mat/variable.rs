@@ -9,6 +9,9 @@ use vibro_record::{Error, Place, Result, Values};
 
 /// Longest text that is kept.
 const MOST_TEXT: u64 = 4096;
+/// Structs and cell arrays within each other are read to this depth, and to names of this length: both bound what one byte of a file can cost.
+const MOST_DEPTH: usize = 32;
+const MOST_NAME: usize = 512;
 
 /// What a variable holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +47,11 @@ impl<'a> Elements<'a> {
     /// An unsigned word in the file's order.
     fn word(&self, bytes: [u8; 4]) -> u32 {
         if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
+    }
+
+    /// What stands within an element of these.
+    fn within<'b>(&self, rest: &'b [u8]) -> Elements<'b> {
+        Elements { rest, big_endian: self.big_endian, place: self.place.clone() }
     }
 
     fn words(&self, bytes: &[u8]) -> impl Iterator<Item = u32> {
@@ -113,51 +121,101 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// All variables of a file behind its header, with their names.
+/// All variables of a file behind its header, with their names. What stands in structs and cell arrays is named as MATLAB writes it.
 pub fn all(bytes: &[u8], header: usize, big_endian: bool) -> Result<Vec<(String, Content)>> {
     let mut variables = Vec::new();
     let mut file = Elements { rest: &bytes[header..], big_endian, place: Place::default() };
     loop {
         file.place.byte = Some((bytes.len() - file.rest.len()) as u64);
         let Some((kind, content)) = file.next()? else { return Ok(variables) };
-        let within = |rest| Elements { rest, big_endian, place: file.place.clone() };
-        let mut inflated = Vec::new();
-        let content = match kind {
-            14 => content,
-            15 => {
-                // No element is larger than its size can say.
-                let done = ZlibDecoder::new(content).take(u64::from(u32::MAX)).read_to_end(&mut inflated);
-                done.map_err(|e| {
-                    file.fault(format!("a variable that cannot be unpacked: {e}"), "intact data")
-                })?;
-                within(&inflated).part("variable")?.1
-            }
-            _ => continue,
-        };
-        variables.push(variable(&mut within(content))?);
+        match kind {
+            14 => variable(&mut file.within(content), None, &mut variables)?,
+            15 => variable(&mut file.within(&unpacked(&file, content)?), None, &mut variables)?,
+            // Zeros that fill up a block.
+            0 if content.is_empty() => {}
+            kind => return Err(file.fault(format!("an element of kind {kind}"), "a variable")),
+        }
     }
 }
 
-/// Name and content of a matrix element.
-fn variable(elements: &mut Elements) -> Result<(String, Content)> {
+/// The content of the variable that `packed` holds. No more is unpacked than the variable declares.
+fn unpacked(file: &Elements, packed: &[u8]) -> Result<Vec<u8>> {
+    let damaged = |e: std::io::Error| {
+        let found = format!("a packed variable that is damaged: {e}");
+        file.fault(found, "data that agree with their checksum")
+    };
+    let (mut zlib, mut tag, mut inflated) = (ZlibDecoder::new(packed), [0; 8], Vec::new());
+    zlib.read_exact(&mut tag).map_err(damaged)?;
+    let declared = file.words(&tag[4..]).next().unwrap_or(0);
+    // Up to its end the stream is not compared with its checksum: eight bytes are more than any padding.
+    zlib.by_ref().take(u64::from(declared) + 8).read_to_end(&mut inflated).map_err(damaged)?;
+    let behind = packed.get(zlib.total_in() as usize..).unwrap_or_default();
+    let (there, more) = (inflated.len(), inflated.len() as u64 > u64::from(declared) + 7);
+    if more || there < declared as usize || behind.iter().any(|b| *b != 0) {
+        let found = if there < declared as usize {
+            format!("a packed variable that ends early: {there} of {declared} bytes are there")
+        } else {
+            format!("a packed variable that holds more than the {declared} bytes that it declares")
+        };
+        return Err(file.fault(found, "as many bytes as it declares"));
+    }
+    inflated.truncate(declared as usize);
+    Ok(inflated)
+}
+
+/// Adds what a matrix element holds: itself or, where it is a struct or a cell array, what stands in it. `inside` is its name and depth there.
+fn variable(
+    elements: &mut Elements,
+    inside: Option<(String, usize)>,
+    variables: &mut Vec<(String, Content)>,
+) -> Result<()> {
     let (_, flags) = elements.part("flags")?;
     let flags = elements.words(flags).next().unwrap_or(0);
     let class = flags & 0xff;
     let (complex, logical) = (flags & 0x800 != 0, flags & 0x200 != 0);
     if class == 17 {
         // An object of the newer kind has no dimensions; what follows is not documented.
-        return Ok((String::new(), Content::Other("object")));
+        variables.push((inside.map_or_else(String::new, |(name, _)| name), Content::Other("object")));
+        return Ok(());
     }
     let (_, dimensions) = elements.part("dimensions")?;
     let dimensions: Vec<u64> = elements.words(dimensions).map(u64::from).collect();
-    let (_, name) = elements.part("name")?;
-    let name = String::from_utf8_lossy(name).trim_end_matches('\0').to_owned();
+    let (_, own) = elements.part("name")?;
+    let is_inside = inside.is_some();
+    let (name, depth) = inside.unwrap_or_else(|| (string(own), 0));
     let product = dimensions.iter().try_fold(1u64, |n, d| n.checked_mul(*d));
     let Some(count) = product.filter(|_| dimensions.len() >= 2) else {
         return Err(elements.fault(format!("{name:?} with dimensions {dimensions:?}"), "a countable array"));
     };
     let content = match class {
+        // A field without a value is no loss.
+        _ if count == 0 && is_inside => return Ok(()),
         _ if logical => Content::Other("logical array"),
+        1 | 2 if depth >= MOST_DEPTH || name.len() > MOST_NAME => {
+            Content::Other("struct or cell array too deep in others")
+        }
+        1 => {
+            for i in 1..=count {
+                member(elements, format!("{name}{{{i}}}"), depth, variables)?;
+            }
+            return Ok(());
+        }
+        2 => {
+            let (_, width) = elements.part("length of field names")?;
+            let width = elements.words(width).next().unwrap_or(0) as usize;
+            let (_, fields) = elements.part("field names")?;
+            if !(1..=MOST_NAME).contains(&width) {
+                return Err(elements.fault(format!("field names of {width} bytes"), "1 to 512 bytes"));
+            }
+            let fields: Vec<String> = fields.chunks(width).map(string).collect();
+            for i in 1..=if fields.is_empty() { 0 } else { count } {
+                let index = if count == 1 { String::new() } else { format!("({i})") };
+                for field in &fields {
+                    member(elements, format!("{name}{index}.{field}"), depth, variables)?;
+                }
+            }
+            return Ok(());
+        }
         4 if count == 0 => Content::Text(String::new()),
         4 if dimensions[0] != 1 || count > MOST_TEXT => {
             Content::Other("char array of several rows or more than 4096 characters")
@@ -173,14 +231,32 @@ fn variable(elements: &mut Elements) -> Result<(String, Content)> {
             };
             Content::Array(Array { dimensions, values, single: class == 7 })
         }
-        1 => Content::Other("cell array"),
-        2 => Content::Other("struct"),
         3 => Content::Other("object"),
         5 => Content::Other("sparse matrix"),
         16 => Content::Other("function"),
         other => return Err(elements.fault(format!("{name:?} of class {other}"), "a class from 1 to 17")),
     };
-    Ok((name, content))
+    variables.push((name, content));
+    Ok(())
+}
+
+/// Adds the next element of a struct or a cell array.
+fn member(
+    elements: &mut Elements,
+    name: String,
+    depth: usize,
+    variables: &mut Vec<(String, Content)>,
+) -> Result<()> {
+    match elements.part(&name)? {
+        (14, []) => Ok(()),
+        (14, content) => variable(&mut elements.within(content), Some((name, depth + 1)), variables),
+        (kind, _) => Err(elements.fault(format!("{name:?} of kind {kind}"), "an array")),
+    }
+}
+
+/// A name up to its first zero.
+fn string(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes.split(|b| *b == 0).next().unwrap_or_default()).into_owned()
 }
 
 fn text(elements: &mut Elements) -> Result<String> {

@@ -1,0 +1,353 @@
+//! Abscissae of the vectors of a MAT-file, as the names of other variables say them.
+//!
+//! What stands in a struct speaks of the vectors of that struct, however deep. Where the struct has none, it speaks of those beside it:
+//! `File_Header.SampleFrequency` of `Channel_1_Data`, `Signal.x_values.increment` of `Signal.y_values.values`.
+
+use super::variable::Array;
+use crate::assemble::{from_values, short};
+use crate::reader::{Options, POSSIBLE};
+use crate::{number, text};
+use std::cmp::Reverse;
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
+
+/// What a scalar says of an abscissa.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Meaning {
+    /// Sampling rate in Hz.
+    Rate,
+    /// Step of time in s.
+    Step,
+    /// Step of time or of frequency.
+    Increment,
+    /// First value.
+    Start,
+}
+
+/// Whether a name means one thing only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Trust {
+    /// It does.
+    Sure,
+    /// It does as a rule: taken, with a caution.
+    Likely,
+    /// `rate` may be that of a shaft: taken from 1 kHz on, where nothing better is said.
+    Vague,
+    /// Never taken, but named to the person.
+    Offered,
+}
+
+use Meaning::{Increment, Rate, Start, Step};
+use Trust::{Likely, Offered, Sure, Vague};
+
+/// Names in lower case without underscores, what they mean, and whether they mean nothing else.
+const NAMES: &[(&[&str], Meaning, Trust)] = &[
+    (&["fs", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency"], Rate, Sure),
+    (&["dt", "ts", "sampletime", "samplinginterval", "sampleinterval", "tinterval"], Step, Sure),
+    (&["increment", "xincrement"], Increment, Likely),
+    (&["tstart", "startvalue", "xstart"], Start, Sure),
+    (&["sr"], Rate, Likely),
+    (&["rate"], Rate, Vague),
+];
+/// Parts of such names.
+const PARTS: &[(&[&str], Trust)] = &[
+    (&["samplerate", "samplingrate", "samplefreq", "samplingfreq"], Likely),
+    (&["sampl", "rate", "freq"], Offered),
+];
+/// Names of what a struct is about: the struct's own name says what it is.
+const CONTENTS: [&str; 3] = ["data", "values", "value"];
+/// A shaft turns slower than this, in Hz.
+const SHAFT: f64 = 1000.0;
+
+/// The struct in which a variable stands, with its last dot; empty for variables of their own.
+fn container(name: &str) -> &str {
+    name.rfind('.').map_or("", |dot| &name[..=dot])
+}
+
+/// The last part of a name that is more than `Data`; of `X(1).Data` it is `X`.
+fn key(name: &str) -> &str {
+    let (container, last) = name.split_at(container(name).len());
+    match container.strip_suffix('.') {
+        Some(outer) if CONTENTS.contains(&last.to_lowercase().as_str()) => {
+            let index = outer.rfind(['(', '{']).filter(|_| outer.ends_with([')', '}']));
+            key(&outer[..index.unwrap_or(outer.len())])
+        }
+        _ => last,
+    }
+}
+
+/// The struct of whose vectors a variable speaks.
+pub fn scope<'n>(name: &'n str, vectors: &[String]) -> &'n str {
+    let mut scope = container(name);
+    while !scope.is_empty() && !vectors.iter().any(|vector| vector.starts_with(scope)) {
+        scope = container(&scope[..scope.len() - 1]);
+    }
+    scope
+}
+
+/// The kind of abscissa that a vector of this name holds, and its factor to s or Hz.
+fn kind(name: &str, unit: Option<&str>) -> Option<(AxisKind, f64)> {
+    // Recorders of control systems write `X.Data` and `Y.Data`.
+    let is_x = key(name) == "X" && !name.ends_with('X');
+    text::abscissa(if is_x || key(name) == "tout" { "time" } else { key(name) }, unit)
+}
+
+fn rises(values: &Values) -> Option<&[f64]> {
+    match values {
+        Values::Real(values) if values.len() > 1 && values.is_sorted_by(|a, b| a < b) => Some(values),
+        _ => None,
+    }
+}
+
+/// A scalar that says something of the abscissa of the vectors in `scope`.
+struct Scalar {
+    name: String,
+    scope: String,
+    meaning: Meaning,
+    trust: Trust,
+    /// Of a step that may be one of frequency: what its unit says.
+    kind: Option<AxisKind>,
+    /// In s or Hz; the step of a rate.
+    value: f64,
+}
+
+impl Scalar {
+    fn of(name: &str, said: &str, notes: &[(String, String)], vectors: &[String]) -> Option<Scalar> {
+        let word = key(name).replace('_', "").to_lowercase();
+        let named = NAMES.iter().find(|(names, ..)| names.contains(&word.as_str()));
+        let part = || PARTS.iter().find(|(parts, _)| parts.iter().any(|part| word.contains(part)));
+        let (meaning, mut trust) =
+            named.map(|n| (n.1, n.2)).or_else(|| part().map(|(_, trust)| (Rate, *trust)))?;
+        let value = number::parse(said.as_bytes()).or_else(|| {
+            trust = trust.max(Likely);
+            number::parse_with(said.as_bytes(), b',')
+        })?;
+        let mut scalar = Scalar {
+            name: name.to_owned(),
+            scope: scope(name, vectors).to_owned(),
+            meaning,
+            trust,
+            kind: Some(AxisKind::Time),
+            value: if meaning == Rate { 1.0 / value } else { value },
+        };
+        if matches!(meaning, Increment | Start) {
+            let inside = container(name);
+            let labels = notes.iter().filter(|(label, _)| {
+                label.starts_with(inside) && (is_unit(key(label)) || key(label) == "label")
+            });
+            let mut labels = labels.filter(|_| !inside.is_empty());
+            scalar.kind = None;
+            if let Some(unit) = labels.find_map(|(_, text)| Unit::parse(text)) {
+                scalar.kind = Some(match unit.quantity() {
+                    Quantity::Time => AxisKind::Time,
+                    Quantity::Frequency if unit.symbol().ends_with("Hz") => AxisKind::Frequency,
+                    _ => return None,
+                });
+                scalar.value *= unit.factor();
+                scalar.trust = Sure;
+            }
+        }
+        (meaning == Start || POSSIBLE.contains(&(1.0 / scalar.value))).then_some(scalar)
+    }
+
+    /// Whether the other one says the same step.
+    fn agrees(&self, other: &Scalar) -> bool {
+        (self.value / other.value - 1.0).abs() <= 1e-6
+    }
+}
+
+/// A vector that is an abscissa of those in `scope`.
+struct Vector {
+    name: String,
+    scope: String,
+    axis: Axis,
+}
+
+/// What the file and the person say of abscissae.
+pub struct Axes<'a> {
+    options: &'a Options,
+    /// Times before frequencies.
+    vectors: Vec<Vector>,
+    scalars: Vec<Scalar>,
+    /// Vectors that rise evenly and are not known as abscissae: name, length and step.
+    even: Vec<(String, usize, f64)>,
+}
+
+impl<'a> Axes<'a> {
+    /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length. `notes` are the scalars and texts.
+    pub fn find(
+        arrays: &mut Vec<(String, Array)>,
+        notes: &[(String, String)],
+        options: &'a Options,
+        findings: &mut Vec<Finding>,
+    ) -> Axes<'a> {
+        let kinds: Vec<_> = arrays.iter().map(|(name, _)| kind(name, unit(name, notes, arrays))).collect();
+        let values = arrays.iter().zip(&kinds);
+        let values = values.filter(|((_, array), kind)| kind.is_none() || rises(&array.values).is_none());
+        let values: Vec<String> = values.map(|((name, _), _)| name.clone()).collect();
+        let scalars = notes.iter().filter_map(|(name, said)| Scalar::of(name, said, notes, &values));
+        let mut axes = Axes { options, vectors: Vec::new(), scalars: scalars.collect(), even: Vec::new() };
+        let mut taken = vec![false; arrays.len()];
+        let kinds = kinds.into_iter().enumerate().filter_map(|(at, kind)| Some((at, kind?)));
+        let (mut kinds, lines): (Vec<_>, Vec<_>) = kinds.partition(|(_, (kind, _))| *kind == AxisKind::Time);
+        kinds.extend(lines);
+        for (at, (kind, factor)) in kinds {
+            let (name, Array { dimensions, values: vector, single }) = &arrays[at];
+            let (n, scope) = (vector.len() as u64, scope(name, &values).to_owned());
+            let others = arrays.iter().enumerate().filter(|(i, _)| *i != at && !taken[*i]);
+            let mut others = others.filter(|(_, (of, _))| of.starts_with(&scope));
+            let fits = dimensions.contains(&n) && others.any(|(_, (_, other))| other.dimensions.contains(&n));
+            let Some(vector) = rises(vector).filter(|_| fits) else {
+                let rises = rises(vector).is_some();
+                let code = if rises { "abscissa-of-other-length" } else { "abscissa-not-rising" };
+                findings.push(Finding::caution(code).name("variable", name.as_str()));
+                continue;
+            };
+            if key(name) == "X" && unit(name, notes, arrays).is_none() {
+                findings.push(Finding::caution("axis-by-name").name("variable", name.as_str()));
+            }
+            let vector: Vec<f64> = vector.iter().map(|v| v * factor).collect();
+            let drift = drift(&vector, *single);
+            let (axis, finding) = from_values(kind, vector, drift, &format!("vector {name:?}"));
+            findings.extend(finding);
+            let said = axes.chosen(name, false);
+            let said = said.iter().find(|s| s.kind == Some(AxisKind::Time) && s.scope == scope);
+            if let Some(rate) =
+                options.rate.or(said.map(|s| 1.0 / s.value)).filter(|_| axis.kind == AxisKind::Time)
+                && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
+            {
+                let used = if options.rate.is_some() { "rate" } else { "vector" };
+                let found = Finding::caution("vector-against-rate").name("variable", name.as_str());
+                findings.push(found.name("used", used).number("rate", rate));
+            }
+            taken[at] = true;
+            axes.vectors.push(Vector { name: name.clone(), scope, axis });
+        }
+        let mut taken = taken.into_iter();
+        arrays.retain(|_| !taken.next().unwrap_or(false));
+        axes
+    }
+
+    /// Remembers what among the records may be an abscissa.
+    pub fn offer<'r>(&mut self, records: impl Iterator<Item = (&'r String, &'r Values)>) {
+        let even = records.filter_map(|(name, values)| {
+            let rising = rises(values)?;
+            let step = Axis::from_values(AxisKind::Index, rising.to_vec(), drift(rising, false)).step()?;
+            // Numbers from 1 on only count.
+            (step != 1.0).then(|| (name.clone(), values.len(), step))
+        });
+        self.even = even.collect();
+    }
+
+    /// The scalars that say the step of a vector, the most certain first; none where that is not certain enough.
+    fn chosen(&self, name: &str, complex: bool) -> Vec<&Scalar> {
+        let says = |s: &&Scalar| {
+            let over_time = s.kind == Some(AxisKind::Time);
+            s.meaning != Start && s.trust != Offered && name.starts_with(&s.scope) && !(complex && over_time)
+        };
+        let mut all: Vec<&Scalar> = self.scalars.iter().filter(says).collect();
+        all.sort_by_key(|s| (s.trust == Vague, Reverse(s.scope.len()), s.trust));
+        if all.first().is_some_and(|s| s.trust == Vague && s.value * SHAFT > 1.0) { Vec::new() } else { all }
+    }
+
+    /// The axis of a record.
+    pub fn of(&self, values: &Values, meta: &mut Meta, findings: &mut Vec<Finding>) -> Result<Axis> {
+        let (n, complex, name) = (values.len(), matches!(values, Values::Complex(_)), meta.name.clone());
+        let over = |vector: &&Vector| {
+            let fits = vector.axis.len() == n && name.starts_with(&vector.scope);
+            fits && !(complex && vector.axis.kind == AxisKind::Time)
+        };
+        let mut fitting: Vec<&Vector> = self.vectors.iter().filter(over).collect();
+        fitting.sort_by_key(|vector| Reverse(vector.scope.len()));
+        let said = self.chosen(&name, complex);
+        // What stands nearer is meant.
+        let nearer = |vector: &&&Vector| said.first().is_none_or(|s| s.scope.len() <= vector.scope.len());
+        let vector = fitting.first().filter(nearer).map(|vector| &vector.axis);
+        match (self.options.rate, self.options.base_band) {
+            (Some(rate), _) if !complex => {
+                let step = said.first().map_or(1.0 / rate, |scalar| scalar.value);
+                if vector.is_none() && (step * rate - 1.0).abs() > 1e-5 {
+                    let found = Finding::caution("rate-overrides-step").number("step", step);
+                    meta.found(found.number("rate", rate));
+                }
+                let time = vector.filter(|axis| axis.kind == AxisKind::Time);
+                return Ok(Axis::time(time.map_or(0.0, Axis::start), 1.0 / rate, n));
+            }
+            (None, Some(band)) => {
+                return Ok(Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n));
+            }
+            _ => {}
+        }
+        if let Some(axis) = vector {
+            let (first, rest) = (fitting[0], &fitting[1..]);
+            if let Some(other) = rest.iter().find(|other| other.scope == first.scope && other.axis != *axis) {
+                let found = Finding::caution("time-or-frequency").name("variable", name);
+                findings.push(found.name("used", first.name.as_str()).name("other", other.name.as_str()));
+            }
+            return Ok(axis.clone());
+        }
+        let Some(scalar) = said.first() else {
+            meta.found(self.unsaid(&name, n));
+            return Ok(Axis::index(n));
+        };
+        let rival = said.iter().find(|other| other.scope == scalar.scope && !other.agrees(scalar));
+        if let Some(other) = rival.filter(|other| other.trust == scalar.trust) {
+            let hertz = |of: &Scalar| format!("{} Hz", short(1.0 / of.value));
+            let (a, b) = (hertz(scalar), hertz(other));
+            let found = format!("{:?} says a sampling rate of {a}, {:?} {b}", scalar.name, other.name);
+            let error = Error::usage(found, "one sampling rate");
+            return Err(error.hint("state the sampling rate").setting("rate"));
+        }
+        let over_frequency = scalar.kind.as_ref().map_or(complex, |kind| *kind == AxisKind::Frequency);
+        if scalar.trust != Sure {
+            let (fact, value) =
+                if over_frequency { ("step", scalar.value) } else { ("rate", 1.0 / scalar.value) };
+            let found = Finding::caution("step-by-name").name("variable", scalar.name.as_str());
+            let found = found.number(fact, value);
+            meta.found(if let Some(other) = rival { found.name("other", &other.name) } else { found });
+        }
+        let beside = |s: &&Scalar| s.meaning == Start && container(&s.name) == container(&scalar.name);
+        let start = self.scalars.iter().find(beside).map_or(0.0, |s| s.value);
+        let axis = if over_frequency { Axis::frequency } else { Axis::time };
+        Ok(axis(start, scalar.value, n))
+    }
+
+    /// What to say of `n` values without an abscissa: which variables may hold it.
+    fn unsaid(&self, name: &str, n: usize) -> Finding {
+        let mut found = Finding::caution("abscissa-unsaid");
+        let offered = self.scalars.iter().filter(|s| s.trust >= Vague && name.starts_with(&s.scope));
+        if let Some(scalar) = offered.max_by_key(|s| s.name.contains("ampl")) {
+            found = found.name("variable", scalar.name.as_str()).number("rate", 1.0 / scalar.value);
+        }
+        if let Some((vector, _, step)) = self.even.iter().find(|(of, len, _)| *len == n && of != name) {
+            found = found.name("vector", vector).number("rises", 1.0 / step);
+        }
+        found
+    }
+
+    /// Whether an abscissa of `n` values is known for an array.
+    pub fn has(&self, name: &str, n: u64) -> bool {
+        self.vectors.iter().any(|vector| vector.axis.len() as u64 == n && name.starts_with(&vector.scope))
+    }
+}
+
+fn is_unit(key: &str) -> bool {
+    matches!(key, "Unit" | "unit" | "Units" | "units")
+}
+
+/// The unit that a struct states of its only vector.
+pub fn unit<'n>(name: &str, notes: &'n [(String, String)], arrays: &[(String, Array)]) -> Option<&'n str> {
+    let inside = container(name);
+    let stated = |(of, text): &&(String, String)| {
+        of.strip_prefix(inside).is_some_and(is_unit) && Unit::parse(text).is_some()
+    };
+    let alone = !inside.is_empty() && arrays.iter().filter(|(of, _)| container(of) == inside).count() == 1;
+    notes.iter().filter(|_| alone).find(stated).map(|(_, text)| text.as_str())
+}
+
+/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.
+fn drift(values: &[f64], single: bool) -> f64 {
+    let (first, last) = (values[0], values[values.len() - 1]);
+    let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
+    if single { drift.max(first.abs().max(last.abs()) * f64::from(f32::EPSILON) / 2.0) } else { drift }
+}
