@@ -5,7 +5,7 @@
 use super::lzf;
 use crate::Source;
 use hdf5_reader::attribute_api::Attribute;
-use hdf5_reader::dataset::Dataset;
+use hdf5_reader::dataset::{Dataset, SliceInfo, SliceInfoElem};
 use hdf5_reader::error::Error as Fault;
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::HdfMessage;
@@ -15,6 +15,7 @@ use hdf5_reader::{
     ByteOrder, CompoundField, Datatype, ExternalLinkResolver, FilterRegistry, Hdf5File, OpenOptions,
 };
 use num_complex::Complex64;
+use rayon::prelude::*;
 use std::collections::{BTreeSet, HashSet};
 use std::sync::{Arc, Mutex};
 use vibro_record::{Error, Finding, Result, Values};
@@ -24,6 +25,8 @@ const MOST_UNPACKED: u64 = 1032;
 /// Groups within each other are read to this depth, and paths to this length.
 const MOST_DEPTH: usize = 32;
 const MOST_PATH: usize = 512;
+/// Values that are read at a time.
+const BLOCK: usize = 1 << 17;
 
 /// Fields of complex numbers.
 const COMPLEX: &[(&str, &str)] = &[("r", "i"), ("real", "imag"), ("re", "im")];
@@ -164,7 +167,10 @@ impl File {
             kind => {
                 let layout = dataset.raw_datatype()?;
                 if matches!(kind, Datatype::FloatingPoint { size: 8, .. }) && described(&layout, &[kind])[0] {
-                    let values = dataset.read_array_parallel::<f64>()?.into_raw_vec_and_offset().0;
+                    let values = match dataset.chunks() {
+                        None if dataset.ndim() > 0 => by_rows(dataset)?,
+                        _ => dataset.read_array_parallel()?.into_raw_vec_and_offset().0,
+                    };
                     return Ok(Data::Numbers(Values::Real(values)));
                 }
                 decoded(kind, &layout, dataset.raw_element_size()?, || dataset.read_raw_bytes())
@@ -176,6 +182,20 @@ impl File {
 /// Refuses a file that the crate cannot open.
 fn damaged(fault: Fault) -> Error {
     Error::usage(fault.to_string(), "HDF5 that can be read").hint("write its arrays as MAT (v7), CSV or WAV")
+}
+
+/// The values of a dataset in one piece, rows after rows: what is read needs no room of its size beside them.
+fn by_rows(dataset: &Dataset) -> std::result::Result<Vec<f64>, Fault> {
+    let row = dataset.shape()[1..].iter().product::<u64>() as usize;
+    let rows = (BLOCK / row).max(1);
+    let mut values = vec![0.0; dataset.num_elements()? as usize];
+    values.par_chunks_mut(rows * row).enumerate().try_for_each(|(k, part)| {
+        let (start, mut slice) = ((k * rows) as u64, SliceInfo::all(dataset.ndim()));
+        slice.selections[0] = SliceInfoElem::Slice { start, end: start + (part.len() / row) as u64, step: 1 };
+        part.copy_from_slice(&dataset.read_slice(&slice)?.into_raw_vec_and_offset().0);
+        Ok::<(), Fault>(())
+    })?;
+    Ok(values)
 }
 
 /// What an attribute holds.

@@ -30,6 +30,8 @@ const FACTOR: &[&str] = &["scalefactor"];
 const OFFSET: &[&str] = &["addoffset"];
 const FACTOR_OF_INTEGERS: &[&str] = &["yinc", "yincrement"];
 const OFFSET_OF_INTEGERS: &[&str] = &["yorg", "yorigin"];
+/// Notes that a record takes at most: many scalars beside many datasets would fill the memory.
+const MOST_NOTES: usize = 200;
 /// What programs write for themselves.
 const INTERNAL: &[&str] = &["class", "name", "dimensionlist", "dimensionlabels", "referencelist"];
 
@@ -95,6 +97,7 @@ impl Stated {
     fn note(&mut self, name: &str, key: &str, value: String) {
         if !INTERNAL.contains(&key) && !name.starts_with('_') {
             self.notes.retain(|(other, _)| other != name);
+            self.notes.truncate(MOST_NOTES - 1);
             self.notes.push((name.to_owned(), value));
         }
     }
