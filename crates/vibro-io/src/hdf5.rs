@@ -135,7 +135,7 @@ fn group(
                 stated.scale(&mut values, matches!(dataset.dtype(), Datatype::FixedPoint { .. }));
                 match columns(&name, dataset.shape(), values, &lengths) {
                     Ok(columns) => {
-                        channels.extend(columns.into_iter().map(|(name, values)| channel(name, values)))
+                        channels.extend(columns.into_iter().map(|(name, values)| channel(name, values)));
                     }
                     Err(dimensions) => {
                         let found = Finding::note("variable-many-dimensions").name("variable", within(&name));
@@ -148,7 +148,7 @@ fn group(
                 for (field, values) in fields {
                     match values {
                         Some(values) => {
-                            columns.push(channel(format!("{name}/{field}"), Values::Real(values)))
+                            columns.push(channel(format!("{name}/{field}"), Values::Real(values)));
                         }
                         None => file.pass(&format!("{}/{field}", within(&name)), "field that is no number"),
                     }

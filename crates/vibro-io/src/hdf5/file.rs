@@ -26,7 +26,7 @@ const MOST_UNPACKED: u64 = 1032;
 const MOST_DEPTH: usize = 32;
 const MOST_PATH: usize = 512;
 /// Values that are read at a time.
-const BLOCK: usize = 1 << 17;
+const BLOCK: usize = 1 << 13;
 
 /// Fields of complex numbers.
 const COMPLEX: &[(&str, &str)] = &[("r", "i"), ("real", "imag"), ("re", "im")];
@@ -47,12 +47,12 @@ pub enum Data {
 /// A group or a dataset with its name.
 pub enum Member {
     Group(String, Group),
-    Dataset(String, Dataset),
+    Dataset(String, Box<Dataset>),
 }
 
 /// An open file, and what was passed over in it.
 pub struct File {
-    file: Hdf5File,
+    open: Hdf5File,
     len: u64,
     outside: Arc<Outside>,
     /// Addresses of what was given out.
@@ -82,24 +82,24 @@ impl File {
             .with_external_link_resolver(outside.clone())
             .with_chunk_cache_bytes(0)
             .with_max_chunk_bytes(most);
-        let file = match source.in_memory() {
+        let open = match source.in_memory() {
             Some(bytes) => Hdf5File::from_bytes_with_options(bytes, options),
             None => FileStorage::open(source.path())
                 .and_then(|file| Hdf5File::from_storage_with_options(Arc::new(file), options)),
         };
-        let file = file.map_err(damaged)?;
-        Ok(File { file, len: source.len(), outside, seen: HashSet::new(), findings: Vec::new() })
+        let open = open.map_err(|fault| damaged(&fault))?;
+        Ok(File { open, len: source.len(), outside, seen: HashSet::new(), findings: Vec::new() })
     }
 
     pub fn root(&mut self) -> Result<Group> {
-        let root = self.file.root_group().map_err(damaged)?;
+        let root = self.open.root_group().map_err(|fault| damaged(&fault))?;
         self.seen.insert(root.address());
         Ok(root)
     }
 
     /// What stands in a group, apart from what another path led to before.
     pub fn members(&mut self, group: &Group, path: &str) -> Result<Vec<Member>> {
-        let (mut groups, mut datasets) = group.member_names().map_err(damaged)?;
+        let (mut groups, mut datasets) = group.member_names().map_err(|fault| damaged(&fault))?;
         groups.sort_unstable();
         datasets.sort_unstable();
         if path.len() > MOST_PATH || path.split(['/', '.']).count() > MOST_DEPTH {
@@ -116,7 +116,9 @@ impl File {
         }
         for name in datasets {
             match group.dataset(&name) {
-                Ok(inner) if self.seen.insert(inner.address()) => members.push(Member::Dataset(name, inner)),
+                Ok(inner) if self.seen.insert(inner.address()) => {
+                    members.push(Member::Dataset(name, Box::new(inner)));
+                }
                 Ok(_) => self.pass(&name, "second link to a dataset"),
                 Err(fault) => self.unreadable(&name, &fault),
             }
@@ -152,7 +154,7 @@ impl File {
     }
 
     fn held(&self, dataset: &Dataset) -> std::result::Result<Data, Fault> {
-        let header = self.file.get_or_parse_header(dataset.address())?;
+        let header = self.open.get_or_parse_header(dataset.address())?;
         let packed = header.messages.iter().any(|message| matches!(message, HdfMessage::FilterPipeline(_)));
         let (declared, most) = (dataset.raw_byte_len()? as u64, if packed { MOST_UNPACKED } else { 1 });
         if declared > self.len.saturating_mul(most) {
@@ -180,7 +182,7 @@ impl File {
 }
 
 /// Refuses a file that the crate cannot open.
-fn damaged(fault: Fault) -> Error {
+fn damaged(fault: &Fault) -> Error {
     Error::usage(fault.to_string(), "HDF5 that can be read").hint("write its arrays as MAT (v7), CSV or WAV")
 }
 

@@ -108,7 +108,9 @@ impl Stated {
             if integers && self.scale_of_integers[0].is_some() { self.scale_of_integers } else { self.scale };
         if let (Values::Real(values), true) = (values, factor.or(offset).is_some()) {
             let (factor, offset) = (factor.unwrap_or(1.0), offset.unwrap_or(0.0));
-            values.iter_mut().for_each(|value| *value = *value * factor + offset);
+            for value in values {
+                *value = *value * factor + offset;
+            }
         }
     }
 
