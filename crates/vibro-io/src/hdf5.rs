@@ -22,10 +22,10 @@ use super::reader::{Options, Recording};
 use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
 use crate::{mat, text};
 use file::{Data, File, Member};
-use hdf5_reader::Datatype;
+use hdf5_reader::{Dataset, Datatype};
 use stated::Stated;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, AxisKind, Error, Fact, Finding, Grid, Meta, Place, Record, Result, Values};
+use vibro_record::{Axis, AxisKind, Error, Fact, Finding, Meta, Place, Record, Result, Values};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// More columns than this are no channels.
@@ -68,7 +68,8 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let record = |Channel { name, mut values, stated, axis }: Channel| {
         let mut meta = Meta::new(name, Unit::opaque(""));
         let factor = options.adopt(&mut meta, stated.unit.as_deref());
-        let abscissa = abscissa(&stated, axis.as_ref(), matches!(values, Values::Complex(_)));
+        let stated_abscissa = || stated.abscissa(matches!(values, Values::Complex(_)));
+        let abscissa = axis.map_or_else(stated_abscissa, Abscissa::of);
         meta.notes = stated.notes;
         meta.step("read", &[("file", &source.name()), ("format", &"hdf5")]);
         to_si(&mut values, factor)?;
@@ -90,159 +91,135 @@ struct Channel {
 /// Adds the channels of a group and of the groups in it.
 fn group(
     file: &mut File,
-    members: Vec<Member>,
+    members: Vec<(String, Member)>,
     path: &str,
     above: &Stated,
     all: &mut Vec<Channel>,
 ) -> Result<()> {
     let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}/{name}") };
     let (mut stated, mut arrays, mut groups) = (above.clone(), Vec::new(), Vec::new());
-    for member in members {
-        let (name, dataset) = match member {
-            Member::Dataset(name, dataset) => (name, dataset),
-            Member::Group(name, inner) => {
-                groups.push((name, inner));
+    for (name, member) in members {
+        let dataset = match member {
+            Member::Dataset(dataset) => dataset,
+            Member::Group(inner) => {
+                groups.push((within(&name), inner));
                 continue;
             }
         };
-        match file.data(&within(&name), &dataset) {
+        let path = within(&name);
+        match file.data(&path, &dataset) {
             Some(Data::Texts(texts)) if texts.iter().map(String::len).sum::<usize>() <= MOST_TEXT => {
                 stated.text(&name, &texts.join(", "));
             }
             Some(Data::Numbers(Values::Real(values))) if values.len() == 1 => stated.number(&name, values[0]),
             Some(Data::Numbers(values)) if values.is_empty() => {
-                file.findings.push(Finding::note("variable-empty").name("variable", within(&name)));
+                file.findings.push(Finding::note("variable-empty").name("variable", path));
             }
-            Some(Data::References(_)) => file.pass(&within(&name), "dataset of references"),
-            Some(Data::Texts(_)) => file.pass(&within(&name), "dataset of long texts"),
-            Some(data) => arrays.push((name, dataset, data)),
+            Some(data @ (Data::Numbers(_) | Data::Table(_))) => arrays.push((path, name, dataset, data)),
+            Some(_) => file.pass(&path, "dataset of references or of long texts"),
             None => {}
         }
     }
-    let is_axis = |name: &str, unit: Option<&str>| text::abscissa(name, unit).is_some();
-    let lengths: Vec<u64> = arrays
-        .iter()
-        .filter(|(name, dataset, _)| dataset.ndim() == 1 && is_axis(name, None))
-        .map(|(_, dataset, _)| dataset.shape()[0])
-        .collect();
+    let is_axis = |(_, name, dataset, _): &&(_, String, Box<Dataset>, _)| {
+        dataset.ndim() == 1 && text::abscissa(name, None).is_some()
+    };
+    let lengths: Vec<u64> = arrays.iter().filter(is_axis).map(|(_, _, axis, _)| axis.shape()[0]).collect();
     let mut channels = Vec::new();
-    for (name, dataset, data) in arrays {
+    for (path, _, dataset, data) in arrays {
         let stated = stated.and(&dataset.attributes());
-        let channel =
-            |name: String, values: Values| Channel { name, values, stated: stated.clone(), axis: None };
-        match data {
+        let columns = match data {
             Data::Numbers(mut values) => {
-                stated.scale(&mut values, matches!(dataset.dtype(), Datatype::FixedPoint { .. }));
-                match columns(&name, dataset.shape(), values, &lengths) {
-                    Ok(columns) => {
-                        channels.extend(columns.into_iter().map(|(name, values)| channel(name, values)));
-                    }
-                    Err(dimensions) => {
-                        let found = Finding::note("variable-many-dimensions").name("variable", within(&name));
-                        file.findings.push(found.count("dimensions", dimensions));
-                    }
+                if matches!(dataset.dtype(), Datatype::FixedPoint { .. }) {
+                    stated.scale(&mut values);
                 }
+                columns(&path, dataset.shape(), values, &lengths, &mut file.findings)
             }
             Data::Table(fields) => {
-                let mut columns = Vec::new();
-                for (field, values) in fields {
-                    match values {
-                        Some(values) => {
-                            columns.push(channel(format!("{name}/{field}"), Values::Real(values)));
-                        }
-                        None => file.pass(&format!("{}/{field}", within(&name)), "field that is no number"),
-                    }
-                }
-                all.extend(over_axes(columns, path, &mut file.findings));
+                let named = fields.into_iter().map(|(field, values)| (format!("{path}/{field}"), values));
+                let (numbers, others): (Vec<_>, Vec<_>) = named.partition(|(_, values)| values.is_some());
+                others.iter().for_each(|(name, _)| file.pass(name, "field that is no number"));
+                let real = |(name, values): (_, Option<_>)| (name, Values::Real(values.unwrap_or_default()));
+                numbers.into_iter().map(real).collect()
             }
-            Data::Texts(_) | Data::References(_) | Data::Other(_) => {}
-        }
+            _ => Vec::new(),
+        };
+        let channel = |(name, values)| Channel { name, values, stated: stated.clone(), axis: None };
+        channels.extend(columns.into_iter().map(channel));
     }
-    all.extend(over_axes(channels, path, &mut file.findings));
+    all.extend(over_axes(channels, &mut file.findings));
     stated.unit = None;
-    for (name, inner) in groups {
-        let path = within(&name);
+    for (path, inner) in groups {
         let members = file.members(&inner, &path)?;
         group(file, members, &path, &stated.and(&inner.attributes().unwrap_or_default()), all)?;
     }
     Ok(())
 }
 
-/// The columns of a dataset with their names; the number of its dimensions where these are no columns.
+/// The columns of a dataset with their names; none where it has more dimensions.
 fn columns(
     name: &str,
     shape: &[u64],
     values: Values,
     lengths: &[u64],
-) -> std::result::Result<Vec<(String, Values)>, usize> {
+    findings: &mut Vec<Finding>,
+) -> Vec<(String, Values)> {
     let long: Vec<u64> = shape.iter().copied().filter(|n| *n > 1).collect();
-    let [rows, columns] = long[..] else {
-        return if long.len() < 2 { Ok(vec![(name.to_owned(), values)]) } else { Err(long.len()) };
+    let (rows, columns) = match long[..] {
+        [] | [_] => return vec![(name.to_owned(), values)],
+        [rows, columns] if rows.min(columns) <= MOST_COLUMNS => (rows, columns),
+        _ => {
+            let found = Finding::note("variable-many-dimensions").name("variable", name);
+            findings.push(found.count("dimensions", long.len()));
+            return Vec::new();
+        }
     };
     let has = |n| lengths.contains(&n);
     let lying = if has(rows) == has(columns) { columns > rows } else { has(columns) };
-    if rows.min(columns) > MOST_COLUMNS {
-        return Err(2);
-    }
-    let (many, step, n) = if lying { (rows, 1, columns) } else { (columns, columns, rows) };
-    let column = |k: u64| {
-        let (from, step, n) = ((if lying { k * columns } else { k }) as usize, step as usize, n as usize);
+    let (rows, columns) = (rows as usize, columns as usize);
+    let (many, first, step, n) =
+        if lying { (rows, columns, 1, columns) } else { (columns, 1, columns, rows) };
+    let column = |k: usize| {
         let values = match &values {
-            Values::Real(all) => Values::Real(mat::every(all, from, step, n)),
-            Values::Complex(all) => Values::Complex(mat::every(all, from, step, n)),
+            Values::Real(all) => Values::Real(mat::every(all, k * first, step, n)),
+            Values::Complex(all) => Values::Complex(mat::every(all, k * first, step, n)),
         };
         (if lying { format!("{name}[{k},:]") } else { format!("{name}[:,{k}]") }, values)
     };
-    Ok((0..many).map(column).collect())
+    (0..many).map(column).collect()
 }
 
-/// Takes the rising channels out that their names make abscissae, and gives each to the others of its length; names then begin with `path`.
-fn over_axes(channels: Vec<Channel>, path: &str, findings: &mut Vec<Finding>) -> Vec<Channel> {
-    let (mut axes, mut others): (Vec<Axis>, Vec<Channel>) = (Vec::new(), Vec::new());
-    let lengths: Vec<usize> = channels.iter().map(|channel| channel.values.len()).collect();
-    for mut channel in channels {
-        let n = channel.values.len();
-        let kind = text::abscissa(
-            channel.name.rsplit('/').next().unwrap_or_default(),
-            channel.stated.unit.as_deref(),
-        );
-        let fits = lengths.iter().filter(|other| **other == n).count() > 1
-            && axes.iter().all(|axis| axis.len() != n);
-        match (kind, &mut channel.values) {
-            (Some((kind, factor)), Values::Real(values)) if fits && values.is_sorted_by(|a, b| a < b) => {
-                let values = values.iter().map(|value| value * factor).collect();
-                let (axis, found) = from_values(kind, values, 0.0, &format!("dataset {:?}", channel.name));
-                findings.extend(found);
-                axes.push(axis);
-            }
-            _ => others.push(channel),
+/// Takes the rising channels out that their names make abscissae, and gives each to those of its length beside it.
+fn over_axes(channels: Vec<Channel>, findings: &mut Vec<Finding>) -> Vec<Channel> {
+    fn place(channel: &Channel) -> (&str, usize) {
+        (channel.name.rsplit_once('/').map_or("", |(group, _)| group), channel.values.len())
+    }
+    let many = |channel| channels.iter().filter(|other| place(other) == place(channel)).count() > 1;
+    let mut axes: Vec<(usize, Axis)> = Vec::new();
+    for (i, channel) in channels.iter().enumerate() {
+        let name = channel.name.rsplit('/').next().unwrap_or_default();
+        let known = |(i, _): &(usize, Axis)| place(&channels[*i]) == place(channel);
+        if let Values::Real(values) = &channel.values
+            && let Some((kind, factor)) = text::abscissa(name, channel.stated.unit.as_deref())
+            && values.is_sorted_by(|a, b| a < b)
+            && many(channel)
+            && !axes.iter().any(known)
+        {
+            let values = values.iter().map(|value| value * factor).collect();
+            let (axis, found) = from_values(kind, values, 0.0, &format!("dataset {:?}", channel.name));
+            findings.extend(found);
+            axes.push((i, axis));
         }
     }
-    for channel in &mut others {
-        channel.axis = axes.iter().find(|axis| axis.len() == channel.values.len()).cloned();
-        if !path.is_empty() {
-            channel.name = format!("{path}/{}", channel.name);
-        }
-    }
-    others
-}
-
-/// What is stated of the abscissa, else that of the group.
-fn abscissa(stated: &Stated, own: Option<&Axis>, complex: bool) -> Abscissa {
-    match own {
-        Some(Axis { kind, grid: Grid::Even { start, step, .. } }) => {
-            Abscissa::even(kind.clone(), Some((*start, *step)))
-        }
-        Some(axis) => Abscissa { stored: axis.values(), ..Abscissa::even(axis.kind.clone(), None) },
-        None => {
-            let stated = stated.abscissa();
-            if complex && stated.kind == AxisKind::Time {
-                Abscissa::even(AxisKind::Time, None)
-            } else {
-                stated
-            }
-        }
-    }
+    let over = |channel: &Channel| {
+        let timed = matches!(channel.values, Values::Real(_));
+        let fits = |(i, axis): &&(usize, Axis)| {
+            place(&channels[*i]) == place(channel) && (timed || axis.kind != AxisKind::Time)
+        };
+        axes.iter().find(fits).map(|(_, axis)| axis.clone())
+    };
+    let found: Vec<Option<Axis>> = channels.iter().map(over).collect();
+    let kept = channels.into_iter().zip(found).enumerate().filter(|(k, _)| axes.iter().all(|(i, _)| i != k));
+    kept.map(|(_, (channel, axis))| Channel { axis, ..channel }).collect()
 }
 
 #[cfg(test)]

@@ -44,10 +44,26 @@ pub enum Data {
     Other(&'static str),
 }
 
-/// A group or a dataset with its name.
+/// What stands in a group.
 pub enum Member {
-    Group(String, Group),
-    Dataset(String, Box<Dataset>),
+    Group(Group),
+    Dataset(Box<Dataset>),
+}
+
+impl Member {
+    pub fn address(&self) -> u64 {
+        match self {
+            Member::Group(group) => group.address(),
+            Member::Dataset(dataset) => dataset.address(),
+        }
+    }
+
+    pub fn attributes(&self) -> Vec<Attribute> {
+        match self {
+            Member::Group(group) => group.attributes().unwrap_or_default(),
+            Member::Dataset(dataset) => dataset.attributes(),
+        }
+    }
 }
 
 /// An open file, and what was passed over in it.
@@ -97,29 +113,23 @@ impl File {
         Ok(root)
     }
 
-    /// What stands in a group, apart from what another path led to before.
-    pub fn members(&mut self, group: &Group, path: &str) -> Result<Vec<Member>> {
-        let (mut groups, mut datasets) = group.member_names().map_err(|fault| damaged(&fault))?;
-        groups.sort_unstable();
-        datasets.sort_unstable();
+    /// What stands in a group by its names, apart from what another name led to before.
+    pub fn members(&mut self, group: &Group, path: &str) -> Result<Vec<(String, Member)>> {
         if path.len() > MOST_PATH || path.split(['/', '.']).count() > MOST_DEPTH {
             self.pass(path, "group too deep in others");
             return Ok(Vec::new());
         }
+        let (groups, datasets) = group.member_names().map_err(|fault| damaged(&fault))?;
+        let groups = groups.into_iter().map(|name| (group.group(&name).map(Member::Group), name));
+        let dataset = |name: &str| group.dataset(name).map(|inner| Member::Dataset(Box::new(inner)));
+        let mut found: Vec<_> =
+            groups.chain(datasets.into_iter().map(|name| (dataset(&name), name))).collect();
+        found.sort_by(|a, b| a.1.cmp(&b.1));
         let mut members = Vec::new();
-        for name in groups {
-            match group.group(&name) {
-                Ok(inner) if self.seen.insert(inner.address()) => members.push(Member::Group(name, inner)),
-                Ok(_) => self.pass(&name, "second link to a group"),
-                Err(fault) => self.unreadable(&name, &fault),
-            }
-        }
-        for name in datasets {
-            match group.dataset(&name) {
-                Ok(inner) if self.seen.insert(inner.address()) => {
-                    members.push(Member::Dataset(name, Box::new(inner)));
-                }
-                Ok(_) => self.pass(&name, "second link to a dataset"),
+        for (member, name) in found {
+            match member {
+                Ok(member) if self.seen.insert(member.address()) => members.push((name, member)),
+                Ok(_) => self.pass(&name, "second link"),
                 Err(fault) => self.unreadable(&name, &fault),
             }
         }
@@ -280,21 +290,8 @@ fn number(bytes: &[u8], kind: &Datatype) -> f64 {
         Datatype::FloatingPoint { size: 4, byte_order } => {
             f64::from(f32::from_bits(word(4, byte_order) as u32))
         }
-        Datatype::FloatingPoint { size: 2, byte_order } => half(word(2, byte_order) as u16),
         _ => f64::NAN,
     }
-}
-
-/// The value of a float of 16 bits.
-fn half(bits: u16) -> f64 {
-    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
-    let size = match exponent {
-        0 => fraction * 2f64.powi(-24),
-        31 if fraction == 0.0 => f64::INFINITY,
-        31 => f64::NAN,
-        _ => (1024.0 + fraction) * 2f64.powi(exponent - 25),
-    };
-    if bits >> 15 == 1 { -size } else { size }
 }
 
 /// How the message of a datatype describes an integer that fills its bytes, or a float of IEEE 754, behind the byte of its class.
@@ -302,9 +299,6 @@ fn description(kind: &Datatype) -> Option<Vec<u8>> {
     let (order, flags, sign, size, properties) = match kind {
         Datatype::FixedPoint { size: size @ 1..=8, signed, byte_order } => {
             (byte_order, u8::from(*signed) << 3, 0, *size, [].as_slice())
-        }
-        Datatype::FloatingPoint { size: 2, byte_order } => {
-            (byte_order, 0x20, 15, 2, &[10, 5, 0, 10, 15, 0, 0, 0][..])
         }
         Datatype::FloatingPoint { size: 4, byte_order } => {
             (byte_order, 0x20, 31, 4, &[23, 8, 0, 23, 127, 0, 0, 0][..])

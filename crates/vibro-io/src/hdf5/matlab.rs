@@ -4,10 +4,13 @@
 use super::file::{Data, File, Member};
 use crate::mat::variable::{Array, Content};
 use hdf5_reader::dataset::Dataset;
-use hdf5_reader::group::Group;
 use hdf5_reader::{Attribute, Datatype};
 use std::collections::HashMap;
 use vibro_record::{Result, Values};
+
+/// Classes of numbers.
+const NUMBERS: &[&str] =
+    &["double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"];
 
 type Variables = Vec<(String, Content)>;
 
@@ -16,39 +19,26 @@ const REFERENCES: &str = "#refs#";
 const OBJECTS: &str = "#subsystem#";
 
 /// Whether something in a group is of a class of MATLAB.
-pub fn is(members: &[Member]) -> bool {
-    let of = |attributes: &[Attribute]| attributes.iter().any(|attribute| attribute.name == "MATLAB_class");
-    members.iter().any(|member| match member {
-        Member::Group(_, group) => group.attributes().is_ok_and(|attributes| of(&attributes)),
-        Member::Dataset(_, dataset) => of(&dataset.attributes()),
-    })
+pub fn is(members: &[(String, Member)]) -> bool {
+    members.iter().any(|(_, member)| has(&member.attributes(), "MATLAB_class"))
+}
+
+fn has(attributes: &[Attribute], name: &str) -> bool {
+    attributes.iter().any(|attribute| attribute.name == name)
 }
 
 /// All variables, named as MATLAB writes them.
-pub fn variables(file: &mut File, members: Vec<Member>) -> Result<Variables> {
+pub fn variables(file: &mut File, mut members: Vec<(String, Member)>) -> Result<Variables> {
     let mut referred = HashMap::new();
-    let mut own = Vec::new();
-    for member in members {
-        match member {
-            Member::Group(name, group) if name == REFERENCES => {
-                for member in file.members(&group, "")? {
-                    let address = match &member {
-                        Member::Group(_, group) => group.address(),
-                        Member::Dataset(_, dataset) => dataset.address(),
-                    };
-                    referred.insert(address, member);
-                }
-            }
-            Member::Group(name, _) if name == OBJECTS => file.pass(&name, "object"),
-            member => own.push(member),
-        }
+    if let Some(at) = members.iter().position(|(name, _)| name == REFERENCES)
+        && let Member::Group(group) = members.remove(at).1
+    {
+        let found = file.members(&group, "")?.into_iter();
+        referred = found.map(|(_, member)| (member.address(), member)).collect();
     }
     let mut walk = Walk { file, referred, variables: Vec::new() };
-    for member in own {
-        let name = match &member {
-            Member::Group(name, _) | Member::Dataset(name, _) => name.clone(),
-        };
-        walk.member(&name, member)?;
+    for (name, member) in members {
+        if name == OBJECTS { walk.file.pass(&name, "object") } else { walk.member(&name, member)? }
     }
     Ok(walk.variables)
 }
@@ -62,26 +52,21 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn member(&mut self, name: &str, member: Member) -> Result<()> {
-        match member {
-            Member::Group(_, group) => self.group(name, &group),
-            Member::Dataset(_, dataset) => self.dataset(name, &dataset),
-        }
-    }
-
-    /// A struct, or an array of structs, whose fields are references.
-    fn group(&mut self, name: &str, group: &Group) -> Result<()> {
-        let attributes = group.attributes().unwrap_or_default();
-        if attributes.iter().any(|attribute| attribute.name == "MATLAB_sparse") {
+        let group = match member {
+            Member::Dataset(dataset) => return self.dataset(name, &dataset),
+            Member::Group(group) => group,
+        };
+        if has(&group.attributes().unwrap_or_default(), "MATLAB_sparse") {
             self.file.pass(name, "sparse matrix");
             return Ok(());
         }
-        for member in self.file.members(group, name)? {
+        for (field, member) in self.file.members(&group, name)? {
             match member {
-                Member::Dataset(field, dataset) if class(&dataset).is_none() => {
+                // A field of an array of structs.
+                Member::Dataset(dataset) if class(&dataset).is_none() => {
                     self.references(&dataset, name, &|i| format!("{name}({i}).{field}"))?;
                 }
-                Member::Dataset(field, dataset) => self.dataset(&format!("{name}.{field}"), &dataset)?,
-                Member::Group(field, inner) => self.group(&format!("{name}.{field}"), &inner)?,
+                member => self.member(&format!("{name}.{field}"), member)?,
             }
         }
         Ok(())
@@ -89,34 +74,29 @@ impl Walk<'_> {
 
     fn dataset(&mut self, name: &str, dataset: &Dataset) -> Result<()> {
         let class = class(dataset).unwrap_or_default();
-        let empty = dataset.attributes().iter().any(|attribute| attribute.name == "MATLAB_empty");
+        let empty = has(&dataset.attributes(), "MATLAB_empty");
         let single = matches!(dataset.dtype(), Datatype::FloatingPoint { size: 4, .. });
         let dimensions: Vec<u64> = dataset.shape().iter().rev().copied().collect();
-        let content = match class.as_str() {
-            "char" if empty => Content::Text(String::new()),
-            _ if empty => Content::Array(Array { dimensions, values: Values::Real(Vec::new()), single }),
-            "cell" => return self.references(dataset, name, &|i| format!("{name}{{{i}}}")),
-            "char" if dimensions[..] != [1] && dimensions.first() != Some(&1) => {
-                self.file.pass(name, "char array of several rows");
-                return Ok(());
+        if class == "cell" && !empty {
+            return self.references(dataset, name, &|i| format!("{name}{{{i}}}"));
+        }
+        let data = match class.as_str() {
+            _ if empty => Some(Data::Numbers(Values::Real(Vec::new()))),
+            "char" if dimensions.first() == Some(&1) => self.file.data(name, dataset),
+            class if NUMBERS.contains(&class) => self.file.data(name, dataset),
+            "char" => Some(Data::Other("char array of several rows")),
+            "logical" => Some(Data::Other("logical array")),
+            _ => Some(Data::Other("object")),
+        };
+        let content = match data {
+            Some(Data::Numbers(Values::Real(values))) if class == "char" => {
+                let units: Vec<u16> = values.iter().map(|unit| *unit as u16).collect();
+                Content::Text(String::from_utf16_lossy(&units))
             }
-            "char" | "double" | "single" | "int8" | "uint8" | "int16" | "uint16" | "int32" | "uint32"
-            | "int64" | "uint64" => match self.file.data(name, dataset) {
-                Some(Data::Numbers(Values::Real(values))) if class == "char" => {
-                    let units: Vec<u16> = values.iter().map(|unit| *unit as u16).collect();
-                    Content::Text(String::from_utf16_lossy(&units))
-                }
-                Some(Data::Numbers(values)) => Content::Array(Array { dimensions, values, single }),
-                Some(_) => {
-                    self.file.pass(name, "array of neither numbers nor text");
-                    return Ok(());
-                }
-                None => return Ok(()),
-            },
-            class => {
-                self.file.pass(name, if class == "logical" { "logical array" } else { "object" });
-                return Ok(());
-            }
+            Some(Data::Numbers(values)) => Content::Array(Array { dimensions, values, single }),
+            Some(Data::Other(class)) => Content::Other(class),
+            Some(_) => Content::Other("array of neither numbers nor text"),
+            None => return Ok(()),
         };
         self.variables.push((name.to_owned(), content));
         Ok(())

@@ -7,7 +7,7 @@ use hdf5_reader::Attribute;
 use vibro_record::{AxisKind, Values};
 
 /// Names, in lower case and without separators: of the unit of values; of that of their abscissa, its rate, its step and its start; of a factor
-/// and an offset that make values of what is stored, and of those that do so of integers alone.
+/// and an offset that make values of stored integers.
 const UNIT: &[&str] = &["unit", "units", "yunit", "yunits", "unitstring", "unity"];
 const X_UNIT: &[&str] = &["xunit", "xunits", "unitx"];
 const RATE: &[&str] =
@@ -26,10 +26,8 @@ const STEP: &[&str] = &[
     "wfincrement",
 ];
 const START: &[&str] = &["x0", "t0", "xorg", "xorigin", "xstart", "xoffset", "wfstartoffset"];
-const FACTOR: &[&str] = &["scalefactor"];
-const OFFSET: &[&str] = &["addoffset"];
-const FACTOR_OF_INTEGERS: &[&str] = &["yinc", "yincrement"];
-const OFFSET_OF_INTEGERS: &[&str] = &["yorg", "yorigin"];
+const FACTOR: &[&str] = &["scalefactor", "yinc", "yincrement"];
+const OFFSET: &[&str] = &["addoffset", "yorg", "yorigin"];
 /// Notes that a record takes at most: many scalars beside many datasets would fill the memory.
 const MOST_NOTES: usize = 200;
 /// What programs write for themselves.
@@ -42,8 +40,8 @@ pub struct Stated {
     x_unit: Option<String>,
     step: Option<f64>,
     start: Option<f64>,
-    scale: [Option<f64>; 2],
-    scale_of_integers: [Option<f64>; 2],
+    factor: Option<f64>,
+    offset: Option<f64>,
     pub notes: Vec<(String, String)>,
 }
 
@@ -76,16 +74,12 @@ impl Stated {
 
     pub fn number(&mut self, name: &str, value: f64) {
         let (key, mut rate) = (key(name), None);
-        let ([factor, offset], [of_integers, offset_of_integers]) =
-            (&mut self.scale, &mut self.scale_of_integers);
         let known = [
             (RATE, &mut rate),
             (STEP, &mut self.step),
             (START, &mut self.start),
-            (FACTOR, factor),
-            (OFFSET, offset),
-            (FACTOR_OF_INTEGERS, of_integers),
-            (OFFSET_OF_INTEGERS, offset_of_integers),
+            (FACTOR, &mut self.factor),
+            (OFFSET, &mut self.offset),
         ];
         for (_, place) in known.into_iter().filter(|(names, _)| names.contains(&key.as_str())) {
             *place = Some(value);
@@ -102,12 +96,10 @@ impl Stated {
         }
     }
 
-    /// Takes stored values through their scale.
-    pub fn scale(&self, values: &mut Values, integers: bool) {
-        let [factor, offset] =
-            if integers && self.scale_of_integers[0].is_some() { self.scale_of_integers } else { self.scale };
-        if let (Values::Real(values), true) = (values, factor.or(offset).is_some()) {
-            let (factor, offset) = (factor.unwrap_or(1.0), offset.unwrap_or(0.0));
+    /// Takes stored integers through their scale.
+    pub fn scale(&self, values: &mut Values) {
+        if let (Values::Real(values), true) = (values, self.factor.or(self.offset).is_some()) {
+            let (factor, offset) = (self.factor.unwrap_or(1.0), self.offset.unwrap_or(0.0));
             for value in values {
                 *value = *value * factor + offset;
             }
@@ -115,17 +107,15 @@ impl Stated {
     }
 
     /// Where the values stand, as far as that is stated; a unit that is neither of time nor of frequency states nothing.
-    pub fn abscissa(&self) -> Abscissa {
-        let of = |name: &str| text::abscissa(name, self.x_unit.as_deref());
-        let kind = of("time").or_else(|| of("frequency")).filter(|_| self.x_unit.is_some());
-        match (kind, &self.x_unit) {
-            (None, Some(_)) => Abscissa::even(AxisKind::Time, None),
-            (kind, _) => {
-                let (kind, factor) = kind.unwrap_or((AxisKind::Time, 1.0));
-                let even = self.step.map(|step| (self.start.unwrap_or(0.0) * factor, step * factor));
-                Abscissa::even(kind, even)
-            }
-        }
+    pub fn abscissa(&self, complex: bool) -> Abscissa {
+        let kind = match &self.x_unit {
+            None => Some((AxisKind::Time, 1.0)),
+            unit => ["time", "frequency"].iter().find_map(|name| text::abscissa(name, unit.as_deref())),
+        };
+        let (kind, factor) = kind.filter(|(kind, _)| !complex || *kind != AxisKind::Time).unzip();
+        let step = self.step.zip(factor);
+        let even = step.map(|(step, factor)| (self.start.unwrap_or(0.0) * factor, step * factor));
+        Abscissa::even(kind.unwrap_or(AxisKind::Time), even)
     }
 }
 

@@ -59,7 +59,7 @@ fn values_are_the_same_however_they_are_stored() {
 fn every_number_is_read_in_both_orders_of_bytes() {
     let recording = fixture("numbers.h5");
     for order in ["<", ">"] {
-        for kind in ["i1", "i2", "i4", "i8", "f2", "f4", "f8"] {
+        for kind in ["i1", "i2", "i4", "i8", "f4", "f8"] {
             assert!(values(&recording, &format!("{order}{kind}")).iter().copied().eq(v()), "{order}{kind}");
         }
         for kind in ["u1", "u2", "u4", "u8"] {
@@ -75,7 +75,7 @@ fn every_number_is_read_in_both_orders_of_bytes() {
     }
     assert!(values(&recording, "table/x").iter().copied().eq(v()));
     assert_eq!(named(&recording, "table/x").axis().step(), Some(0.125));
-    assert_eq!(recording.records.len(), 25);
+    assert_eq!(recording.records.len(), 23);
     assert_eq!(
         texts(&recording.findings),
         ["variable-passed-over variable=table/mark class=field that is no number"]
@@ -90,6 +90,7 @@ fn what_is_no_plain_number_is_left_out_by_name() {
         ("variable-passed-over", "12 bits", "unusual layout"),
         ("variable-passed-over", "other exponent", "unusual layout"),
         ("variable-passed-over", "long double", "unusual layout"),
+        ("variable-passed-over", "16 bits", "unusual layout"),
         ("variable-passed-over", "flags", "enumeration"),
         ("variable-passed-over", "ragged", "different lengths"),
         ("variable-passed-over", "times", "neither numbers nor text"),
@@ -100,7 +101,7 @@ fn what_is_no_plain_number_is_left_out_by_name() {
         let found = has_finding(&recording.findings, code, &[&format!("variable={name}"), class]);
         assert!(found, "{name}: {:?}", texts(&recording.findings));
     }
-    assert_eq!(recording.findings.len(), 9);
+    assert_eq!(recording.findings.len(), 10);
 }
 
 #[test]
