@@ -18,7 +18,7 @@ use super::format::Format;
 use super::missing::{self, Missing};
 use super::reader::{Options, Recording};
 use crate::assemble::{self, Spectral, to_si};
-use axes::Axes;
+use axes::{Axes, Scoped};
 use num_complex::Complex64;
 use variable::{Array, Content};
 use vibro_record::units::Unit;
@@ -104,11 +104,13 @@ pub(super) fn recording(
         }
     }
     let mut axes = Axes::find(&mut arrays, &notes, options, &mut findings);
-    let units: Vec<Option<&str>> = arrays.iter().map(|(name, _)| axes::unit(name, &notes, &arrays)).collect();
-    let vectors: Vec<String> = arrays.iter().map(|(name, _)| name.clone()).collect();
-    let notes: Vec<_> = notes.iter().map(|note| (axes::scope(&note.0, &vectors), note)).collect();
+    let units = axes::units(&notes, &arrays);
+    let mut vectors: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
+    vectors.sort_unstable();
+    let beside = Scoped::of(notes.iter().map(|note| (axes::scope(&note.0, &vectors), note)));
     let (mut records, mut missing) = (Vec::new(), Missing::default());
-    for ((name, array), unit) in arrays.into_iter().zip(units) {
+    for (name, array) in arrays {
+        let unit = units.get(axes::container(&name)).copied();
         for (name, mut values) in split(name, array, &axes, options, &mut findings) {
             for i in missing::mark(&mut values) {
                 missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
@@ -132,13 +134,11 @@ pub(super) fn recording(
     let record = |(name, mut values, unit): (String, Values, Option<&str>)| {
         let mut meta = Meta::new(name, Unit::opaque(""));
         let axis = axes.of(&values, &mut meta, &mut findings)?;
-        let beside = notes.iter().filter(|(scope, _)| meta.name.starts_with(scope));
-        meta.notes = beside.map(|(_, note)| (*note).clone()).take(MOST_NOTES).collect();
+        let notes = beside.over(&meta.name).map(|(_, note)| (*note).clone());
+        meta.notes = notes.take(MOST_NOTES).collect();
         meta.step("read", &[("file", &source.name()), ("format", &"mat")]);
-        let factor = match (&options.unit, unit) {
-            (None, None) => 1.0,
-            _ => options.adopt(&mut meta, unit),
-        };
+        let stated = options.unit.is_some() || unit.is_some();
+        let factor = if stated { options.adopt(&mut meta, unit) } else { 1.0 };
         to_si(&mut values, factor)?;
         assemble::record(meta, axis, values, Spectral::default())
     };

@@ -8,6 +8,7 @@ use crate::assemble::{from_values, short};
 use crate::reader::{Options, POSSIBLE};
 use crate::{number, text};
 use std::cmp::Reverse;
+use std::collections::HashMap;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
 
@@ -60,7 +61,7 @@ const CONTENTS: [&str; 3] = ["data", "values", "value"];
 const SHAFT: f64 = 1000.0;
 
 /// The struct in which a variable stands, with its last dot; empty for variables of their own.
-fn container(name: &str) -> &str {
+pub fn container(name: &str) -> &str {
     name.rfind('.').map_or("", |dot| &name[..=dot])
 }
 
@@ -76,13 +77,35 @@ fn key(name: &str) -> &str {
     }
 }
 
-/// The struct of whose vectors a variable speaks.
-pub fn scope<'n>(name: &'n str, vectors: &[String]) -> &'n str {
-    let mut scope = container(name);
-    while !scope.is_empty() && !vectors.iter().any(|vector| vector.starts_with(scope)) {
-        scope = container(&scope[..scope.len() - 1]);
+/// The structs in which a variable stands, the innermost first; at last the file, whose name is empty.
+fn structs(name: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(Some(container(name)), |inner| inner.strip_suffix('.').map(container))
+}
+
+/// The struct of whose vectors a variable speaks. `vectors` are sorted.
+pub fn scope<'n>(name: &'n str, vectors: &[&str]) -> &'n str {
+    let has = |inside: &&str| {
+        let behind = vectors.partition_point(|vector| vector < inside);
+        vectors.get(behind).is_some_and(|vector| vector.starts_with(inside))
+    };
+    structs(name).find(has).unwrap_or_default()
+}
+
+/// What speaks of vectors, by their struct.
+pub struct Scoped<T>(HashMap<String, Vec<T>>);
+
+impl<T> Scoped<T> {
+    pub fn of<'n>(things: impl Iterator<Item = (&'n str, T)>) -> Scoped<T> {
+        let mut all: HashMap<String, Vec<T>> = HashMap::new();
+        things.for_each(|(scope, thing)| all.entry(scope.to_owned()).or_default().push(thing));
+        Scoped(all)
     }
-    scope
+
+    /// What speaks of a vector, the nearest first, with its struct.
+    pub fn over<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a T)> {
+        let all = structs(name).filter_map(|scope| Some((scope, self.0.get(scope)?)));
+        all.flat_map(|(scope, all)| all.iter().map(move |thing| (scope, thing)))
+    }
 }
 
 /// The kind of abscissa that a vector of this name holds, and its factor to s or Hz.
@@ -99,10 +122,9 @@ fn rises(values: &Values) -> Option<&[f64]> {
     }
 }
 
-/// A scalar that says something of the abscissa of the vectors in `scope`.
+/// A scalar that says something of the abscissa of vectors.
 struct Scalar {
     name: String,
-    scope: String,
     meaning: Meaning,
     trust: Trust,
     /// Of a step that may be one of frequency: what its unit says.
@@ -112,7 +134,7 @@ struct Scalar {
 }
 
 impl Scalar {
-    fn of(name: &str, said: &str, notes: &[(String, String)], vectors: &[String]) -> Option<Scalar> {
+    fn of(name: &str, said: &str, notes: &[(String, String)]) -> Option<Scalar> {
         let word = key(name).replace('_', "").to_lowercase();
         let named = NAMES.iter().find(|(names, ..)| names.contains(&word.as_str()));
         let part = || PARTS.iter().find(|(parts, _)| parts.iter().any(|part| word.contains(part)));
@@ -124,7 +146,6 @@ impl Scalar {
         })?;
         let mut scalar = Scalar {
             name: name.to_owned(),
-            scope: scope(name, vectors).to_owned(),
             meaning,
             trust,
             kind: Some(AxisKind::Time),
@@ -149,53 +170,46 @@ impl Scalar {
         }
         (meaning == Start || POSSIBLE.contains(&(1.0 / scalar.value))).then_some(scalar)
     }
-
-    /// Whether the other one says the same step.
-    fn agrees(&self, other: &Scalar) -> bool {
-        (self.value / other.value - 1.0).abs() <= 1e-6
-    }
-}
-
-/// A vector that is an abscissa of those in `scope`.
-struct Vector {
-    name: String,
-    scope: String,
-    axis: Axis,
 }
 
 /// What the file and the person say of abscissae.
 pub struct Axes<'a> {
     options: &'a Options,
-    /// Times before frequencies.
-    vectors: Vec<Vector>,
-    scalars: Vec<Scalar>,
+    /// With their names, times before frequencies.
+    vectors: Scoped<(String, Axis)>,
+    scalars: Scoped<Scalar>,
     /// Vectors that rise evenly and are not known as abscissae: name, length and step.
     even: Vec<(String, usize, f64)>,
 }
 
 impl<'a> Axes<'a> {
     /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length. `notes` are the scalars and texts.
-    pub fn find(
+    pub fn find<'n>(
         arrays: &mut Vec<(String, Array)>,
-        notes: &[(String, String)],
+        notes: &'n [(String, String)],
         options: &'a Options,
         findings: &mut Vec<Finding>,
     ) -> Axes<'a> {
-        let kinds: Vec<_> = arrays.iter().map(|(name, _)| kind(name, unit(name, notes, arrays))).collect();
+        let stated = units(notes, arrays);
+        let unit = |name: &str| stated.get(container(name)).copied();
+        let kinds: Vec<_> = arrays.iter().map(|(name, _)| kind(name, unit(name))).collect();
         let values = arrays.iter().zip(&kinds);
         let values = values.filter(|((_, array), kind)| kind.is_none() || rises(&array.values).is_none());
-        let values: Vec<String> = values.map(|((name, _), _)| name.clone()).collect();
-        let scalars = notes.iter().filter_map(|(name, said)| Scalar::of(name, said, notes, &values));
-        let mut axes = Axes { options, vectors: Vec::new(), scalars: scalars.collect(), even: Vec::new() };
+        let mut values: Vec<&str> = values.map(|((name, _), _)| name.as_str()).collect();
+        values.sort_unstable();
+        let scalar =
+            |(name, said): &'n (String, String)| Some((scope(name, &values), Scalar::of(name, said, notes)?));
+        let scalars = Scoped::of(notes.iter().filter_map(scalar));
+        let mut axes = Axes { options, vectors: Scoped(HashMap::new()), scalars, even: Vec::new() };
         let mut taken = vec![false; arrays.len()];
         let kinds = kinds.into_iter().enumerate().filter_map(|(at, kind)| Some((at, kind?)));
         let (mut kinds, lines): (Vec<_>, Vec<_>) = kinds.partition(|(_, (kind, _))| *kind == AxisKind::Time);
         kinds.extend(lines);
         for (at, (kind, factor)) in kinds {
             let (name, Array { dimensions, values: vector, single }) = &arrays[at];
-            let (n, scope) = (vector.len() as u64, scope(name, &values).to_owned());
+            let (n, scope) = (vector.len() as u64, scope(name, &values));
             let others = arrays.iter().enumerate().filter(|(i, _)| *i != at && !taken[*i]);
-            let mut others = others.filter(|(_, (of, _))| of.starts_with(&scope));
+            let mut others = others.filter(|(_, (of, _))| of.starts_with(scope));
             let fits = dimensions.contains(&n) && others.any(|(_, (_, other))| other.dimensions.contains(&n));
             let Some(vector) = rises(vector).filter(|_| fits) else {
                 let rises = rises(vector).is_some();
@@ -203,17 +217,17 @@ impl<'a> Axes<'a> {
                 findings.push(Finding::caution(code).name("variable", name.as_str()));
                 continue;
             };
-            if key(name) == "X" && unit(name, notes, arrays).is_none() {
+            if key(name) == "X" && unit(name).is_none() {
                 findings.push(Finding::caution("axis-by-name").name("variable", name.as_str()));
             }
             let vector: Vec<f64> = vector.iter().map(|v| v * factor).collect();
             let drift = drift(&vector, *single);
             let (axis, finding) = from_values(kind, vector, drift, &format!("vector {name:?}"));
             findings.extend(finding);
-            let said = axes.chosen(name, false);
-            let said = said.iter().find(|s| s.kind == Some(AxisKind::Time) && s.scope == scope);
-            if let Some(rate) =
-                options.rate.or(said.map(|s| 1.0 / s.value)).filter(|_| axis.kind == AxisKind::Time)
+            let said = axes.chosen(name, false).into_iter();
+            let mut said = said.filter(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
+            let said = options.rate.or_else(|| Some(1.0 / said.next()?.1.value));
+            if let Some(rate) = said.filter(|_| axis.kind == AxisKind::Time)
                 && axis.step().is_none_or(|dt| (dt * rate - 1.0).abs() > 1e-6)
             {
                 let used = if options.rate.is_some() { "rate" } else { "vector" };
@@ -221,7 +235,7 @@ impl<'a> Axes<'a> {
                 findings.push(found.name("used", used).number("rate", rate));
             }
             taken[at] = true;
-            axes.vectors.push(Vector { name: name.clone(), scope, axis });
+            axes.vectors.0.entry(scope.to_owned()).or_default().push((name.clone(), axis));
         }
         let mut taken = taken.into_iter();
         arrays.retain(|_| !taken.next().unwrap_or(false));
@@ -240,32 +254,29 @@ impl<'a> Axes<'a> {
     }
 
     /// The scalars that say the step of a vector, the most certain first; none where that is not certain enough.
-    fn chosen(&self, name: &str, complex: bool) -> Vec<&Scalar> {
-        let says = |s: &&Scalar| {
-            let over_time = s.kind == Some(AxisKind::Time);
-            s.meaning != Start && s.trust != Offered && name.starts_with(&s.scope) && !(complex && over_time)
+    fn chosen<'s>(&'s self, name: &'s str, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
+        let says = |s: &Scalar| {
+            s.meaning != Start && s.trust != Offered && !(complex && s.kind == Some(AxisKind::Time))
         };
-        let mut all: Vec<&Scalar> = self.scalars.iter().filter(says).collect();
-        all.sort_by_key(|s| (s.trust == Vague, Reverse(s.scope.len()), s.trust));
-        if all.first().is_some_and(|s| s.trust == Vague && s.value * SHAFT > 1.0) { Vec::new() } else { all }
+        let mut all: Vec<_> = self.scalars.over(name).filter(|(_, s)| says(s)).collect();
+        all.sort_by_key(|(scope, s)| (s.trust == Vague, Reverse(scope.len()), s.trust));
+        let doubtful = all.first().is_some_and(|(_, s)| s.trust == Vague && s.value * SHAFT > 1.0);
+        if doubtful { Vec::new() } else { all }
     }
 
     /// The axis of a record.
     pub fn of(&self, values: &Values, meta: &mut Meta, findings: &mut Vec<Finding>) -> Result<Axis> {
         let (n, complex, name) = (values.len(), matches!(values, Values::Complex(_)), meta.name.clone());
-        let over = |vector: &&Vector| {
-            let fits = vector.axis.len() == n && name.starts_with(&vector.scope);
-            fits && !(complex && vector.axis.kind == AxisKind::Time)
-        };
-        let mut fitting: Vec<&Vector> = self.vectors.iter().filter(over).collect();
-        fitting.sort_by_key(|vector| Reverse(vector.scope.len()));
+        let fits = |axis: &Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
+        let mut fitting = self.vectors.over(&name).filter(|(_, (_, axis))| fits(axis));
         let said = self.chosen(&name, complex);
         // What stands nearer is meant.
-        let nearer = |vector: &&&Vector| said.first().is_none_or(|s| s.scope.len() <= vector.scope.len());
-        let vector = fitting.first().filter(nearer).map(|vector| &vector.axis);
+        let nearest = said.first().map_or(0, |(scope, _)| scope.len());
+        let first = fitting.next().filter(|(scope, _)| scope.len() >= nearest);
+        let vector = first.map(|(_, (_, axis))| axis);
         match (self.options.rate, self.options.base_band) {
             (Some(rate), _) if !complex => {
-                let step = said.first().map_or(1.0 / rate, |scalar| scalar.value);
+                let step = said.first().map_or(1.0 / rate, |(_, scalar)| scalar.value);
                 if vector.is_none() && (step * rate - 1.0).abs() > 1e-5 {
                     let found = Finding::caution("rate-overrides-step").number("step", step);
                     meta.found(found.number("rate", rate));
@@ -278,19 +289,19 @@ impl<'a> Axes<'a> {
             }
             _ => {}
         }
-        if let Some(axis) = vector {
-            let (first, rest) = (fitting[0], &fitting[1..]);
-            if let Some(other) = rest.iter().find(|other| other.scope == first.scope && other.axis != *axis) {
-                let found = Finding::caution("time-or-frequency").name("variable", name);
-                findings.push(found.name("used", first.name.as_str()).name("other", other.name.as_str()));
+        if let Some((scope, (used, axis))) = first {
+            if let Some((_, (other, _))) = fitting.find(|(of, (_, other))| *of == scope && other != axis) {
+                let found = Finding::caution("time-or-frequency").name("variable", name.as_str());
+                findings.push(found.name("used", used).name("other", other));
             }
             return Ok(axis.clone());
         }
-        let Some(scalar) = said.first() else {
+        let Some((scope, scalar)) = said.first() else {
             meta.found(self.unsaid(&name, n));
             return Ok(Axis::index(n));
         };
-        let rival = said.iter().find(|other| other.scope == scalar.scope && !other.agrees(scalar));
+        let differs = |other: &&Scalar| (other.value / scalar.value - 1.0).abs() > 1e-6;
+        let rival = said.iter().filter(|(of, _)| of == scope).map(|(_, other)| *other).find(differs);
         if let Some(other) = rival.filter(|other| other.trust == scalar.trust) {
             let hertz = |of: &Scalar| format!("{} Hz", short(1.0 / of.value));
             let (a, b) = (hertz(scalar), hertz(other));
@@ -300,14 +311,13 @@ impl<'a> Axes<'a> {
         }
         let over_frequency = scalar.kind.as_ref().map_or(complex, |kind| *kind == AxisKind::Frequency);
         if scalar.trust != Sure {
-            let (fact, value) =
-                if over_frequency { ("step", scalar.value) } else { ("rate", 1.0 / scalar.value) };
-            let found = Finding::caution("step-by-name").name("variable", scalar.name.as_str());
-            let found = found.number(fact, value);
+            let step = scalar.value;
+            let (fact, value) = if over_frequency { ("step", step) } else { ("rate", 1.0 / step) };
+            let found = Finding::caution("step-by-name").name("variable", &scalar.name).number(fact, value);
             meta.found(if let Some(other) = rival { found.name("other", &other.name) } else { found });
         }
         let beside = |s: &&Scalar| s.meaning == Start && container(&s.name) == container(&scalar.name);
-        let start = self.scalars.iter().find(beside).map_or(0.0, |s| s.value);
+        let start = self.scalars.over(&name).map(|(_, s)| s).find(beside).map_or(0.0, |s| s.value);
         let axis = if over_frequency { Axis::frequency } else { Axis::time };
         Ok(axis(start, scalar.value, n))
     }
@@ -315,8 +325,8 @@ impl<'a> Axes<'a> {
     /// What to say of `n` values without an abscissa: which variables may hold it.
     fn unsaid(&self, name: &str, n: usize) -> Finding {
         let mut found = Finding::caution("abscissa-unsaid");
-        let offered = self.scalars.iter().filter(|s| s.trust >= Vague && name.starts_with(&s.scope));
-        if let Some(scalar) = offered.max_by_key(|s| s.name.contains("ampl")) {
+        let offered = self.scalars.over(name).map(|(_, s)| s).filter(|s| s.trust >= Vague);
+        if let Some(scalar) = offered.min_by_key(|s| !s.name.contains("ampl")) {
             found = found.name("variable", scalar.name.as_str()).number("rate", 1.0 / scalar.value);
         }
         if let Some((vector, _, step)) = self.even.iter().find(|(of, len, _)| *len == n && of != name) {
@@ -327,7 +337,7 @@ impl<'a> Axes<'a> {
 
     /// Whether an abscissa of `n` values is known for an array.
     pub fn has(&self, name: &str, n: u64) -> bool {
-        self.vectors.iter().any(|vector| vector.axis.len() as u64 == n && name.starts_with(&vector.scope))
+        self.vectors.over(name).any(|(_, (_, axis))| axis.len() as u64 == n)
     }
 }
 
@@ -335,14 +345,17 @@ fn is_unit(key: &str) -> bool {
     matches!(key, "Unit" | "unit" | "Units" | "units")
 }
 
-/// The unit that a struct states of its only vector.
-pub fn unit<'n>(name: &str, notes: &'n [(String, String)], arrays: &[(String, Array)]) -> Option<&'n str> {
-    let inside = container(name);
-    let stated = |(of, text): &&(String, String)| {
-        of.strip_prefix(inside).is_some_and(is_unit) && Unit::parse(text).is_some()
-    };
-    let alone = !inside.is_empty() && arrays.iter().filter(|(of, _)| container(of) == inside).count() == 1;
-    notes.iter().filter(|_| alone).find(stated).map(|(_, text)| text.as_str())
+/// The units that structs state of their only vector.
+pub fn units<'n>(notes: &'n [(String, String)], arrays: &[(String, Array)]) -> HashMap<&'n str, &'n str> {
+    let mut vectors: HashMap<&str, usize> = HashMap::new();
+    for (name, _) in arrays {
+        *vectors.entry(container(name)).or_default() += 1;
+    }
+    let stated = notes.iter().map(|(name, text)| (name.split_at(container(name).len()), text.as_str()));
+    let stated = stated.filter(|((inside, word), text)| {
+        !inside.is_empty() && vectors.get(inside) == Some(&1) && is_unit(word) && Unit::parse(text).is_some()
+    });
+    stated.map(|((inside, _), text)| (inside, text)).collect()
 }
 
 /// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.

@@ -317,6 +317,36 @@ fn structs_and_cells_are_walked_and_say_their_own_rates() {
 }
 
 #[test]
+fn the_nearest_of_several_sayings_holds() {
+    let column = |values: &[f64]| LITTLE.column("", values);
+    let (t, shifted) = ([0.0, 0.5, 1.0, 1.5], [1.0, 1.5, 2.0, 2.5]);
+    let inner = LITTLE.one("a", &[("fs", LITTLE.scalar("", 8.0)), ("time_signal", column(&SOME))]);
+    let file = [
+        LITTLE.column("t", &t),
+        LITTLE.column("x", &SOME),
+        inner,
+        LITTLE.one("b", &[("fs", LITTLE.scalar("", 16.0)), ("time_signal", column(&SOME))]),
+        LITTLE.one("c", &[("t", column(&t)), ("time", column(&shifted)), ("x", column(&SOME))]),
+    ];
+    let recording = of(&file).unwrap();
+    let expected = [("x", 2.0), ("a.time_signal", 8.0), ("b.time_signal", 16.0), ("c.x", 2.0)];
+    assert_eq!(rates(&recording), expected.map(|(name, rate)| (name, Some(rate))));
+    assert_eq!(recording.records[3].axis().start(), 0.0);
+    assert!(has_finding(
+        &recording.findings,
+        "time-or-frequency",
+        &["variable=c.x", "used=c.t", "other=c.time"]
+    ));
+    let stated = Reader::new().rate(Some(4.0)).from_reader("x.mat", LITTLE.file(&file).as_slice()).unwrap();
+    assert_eq!(stated.records[1].axis(), &Axis::time(0.0, 0.25, 4));
+    assert!(has_finding(
+        &stated.records[1].meta().findings,
+        "rate-overrides-step",
+        &["step=0.125", "rate=4"]
+    ));
+}
+
+#[test]
 fn a_sampling_rate_and_the_rate_of_a_shaft() {
     let bearing = |sr: &[(&str, Vec<u8>)], rate: f64| {
         let gs = [
@@ -442,6 +472,36 @@ fn x_and_y_of_a_control_system() {
 }
 
 #[test]
+fn a_unit_in_a_struct_is_that_of_its_only_vector() {
+    let unit = || ("unit", LITTLE.text("", "mm"));
+    let x = || LITTLE.column("", &SOME);
+    let recording = of(&[
+        LITTLE.one("a", &[unit(), ("t", LITTLE.column("", &[0.0, 0.5, 1.0, 1.5])), ("x", x())]),
+        LITTLE.one("b", &[unit(), ("x", x()), ("y", x())]),
+        LITTLE.text("unit", "mm"),
+        LITTLE.column("c", &SOME),
+    ]);
+    let recording = recording.unwrap();
+    assert_eq!(values(&recording.records[0]), SOME.map(|v| v * 1e-3));
+    assert!(recording.records[1..].iter().all(|record| values(record) == SOME));
+    assert!(has_finding(&recording.findings, "format-without-units", &[]));
+    let stated = Reader::new()
+        .unit(Unit::parse("m"))
+        .from_reader("x.mat", LITTLE.file(&[LITTLE.one("a", &[unit(), ("x", x())])]).as_slice());
+    let stated = stated.unwrap();
+    assert_eq!(values(&stated.records[0]), SOME);
+    assert!(has_finding(&stated.records[0].meta().findings, "unit-overrides-file", &["file=mm", "used=m"]));
+}
+
+#[test]
+fn notes_do_not_fill_the_memory() {
+    let texts: Vec<Vec<u8>> = (0..1000).map(|i| LITTLE.text("", &i.to_string())).collect();
+    let recording = of(&[LITTLE.cells("c", &texts), LITTLE.column("x", &SOME)]).unwrap();
+    let notes = &recording.records[0].meta().notes;
+    assert_eq!((notes.len(), &notes[199]), (200, &("c{200}".to_owned(), "199".to_owned())));
+}
+
+#[test]
 fn what_may_be_a_rate_is_offered() {
     let recording = of(&[
         LITTLE.scalar("carrier_freq", 40.0),
@@ -506,7 +566,7 @@ fn memory_follows_what_is_there() {
     // A hundred megabytes behind a variable that declares eight bytes.
     let mut bomb = vec![0; 100 << 20];
     bomb[..8].copy_from_slice(&[14, 0, 0, 0, 8, 0, 0, 0]);
-    assert!(complaint(&[packed(&bomb)]).contains("holds more than the 8 bytes"));
+    assert!(complaint(&[packed(&bomb)]).contains("late: 16 of 8 bytes"));
     let width = |n: u32| LITTLE.element(5, &LITTLE.word(n));
     let names = LITTLE.element(1, &[b'a'; 32]);
     let huge = |parts: &[Vec<u8>]| LITTLE.matrix(2, &[u32::MAX, u32::MAX >> 1], "s", parts);

@@ -146,17 +146,14 @@ fn unpacked(file: &Elements, packed: &[u8]) -> Result<Vec<u8>> {
     };
     let (mut zlib, mut tag, mut inflated) = (ZlibDecoder::new(packed), [0; 8], Vec::new());
     zlib.read_exact(&mut tag).map_err(damaged)?;
-    let declared = file.words(&tag[4..]).next().unwrap_or(0);
+    let declared = u64::from(file.words(&tag[4..]).next().unwrap_or(0));
     // Up to its end the stream is not compared with its checksum: eight bytes are more than any padding.
-    zlib.by_ref().take(u64::from(declared) + 8).read_to_end(&mut inflated).map_err(damaged)?;
+    zlib.by_ref().take(declared + 8).read_to_end(&mut inflated).map_err(damaged)?;
     let behind = packed.get(zlib.total_in() as usize..).unwrap_or_default();
-    let (there, more) = (inflated.len(), inflated.len() as u64 > u64::from(declared) + 7);
-    if more || there < declared as usize || behind.iter().any(|b| *b != 0) {
-        let found = if there < declared as usize {
-            format!("a packed variable that ends early: {there} of {declared} bytes are there")
-        } else {
-            format!("a packed variable that holds more than the {declared} bytes that it declares")
-        };
+    let there = inflated.len() as u64;
+    if !(declared..declared + 8).contains(&there) || behind.iter().any(|b| *b != 0) {
+        let found =
+            format!("a packed variable that ends early or late: {there} of {declared} bytes are there");
         return Err(file.fault(found, "as many bytes as it declares"));
     }
     inflated.truncate(declared as usize);
@@ -194,24 +191,21 @@ fn variable(
         1 | 2 if depth >= MOST_DEPTH || name.len() > MOST_NAME => {
             Content::Other("struct or cell array too deep in others")
         }
-        1 => {
-            for i in 1..=count {
-                member(elements, format!("{name}{{{i}}}"), depth, variables)?;
-            }
-            return Ok(());
-        }
-        2 => {
-            let (_, width) = elements.part("length of field names")?;
-            let width = elements.words(width).next().unwrap_or(0) as usize;
-            let (_, fields) = elements.part("field names")?;
-            if !(1..=MOST_NAME).contains(&width) {
-                return Err(elements.fault(format!("field names of {width} bytes"), "1 to 512 bytes"));
-            }
-            let fields: Vec<String> = fields.chunks(width).map(string).collect();
+        1 | 2 => {
+            let fields = if class == 1 { vec![String::new()] } else { fields(elements)? };
             for i in 1..=if fields.is_empty() { 0 } else { count } {
-                let index = if count == 1 { String::new() } else { format!("({i})") };
                 for field in &fields {
-                    member(elements, format!("{name}{index}.{field}"), depth, variables)?;
+                    let member = match (class, count) {
+                        (1, _) => format!("{name}{{{i}}}"),
+                        (_, 1) => format!("{name}.{field}"),
+                        _ => format!("{name}({i}).{field}"),
+                    };
+                    let (kind, content) = elements.part(&member)?;
+                    if kind != 14 {
+                        return Err(elements.fault(format!("{member:?} of kind {kind}"), "an array"));
+                    } else if !content.is_empty() {
+                        variable(&mut elements.within(content), Some((member, depth + 1)), variables)?;
+                    }
                 }
             }
             return Ok(());
@@ -240,18 +234,15 @@ fn variable(
     Ok(())
 }
 
-/// Adds the next element of a struct or a cell array.
-fn member(
-    elements: &mut Elements,
-    name: String,
-    depth: usize,
-    variables: &mut Vec<(String, Content)>,
-) -> Result<()> {
-    match elements.part(&name)? {
-        (14, []) => Ok(()),
-        (14, content) => variable(&mut elements.within(content), Some((name, depth + 1)), variables),
-        (kind, _) => Err(elements.fault(format!("{name:?} of kind {kind}"), "an array")),
+/// Names of the fields of a struct.
+fn fields(elements: &mut Elements) -> Result<Vec<String>> {
+    let (_, width) = elements.part("length of field names")?;
+    let width = elements.words(width).next().unwrap_or(0) as usize;
+    let (_, names) = elements.part("field names")?;
+    if !(1..=MOST_NAME).contains(&width) {
+        return Err(elements.fault(format!("field names of {width} bytes"), "1 to 512 bytes"));
     }
+    Ok(names.chunks(width).map(string).collect())
 }
 
 /// A name up to its first zero.
