@@ -137,7 +137,9 @@ fn group(
             Data::Table(fields) => {
                 let named = fields.into_iter().map(|(field, values)| (format!("{path}/{field}"), values));
                 let (numbers, others): (Vec<_>, Vec<_>) = named.partition(|(_, values)| values.is_some());
-                others.iter().for_each(|(name, _)| file.pass(name, "field that is no number"));
+                for (name, _) in others {
+                    file.pass(&name, "field that is no number");
+                }
                 let real = |(name, values): (_, Option<_>)| (name, Values::Real(values.unwrap_or_default()));
                 numbers.into_iter().map(real).collect()
             }
