@@ -24,7 +24,7 @@ use vibro_record::{Error, Finding, Result, Values};
 const MOST_UNPACKED: u64 = 1032;
 /// Groups within each other are read to this depth, and paths to this length.
 const MOST_DEPTH: usize = 32;
-const MOST_PATH: usize = 512;
+pub const MOST_PATH: usize = 512;
 /// Values that are read at a time.
 const BLOCK: usize = 1 << 13;
 

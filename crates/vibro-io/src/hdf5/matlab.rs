@@ -1,7 +1,7 @@
 //! The variables of a MAT-file of version 7.3: `MATLAB_class` names what a dataset or a group holds, dimensions are reversed, cells and fields of
 //! arrays of structs are references into the group `#refs#`.
 
-use super::file::{Data, File, Member};
+use super::file::{Data, File, MOST_PATH, Member};
 use crate::mat::variable::{Array, Content};
 use hdf5_reader::dataset::Dataset;
 use hdf5_reader::{Attribute, Datatype};
@@ -104,6 +104,10 @@ impl Walk<'_> {
 
     /// What the references of a dataset lead to.
     fn references(&mut self, dataset: &Dataset, name: &str, named: &dyn Fn(usize) -> String) -> Result<()> {
+        if name.len() > MOST_PATH {
+            self.file.pass(name, "cell array too deep in others");
+            return Ok(());
+        }
         let Some(Data::References(addresses)) = self.file.data(name, dataset) else {
             return Ok(());
         };
