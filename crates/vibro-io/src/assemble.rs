@@ -158,6 +158,14 @@ impl Abscissa {
         Abscissa { kind, even, stored: Vec::new(), resolution: 0.0 }
     }
 
+    /// That of an axis that is known.
+    pub fn of(axis: Axis) -> Abscissa {
+        match axis {
+            Axis { kind, grid: Grid::Even { start, step, .. } } => Abscissa::even(kind, Some((start, step))),
+            Axis { kind, grid: Grid::Uneven(stored) } => Abscissa { stored, ..Abscissa::even(kind, None) },
+        }
+    }
+
     /// The axis of `n` values. A stated rate wins, then a step, then what is stored. A step that is no step leaves numbered values, and so
     /// does a file that says nothing.
     pub fn axis(self, n: usize, options: &Options, meta: &mut Meta) -> Axis {

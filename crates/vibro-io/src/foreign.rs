@@ -50,6 +50,7 @@ const TABLE: &[Foreign] = &[
     by_bytes("a Keysight waveform", 0, b"AG01", TEXT),
     by_bytes("a Parquet table", 0, b"PAR1", TEXT),
     by_bytes("a NumPy array", 0, b"\x93NUMPY", "write it as CSV or MAT, with its rate"),
+    #[cfg(not(feature = "hdf5"))]
     by_bytes("an HDF5 file", 0, b"\x89HDF\r\n\x1a\n", "write its arrays as MAT (v7), CSV or WAV"),
     by_bytes("an Excel sheet", 0, b"PK\x03\x04", SHEET),
     by_bytes("an Excel sheet, or another Office file", 0, b"\xd0\xcf\x11\xe0", SHEET),
@@ -83,6 +84,7 @@ mod tests {
             ("x.trc", b"#9000000346WAVEDESC\0\0\0", ["LeCroy", "CSV"]),
             ("x.mf4", b"MDF     4.10\0\0", ["MDF 4", "asammdf"]),
             ("x.xlsx", b"PK\x03\x04\x14\0", ["Excel", "Save As"]),
+            #[cfg(not(feature = "hdf5"))]
             ("x.h5", b"\x89HDF\r\n\x1a\n\0", ["HDF5", "MAT"]),
             ("x.dat", b"|CF,2,1,1;|CK,1,3,1,1;", ["FAMOS", "ASCII"]),
         ] {

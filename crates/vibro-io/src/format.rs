@@ -1,5 +1,7 @@
 //! The ordered table of formats.
 
+#[cfg(feature = "hdf5")]
+use super::hdf5;
 use super::reader::{Options, Recording};
 use super::{Header, Source, lvm, mat, tdms, text, uff, wav};
 use vibro_record::{Finding, Result};
@@ -11,6 +13,8 @@ pub enum Format {
     Uff,
     /// RIFF or RF64 wave.
     Wav,
+    /// HDF5, among it MAT-files of version 7.3.
+    Hdf5,
     /// MATLAB level 5 MAT-file.
     Mat,
     /// NI's TDMS.
@@ -42,6 +46,8 @@ pub(super) struct Entry {
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.
 pub(super) const TABLE: &[Entry] = &[
     Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: Some(wav::survey) },
+    #[cfg(feature = "hdf5")]
+    Entry { format: Format::Hdf5, name: "hdf5", sniff: hdf5::sniff, read: hdf5::read, survey: None },
     Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: None },
     Entry { format: Format::Tdms, name: "tdms", sniff: tdms::sniff, read: tdms::read, survey: None },
     Entry { format: Format::Lvm, name: "lvm", sniff: lvm::sniff, read: lvm::read, survey: None },

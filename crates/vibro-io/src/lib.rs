@@ -29,6 +29,7 @@
 //! | format | module | what it is |
 //! |---|---|---|
 //! | `wav` | `wav` | RIFF and RF64 wave |
+//! | `hdf5` | `hdf5` | HDF5 of any program, MATLAB 7.3 (feature `hdf5`) |
 //! | `mat` | `mat` | MATLAB level 5 |
 //! | `tdms` | `tdms` | LabVIEW's and NI-DAQmx' TDMS |
 //! | `lvm` | `lvm` | LabVIEW measurement |
@@ -42,6 +43,8 @@ mod assemble;
 mod choose;
 mod foreign;
 mod format;
+#[cfg(feature = "hdf5")]
+mod hdf5;
 mod lvm;
 mod mat;
 mod missing;

@@ -11,7 +11,7 @@
 //! `Tstart` ([`axes`]). The file knows no units, but a struct may state that of its vector (`Unit`).
 
 mod axes;
-mod variable;
+pub(crate) mod variable;
 
 use super::Source;
 use super::format::Format;
@@ -59,6 +59,10 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+    #[cfg(feature = "hdf5")]
+    if super::hdf5::sniff(source.head(), source) {
+        return super::hdf5::read(source, options);
+    }
     let big_endian =
         big_endian(source.head(), source).unwrap_or(Err("no MAT-file header")).map_err(|found| {
             Error::usage(found, "a level 5 MAT-file")
@@ -69,7 +73,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 }
 
 /// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are those of the file.
-fn recording(
+pub(super) fn recording(
     source: &Source,
     variables: Vec<(String, Content)>,
     mut findings: Vec<Finding>,
@@ -181,7 +185,7 @@ fn split(
     (0..count).map(|k| (format!("{name}{}", index(k + 1)), part(k))).collect()
 }
 
-fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
+pub(super) fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
     all.iter().skip(from).step_by(step).take(n).copied().collect()
 }
 

@@ -24,7 +24,7 @@ use scale::Scales;
 use segment::{Object, Segments, Value};
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use vibro_record::units::Unit;
-use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Place, Record, Result, Values};
+use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
 
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 20;
@@ -177,10 +177,7 @@ fn abscissa(object: &Object, own: Option<&Axis>) -> Abscissa {
     let start = object.number("wf_start_offset").unwrap_or(0.0);
     let step = object.number("wf_increment").map(|step| (start, step));
     match own.filter(|_| step.is_none()) {
-        Some(Axis { kind, grid: Grid::Even { start, step, .. } }) => {
-            Abscissa::even(kind.clone(), Some((*start, *step)))
-        }
-        Some(axis) => Abscissa { stored: axis.values(), ..Abscissa::even(axis.kind.clone(), None) },
+        Some(axis) => Abscissa::of(axis.clone()),
         None => Abscissa::even(if hertz { AxisKind::Frequency } else { AxisKind::Time }, step),
     }
 }

@@ -72,13 +72,10 @@ fn mat_what_is_passed_over_is_named() {
     assert_eq!(recording.records.len(), 1);
     assert_eq!(recording.records[0].axis().kind, AxisKind::Index);
     // What stands in the struct and in the cell array.
-    let notes = [("s.a", "1"), ("c{1}", "a"), ("c{2}", "1")].map(|(of, said)| (of.to_owned(), said.to_owned()));
+    let notes =
+        [("s.a", "1"), ("c{1}", "a"), ("c{2}", "1")].map(|(of, said)| (of.to_owned(), said.to_owned()));
     assert_eq!(recording.records[0].meta().notes, notes);
-    for word in [
-        "\"flag\" is a logical",
-        "\"cube\" has 3",
-        "\"none\" is empty",
-    ] {
+    for word in ["\"flag\" is a logical", "\"cube\" has 3", "\"none\" is empty"] {
         assert!(says(&recording, word), "{word}: {:?}", sentences(&recording.all_findings()));
     }
 }

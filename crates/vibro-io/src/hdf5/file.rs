@@ -1,0 +1,325 @@
+//! What the groups, datasets and attributes of a file hold.
+//!
+//! The crate gives integers and floats their size alone; one whose bits lie otherwise, as the message of its datatype says, is not read as a number.
+
+use super::lzf;
+use crate::Source;
+use hdf5_reader::attribute_api::Attribute;
+use hdf5_reader::dataset::{Dataset, SliceInfo, SliceInfoElem};
+use hdf5_reader::error::Error as Fault;
+use hdf5_reader::group::Group;
+use hdf5_reader::messages::HdfMessage;
+use hdf5_reader::messages::datatype::{ReferenceType, VarLenKind};
+use hdf5_reader::storage::FileStorage;
+use hdf5_reader::{
+    ByteOrder, CompoundField, Datatype, ExternalLinkResolver, FilterRegistry, Hdf5File, OpenOptions,
+};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::collections::{BTreeSet, HashSet};
+use std::sync::{Arc, Mutex};
+use vibro_record::{Error, Finding, Result, Values};
+
+/// No filter makes more of a byte: deflate gives 258 for two bits.
+const MOST_UNPACKED: u64 = 1032;
+/// Groups within each other are read to this depth, and paths to this length.
+const MOST_DEPTH: usize = 32;
+pub const MOST_PATH: usize = 512;
+/// Values that are read at a time.
+const BLOCK: usize = 1 << 13;
+
+/// Fields of complex numbers.
+const COMPLEX: &[(&str, &str)] = &[("r", "i"), ("real", "imag"), ("re", "im")];
+
+/// What a dataset or an attribute holds.
+#[derive(Debug)]
+pub enum Data {
+    Numbers(Values),
+    /// The fields of rows; `None` for one that is no number.
+    Table(Vec<(String, Option<Vec<f64>>)>),
+    Texts(Vec<String>),
+    /// Addresses of other objects.
+    References(Vec<u64>),
+    /// Of a class that is passed over.
+    Other(&'static str),
+}
+
+/// What stands in a group.
+pub enum Member {
+    Group(Group),
+    Dataset(Box<Dataset>),
+}
+
+impl Member {
+    pub fn address(&self) -> u64 {
+        match self {
+            Member::Group(group) => group.address(),
+            Member::Dataset(dataset) => dataset.address(),
+        }
+    }
+
+    pub fn attributes(&self) -> Vec<Attribute> {
+        match self {
+            Member::Group(group) => group.attributes().unwrap_or_default(),
+            Member::Dataset(dataset) => dataset.attributes(),
+        }
+    }
+}
+
+/// An open file, and what was passed over in it.
+pub struct File {
+    open: Hdf5File,
+    len: u64,
+    outside: Arc<Outside>,
+    /// Addresses of what was given out.
+    seen: HashSet<u64>,
+    pub findings: Vec<Finding>,
+}
+
+/// Files that links lead to. None of them is opened.
+#[derive(Default)]
+struct Outside(Mutex<BTreeSet<String>>);
+
+impl ExternalLinkResolver for Outside {
+    fn resolve_external_link(&self, file: &str) -> std::result::Result<Option<Hdf5File>, Fault> {
+        self.0.lock().map(|mut files| files.insert(file.to_owned())).ok();
+        Ok(None)
+    }
+}
+
+impl File {
+    pub fn open(source: &Source) -> Result<File> {
+        let most = usize::try_from(source.len().saturating_mul(MOST_UNPACKED)).unwrap_or(usize::MAX);
+        let outside = Arc::new(Outside::default());
+        let mut filters = FilterRegistry::new();
+        filters.register(lzf::ID, Box::new(|filter, packed, _| lzf::unpack(filter, packed)));
+        let options = OpenOptions::default()
+            .with_filter_registry(filters)
+            .with_external_link_resolver(outside.clone())
+            .with_chunk_cache_bytes(0)
+            .with_max_chunk_bytes(most);
+        let open = match source.in_memory() {
+            Some(bytes) => Hdf5File::from_bytes_with_options(bytes, options),
+            None => FileStorage::open(source.path())
+                .and_then(|file| Hdf5File::from_storage_with_options(Arc::new(file), options)),
+        };
+        let open = open.map_err(|fault| damaged(&fault))?;
+        Ok(File { open, len: source.len(), outside, seen: HashSet::new(), findings: Vec::new() })
+    }
+
+    pub fn root(&mut self) -> Result<Group> {
+        let root = self.open.root_group().map_err(|fault| damaged(&fault))?;
+        self.seen.insert(root.address());
+        Ok(root)
+    }
+
+    /// What stands in a group by its names, apart from what another name led to before.
+    pub fn members(&mut self, group: &Group, path: &str) -> Result<Vec<(String, Member)>> {
+        if path.len() > MOST_PATH || path.split(['/', '.']).count() > MOST_DEPTH {
+            self.pass(path, "group too deep in others");
+            return Ok(Vec::new());
+        }
+        let (groups, datasets) = group.member_names().map_err(|fault| damaged(&fault))?;
+        let groups = groups.into_iter().map(|name| (group.group(&name).map(Member::Group), name));
+        let dataset = |name: &str| group.dataset(name).map(|inner| Member::Dataset(Box::new(inner)));
+        let mut found: Vec<_> =
+            groups.chain(datasets.into_iter().map(|name| (dataset(&name), name))).collect();
+        found.sort_by(|a, b| a.1.cmp(&b.1));
+        let mut members = Vec::new();
+        for (member, name) in found {
+            match member {
+                Ok(member) if self.seen.insert(member.address()) => members.push((name, member)),
+                Ok(_) => self.pass(&name, "second link"),
+                Err(fault) => self.unreadable(&name, &fault),
+            }
+        }
+        Ok(members)
+    }
+
+    pub fn pass(&mut self, name: &str, class: &str) {
+        self.findings.push(Finding::note("variable-passed-over").name("variable", name).name("class", class));
+    }
+
+    fn unreadable(&mut self, name: &str, fault: &Fault) {
+        let found = Finding::caution("dataset-unreadable").name("variable", name);
+        self.findings.push(found.name("reason", fault.to_string()));
+    }
+
+    /// Findings of the file as a whole.
+    pub fn close(mut self) -> Vec<Finding> {
+        let outside = self.outside.0.lock().map(|files| files.clone()).unwrap_or_default();
+        let left = outside.into_iter().map(|file| Finding::caution("link-not-followed").name("file", file));
+        self.findings.extend(left);
+        self.findings
+    }
+
+    /// What a dataset holds; where it cannot be read, a finding says why.
+    pub fn data(&mut self, name: &str, dataset: &Dataset) -> Option<Data> {
+        match self.held(dataset) {
+            Ok(Data::Other(class)) => self.pass(name, class),
+            Ok(data) => return Some(data),
+            Err(fault) => self.unreadable(name, &fault),
+        }
+        None
+    }
+
+    fn held(&self, dataset: &Dataset) -> std::result::Result<Data, Fault> {
+        let header = self.open.get_or_parse_header(dataset.address())?;
+        let packed = header.messages.iter().any(|message| matches!(message, HdfMessage::FilterPipeline(_)));
+        let (declared, most) = (dataset.raw_byte_len()? as u64, if packed { MOST_UNPACKED } else { 1 });
+        if declared > self.len.saturating_mul(most) {
+            let found = format!("{declared} bytes are declared, the file has {}", self.len);
+            return Err(Fault::InvalidData(found));
+        }
+        match dataset.dtype() {
+            _ if dataset.num_elements()? == 0 => Ok(Data::Numbers(Values::Real(Vec::new()))),
+            Datatype::String { .. } | Datatype::VarLen { kind: VarLenKind::String, .. } => {
+                Ok(Data::Texts(dataset.read_strings()?))
+            }
+            kind => {
+                let layout = dataset.raw_datatype()?;
+                if matches!(kind, Datatype::FloatingPoint { size: 8, .. }) && described(&layout, &[kind])[0] {
+                    let values = match dataset.chunks() {
+                        None if dataset.ndim() > 0 => by_rows(dataset)?,
+                        _ => dataset.read_array_parallel()?.into_raw_vec_and_offset().0,
+                    };
+                    return Ok(Data::Numbers(Values::Real(values)));
+                }
+                decoded(kind, &layout, dataset.raw_element_size()?, || dataset.read_raw_bytes())
+            }
+        }
+    }
+}
+
+/// Refuses a file that the crate cannot open.
+fn damaged(fault: &Fault) -> Error {
+    Error::usage(fault.to_string(), "HDF5 that can be read").hint("write its arrays as MAT (v7), CSV or WAV")
+}
+
+/// The values of a dataset in one piece, rows after rows: what is read needs no room of its size beside them.
+fn by_rows(dataset: &Dataset) -> std::result::Result<Vec<f64>, Fault> {
+    let row = dataset.shape()[1..].iter().product::<u64>() as usize;
+    let rows = (BLOCK / row).max(1);
+    let mut values = vec![0.0; dataset.num_elements()? as usize];
+    values.par_chunks_mut(rows * row).enumerate().try_for_each(|(k, part)| {
+        let (start, mut slice) = ((k * rows) as u64, SliceInfo::all(dataset.ndim()));
+        slice.selections[0] = SliceInfoElem::Slice { start, end: start + (part.len() / row) as u64, step: 1 };
+        part.copy_from_slice(&dataset.read_slice(&slice)?.into_raw_vec_and_offset().0);
+        Ok::<(), Fault>(())
+    })?;
+    Ok(values)
+}
+
+/// What an attribute holds.
+pub fn attribute(attribute: &Attribute) -> Option<Data> {
+    if let Ok(texts) = attribute.read_strings() {
+        return Some(Data::Texts(texts));
+    }
+    let kind = &attribute.datatype;
+    let layout = description(kind).unwrap_or_default();
+    let size = hdf5_reader::dtype_element_size(kind).ok()?;
+    decoded(kind, &layout, size, || Ok(attribute.raw_data.clone())).ok()
+}
+
+/// Numbers of the bytes that `read` gives: elements of `size` bytes, whose datatype is described by `layout`.
+fn decoded(
+    kind: &Datatype,
+    layout: &[u8],
+    size: usize,
+    read: impl FnOnce() -> std::result::Result<Vec<u8>, Fault>,
+) -> std::result::Result<Data, Fault> {
+    Ok(match kind {
+        Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } if described(layout, &[kind])[0] => {
+            let values = read()?.chunks_exact(size.max(1)).map(|bytes| number(bytes, kind)).collect();
+            Data::Numbers(Values::Real(values))
+        }
+        Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } => {
+            Data::Other("number of an unusual layout")
+        }
+        Datatype::Compound { fields, .. } => {
+            let exact = described(layout, &fields.iter().map(|field| &field.datatype).collect::<Vec<_>>());
+            let bytes = read()?;
+            let column = |(field, exact): (&CompoundField, bool)| {
+                let (name, kind) = (field.name.clone(), &field.datatype);
+                let at = |row: &[u8]| row.get(field.byte_offset as usize..).map(|bytes| number(bytes, kind));
+                let column = || bytes.chunks_exact(size.max(1)).map(at).collect::<Option<Vec<f64>>>();
+                (name, exact.then(column).flatten())
+            };
+            let columns: Vec<_> = fields.iter().zip(exact).map(column).collect();
+            match &columns[..] {
+                [(r, Some(re)), (i, Some(im))] if COMPLEX.contains(&(r.as_str(), i.as_str())) => {
+                    let pairs = re.iter().zip(im).map(|(re, im)| Complex64::new(*re, *im));
+                    Data::Numbers(Values::Complex(pairs.collect()))
+                }
+                _ => Data::Table(columns),
+            }
+        }
+        Datatype::Reference { ref_type: ReferenceType::Object, .. } => {
+            let addresses = read()?.chunks_exact(size.max(1)).map(|bytes| word(bytes, false)).collect();
+            Data::References(addresses)
+        }
+        Datatype::Enum { .. } => Data::Other("enumeration"),
+        Datatype::VarLen { .. } => Data::Other("dataset of rows of different lengths"),
+        _ => Data::Other("dataset of neither numbers nor text"),
+    })
+}
+
+/// Up to eight bytes.
+fn word(bytes: &[u8], big_endian: bool) -> u64 {
+    let mut word = [0; 8];
+    let n = bytes.len().min(8);
+    word[..n].copy_from_slice(&bytes[..n]);
+    if big_endian {
+        word[..n].reverse();
+    }
+    u64::from_le_bytes(word)
+}
+
+/// The number at the start of `bytes`.
+fn number(bytes: &[u8], kind: &Datatype) -> f64 {
+    let word = |size: u8, order: &ByteOrder| {
+        word(bytes.get(..usize::from(size)).unwrap_or_default(), *order == ByteOrder::BigEndian)
+    };
+    match kind {
+        Datatype::FixedPoint { size, signed: false, byte_order } => word(*size, byte_order) as f64,
+        Datatype::FixedPoint { size, byte_order, .. } => {
+            let above = 64 - 8 * u32::from(*size);
+            ((word(*size, byte_order) << above) as i64 >> above) as f64
+        }
+        Datatype::FloatingPoint { size: 8, byte_order } => f64::from_bits(word(8, byte_order)),
+        Datatype::FloatingPoint { size: 4, byte_order } => {
+            f64::from(f32::from_bits(word(4, byte_order) as u32))
+        }
+        _ => f64::NAN,
+    }
+}
+
+/// How the message of a datatype describes an integer that fills its bytes, or a float of IEEE 754, behind the byte of its class.
+fn description(kind: &Datatype) -> Option<Vec<u8>> {
+    let (order, flags, sign, size, properties) = match kind {
+        Datatype::FixedPoint { size: size @ 1..=8, signed, byte_order } => {
+            (byte_order, u8::from(*signed) << 3, 0, *size, [].as_slice())
+        }
+        Datatype::FloatingPoint { size: 4, byte_order } => {
+            (byte_order, 0x20, 31, 4, &[23, 8, 0, 23, 127, 0, 0, 0][..])
+        }
+        Datatype::FloatingPoint { size: 8, byte_order } => {
+            (byte_order, 0x20, 63, 8, &[52, 11, 0, 52, 0xff, 3, 0, 0][..])
+        }
+        _ => return None,
+    };
+    let flags = flags | u8::from(*order == ByteOrder::BigEndian);
+    Some([&[flags, sign, 0, size, 0, 0, 0, 0, 0, size * 8, 0], properties].concat())
+}
+
+/// Whether the datatypes are described so, one after the other, in the message `layout`.
+fn described(layout: &[u8], kinds: &[&Datatype]) -> Vec<bool> {
+    let mut rest = layout;
+    let mut next = |kind: &&Datatype| {
+        let bytes = description(kind)?;
+        let at = rest.windows(bytes.len()).position(|window| window == bytes)?;
+        rest = &rest[at + bytes.len()..];
+        Some(())
+    };
+    kinds.iter().map(|kind| next(kind).is_some()).collect()
+}

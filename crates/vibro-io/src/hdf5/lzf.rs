@@ -1,0 +1,39 @@
+//! The filter LZF, which h5py writes for `compression="lzf"`.
+//!
+//! A byte below 32 is followed by one literal more than it says. Another begins a copy: its upper three bits are the length less two (seven: the
+//! next byte is added), its lower five bits and the next byte the distance less one.
+
+use hdf5_reader::error::Error as Fault;
+use hdf5_reader::messages::filter_pipeline::FilterDescription;
+
+/// The number under which the filter is registered.
+pub const ID: u16 = 32000;
+
+/// Unpacks a chunk; the third parameter of the filter is its size.
+pub fn unpack(filter: &FilterDescription, packed: &[u8]) -> Result<Vec<u8>, Fault> {
+    let size = filter.client_data.get(2).map_or(usize::MAX, |size| *size as usize);
+    inflated(packed, size).ok_or_else(|| Fault::InvalidData("damaged LZF".to_owned()))
+}
+
+/// At most `size` bytes.
+fn inflated(packed: &[u8], size: usize) -> Option<Vec<u8>> {
+    let (mut out, mut rest) = (Vec::new(), packed.iter().copied());
+    while let Some(control) = rest.next().map(usize::from) {
+        if control < 32 {
+            for _ in 0..=control {
+                out.push(rest.next()?);
+            }
+        } else {
+            let more = if control >> 5 == 7 { usize::from(rest.next()?) } else { 0 };
+            let distance = (control & 31) << 8 | usize::from(rest.next()?);
+            let from = out.len().checked_sub(distance + 1)?;
+            for i in from..from + (control >> 5) + more + 2 {
+                out.push(out[i]);
+            }
+        }
+        if out.len() > size {
+            return None;
+        }
+    }
+    Some(out)
+}
