@@ -6,6 +6,7 @@
 //! one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
 
 mod axis;
+mod clock;
 mod dialect;
 pub(crate) mod encoding;
 mod fast;

@@ -39,18 +39,24 @@ impl Stated {
     /// Reads header lines.
     pub fn of<'a>(lines: impl Iterator<Item = &'a str>) -> Stated {
         let mut stated = Stated::default();
+        let mut lines_apart = false;
         for line in lines {
             // `NPTS= 6000, DT= .01 SEC` are two statements.
             let several = line.split(',').all(|part| part.contains('='));
             for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
                 let (key, value) = split(line.trim());
                 stated.notes.push((key.to_owned(), value.to_owned()));
+                let key = key.to_lowercase();
+                lines_apart |= matches!(key.as_str(), "x-axis unit" | "x axis unit") && value == "Hz";
                 if key.is_empty() {
                     free_text(line, &mut stated);
                 } else {
-                    keyed(&key.to_lowercase(), value, &mut stated);
+                    keyed(&key, value, &mut stated);
                 }
             }
+        }
+        if lines_apart {
+            stated.line_width = stated.rate.take().map(|rate| 1.0 / rate).or(stated.line_width);
         }
         stated
     }
@@ -77,7 +83,8 @@ impl Stated {
 pub fn split(line: &str) -> (&str, &str) {
     let at = line.find([':', '=']).filter(|at| {
         let key = line[..*at].trim();
-        !key.is_empty() && !key.ends_with(|c: char| c.is_ascii_digit()) && key.len() <= 40
+        let time = line[*at..].starts_with(':') && key.ends_with(|c: char| c.is_ascii_digit());
+        !key.is_empty() && !time && key.len() <= 40
     });
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
@@ -99,9 +106,18 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
             stated.base_band = hertz();
         }
-        "sampling rate" | "sample rate" | "sampling frequency" | "sample frequency" | "samplerate" | "fs"
-        | "rate" => {
-            stated.rate = hertz();
+        "sampling rate"
+        | "sample rate"
+        | "sampling frequency"
+        | "sample frequency"
+        | "samplerate"
+        | "fs"
+        | "rate"
+        | "abtastrate"
+        | "abtastfrequenz"
+        | "messrate"
+        | "fréquence d'échantillonnage" => {
+            stated.rate = hertz().or(stated.rate);
         }
         "dt"
         | "delta t"
@@ -113,20 +129,30 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "increment"
         | "tinc"
         | "x increment"
-        | "horizontal interval" => {
-            stated.rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
+        | "xinc"
+        | "x axis delta"
+        | "hresolution"
+        | "clock"
+        | "interval"
+        | "time interval"
+        | "horizontal interval"
+        | "abtastintervall"
+        | "période d'échantillonnage" => {
+            stated.rate =
+                quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
         }
         "npts" | "number of points" | "number of samples" | "record length" => {
             stated.values = quantity(value, "", &[("", 1.0)]).and_then(line_count).map(|n| n as usize);
         }
-        "start" | "t0" | "x origin" => {
+        "start" | "t0" | "x origin" | "xorg" | "hoffset" => {
             let parsed = scaled(value, unit_in_key, &SECONDS);
             stated.start = parsed.filter(|start| *start == 0.0 || checked(start.abs()).is_some());
         }
         "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
             stated.line_width = hertz();
         }
-        "unit" | "units" | "y unit" | "yunit" | "amplitude unit" | "engineering unit" => {
+        "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "amplitude unit"
+        | "engineering unit" => {
             stated.unit = Some(value.trim_matches(['[', ']']).to_owned()).filter(|v| !v.is_empty());
         }
         "window" | "weighting" | "window type" => {
@@ -140,7 +166,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     }
 }
 
-/// Lines without a key: `20 Hz 400 lines`.
+/// Lines without a key: `20 Hz 400 lines`, `64 samples, 2000 sps`.
 fn free_text(line: &str, stated: &mut Stated) {
     let words: Vec<String> = line.split_whitespace().map(str::to_lowercase).collect();
     let before = |name: &str| {
@@ -151,6 +177,10 @@ fn free_text(line: &str, stated: &mut Stated) {
         words.windows(3).find(|w| matches!(w[0].as_str(), "units" | "unit") && w[1] == "of")
     {
         stated.unit = Some(unit.trim_end_matches(['.', ',', ';']).to_owned());
+    }
+    if let Some(rate) = before("sps").and_then(checked) {
+        stated.rate = Some(rate);
+        stated.values = before("samples").and_then(line_count).map(|n| n as usize);
     }
     let (band, lines) = (before("hz").and_then(checked), before("lines").and_then(line_count));
     if band.is_some() && lines.is_some() {

@@ -11,19 +11,24 @@
 //! record.
 
 use super::Text;
+use super::clock;
 use super::dialect::{Dialect, Separator};
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::{Name, is_unit_row, unit_word};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
+use vibro_record::AxisKind;
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
 
-/// Rows that have a preamble beside them, at most.
+/// Rows that are looked at, of which a preamble may stand beside the first.
 const BESIDE: usize = 40;
+
+/// Lines between rows and their names, at most, with the names.
+const DEEPEST: usize = 4;
 
 /// Finds the first row of numbers with names right above it; `None` where there is none.
 ///
@@ -41,16 +46,16 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
             let of =
                 |n: usize| rows.iter().filter(move |(_, count)| count.is_some_and(|c| (c > 1) == (n > 1)));
             for (separator, count) in of(2) {
-                match fit(&above, line, *separator, count.unwrap_or(0)) {
+                match fit(&above, line, *separator, count.unwrap_or(0), &text.head) {
                     Some((found, true)) => return Some(decided(found, text, options)),
                     found => misfit = misfit.or(found.map(|(found, _)| found)),
                 }
             }
             // One column last: `1,5` under `a,b` is no decimal comma.
+            let alone = |(separator, _): &(Separator, _)| fit(&above, line, *separator, 1, &text.head);
             if text.called_csv()
                 && misfit.is_none()
-                && let Some((separator, _)) = of(1).next()
-                && let Some((found, true)) = fit(&above, line, *separator, 1)
+                && let Some((found, true)) = of(1).find_map(alone)
             {
                 return Some(decided(found, text, options));
             }
@@ -68,7 +73,6 @@ fn beside_rows(text: &Text) -> Option<Dialect> {
     let rows: Vec<(u64, Fields)> =
         lines.map_while(|l| Some((l.number, fields(l.text, separator).ok()?))).collect();
     let number = |field: &(usize, Cow<str>)| number::parse(field.1.as_bytes()).is_some();
-    let blank = |field: &&(usize, Cow<str>)| field.1.is_empty();
     let (first_line, first) = rows.first()?;
     let last = &rows.last()?.1;
     let skipped = last.iter().take_while(blank).count();
@@ -82,18 +86,13 @@ fn beside_rows(text: &Text) -> Option<Dialect> {
     if skipped < 2 || columns == 0 || !keyed || !rows.iter().all(|(_, row)| whole(row)) {
         return None;
     }
-    let cells =
-        rows.iter().map(|(_, row)| row[..skipped].iter().map(|(_, f)| f.trim()).filter(|f| !f.is_empty()));
-    let said: Vec<Vec<&str>> =
-        cells.map(Iterator::collect).filter(|cells: &Vec<&str>| cells.len() > 1).collect();
-    let value = |key: &str| {
-        said.iter().find(|cells| cells[0].eq_ignore_ascii_case(key)).map(|cells| cells[1].to_owned())
-    };
-    let name = |name: Option<String>, unit| Name { name: name.unwrap_or_default(), unit: value(unit) };
-    let names = match columns {
-        2 => vec![name(Some("time".to_owned()), "horizontal units"), name(value("source"), "vertical units")],
-        _ => vec![Name::default(); columns],
-    };
+    let cells = rows.iter().map(|(_, row)| row[..skipped].iter().map(|(_, f)| f.trim().to_owned()));
+    let preamble = Preamble(cells.map(Iterator::collect).collect());
+    let mut names = vec![Name::default(); columns];
+    if columns == 2 {
+        "time".clone_into(&mut names[0].name);
+    }
+    preamble.name(&mut names);
     Some(Dialect {
         format: Format::Csv,
         separator,
@@ -101,25 +100,78 @@ fn beside_rows(text: &Text) -> Option<Dialect> {
         complex: false,
         columns,
         skipped,
+        clock: None,
         names: Some(names),
         remarks: &[],
-        header: said.iter().map(|cells| format!("{}: {}", cells[0], cells[1..].join(" "))).collect(),
+        header: preamble.0.iter().map(|cells| statement(cells)).filter(|said| !said.is_empty()).collect(),
         columns_from: *first_line,
         first_line: *first_line,
     })
 }
 
-/// Number of fields, where all are numbers or missing and at least one is a number.
+fn blank(field: &&(usize, Cow<str>)) -> bool {
+    field.1.is_empty()
+}
+
+/// Keys in the first cell of a line, each with its values in the cells behind: one for all columns, or one for each.
+struct Preamble(Vec<Vec<String>>);
+
+const SOURCE: &[&str] = &["source", "tracename", "trace name", "signal", "signal name", "channel name"];
+const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units"];
+const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
+
+/// The first cell as a key.
+fn key(cells: &[String]) -> String {
+    cells[0].trim_end_matches(':').trim().replace('_', " ").to_lowercase()
+}
+
+impl Preamble {
+    /// The values of the first of some keys.
+    fn values(&self, keys: &[&str]) -> Option<&[String]> {
+        let found = self.0.iter().find(|cells| cells.len() > 1 && keys.contains(&key(cells).as_str()))?;
+        let said = found.iter().rposition(|cell| !cell.is_empty())?;
+        found.get(1..=said).filter(|values| !values.is_empty())
+    }
+
+    /// Gives columns the names and units that they lack: one for each, or for each but the abscissa. Says whether there are any.
+    fn name(&self, names: &mut [Name]) -> bool {
+        let axis = names.first().and_then(|name| name.axis(true));
+        let n = names.len();
+        let of = |keys| self.values(keys).filter(|v| v.len() == n || (v.len() + 1 == n && axis.is_some()));
+        let (sources, units) = (of(SOURCE), of(UNIT));
+        for (name, source) in names.iter_mut().rev().zip(sources.unwrap_or_default().iter().rev()) {
+            if name.name.is_empty() {
+                name.name.clone_from(source);
+            }
+        }
+        let mut adopt = |at: usize, unit: &str| {
+            // Seconds are printed as `S`, too.
+            let second = at == 0 && unit == "S" && axis == Some(AxisKind::Time);
+            let said = Name::with_unit_row(&names[at].name, if second { "s" } else { unit });
+            names[at].unit = names[at].unit.take().or(said.unit).filter(|unit| !unit.is_empty());
+        };
+        for (i, unit) in units.unwrap_or_default().iter().rev().enumerate() {
+            adopt(n - 1 - i, unit);
+        }
+        if let Some([unit, ..]) = self.values(AXIS_UNIT).filter(|_| axis.is_some()) {
+            adopt(0, unit);
+        }
+        sources.or(units).is_some()
+    }
+}
+
+/// Number of fields, where all are numbers or missing or a clock and at least one is a number.
 fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let fields = fields(text, Separator::Char(mark)).ok()?;
+    let clock = clock::columns(&fields).unwrap_or(0..0);
     let point = options.decimal_comma != Some(true);
     let comma = options.decimal_comma != Some(false) && mark != b',';
     let mut numbers = 0;
-    for (_, field) in &fields {
+    for (i, (_, field)) in fields.iter().enumerate() {
         let field = field.as_bytes();
         let number =
             (point && number::parse(field).is_some()) || (comma && number::parse_with(field, b',').is_some());
-        if !number && !number::is_missing(field) {
+        if !number && !number::is_missing(field) && !clock.contains(&i) {
             return None;
         }
         numbers += usize::from(number);
@@ -127,57 +179,111 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     (numbers > 0).then_some(fields.len())
 }
 
-/// The dialect with the decimal mark: as stated, else the first comma or point in the rows, where commas do not separate.
+/// The dialect with the decimal mark: as stated, else the last comma or point of the first number that has one, where commas do not separate.
 fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
-    let mut rows = found.rows(&text.head).filter(|line| line.remark.is_none());
-    let mut first = || rows.find_map(|line| line.text.bytes().find(|b| matches!(b, b',' | b'.')));
-    let comma = options.decimal_comma.or_else(|| first().map(|mark| mark == b','));
+    let rows = found.rows(&text.head).filter(|line| line.remark.is_none());
+    let cells = rows.flat_map(|line| found.cut(&line).unwrap_or_default().into_iter().enumerate());
+    let mut marks = cells
+        .filter(|(i, _)| found.clock_at() != Some(*i))
+        .filter_map(|(_, (_, cell))| cell.bytes().rfind(|b| matches!(b, b',' | b'.')));
+    let comma = options.decimal_comma.or_else(|| marks.next().map(|mark| mark == b','));
     let comma = comma == Some(true) && found.separator != Separator::Char(b',');
+    drop(marks);
     Dialect { decimal: if comma { b',' } else { b'.' }, ..found }
 }
 
-/// The dialect with the names that stand in the last lines above `first`, and whether there are as many as columns.
-fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Option<(Dialect, bool)> {
-    let mut spoken = above.iter().filter(|l| l.remark.is_none()).rev();
-    let last = spoken.next()?;
-    let values = fields(first.text, separator).ok()?;
-    let mut names = headings(last, separator, &values)?;
-    let mut upper = spoken.next().and_then(|l| Some((l, headings(l, separator, &values)?)));
+/// The dialect with the names that stand in the lines above `first`, in a row of their own or behind keys, and whether there are as many as
+/// columns.
+fn fit(
+    above: &[Line],
+    first: Line,
+    separator: Separator,
+    count: usize,
+    head: &str,
+) -> Option<(Dialect, bool)> {
+    let spoken: Vec<&Line> = above.iter().filter(|l| l.remark.is_none()).rev().collect();
+    let last = *spoken.first()?;
+    let rows =
+        Lines::new(head, first.at, first.number, REMARKS).filter(|l| !l.is_blank() && l.remark.is_none());
+    let rows: Vec<Fields> = rows.take(BESIDE).map_while(|l| fields(l.text, separator).ok()).collect();
+    // Keys of a preamble may have a column of their own, which is empty below.
+    let skipped = usize::from(rows.len() > 1 && rows.iter().all(|row| row.len() > 1 && row[0].1.is_empty()));
+    let values = rows.first()?.get(skipped..)?;
     let width = values.iter().rposition(|(_, f)| !f.is_empty()).map_or(0, |last| last + 1);
-    let stated = beside(upper.as_mut().map(|(_, fields)| fields), &mut names, width);
+    let count = count - skipped;
+    let deepest = spoken.iter().take(DEEPEST);
+    let mut block: Vec<Fields> = deepest.map_while(|l| headings(l, separator, skipped, values)).collect();
+    let (lower, uppers) = block.split_first_mut()?;
+    let stated = beside(uppers.first_mut(), lower, width);
+    let clock = clock::columns(values).map(|cells| {
+        let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
+        cells.start..cells.end + usize::from(ms)
+    });
+    let fits = |columns: usize| count == columns || width == columns;
+    let is_units = |at: &usize| {
+        let (units, upper) = (&block[*at], &block[*at + 1]);
+        let outside = |i: &usize| !clock.as_ref().is_some_and(|cells| cells.contains(i));
+        let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
+        units.len() == upper.len() && named(upper) && (*at == 0 || fits(units.len())) && is_unit_row(cells)
+    };
+    let cells = |line: &Line| {
+        Some(fields(line.text, separator).ok()?.into_iter().map(|(_, f)| f.into_owned()).collect())
+    };
+    let preamble = Preamble(spoken.iter().filter_map(|line| cells(line)).collect());
+    let lower = &block[0];
+    let title = lower.iter().filter(|(_, f)| !f.is_empty()).count() == 1
+        && (width > 1 || (preamble.values(SOURCE).is_some() && unit_word(&lower[0].1).is_none()));
+    let units = (0..block.len() - 1).find(is_units);
+    let (used, mut names) = match units {
+        Some(at) => {
+            let pairs = block[at + 1].iter().zip(&block[at]);
+            (at..at + 2, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect::<Vec<Name>>())
+        }
+        None if named(lower) && !title => {
+            // `Second,Volt` under a preamble: units, and no names.
+            let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
+            (0..1, units.unwrap_or_else(|| lower.iter().map(|(_, n)| Name::parse(n)).collect()))
+        }
+        None => (0..0, vec![Name::default(); width]),
+    };
     let columns = names.len();
-    if columns == 1 && count > 1 {
+    let fits = fits(columns);
+    if let Some(cells) = clock.clone().filter(|cells| cells.end <= columns) {
+        names.splice(cells, [Name { name: "time".to_owned(), unit: Some("s".to_owned()) }]);
+    }
+    // Under a scale, whole numbers are counts of a converter, whatever the unit of the scale.
+    let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
+    let counts = preamble.values(&["vertical scale"]).is_some() && rows.iter().flatten().all(whole);
+    let preamble = Preamble(
+        preamble.0.into_iter().filter(|cells| !counts || !UNIT.contains(&key(cells).as_str())).collect(),
+    );
+    if used.is_empty() {
+        let first = rows.iter().filter_map(|row| number::parse(row.get(skipped)?.1.as_bytes()));
+        let first: Vec<f64> = first.collect();
+        let rises = first.len() > 1 && first.windows(2).all(|w| w[1] > w[0]);
+        if names.len() > 1 && rises {
+            "time".clone_into(&mut names[0].name);
+        }
+    }
+    let keyed = preamble.name(&mut names);
+    if (used.is_empty() && !keyed) || (columns == 1 && count > 1 && !used.is_empty()) {
         return None;
     }
-    let fits = count == columns || width == columns;
-    let (line, names) = match upper {
-        Some((line, upper))
-            if upper.len() == columns
-                && named(&upper)
-                && is_unit_row(names.iter().map(|(_, f)| f.as_ref())) =>
-        {
-            let pairs = upper.iter().zip(&names);
-            (line, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect::<Vec<Name>>())
-        }
-        _ if named(&names) => {
-            // `Second,Volt` under a preamble: units, and no names.
-            let units: Option<Vec<Name>> = names.iter().map(|(_, n)| unit_word(n)).collect();
-            (last, units.unwrap_or_else(|| names.iter().map(|(_, n)| Name::parse(n)).collect()))
-        }
-        _ => return None,
-    };
-    let preamble = above.iter().filter(|l| *l != last && *l != line).map(|l| said(l, separator));
+    let unused =
+        |line: &Line| !spoken.get(used.clone()).is_some_and(|used| used.iter().any(|l| **l == *line));
+    let preamble = above.iter().filter(|l| unused(l)).map(|l| said(l, separator));
     let dialect = Dialect {
         format: Format::Csv,
         separator,
         decimal: b'.',
         complex: false,
-        columns,
-        skipped: 0,
+        columns: names.len(),
+        skipped,
+        clock,
         names: Some(names),
         remarks: REMARKS,
         header: preamble.chain(stated).collect(),
-        columns_from: line.number,
+        columns_from: spoken.get(used.end.max(1) - 1).unwrap_or(&last).number,
         first_line: first.number,
     };
     Some((dialect, fits))
@@ -208,9 +314,15 @@ fn is_pair(key: &str, value: &str) -> bool {
     key.contains(char::is_alphabetic) && number::parse(value.as_bytes()).is_some()
 }
 
-/// The fields of a line above the row `values`, without a blank one at the end that the row has no value for.
-fn headings<'a>(line: &Line<'a>, separator: Separator, values: &Fields) -> Option<Fields<'a>> {
+/// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its end that the row has no value for.
+fn headings<'a>(
+    line: &Line<'a>,
+    separator: Separator,
+    skipped: usize,
+    values: &[(usize, Cow<str>)],
+) -> Option<Fields<'a>> {
     let mut fields = fields(line.text, separator).ok()?;
+    fields.drain(..skipped.min(fields.len()));
     let last = fields.len().checked_sub(1)?;
     let unused = values.get(last).is_none_or(|(_, v)| v.is_empty());
     if last > 0 && fields[last].1.is_empty() && unused {
@@ -233,16 +345,27 @@ fn named(fields: &Fields) -> bool {
 
 /// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.
 fn said(line: &Line, separator: Separator) -> String {
-    if let Some(text) = line.remark {
-        return text.to_owned();
-    }
-    let Some(fields) = fields(line.text, separator).ok().filter(|_| !line.text.contains([':', '='])) else {
-        return line.text.trim().to_owned();
+    let whole = || line.remark.unwrap_or(line.text.trim()).to_owned();
+    let Some(cells) = fields(line.text, separator).ok().filter(|_| line.remark.is_none()) else {
+        return whole();
     };
-    let mut cells = fields.iter().map(|(_, f)| f.trim()).filter(|f| !f.is_empty());
-    let key = cells.next().unwrap_or_default().to_owned();
-    let value = cells.collect::<Vec<_>>().join(" ");
-    if value.is_empty() { key } else { format!("{key}: {value}") }
+    let cells: Vec<String> = cells.into_iter().map(|(_, cell)| cell.into_owned()).collect();
+    if cells[0].trim_end_matches(':').contains([':', '=']) { whole() } else { statement(&cells) }
+}
+
+/// Key and values of a preamble; values that are all the same are one.
+fn statement(cells: &[String]) -> String {
+    let mut cells = cells.iter().map(|cell| cell.trim()).filter(|cell| !cell.is_empty());
+    let key = cells.next().unwrap_or_default();
+    let mut values: Vec<&str> = cells.collect();
+    if values.iter().all(|value| *value == values[0]) {
+        values.truncate(1);
+    }
+    if values.is_empty() {
+        key.to_owned()
+    } else {
+        format!("{}: {}", key.trim_end_matches(':'), values.join(" "))
+    }
 }
 
 #[cfg(test)]
