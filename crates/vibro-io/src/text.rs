@@ -14,6 +14,7 @@ mod header;
 mod lines;
 pub(crate) mod names;
 mod numbers;
+mod preamble;
 mod records;
 mod rows;
 mod table;

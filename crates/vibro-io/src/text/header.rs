@@ -96,8 +96,11 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         None => (key, ""),
     };
     let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
-    let hertz =
-        || quantity(value, unit_in_key, &[("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)]);
+    let hertz = || {
+        // Samples a second are written `S/s`, `Sa/s` and `Sps`.
+        let value = value.to_lowercase().replace("sa/s", "hz").replace("sps", "hz").replace("s/s", "hz");
+        quantity(&value, unit_in_key, &[("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)])
+    };
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
@@ -141,7 +144,8 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             stated.rate =
                 quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
         }
-        "npts" | "number of points" | "number of samples" | "record length" => {
+        "npts" | "number of points" | "number of samples" | "record length" | "memory length"
+        | "blocksize" | "total data points" => {
             stated.values = quantity(value, "", &[("", 1.0)]).and_then(line_count).map(|n| n as usize);
         }
         "start" | "t0" | "x origin" | "xorg" | "hoffset" => {

@@ -121,7 +121,8 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
             blanks + length + behind
         } else {
             let end = rest.find(mark).unwrap_or(rest.len());
-            let arrow = rest[..end].find(ARROW).filter(|arrow| clock::is_clock(rest[..*arrow].trim()));
+            let arrow = if rest.as_bytes()[..end].contains(&b'>') { rest[..end].find(ARROW) } else { None };
+            let arrow = arrow.filter(|arrow| clock::is_clock(rest[..*arrow].trim()));
             let field = &rest[..arrow.unwrap_or(end)];
             let trimmed = field.trim_start();
             fields.push((at + field.len() - trimmed.len(), trimmed.trim_end().into()));

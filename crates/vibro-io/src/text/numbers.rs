@@ -92,11 +92,11 @@ fn is_row(line: &[u8]) -> bool {
     for token in line.split(|b| b" \t,;\r".contains(b)).filter(|t| !t.is_empty()) {
         if number::parse(token).is_some() || complex(token, b'.').is_some() {
             numbers += 1;
-        } else if !number::is_missing(token)
-            && !matches!(token, b"+" | b"-" | b"->")
-            && !(timed && is_clock(token))
-        {
-            return false;
+        } else {
+            let neutral = number::is_missing(token) || matches!(token, b"+" | b"-" | b"->");
+            if !(neutral || timed && is_clock(token)) {
+                return false;
+            }
         }
     }
     numbers > 0

@@ -40,6 +40,10 @@ pub fn build(
     // A column that only counts says nothing, unless there is no other.
     let counts = table.len() > 1 && table[0].counts();
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
+    // Where every channel has the time beside it, once is enough.
+    let again =
+        |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
+    table.retain(|column| !printed.as_ref().is_some_and(|axis| is_table && again(column, axis)));
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();
     let mut axis = choose(printed, n, &made.stated, options, &mut of_axis)?;
@@ -53,6 +57,9 @@ pub fn build(
     let declared = lines.map(|lines| lines as usize + 1).filter(|all| n != *all && n + 1 != *all);
     if let Some(declared) = declared {
         of_axis.push(Finding::caution("fewer-lines").count("declared", declared).count("n", n));
+    }
+    if let Some(declared) = made.stated.values.filter(|declared| *declared != n) {
+        of_axis.push(Finding::caution("fewer-values").count("declared", declared).count("n", n));
     }
     if table.len() == 2 && !has_axis && dialect.names.is_none() && !options.complex {
         of_axis.push(Finding::caution("two-channels"));

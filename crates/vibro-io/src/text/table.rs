@@ -15,17 +15,15 @@ use super::clock;
 use super::dialect::{Dialect, Separator};
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::{Name, is_unit_row, unit_word};
+use super::preamble::{BESIDE, Preamble, beside, beside_rows, said};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
-use vibro_record::AxisKind;
+use std::ops::Range;
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
-
-/// Rows that are looked at, of which a preamble may stand beside the first.
-const BESIDE: usize = 40;
 
 /// Lines between rows and their names, at most, with the names.
 const DEEPEST: usize = 4;
@@ -65,107 +63,21 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     misfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
 }
 
-/// A preamble in the first columns of the first rows, as oscilloscopes of Tektronix write it: key, value and unit, then time and value, with
-/// nothing before them further down.
-fn beside_rows(text: &Text) -> Option<Dialect> {
-    let separator = Separator::Char(b',');
-    let lines = Lines::new(&text.head, 0, 1, &[]).filter(|line| !line.is_blank()).take(BESIDE);
-    let rows: Vec<(u64, Fields)> =
-        lines.map_while(|l| Some((l.number, fields(l.text, separator).ok()?))).collect();
-    let number = |field: &(usize, Cow<str>)| number::parse(field.1.as_bytes()).is_some();
-    let (first_line, first) = rows.first()?;
-    let last = &rows.last()?.1;
-    let skipped = last.iter().take_while(blank).count();
-    let columns = last.len().checked_sub(skipped)?
-        - last.iter().rev().take_while(blank).count().min(last.len() - skipped);
-    let whole = |row: &Fields| {
-        row.get(skipped..skipped + columns).is_some_and(|cells| cells.iter().all(number))
-            && row.iter().skip(skipped + columns).all(|field| blank(&field))
-    };
-    let keyed = first.first().is_some_and(|(_, key)| key.contains(char::is_alphabetic));
-    if skipped < 2 || columns == 0 || !keyed || !rows.iter().all(|(_, row)| whole(row)) {
-        return None;
-    }
-    let cells = rows.iter().map(|(_, row)| row[..skipped].iter().map(|(_, f)| f.trim().to_owned()));
-    let preamble = Preamble(cells.map(Iterator::collect).collect());
-    let mut names = vec![Name::default(); columns];
-    if columns == 2 {
-        "time".clone_into(&mut names[0].name);
-    }
-    preamble.name(&mut names);
-    Some(Dialect {
-        format: Format::Csv,
-        separator,
-        decimal: b'.',
-        complex: false,
-        columns,
-        skipped,
-        clock: None,
-        names: Some(names),
-        remarks: &[],
-        header: preamble.0.iter().map(|cells| statement(cells)).filter(|said| !said.is_empty()).collect(),
-        columns_from: *first_line,
-        first_line: *first_line,
-    })
-}
-
-fn blank(field: &&(usize, Cow<str>)) -> bool {
-    field.1.is_empty()
-}
-
-/// Keys in the first cell of a line, each with its values in the cells behind: one for all columns, or one for each.
-struct Preamble(Vec<Vec<String>>);
-
-const SOURCE: &[&str] = &["source", "tracename", "trace name", "signal", "signal name", "channel name"];
-const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units"];
-const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
-
-/// The first cell as a key.
-fn key(cells: &[String]) -> String {
-    cells[0].trim_end_matches(':').trim().replace('_', " ").to_lowercase()
-}
-
-impl Preamble {
-    /// The values of the first of some keys.
-    fn values(&self, keys: &[&str]) -> Option<&[String]> {
-        let found = self.0.iter().find(|cells| cells.len() > 1 && keys.contains(&key(cells).as_str()))?;
-        let said = found.iter().rposition(|cell| !cell.is_empty())?;
-        found.get(1..=said).filter(|values| !values.is_empty())
-    }
-
-    /// Gives columns the names and units that they lack: one for each, or for each but the abscissa. Says whether there are any.
-    fn name(&self, names: &mut [Name]) -> bool {
-        let axis = names.first().and_then(|name| name.axis(true));
-        let n = names.len();
-        let of = |keys| self.values(keys).filter(|v| v.len() == n || (v.len() + 1 == n && axis.is_some()));
-        let (sources, units) = (of(SOURCE), of(UNIT));
-        for (name, source) in names.iter_mut().rev().zip(sources.unwrap_or_default().iter().rev()) {
-            if name.name.is_empty() {
-                name.name.clone_from(source);
-            }
-        }
-        let mut adopt = |at: usize, unit: &str| {
-            // Seconds are printed as `S`, too.
-            let second = at == 0 && unit == "S" && axis == Some(AxisKind::Time);
-            let said = Name::with_unit_row(&names[at].name, if second { "s" } else { unit });
-            names[at].unit = names[at].unit.take().or(said.unit).filter(|unit| !unit.is_empty());
-        };
-        for (i, unit) in units.unwrap_or_default().iter().rev().enumerate() {
-            adopt(n - 1 - i, unit);
-        }
-        if let Some([unit, ..]) = self.values(AXIS_UNIT).filter(|_| axis.is_some()) {
-            adopt(0, unit);
-        }
-        sources.or(units).is_some()
-    }
-}
-
 /// Number of fields, where all are numbers or missing or a clock and at least one is a number.
 fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let fields = fields(text, Separator::Char(mark)).ok()?;
     let clock = clock::columns(&fields).unwrap_or(0..0);
     let point = options.decimal_comma != Some(true);
     let comma = options.decimal_comma != Some(false) && mark != b',';
+    // A preamble may say `Overload, 0`; one number with both marks is asked about.
+    let word = |text: &str| {
+        text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.to_lowercase().starts_with("nan")
+    };
+    let doubtful =
+        fields.len() == 1 && text.contains(',') && text.contains('.') && options.decimal_comma.is_none();
+    if word(&fields[0].1) || doubtful {
+        return None;
+    }
     let mut numbers = 0;
     for (i, (_, field)) in fields.iter().enumerate() {
         let field = field.as_bytes();
@@ -192,7 +104,7 @@ fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
     Dialect { decimal: if comma { b',' } else { b'.' }, ..found }
 }
 
-/// The dialect with the names that stand in the lines above `first`, in a row of their own or behind keys, and whether there are as many as
+/// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and whether there are as many as
 /// columns.
 fn fit(
     above: &[Line],
@@ -202,7 +114,6 @@ fn fit(
     head: &str,
 ) -> Option<(Dialect, bool)> {
     let spoken: Vec<&Line> = above.iter().filter(|l| l.remark.is_none()).rev().collect();
-    let last = *spoken.first()?;
     let rows =
         Lines::new(head, first.at, first.number, REMARKS).filter(|l| !l.is_blank() && l.remark.is_none());
     let rows: Vec<Fields> = rows.take(BESIDE).map_while(|l| fields(l.text, separator).ok()).collect();
@@ -210,7 +121,6 @@ fn fit(
     let skipped = usize::from(rows.len() > 1 && rows.iter().all(|row| row.len() > 1 && row[0].1.is_empty()));
     let values = rows.first()?.get(skipped..)?;
     let width = values.iter().rposition(|(_, f)| !f.is_empty()).map_or(0, |last| last + 1);
-    let count = count - skipped;
     let deepest = spoken.iter().take(DEEPEST);
     let mut block: Vec<Fields> = deepest.map_while(|l| headings(l, separator, skipped, values)).collect();
     let (lower, uppers) = block.split_first_mut()?;
@@ -219,59 +129,29 @@ fn fit(
         let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
         cells.start..cells.end + usize::from(ms)
     });
-    let fits = |columns: usize| count == columns || width == columns;
-    let is_units = |at: &usize| {
-        let (units, upper) = (&block[*at], &block[*at + 1]);
-        let outside = |i: &usize| !clock.as_ref().is_some_and(|cells| cells.contains(i));
-        let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
-        units.len() == upper.len() && named(upper) && (*at == 0 || fits(units.len())) && is_unit_row(cells)
-    };
-    let cells = |line: &Line| {
-        Some(fields(line.text, separator).ok()?.into_iter().map(|(_, f)| f.into_owned()).collect())
-    };
-    let preamble = Preamble(spoken.iter().filter_map(|line| cells(line)).collect());
-    let lower = &block[0];
-    let title = lower.iter().filter(|(_, f)| !f.is_empty()).count() == 1
-        && (width > 1 || (preamble.values(SOURCE).is_some() && unit_word(&lower[0].1).is_none()));
-    let units = (0..block.len() - 1).find(is_units);
-    let (used, mut names) = match units {
-        Some(at) => {
-            let pairs = block[at + 1].iter().zip(&block[at]);
-            (at..at + 2, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect::<Vec<Name>>())
-        }
-        None if named(lower) && !title => {
-            // `Second,Volt` under a preamble: units, and no names.
-            let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
-            (0..1, units.unwrap_or_else(|| lower.iter().map(|(_, n)| Name::parse(n)).collect()))
-        }
-        None => (0..0, vec![Name::default(); width]),
-    };
+    let preamble = Preamble::of(&spoken, separator);
+    let fits = |columns: usize| count - skipped == columns || width == columns;
+    let title = is_title(&block[0], width, &preamble);
+    let (used, mut names) =
+        names_in(&block, clock.as_ref(), title, fits).unwrap_or_else(|| (0..0, vec![Name::default(); width]));
     let columns = names.len();
-    let fits = fits(columns);
+    if columns == 1 && count > 1 && !used.is_empty() {
+        return None;
+    }
     if let Some(cells) = clock.clone().filter(|cells| cells.end <= columns) {
         names.splice(cells, [Name { name: "time".to_owned(), unit: Some("s".to_owned()) }]);
     }
-    // Under a scale, whole numbers are counts of a converter, whatever the unit of the scale.
-    let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
-    let counts = preamble.values(&["vertical scale"]).is_some() && rows.iter().flatten().all(whole);
-    let preamble = Preamble(
-        preamble.0.into_iter().filter(|cells| !counts || !UNIT.contains(&key(cells).as_str())).collect(),
-    );
-    if used.is_empty() {
-        let first = rows.iter().filter_map(|row| number::parse(row.get(skipped)?.1.as_bytes()));
-        let first: Vec<f64> = first.collect();
-        let rises = first.len() > 1 && first.windows(2).all(|w| w[1] > w[0]);
-        if names.len() > 1 && rises {
-            "time".clone_into(&mut names[0].name);
-        }
+    let begin = || rows.iter().map(|row| number::parse(row.get(skipped)?.1.as_bytes()));
+    if used.is_empty() && columns > 1 && rows.len() > 1 && begin().zip(begin().skip(1)).all(|(a, b)| a < b) {
+        "time".clone_into(&mut names[0].name);
     }
-    let keyed = preamble.name(&mut names);
-    if (used.is_empty() && !keyed) || (columns == 1 && count > 1 && !used.is_empty()) {
+    let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
+    if !preamble.name(&mut names, rows.iter().flatten().all(whole)) && used.is_empty() {
         return None;
     }
-    let unused =
-        |line: &Line| !spoken.get(used.clone()).is_some_and(|used| used.iter().any(|l| **l == *line));
-    let preamble = above.iter().filter(|l| unused(l)).map(|l| said(l, separator));
+    let last = spoken.get(used.end.max(1) - 1)?.number;
+    let used: Vec<u64> = spoken.get(used)?.iter().map(|line| line.number).collect();
+    let header = above.iter().filter(|l| !used.contains(&l.number)).map(|l| said(l, separator));
     let dialect = Dialect {
         format: Format::Csv,
         separator,
@@ -282,36 +162,41 @@ fn fit(
         clock,
         names: Some(names),
         remarks: REMARKS,
-        header: preamble.chain(stated).collect(),
-        columns_from: spoken.get(used.end.max(1) - 1).unwrap_or(&last).number,
+        header: header.chain(stated).collect(),
+        columns_from: last,
         first_line: first.number,
     };
-    Some((dialect, fits))
+    Some((dialect, fits(columns)))
 }
 
-/// Statements in cells beyond the `width` of the rows: a word over a number, `Start` over `-2e-3`, or `t0 = -5e-7`. They are taken out.
-fn beside(upper: Option<&mut Fields>, lower: &mut Fields, width: usize) -> Vec<String> {
-    let over = |upper: &Fields| {
-        let mut pairs = upper.iter().zip(&*lower).skip(width);
-        upper.len() == lower.len() && pairs.all(|(key, value)| is_pair(&key.1, &value.1))
+/// Which lines of a block, counted upwards, name the columns, and the names: a row of units below its names, perhaps above comments; or names
+/// alone.
+fn names_in(
+    block: &[Fields],
+    clock: Option<&Range<usize>>,
+    title: bool,
+    fits: impl Fn(usize) -> bool,
+) -> Option<(Range<usize>, Vec<Name>)> {
+    let is_units = |at: &usize| {
+        let (units, upper) = (&block[*at], &block[*at + 1]);
+        let outside = |i: &usize| !clock.is_some_and(|cells| cells.contains(i));
+        let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
+        units.len() == upper.len() && named(upper) && (*at == 0 || fits(units.len())) && is_unit_row(cells)
     };
-    if width == 0 || lower.len() <= width {
-        return Vec::new();
+    if let Some(at) = (0..block.len() - 1).find(is_units) {
+        let pairs = block[at + 1].iter().zip(&block[at]);
+        return Some((at..at + 2, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect()));
     }
-    match upper {
-        Some(upper) if over(upper) => {
-            let keys = upper.split_off(width).into_iter().zip(lower.split_off(width));
-            keys.map(|((_, key), (_, value))| format!("{key}: {value}")).collect()
-        }
-        _ if lower[width..].iter().all(|(_, f)| f.is_empty() || f.contains('=')) => {
-            lower.split_off(width).into_iter().map(|(_, field)| field.into_owned()).collect()
-        }
-        _ => Vec::new(),
-    }
+    let lower = block.first().filter(|lower| named(lower) && !title)?;
+    // `Second,Volt` under a preamble: units, and no names.
+    let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
+    Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, n)| Name::parse(n)).collect())))
 }
 
-fn is_pair(key: &str, value: &str) -> bool {
-    key.contains(char::is_alphabetic) && number::parse(value.as_bytes()).is_some()
+/// Whether a line stands above all columns, such as `Waveform Data`.
+fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
+    let alone = line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
+    alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
 }
 
 /// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its end that the row has no value for.
@@ -341,31 +226,6 @@ fn named(fields: &Fields) -> bool {
         field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
     };
     !statement && fields.iter().any(|(_, f)| is_name(f))
-}
-
-/// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.
-fn said(line: &Line, separator: Separator) -> String {
-    let whole = || line.remark.unwrap_or(line.text.trim()).to_owned();
-    let Some(cells) = fields(line.text, separator).ok().filter(|_| line.remark.is_none()) else {
-        return whole();
-    };
-    let cells: Vec<String> = cells.into_iter().map(|(_, cell)| cell.into_owned()).collect();
-    if cells[0].trim_end_matches(':').contains([':', '=']) { whole() } else { statement(&cells) }
-}
-
-/// Key and values of a preamble; values that are all the same are one.
-fn statement(cells: &[String]) -> String {
-    let mut cells = cells.iter().map(|cell| cell.trim()).filter(|cell| !cell.is_empty());
-    let key = cells.next().unwrap_or_default();
-    let mut values: Vec<&str> = cells.collect();
-    if values.iter().all(|value| *value == values[0]) {
-        values.truncate(1);
-    }
-    if values.is_empty() {
-        key.to_owned()
-    } else {
-        format!("{}: {}", key.trim_end_matches(':'), values.join(" "))
-    }
 }
 
 #[cfg(test)]
