@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! 2020-01-24T12:00:00.001Z   2020/01/24 12:00:00   24.01.2020 12:00:00,001   1/24/2020 12:00:00.001 PM
-//! 12:00:00.001   12:00:00:001   00:01.5   and date, time and milliseconds in cells side by side
+//! 12:00:00.001   12:00:00:001   00:01.5   0.5 sec   and date, time and milliseconds in cells side by side
 //! ```
 
 use crate::number;
@@ -29,8 +29,11 @@ pub fn columns(fields: &[(usize, Cow<str>)]) -> Option<Range<usize>> {
     parse(&joined(&fields[start..end])).map(|_| start..end)
 }
 
-/// Whether a text is a date, a time of day, or both.
+/// Whether a text is a date, a time of day, or both, or a duration.
 pub fn is_clock(text: &str) -> bool {
+    if duration(text).is_some() {
+        return true;
+    }
     text.starts_with(|c: char| c.is_ascii_alphanumeric()) && words(text).all(|word| part(word).is_some())
 }
 
@@ -41,6 +44,9 @@ pub fn joined(fields: &[(usize, Cow<str>)]) -> String {
 
 /// The seconds of a clock as they are printed, `01.123`, for their digits.
 pub fn printed_seconds(text: &str) -> String {
+    if let Some(seconds) = text.strip_suffix(" sec") {
+        return seconds.to_owned();
+    }
     let mut words = words(text).skip_while(|word| !word.contains(':'));
     let time = words.next().unwrap_or_default().replace(',', ".");
     let mut cells = time.split(':').skip(1 + usize::from(time.matches(':').count() > 1));
@@ -80,6 +86,9 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 
 /// Day, where there is one, and seconds of that day.
 fn parse(text: &str) -> Option<(Option<f64>, f64)> {
+    if let Some(seconds) = duration(text) {
+        return Some((None, seconds));
+    }
     let (mut date, mut time, mut half) = (None, None, None);
     for word in words(text) {
         match part(word) {
@@ -96,6 +105,11 @@ fn parse(text: &str) -> Option<(Option<f64>, f64)> {
     };
     let date = date.map(|cells| day(&cells, half.is_some()));
     Some((if let Some(day) = date { Some(day?) } else { None }, seconds))
+}
+
+/// `0.5 sec`, as MATLAB writes durations.
+fn duration(text: &str) -> Option<f64> {
+    number(text.strip_suffix(" sec")?)
 }
 
 fn part(word: &str) -> Option<Part<'_>> {

@@ -216,6 +216,34 @@ fn there_are_as_many_as_promised_and_no_two_alike() {
     assert_eq!(distinct.len(), all.len());
 }
 
+/// An editor or another system may change them: the reading stays the same.
+#[test]
+fn line_ends_marks_and_blank_lines_behind_change_nothing() {
+    let mut wrong_ones = Vec::new();
+    for dialect in all() {
+        let Outcome::Read(right) = &dialect.outcome else { continue };
+        let Ok(text) = String::from_utf8((dialect.text)()) else { continue };
+        if text.contains('\r') || text.starts_with('\u{feff}') {
+            continue;
+        }
+        for (how, changed) in [
+            ("CR LF", text.replace('\n', "\r\n")),
+            ("CR", text.replace('\n', "\r")),
+            ("byte order mark", format!("\u{feff}{text}")),
+            ("blank lines behind", format!("{text}\n\n")),
+            ("no last line end", text.trim_end_matches('\n').to_owned()),
+            ("blanks behind", text.replace('\n', "  \n")),
+        ] {
+            let said = match Reader::new().from_reader(dialect.file, changed.as_bytes()) {
+                Ok(found) => faults(&found, right),
+                Err(why) => vec![why.to_string()],
+            };
+            wrong_ones.extend(said.into_iter().map(|fault| format!("{} with {how}: {fault}", dialect.of)));
+        }
+    }
+    assert!(wrong_ones.is_empty(), "{} faults:\n{}", wrong_ones.len(), wrong_ones.join("\n"));
+}
+
 /// The table of `docs/formats.md`, row for row.
 #[test]
 fn the_table_of_the_documents_is_this_list() {

@@ -156,6 +156,36 @@ pub const ALL: &[Dialect] = &[
         outcome: read(&[ch("column 1", "", 0, 1.0, 1e-15)], X::Unsaid, &["axis-kind-unsaid", "unit-unsaid"]),
     },
     Dialect {
+        of: "MATLAB, writetimetable",
+        oddity: "`0.0005 sec`: the unit in every cell",
+        file: "timetable.csv",
+        text: || table("Time,Force\n", |i| format!("{} sec,{}", at(0.0, i), value(0, i))),
+        outcome: read(&[ch("Force", "", 0, 1.0, 1e-15)], X::Even(0.0), &["axis-clock", "unit-unsaid"]),
+    },
+    Dialect {
+        of: "DIAdem, LabVIEW; X and Y in pairs",
+        oddity: "the same time before every channel",
+        file: "pairs.csv",
+        text: || {
+            table("Time [s];Force [N];Time [s];Way [mm]\n", |i| {
+                let (t, a, b) = (fixed(at(0.0, i), 6), fixed(value(0, i), 6), fixed(value(1, i), 6));
+                comma(&[t.as_str(), &a, &t, &b].join(";"))
+            })
+        },
+        outcome: read(&[ch("Force", "N", 0, 1.0, 5e-7), ch("Way", "m", 1, 1e-3, 5e-7)], X::Even(0.0), &[]),
+    },
+    Dialect {
+        of: "Excel, US, grouped",
+        oddity: "`\"1,234.567\"` in quotes, since commas separate",
+        file: "Book2.csv",
+        text: || {
+            table("Time (s),Force (mN)\n", |i| {
+                format!("{},\"{}\"", fixed(at(0.0, i), 6), grouped(1e3 * value(0, i), ",", "."))
+            })
+        },
+        outcome: read(&[ch("Force", "N", 0, 1.0, 5e-7)], X::Even(0.0), &[]),
+    },
+    Dialect {
         of: "MATLAB, save -ascii",
         oddity: "three blanks before every number",
         file: "matrix.txt",

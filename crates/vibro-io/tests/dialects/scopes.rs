@@ -248,6 +248,17 @@ pub const ALL: &[Dialect] = &[
         outcome: read(&[ch("CH1", "V", 0, 1.0, U), ch("CH2", "A", 1, 1.0, U)], X::Even(START), &[]),
     },
     Dialect {
+        of: "Yokogawa DL and DLM, history",
+        oddity: "two blocks behind each other, `BlockSize` 64",
+        file: "001.CSV",
+        text: || {
+            let head = "\"Header Size\",6\n\"BlockNumber\",2\n\"TraceName\",\"CH1\"\n\"BlockSize\",64\n\"VUnit\",\"V\"\n\
+                        \"HResolution\",5e-4\n\n";
+            table(head, |i| format!("{},{}", if i == N / 2 { "\n" } else { "" }, u(0, i)))
+        },
+        outcome: read(&[ch("CH1", "V", 0, 1.0, U)], X::Even(0.0), &["fewer-values"]),
+    },
+    Dialect {
         of: "PicoScope 6",
         oddity: "units in brackets below the names, a blank line, `∞` where the range ends",
         file: "20200124-0001.csv",
