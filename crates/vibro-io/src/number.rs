@@ -62,11 +62,11 @@ fn ungrouped(text: &[u8], decimal: u8) -> Option<f64> {
     if threes { parse_with(text.replace(group, "").as_bytes(), decimal) } else { None }
 }
 
-/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `---`, `NA`, `1.#QNAN`, `***`, `OVER`, …
+/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `--.--`, `NA`, `1.#QNAN`, `***`, `OVER`, …
 pub(crate) fn is_missing(text: &[u8]) -> bool {
     let text = text.trim_ascii();
     let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);
-    if [b'*', b'-', b'+'].iter().any(|mark| text.iter().all(|b| b == mark)) {
+    if [b"**", b"-.", b"++"].iter().any(|marks| text.iter().all(|b| marks.contains(b))) {
         return true;
     }
     let lower = text.to_ascii_lowercase();

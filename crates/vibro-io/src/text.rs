@@ -1,9 +1,8 @@
 //! Text of analysers, loggers and spreadsheets: dialect → rows → records.
 //!
-//! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut; [`preamble`] finds what stands behind keys, [`clock`] reads
-//! dates and times of day. It is found out from the first
-//! bytes: [`table`] knows tables with names above their columns, [`numbers`] plain columns of numbers. The dialect of another
-//! instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by
+//! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut. It is found out from the first
+//! bytes: [`table`] knows tables with names above their columns or behind the keys of a [`preamble`], [`numbers`] plain columns
+//! of numbers; both know a [`clock`]. The dialect of another instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by
 //! one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
 
 mod axis;

@@ -47,7 +47,8 @@ impl Stated {
                 let (key, value) = split(line.trim());
                 stated.notes.push((key.to_owned(), value.to_owned()));
                 let key = key.to_lowercase();
-                lines_apart |= matches!(key.as_str(), "x-axis unit" | "x axis unit") && value == "Hz";
+                let of_axis = ["x-axis unit", "x axis unit", "xunits", "hunit", "horizontal units"];
+                lines_apart |= of_axis.contains(&key.as_str()) && matches!(value, "Hz" | "Hertz" | "hertz");
                 if key.is_empty() {
                     free_text(line, &mut stated);
                 } else {
@@ -56,7 +57,9 @@ impl Stated {
             }
         }
         if lines_apart {
-            stated.line_width = stated.rate.take().map(|rate| 1.0 / rate).or(stated.line_width);
+            let step = stated.rate.take().map(|rate| 1.0 / rate);
+            stated.line_width =
+                step.filter(|_| stated.start.is_none_or(|start| start == 0.0)).or(stated.line_width);
         }
         stated
     }
@@ -135,14 +138,15 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "xinc"
         | "x axis delta"
         | "hresolution"
-        | "clock"
-        | "interval"
-        | "time interval"
         | "horizontal interval"
         | "abtastintervall"
         | "période d'échantillonnage" => {
             stated.rate =
                 quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
+        }
+        // Without a unit these may be anything.
+        "clock" | "interval" | "time interval" if value.ends_with(char::is_alphabetic) => {
+            stated.rate = quantity(value, "", &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
         }
         "npts" | "number of points" | "number of samples" | "record length" | "memory length"
         | "blocksize" | "total data points" => {
@@ -157,7 +161,8 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         }
         "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "amplitude unit"
         | "engineering unit" => {
-            stated.unit = Some(value.trim_matches(['[', ']']).to_owned()).filter(|v| !v.is_empty());
+            let unit = Some(value.trim_matches(['[', ']']).to_owned());
+            stated.unit = unit.filter(|v| !v.is_empty() && !v.contains(';'));
         }
         "window" | "weighting" | "window type" => {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))

@@ -23,8 +23,8 @@ pub const BESIDE: usize = 40;
 #[derive(Debug, Default)]
 pub struct Preamble(Vec<Vec<String>>);
 
-const SOURCE: &[&str] = &["source", "tracename", "trace name", "signal", "signal name", "channel name"];
-const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units"];
+const SOURCE: &[&str] = &["source", "tracename", "trace name", "signal", "signal name", "channel name", "ch"];
+const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units", "unit", "units"];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
 impl Preamble {
@@ -39,17 +39,23 @@ impl Preamble {
         self.values(SOURCE).is_some()
     }
 
+    /// Unit of the abscissa, where it is one of time or frequency; seconds are printed as `S`, too.
+    pub fn axis_unit(&self) -> Option<String> {
+        let unit = &self.values(AXIS_UNIT)?[0];
+        let named = Name::with_unit_row("", if unit == "S" { "s" } else { unit });
+        named.unit.clone().filter(|_| named.axis(true).is_some())
+    }
+
     /// The values of the first of some keys.
     fn values(&self, keys: &[&str]) -> Option<&[String]> {
         let key = |cells: &[String]| cells[0].trim_end_matches(':').trim().replace('_', " ").to_lowercase();
-        let found = self.0.iter().find(|cells| cells.len() > 1 && keys.contains(&key(cells).as_str()))?;
-        let said = found.iter().rposition(|cell| !cell.is_empty())?;
-        found.get(1..=said).filter(|values| !values.is_empty())
+        let found = self.0.iter().find(|cells| keys.contains(&key(cells).as_str()))?;
+        found.get(1..).filter(|values| values.iter().any(|value| !value.is_empty()))
     }
 
     /// Gives columns the names and units that they lack, where there is one for each, or for each but the abscissa; says whether there are.
     /// Under a scale, `whole` numbers are counts of a converter: the unit is not theirs.
-    pub fn name(&self, names: &mut [Name], whole: bool) -> bool {
+    pub fn name<'a>(&'a self, names: &mut [Name], whole: bool) -> bool {
         let n = names.len();
         let axis = names.first().and_then(|name| name.axis(true));
         // Seconds are printed as `S`, too.
@@ -58,16 +64,21 @@ impl Preamble {
             let named = Name::with_unit_row(&names[0].name, unit);
             named.unit.clone().filter(|_| named.axis(true) == axis)
         };
-        let own = self.values(AXIS_UNIT).and_then(|units| of_axis(&units[0]));
-        let fit = |values: &&[String]| {
-            let behind = values.len() + 1 == n && axis.is_some();
-            behind || (values.len() == n && (axis.is_none() || of_axis(&values[0]).is_some()))
+        let own = self.axis_unit().and_then(|unit| of_axis(&unit));
+        // A line may end with blank cells, and so may its values.
+        let fit = |values: &'a [String], all: &dyn Fn(&[String]) -> bool| {
+            let said = values.iter().rposition(|value| !value.is_empty()).map_or(0, |last| last + 1);
+            let fits = |n_values: &usize| {
+                (n_values + 1 == n && axis.is_some()) || (*n_values == n && (axis.is_none() || all(values)))
+            };
+            [said, values.len()].into_iter().find(fits).map(|n_values| &values[..n_values])
         };
         let counts = whole && self.values(&["vertical scale"]).is_some();
-        let units = self.values(UNIT).filter(|_| !counts).filter(fit);
+        let units =
+            self.values(UNIT).filter(|_| !counts).and_then(|units| fit(units, &|u| of_axis(&u[0]).is_some()));
         let own =
             own.or(units.filter(|units| units.len() == n && axis.is_some()).and_then(|u| of_axis(&u[0])));
-        let sources = self.values(SOURCE).filter(|v| v.len() == n || (v.len() + 1 == n && axis.is_some()));
+        let sources = self.values(SOURCE).and_then(|sources| fit(sources, &|_| true));
         for (i, name) in names.iter_mut().rev().enumerate() {
             let of = |values: Option<&[String]>| values?.iter().rev().nth(i).cloned();
             if name.name.is_empty() {
@@ -173,9 +184,8 @@ fn statement(cells: &[String]) -> String {
     if values.iter().all(|value| *value == values[0]) {
         values.truncate(1);
     }
-    if values.is_empty() {
-        key.to_owned()
-    } else {
-        format!("{}: {}", key.trim_end_matches(':'), values.join(" "))
-    }
+    let Some(first) = values.first() else { return key.to_owned() };
+    // A number has its unit behind it; other values are those of several columns.
+    let joint = if number::prefix(first.as_bytes(), b'.').is_some() { " " } else { "; " };
+    format!("{}: {}", key.trim_end_matches(':'), values.join(joint))
 }

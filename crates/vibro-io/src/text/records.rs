@@ -38,7 +38,7 @@ pub fn build(
     let printed = made.abscissa(&table).map(|at| table.remove(at));
     table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     // A column that only counts says nothing, unless there is no other.
-    let counts = table.len() > 1 && table[0].counts();
+    let counts = table.len() > 1 && (is_table || table[0].at == 1) && table[0].counts();
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
     // Where every channel has the time beside it, once is enough.
     let again =
@@ -58,7 +58,9 @@ pub fn build(
     if let Some(declared) = declared {
         of_axis.push(Finding::caution("fewer-lines").count("declared", declared).count("n", n));
     }
-    if let Some(declared) = made.stated.values.filter(|declared| *declared != n) {
+    if let Some(declared) =
+        made.stated.values.filter(|declared| *declared != n && axis.kind != AxisKind::Frequency)
+    {
         of_axis.push(Finding::caution("fewer-values").count("declared", declared).count("n", n));
     }
     if table.len() == 2 && !has_axis && dialect.names.is_none() && !options.complex {

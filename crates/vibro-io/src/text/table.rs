@@ -142,8 +142,8 @@ fn fit(
         names.splice(cells, [Name { name: "time".to_owned(), unit: Some("s".to_owned()) }]);
     }
     let begin = || rows.iter().map(|row| number::parse(row.get(skipped)?.1.as_bytes()));
-    if used.is_empty() && columns > 1 && rows.len() > 1 && begin().zip(begin().skip(1)).all(|(a, b)| a < b) {
-        "time".clone_into(&mut names[0].name);
+    if used.is_empty() && columns > 1 && begin().zip(begin().skip(1)).all(|(a, b)| a < b) {
+        names[0].unit = preamble.axis_unit();
     }
     let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
     if !preamble.name(&mut names, rows.iter().flatten().all(whole)) && used.is_empty() {

@@ -187,6 +187,66 @@ pub const ALL: &[Dialect] = &[
         ),
     },
     Dialect {
+        of: "Yokogawa DX, MV",
+        oddity: "`Ch` and `Unit` before tabs, above `Type`, `Kind` and a column of messages",
+        file: "010203.txt",
+        text: || {
+            let head = "YREC\nMeasure Data\tVersion 1.00.00\nModel\tMV1000\nLanguage Code\tShift_JIS\nSampling Interval\t500\tus\n\
+                        Ch\t001\t002\tMessage\nTag\tForce\tWay\t\nUnit\tN\tmm\t\nType\tMeas\tMeas\tMessage\n\
+                        Kind\tInst\tInst\tCount\nSampling Data\n";
+            table(head, |i| {
+                let (a, b) = (fixed(value(0, i), 6), fixed(1e3 * value(1, i), 3));
+                format!("2020/01/24 {}\t{a}\t{b}\t0", clock(12, 0.0, i, 4))
+            })
+        },
+        outcome: read(
+            &[ch("001", "N", 0, 1.0, 5e-7), ch("002", "m", 1, 1.0, 5e-7), ch("Message", "", 0, 0.0, 1.0)],
+            X::Even(0.0),
+            &["axis-clock", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "Hioki LR8431",
+        oddity: "a line of settings for each channel, then the names",
+        file: "WAVE0001.CSV",
+        text: || {
+            let head = "\"File name\",\"WAVE0001.CSV\",\"V 1.00\"\n\"Title comment\",\"\"\n\"Trigger Time\",\"'12-07-01 09:14:03\"\n\
+                        \"Ch\",\"Mode\",\"Range\",\"Comment\",\"Scaling\",\"Ratio\",\"Offset\"\n\
+                        \"CH-1\",\"Voltage\",\"10V\",\"\",\"Off\",\"-\",\"-\"\n\"CH-2\",\"Voltage\",\"10V\",\"\",\"Off\",\"-\",\"-\"\n\
+                        \"ALM\",\"Alarm\",\"\",\"\",\n\"Time\",\"CH-1[V]\",\"CH-2[V]\",\n";
+            table(head, |i| {
+                format!("{},{}, {},", fixed(at(0.0, i), 5), sci(value(0, i), 5, 2), sci(value(1, i), 5, 2))
+            })
+        },
+        outcome: read(
+            &[ch("CH-1", "V", 0, 1.0, 5e-6), ch("CH-2", "V", 1, 1.0, 5e-6)],
+            X::Even(0.0),
+            &["axis-unit-assumed"],
+        ),
+    },
+    Dialect {
+        of: "Thorlabs TSP",
+        oddity: "`--.---` where a sensor is missing",
+        file: "tsp.csv",
+        text: || {
+            table("Time [s];Force [N]\n", |i| {
+                let force = if i == 7 { "--.---".to_owned() } else { fixed(value(0, i), 3) };
+                format!("{};{force}", fixed(at(0.0, i), 5))
+            })
+        },
+        outcome: super::Outcome::Refused(super::Refusal {
+            words: &["line 9", "1 missing value(s)"],
+            option: "`--allow-missing`",
+            state: |reader| reader.allow_missing(true),
+            edit: |text| text,
+            right: super::Right {
+                channels: &[ch("Force", "N", 0, 1.0, 5e-4)],
+                x: X::Even(0.0),
+                findings: &["missing-kept"],
+            },
+        }),
+    },
+    Dialect {
         of: "DATAQ WinDaq",
         oddity: "relative time beside date and time of day",
         file: "windaq.csv",

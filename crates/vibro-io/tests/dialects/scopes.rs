@@ -175,6 +175,17 @@ pub const ALL: &[Dialect] = &[
         outcome: read(&[ch("column 1", "V", 0, 1.0, U)], X::Even(START), &[]),
     },
     Dialect {
+        of: "Keysight Infiniium, spectrum",
+        oddity: "`XUnits:,Hertz`: `XInc:` is the distance of the lines",
+        file: "wavef.csv",
+        text: || {
+            let head =
+                infiniium().replace("XUnits:,second", "XUnits:,Hertz").replace("XOrg:,-5e-3", "XOrg:,0");
+            table(&head.replace("XInc:,5e-4", "XInc:,12.5"), |i| u(0, i))
+        },
+        outcome: read(&[ch("column 1", "V", 0, 1.0, U)], X::Lines(12.5), &["scaling-unsaid"]),
+    },
+    Dialect {
         of: "LeCroy WaveRunner, spreadsheet",
         oddity: "`Time,Ampl` without units below four lines of segments",
         file: "C1Trace00000.csv",
@@ -279,6 +290,17 @@ pub const ALL: &[Dialect] = &[
                 findings: &["missing-kept"],
             },
         }),
+    },
+    Dialect {
+        of: "PicoScope 6, text",
+        oddity: "`(µs)` below the names, between tabs",
+        file: "20200124-0002.txt",
+        text: || {
+            table("Time\tChannel A\n(µs)\t(V)\n\n", |i| {
+                format!("{}\t{}", fixed(1e6 * at(START, i), 3), fixed(value(0, i), 3))
+            })
+        },
+        outcome: read(&[ch("Channel A", "V", 0, 1.0, 5e-4)], X::Even(START), &[]),
     },
     Dialect {
         of: "Digilent WaveForms",

@@ -124,6 +124,21 @@ pub const ALL: &[Dialect] = &[
         outcome: read(&[ch("column 1", "m/s²", 0, 1.0, 5e-8)], X::Even(0.0), &["axis-unit-assumed"]),
     },
     Dialect {
+        of: "Metra VibroMetra, VM-REC",
+        oddity: "`SampleRate=2000` and `UnitName_1=…` above columns without names",
+        file: "VM-REC.txt",
+        text: || {
+            let head = "Version=1.8\nPretrigger=0\nSampleRate=2000\nNumChannels=2\nInputName_1=Lager 12\nUnitName_1=m/s²\nInputName_2=Griff\n\
+                        UnitName_2=m/s²\nDataType=text\n";
+            table(head, |i| format!("{}\t{}", fixed(value(0, i), 5), fixed(value(1, i), 5)))
+        },
+        outcome: read(
+            &[ch("column 1", "", 0, 1.0, 5e-6), ch("column 2", "", 1, 1.0, 5e-6)],
+            X::Even(0.0),
+            &["two-channels", "unit-unsaid"],
+        ),
+    },
+    Dialect {
         of: "Siemens Testlab, text",
         oddity: "a row of names, then a row of units that begins with `s`, old code page",
         file: "Throughput.txt",
