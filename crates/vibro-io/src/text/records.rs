@@ -35,10 +35,14 @@ pub fn build(
     let columns = rows.columns.into_iter().zip(names).enumerate();
     let mut table: Vec<Column> =
         columns.map(|(i, (values, name))| Column { at: i + 1, name, values }).collect();
+    let numbered = made.numbered(&table);
+    if numbered {
+        table.remove(0);
+    }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
     table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     // A column that only counts says nothing, unless there is no other.
-    let counts = table.len() > 1 && (is_table || table[0].at == 1) && table[0].counts();
+    let counts = is_table && table.len() > 1 && table[0].counts();
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
     // Where every channel has the time beside it, once is enough.
     let again =
@@ -46,6 +50,9 @@ pub fn build(
     table.retain(|column| !printed.as_ref().is_some_and(|axis| is_table && again(column, axis)));
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();
+    if numbered && !has_axis {
+        of_axis.push(Finding::caution("column-numbers-rows"));
+    }
     let mut axis = choose(printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
@@ -128,6 +135,14 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
+    /// Whether the first of plain columns only numbers the rows: the axis stands beside it or in the head.
+    fn numbered(&self, table: &[Column]) -> bool {
+        let beside = || table.len() > 2 && table[1].rises();
+        let headed = self.stated.rate.is_some() || self.stated.line_width.is_some();
+        let counts = table.len() > 1 && table[0].values.len() > 2 && table[0].name.name.is_empty();
+        !self.is_table && counts && table[0].counts() && (headed || beside())
+    }
+
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
@@ -142,19 +157,11 @@ impl Made<'_> {
             return self.dialect.named_abscissa().filter(is);
         }
         let pair = self.options.complex && table.len() == 2 && !self.dialect.complex;
-        if let Some(clock) = self.dialect.clock_at() {
-            return Some(clock);
+        let clock = table.iter().position(|column| Some(column.at - 1) == self.dialect.clock_at());
+        if clock.is_some() {
+            return clock;
         }
         let first = &table[0];
-        if table.len() > 1 && first.name.name.is_empty() && first.counts() && table[0].values.len() > 2 {
-            // Rows are numbered, and the axis stands beside the number or in the head.
-            if table.len() > 2 && table[1].rises() {
-                return Some(1);
-            }
-            if self.stated.rate.is_some() || self.stated.line_width.is_some() {
-                return None;
-            }
-        }
         let is = by_name(first) || (!pair && first.values.len() > 2 && first.rises());
         (table.len() > 1 && is).then_some(0)
     }

@@ -112,7 +112,7 @@ pub const ALL: &[Dialect] = &[
                 "Channel : CH1\nFrequency : 318.3Hz\nTime interval : 0.50000mS\n\n  #  CH1_Voltage(mV)\n";
             table(head, |i| format!("{i:5} {:>12}", fixed(1e3 * value(0, i), 2)))
         },
-        outcome: read(&[ch("CH1_Voltage", "V", 0, 1.0, 5e-6)], X::Even(0.0), &[]),
+        outcome: read(&[ch("CH1_Voltage", "V", 0, 1.0, 5e-6)], X::Even(0.0), &["column-numbers-rows"]),
     },
     Dialect {
         of: "Tektronix TDS2000",
