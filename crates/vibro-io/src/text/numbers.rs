@@ -94,16 +94,13 @@ fn is_row(line: &[u8]) -> bool {
             numbers += 1;
         } else {
             let neutral = number::is_missing(token) || matches!(token, b"+" | b"-" | b"->");
-            if !(neutral || timed && is_clock(token)) {
+            let timed = timed && std::str::from_utf8(token).is_ok_and(clock::is_clock);
+            if !(neutral || timed) {
                 return false;
             }
         }
     }
     numbers > 0
-}
-
-fn is_clock(token: &[u8]) -> bool {
-    std::str::from_utf8(token).is_ok_and(clock::is_clock)
 }
 
 /// Separator and decimal mark.

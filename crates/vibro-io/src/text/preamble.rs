@@ -27,11 +27,20 @@ const SOURCE: &[&str] = &["source", "tracename", "trace name", "signal", "signal
 const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units", "unit", "units"];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
+fn key(cell: &str) -> String {
+    cell.trim_end_matches(':').trim().replace('_', " ").to_lowercase()
+}
+
 impl Preamble {
     /// Of lines above the rows.
     pub fn of(lines: &[&Line], separator: Separator) -> Preamble {
         let cells = lines.iter().filter_map(|line| fields(line.text, separator).ok());
         Preamble(cells.map(|cells| cells.into_iter().map(|(_, cell)| cell.into_owned()).collect()).collect())
+    }
+
+    /// Whether a cell is a key whose values are those of columns.
+    pub fn is_of_columns(cell: &str) -> bool {
+        [SOURCE, UNIT, AXIS_UNIT].iter().any(|keys| keys.contains(&key(cell).as_str()))
     }
 
     /// Whether it holds names of columns.
@@ -48,8 +57,7 @@ impl Preamble {
 
     /// The values of the first of some keys.
     fn values(&self, keys: &[&str]) -> Option<&[String]> {
-        let key = |cells: &[String]| cells[0].trim_end_matches(':').trim().replace('_', " ").to_lowercase();
-        let found = self.0.iter().find(|cells| keys.contains(&key(cells).as_str()))?;
+        let found = self.0.iter().find(|cells| keys.contains(&key(&cells[0]).as_str()))?;
         found.get(1..).filter(|values| values.iter().any(|value| !value.is_empty()))
     }
 

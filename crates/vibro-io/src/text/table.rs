@@ -146,7 +146,10 @@ fn fit(
         names[0].unit = preamble.axis_unit();
     }
     let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
-    if !preamble.name(&mut names, rows.iter().flatten().all(whole)) && used.is_empty() {
+    let keyed = preamble.name(&mut names, rows.iter().flatten().all(whole));
+    // A row above is one of the values.
+    let is_row = |mark| row(spoken[0].text, mark, &Options::default()).is_some();
+    if used.is_empty() && (!keyed || matches!(separator, Separator::Char(mark) if is_row(mark))) {
         return None;
     }
     let last = spoken.get(used.end.max(1) - 1)?.number;
@@ -193,10 +196,11 @@ fn names_in(
     Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, n)| Name::parse(n)).collect())))
 }
 
-/// Whether a line stands above all columns, such as `Waveform Data`.
+/// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.
 fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
     let alone = line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
-    alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
+    let keyed = line.len() > width && Preamble::is_of_columns(&line[0].1);
+    keyed || alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
 }
 
 /// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its end that the row has no value for.
