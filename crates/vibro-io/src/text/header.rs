@@ -121,7 +121,6 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "rate"
         | "abtastrate"
         | "abtastfrequenz"
-        | "messrate"
         | "fréquence d'échantillonnage" => {
             stated.rate = hertz().or(stated.rate);
         }
@@ -138,9 +137,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "xinc"
         | "x axis delta"
         | "hresolution"
-        | "horizontal interval"
-        | "abtastintervall"
-        | "période d'échantillonnage" => {
+        | "horizontal interval" => {
             stated.rate =
                 quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
         }
