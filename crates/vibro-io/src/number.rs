@@ -13,6 +13,25 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
+/// What instruments print in place of a value that is missing or over-range, in lower case.
+const MISSING: [&str; 15] = [
+    "nan",
+    "inf",
+    "infinity",
+    "∞",
+    "na",
+    "n/a",
+    "null",
+    "none",
+    "ol",
+    "over",
+    "overload",
+    "overrange",
+    "over range",
+    "ovld",
+    "burnout",
+];
+
 /// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives `None`.
 pub fn parse(text: &[u8]) -> Option<f64> {
     parse_with(text, b'.')
@@ -21,19 +40,37 @@ pub fn parse(text: &[u8]) -> Option<f64> {
 /// Parses one number with `decimal` as its decimal mark.
 pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     let text = text.trim_ascii();
-    let (value, used) = prefix(text, decimal)?;
-    (used == text.len()).then_some(value)
+    match prefix(text, decimal) {
+        Some((value, used)) if used == text.len() => Some(value),
+        Some(_) => ungrouped(text, decimal),
+        None => None,
+    }
 }
 
-/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `-`, `NA`, `1.#QNAN`, `***`, …
+/// A number whose digits stand in groups of three: between apostrophes or narrow blanks, or between the other mark where its own mark
+/// shows that it is the other.
+#[cold]
+fn ungrouped(text: &[u8], decimal: u8) -> Option<f64> {
+    let text = std::str::from_utf8(text).ok()?;
+    let mark = if decimal == b',' { '.' } else { ',' };
+    let own = char::from(decimal);
+    let group = text.find(['\'', '’', '\u{a0}', '\u{202f}', '\u{2009}', mark])?;
+    let group = text[group..].chars().next().filter(|group| *group != mark || text.contains(own))?;
+    let whole = text.split(own).next()?.trim_start_matches(['-', '+']);
+    let mut parts = whole.split(group);
+    let threes = (1..=3).contains(&parts.next()?.len()) && parts.all(|part| part.len() == 3);
+    if threes { parse_with(text.replace(group, "").as_bytes(), decimal) } else { None }
+}
+
+/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `--.--`, `NA`, `1.#QNAN`, `***`, `OVER`, …
 pub(crate) fn is_missing(text: &[u8]) -> bool {
     let text = text.trim_ascii();
     let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);
-    if text.is_empty() || text.iter().all(|b| *b == b'*') {
+    if [b"**", b"-.", b"++"].iter().any(|marks| text.iter().all(|b| marks.contains(b))) {
         return true;
     }
     let lower = text.to_ascii_lowercase();
-    matches!(lower.as_slice(), b"nan" | b"inf" | b"infinity" | b"na" | b"n/a" | b"null" | b"none")
+    MISSING.iter().any(|word| word.as_bytes() == lower)
         || lower.starts_with(b"nan(")
         || lower.starts_with(b"1.#")
 }

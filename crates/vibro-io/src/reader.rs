@@ -16,7 +16,7 @@ pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 /// finding in the record.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Options {
-    /// Keep NaN, Inf and blank values as missing (NaN) instead of refusing them.
+    /// Keep NaN, Inf, over-range and blank values as missing (NaN) instead of refusing them.
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace.
     pub rate: Option<f64>,
@@ -75,7 +75,7 @@ impl Reader {
         self
     }
 
-    /// Keeps NaN, Inf and blanks as missing values. Default: they are refused with their line numbers.
+    /// Keeps NaN, Inf, over-range words and blanks as missing values. Default: they are refused with their line numbers.
     pub fn allow_missing(mut self, allow: bool) -> Reader {
         self.options.allow_missing = allow;
         self

@@ -1,11 +1,12 @@
 //! Text of analysers, loggers and spreadsheets: dialect → rows → records.
 //!
 //! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut. It is found out from the first
-//! bytes: [`table`] knows tables with names above their columns, [`numbers`] plain columns of numbers. The dialect of another
-//! instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by
+//! bytes: [`table`] knows tables with names above their columns or behind the keys of a [`preamble`], [`numbers`] plain columns
+//! of numbers; both know a [`clock`]. The dialect of another instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by
 //! one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
 
 mod axis;
+mod clock;
 mod dialect;
 pub(crate) mod encoding;
 mod fast;
@@ -13,6 +14,7 @@ mod header;
 mod lines;
 pub(crate) mod names;
 mod numbers;
+mod preamble;
 mod records;
 mod rows;
 mod table;

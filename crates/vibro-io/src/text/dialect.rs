@@ -1,8 +1,10 @@
 //! How a text of numbers is laid out, as data.
 
+use super::clock;
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::Name;
 use crate::Format;
+use std::ops::Range;
 
 /// How rows are to be cut and read, and what stands above them.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +21,8 @@ pub struct Dialect {
     pub columns: usize,
     /// Columns before those, which hold a preamble beside the first rows.
     pub skipped: usize,
+    /// Cells of date and time behind those, which count as one column.
+    pub clock: Option<Range<usize>>,
     /// One a column, where the text has them.
     pub names: Option<Vec<Name>>,
     /// What begins a remark.
@@ -56,7 +60,13 @@ impl Dialect {
     /// The column of a table that its name makes the abscissa.
     pub(crate) fn named_abscissa(&self) -> Option<usize> {
         let names = self.names.as_deref().filter(|_| self.format == Format::Csv)?;
-        names.iter().enumerate().find_map(|(i, name)| name.axis(i == 0).map(|_| i))
+        let named = |i: &usize| names[*i].axis(*i == 0).is_some() && self.clock_at() != Some(*i);
+        (0..names.len()).find(named).or(self.clock_at())
+    }
+
+    /// The column of date and time.
+    pub(crate) fn clock_at(&self) -> Option<usize> {
+        self.clock.as_ref().map(|cells| cells.start)
     }
 
     /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not count.
@@ -70,6 +80,10 @@ impl Dialect {
         }
         let mut fields = fields(line.text, self.separator)?;
         fields.drain(..self.skipped.min(fields.len()));
+        if let Some(cells) = self.clock.clone().filter(|cells| cells.end <= fields.len()) {
+            let whole = (fields[cells.start].0, clock::joined(&fields[cells.clone()]).into());
+            fields.splice(cells, [whole]);
+        }
         while fields.len() > self.columns && fields.last().is_some_and(|(_, f)| f.is_empty()) {
             fields.pop();
         }

@@ -39,18 +39,27 @@ impl Stated {
     /// Reads header lines.
     pub fn of<'a>(lines: impl Iterator<Item = &'a str>) -> Stated {
         let mut stated = Stated::default();
+        let mut lines_apart = false;
         for line in lines {
             // `NPTS= 6000, DT= .01 SEC` are two statements.
             let several = line.split(',').all(|part| part.contains('='));
             for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
                 let (key, value) = split(line.trim());
                 stated.notes.push((key.to_owned(), value.to_owned()));
+                let key = key.to_lowercase();
+                let of_axis = ["x-axis unit", "x axis unit", "xunits", "hunit", "horizontal units"];
+                lines_apart |= of_axis.contains(&key.as_str()) && matches!(value, "Hz" | "Hertz" | "hertz");
                 if key.is_empty() {
                     free_text(line, &mut stated);
                 } else {
-                    keyed(&key.to_lowercase(), value, &mut stated);
+                    keyed(&key, value, &mut stated);
                 }
             }
+        }
+        if lines_apart {
+            let step = stated.rate.take().map(|rate| 1.0 / rate);
+            stated.line_width =
+                step.filter(|_| stated.start.is_none_or(|start| start == 0.0)).or(stated.line_width);
         }
         stated
     }
@@ -77,7 +86,8 @@ impl Stated {
 pub fn split(line: &str) -> (&str, &str) {
     let at = line.find([':', '=']).filter(|at| {
         let key = line[..*at].trim();
-        !key.is_empty() && !key.ends_with(|c: char| c.is_ascii_digit()) && key.len() <= 40
+        let time = line[*at..].starts_with(':') && key.ends_with(|c: char| c.is_ascii_digit());
+        !key.is_empty() && !time && key.len() <= 40
     });
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
@@ -89,8 +99,11 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         None => (key, ""),
     };
     let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
-    let hertz =
-        || quantity(value, unit_in_key, &[("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)]);
+    let hertz = || {
+        // Samples a second are written `S/s`, `Sa/s` and `Sps`.
+        let value = value.to_lowercase().replace("sa/s", "hz").replace("sps", "hz").replace("s/s", "hz");
+        quantity(&value, unit_in_key, &[("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)])
+    };
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
@@ -99,9 +112,17 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
             stated.base_band = hertz();
         }
-        "sampling rate" | "sample rate" | "sampling frequency" | "sample frequency" | "samplerate" | "fs"
-        | "rate" => {
-            stated.rate = hertz();
+        "sampling rate"
+        | "sample rate"
+        | "sampling frequency"
+        | "sample frequency"
+        | "samplerate"
+        | "fs"
+        | "rate"
+        | "abtastrate"
+        | "abtastfrequenz"
+        | "fréquence d'échantillonnage" => {
+            stated.rate = hertz().or(stated.rate);
         }
         "dt"
         | "delta t"
@@ -113,21 +134,32 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "increment"
         | "tinc"
         | "x increment"
+        | "xinc"
+        | "x axis delta"
+        | "hresolution"
         | "horizontal interval" => {
-            stated.rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
+            stated.rate =
+                quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
         }
-        "npts" | "number of points" | "number of samples" | "record length" => {
+        // Without a unit these may be anything.
+        "clock" | "interval" | "time interval" if value.ends_with(char::is_alphabetic) => {
+            stated.rate = quantity(value, "", &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
+        }
+        "npts" | "number of points" | "number of samples" | "record length" | "memory length"
+        | "blocksize" | "total data points" => {
             stated.values = quantity(value, "", &[("", 1.0)]).and_then(line_count).map(|n| n as usize);
         }
-        "start" | "t0" | "x origin" => {
+        "start" | "t0" | "x origin" | "xorg" | "hoffset" => {
             let parsed = scaled(value, unit_in_key, &SECONDS);
             stated.start = parsed.filter(|start| *start == 0.0 || checked(start.abs()).is_some());
         }
         "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
             stated.line_width = hertz();
         }
-        "unit" | "units" | "y unit" | "yunit" | "amplitude unit" | "engineering unit" => {
-            stated.unit = Some(value.trim_matches(['[', ']']).to_owned()).filter(|v| !v.is_empty());
+        "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "amplitude unit"
+        | "engineering unit" => {
+            let unit = Some(value.trim_matches(['[', ']']).to_owned());
+            stated.unit = unit.filter(|v| !v.is_empty() && !v.contains(';'));
         }
         "window" | "weighting" | "window type" => {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
@@ -140,7 +172,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     }
 }
 
-/// Lines without a key: `20 Hz 400 lines`.
+/// Lines without a key: `20 Hz 400 lines`, `64 samples, 2000 sps`.
 fn free_text(line: &str, stated: &mut Stated) {
     let words: Vec<String> = line.split_whitespace().map(str::to_lowercase).collect();
     let before = |name: &str| {
@@ -151,6 +183,10 @@ fn free_text(line: &str, stated: &mut Stated) {
         words.windows(3).find(|w| matches!(w[0].as_str(), "units" | "unit") && w[1] == "of")
     {
         stated.unit = Some(unit.trim_end_matches(['.', ',', ';']).to_owned());
+    }
+    if let Some(rate) = before("sps").and_then(checked) {
+        stated.rate = Some(rate);
+        stated.values = before("samples").and_then(line_count).map(|n| n as usize);
     }
     let (band, lines) = (before("hz").and_then(checked), before("lines").and_then(line_count));
     if band.is_some() && lines.is_some() {

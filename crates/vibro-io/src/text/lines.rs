@@ -3,6 +3,7 @@
 //! The crate `csv` is not used here: it reads `"2"3` as 23, lets a stray quote swallow the rest of a file, and does not say
 //! in which column of a line a field stands.
 
+use super::clock;
 use super::dialect::Separator;
 use std::borrow::Cow;
 
@@ -91,13 +92,16 @@ fn quoted(bytes: &[u8]) -> Option<usize> {
     }
 }
 
+/// What serial monitors put behind the computer's clock.
+const ARROW: &str = " -> ";
+
 /// Cuts a line into fields; blanks around a field do not count.
 ///
 /// # Errors
 /// The byte at which something stands behind a closing quote.
 pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
     let Separator::Char(mark) = separator else {
-        let words = line.split([' ', '\t', '\r']).filter(|w| !w.is_empty());
+        let words = line.split([' ', '\t', '\r']).filter(|w| !w.is_empty() && *w != ARROW.trim());
         return Ok(words.map(|w| (w.as_ptr() as usize - line.as_ptr() as usize, w.into())).collect());
     };
     let mark = char::from(mark);
@@ -117,10 +121,12 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
             blanks + length + behind
         } else {
             let end = rest.find(mark).unwrap_or(rest.len());
-            let field = &rest[..end];
+            let arrow = if rest.as_bytes()[..end].contains(&b'>') { rest[..end].find(ARROW) } else { None };
+            let arrow = arrow.filter(|arrow| clock::is_clock(rest[..*arrow].trim()));
+            let field = &rest[..arrow.unwrap_or(end)];
             let trimmed = field.trim_start();
             fields.push((at + field.len() - trimmed.len(), trimmed.trim_end().into()));
-            end
+            arrow.map_or(end, |arrow| arrow + ARROW.len() - 1)
         };
         if at + end >= line.len() {
             return Ok(fields);

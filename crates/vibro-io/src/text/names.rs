@@ -23,25 +23,39 @@ pub enum Part {
 }
 
 impl Name {
-    /// Reads `velocity [mm/s]`, `velocity (mm/s)`, `velocity / mm/s`, `velocity, mm/s`, `velocity mm/s` and `velocity_mm/s`.
+    /// Reads `velocity [mm/s]`, `velocity (mm/s)`, `velocity / mm/s`, `velocity, mm/s`, `velocity in mm/s`, `velocity mm/s` and
+    /// `velocity_mm/s`.
     ///
     /// Text in square brackets is the unit, known or not. In every other spelling it must be a known unit; behind a blank
     /// or an underscore it must also be one that cannot be part of a name.
     pub fn parse(text: &str) -> Name {
         let text = text.trim();
-        if let Some((name, unit)) = bracketed(text, '[', ']') {
+        // `Y[0]` is the name of one of several.
+        let numbered = |(name, unit): &(&str, &str)| {
+            unit.bytes().all(|b| b.is_ascii_digit())
+                && name.ends_with(|c: char| c.is_alphanumeric())
+                && !unit.is_empty()
+        };
+        if let Some((name, unit)) = bracketed(text, '[', ']').filter(|found| !numbered(found)) {
             let unit = Some(symbol(unit.trim()).to_owned()).filter(|u| !u.is_empty());
             return Name { name: name.trim_end().to_owned(), unit };
         }
         let known = |name: &str, unit: &str| {
             let (name, unit) = (name.trim_end(), symbol(unit.trim()));
-            (!name.is_empty() && (Unit::parse(unit).is_some() || unit == HOUR))
+            // `X (100g)` is a sensor of that range.
+            let multiple = unit.starts_with(|c: char| c.is_ascii_digit()) && !unit.starts_with("1/");
+            (!name.is_empty() && !multiple && (Unit::parse(unit).is_some() || unit == HOUR))
                 .then(|| Name { name: name.to_owned(), unit: Some(unit.to_owned()) })
         };
         text.split_once(" / ")
             .and_then(|(name, unit)| known(name, unit))
             .or_else(|| bracketed(text, '(', ')').and_then(|(name, unit)| known(name, unit)))
             .or_else(|| text.split_once(", ").and_then(|(name, unit)| known(name, unit)))
+            .or_else(|| text.rsplit_once(" in ").and_then(|(name, unit)| known(name, unit)))
+            .or_else(|| {
+                let whole = WHOLE.iter().find(|(said, _)| text.eq_ignore_ascii_case(said));
+                whole.map(|(_, unit)| Name { name: "time".to_owned(), unit: Some((*unit).to_owned()) })
+            })
             .or_else(|| {
                 let (name, unit) = text.rsplit_once([' ', '_'])?;
                 known(name, unit).filter(|_| cannot_be_name(name, symbol(unit)))
@@ -116,7 +130,20 @@ impl Name {
         let key = key.trim_end_matches('.');
         let named = matches!(
             key,
-            "" | "#" | "index" | "i" | "n" | "no" | "nr" | "sample" | "samples" | "sample no" | "point"
+            "" | "#"
+                | "index"
+                | "i"
+                | "n"
+                | "no"
+                | "nr"
+                | "number"
+                | "record"
+                | "row"
+                | "scan"
+                | "sample"
+                | "samples"
+                | "sample no"
+                | "point"
         );
         self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
     }
@@ -193,8 +220,12 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
 /// Names of an abscissa that do not say of what: it rises, or it is none.
 const ABSCISSAE: [&str; 3] = ["x", "x-axis", "x axis"];
 
+/// Names of a time that are its unit.
+const WHOLE: [(&str, &str); 5] =
+    [("in s", "s"), ("millis", "ms"), ("millis()", "ms"), ("micros", "µs"), ("micros()", "µs")];
+
 /// What stands in place of a unit over numbered samples.
-const COUNTERS: [&str; 3] = ["sequence", "samples", "points"];
+const COUNTERS: [&str; 5] = ["sequence", "samples", "points", "no.", "rn"];
 
 /// Hours have no symbol among the units of values.
 const HOUR: &str = "hour";

@@ -10,7 +10,7 @@
 
 use super::dialect::{Dialect, Separator};
 use super::lines::{Line, Lines, fields};
-use super::{Text, in_line, names, shorten};
+use super::{Text, clock, in_line, names, shorten};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
@@ -60,7 +60,15 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     };
     let whole = imaginary(first.text.trim());
     let complex = whole || cells.iter().any(|(_, c)| imaginary(c));
-    let columns = if whole && separator == Separator::Blank { 1 } else { cells.len() };
+    let clock = clock::columns(&cells);
+    let joined = clock.as_ref().map_or(0, |cells| cells.len() - 1);
+    let columns = if whole && separator == Separator::Blank { 1 } else { cells.len() - joined };
+    // The number of a row has often no name.
+    let number = |line: &Line| number::parse(fields(line.text, separator).ok()?.first()?.1.as_bytes());
+    let counted = || rows.windows(2).all(|w| number(&w[0]).map(|n| n + 1.0) == number(&w[1]));
+    let named = |columns| names::above(&header, columns, separator);
+    let unnumbered = || named(columns.checked_sub(1).filter(|n| *n > 0 && counted())?);
+    let behind = |names: Vec<names::Name>| [vec![names::Name::default()], names].concat();
     Ok(Dialect {
         format: Format::Ascii,
         separator,
@@ -68,7 +76,8 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
         complex,
         columns,
         skipped: 0,
-        names: names::above(&header, columns, separator),
+        clock,
+        names: named(columns).or_else(|| unnumbered().map(behind)),
         remarks: REMARKS,
         columns_from: first.number,
         first_line: first.number,
@@ -78,12 +87,17 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
 
 /// Whether every token of a line is a number, a piece of a complex number or a missing value, and at least one is a number.
 fn is_row(line: &[u8]) -> bool {
+    let timed = line.contains(&b':');
     let mut numbers = 0;
     for token in line.split(|b| b" \t,;\r".contains(b)).filter(|t| !t.is_empty()) {
         if number::parse(token).is_some() || complex(token, b'.').is_some() {
             numbers += 1;
-        } else if !number::is_missing(token) && !matches!(token, b"+" | b"-") {
-            return false;
+        } else {
+            let neutral = number::is_missing(token) || matches!(token, b"+" | b"-" | b"->");
+            let timed = timed && std::str::from_utf8(token).is_ok_and(clock::is_clock);
+            if !(neutral || timed) {
+                return false;
+            }
         }
     }
     numbers > 0

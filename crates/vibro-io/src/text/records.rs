@@ -35,12 +35,24 @@ pub fn build(
     let columns = rows.columns.into_iter().zip(names).enumerate();
     let mut table: Vec<Column> =
         columns.map(|(i, (values, name))| Column { at: i + 1, name, values }).collect();
+    let numbered = made.numbered(&table);
+    if numbered {
+        table.remove(0);
+    }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
+    table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     // A column that only counts says nothing, unless there is no other.
     let counts = is_table && table.len() > 1 && table[0].counts();
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
+    // Where every channel has the time beside it, once is enough.
+    let again =
+        |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
+    table.retain(|column| !printed.as_ref().is_some_and(|axis| is_table && again(column, axis)));
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();
+    if numbered && !has_axis {
+        of_axis.push(Finding::caution("column-numbers-rows"));
+    }
     let mut axis = choose(printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
@@ -52,6 +64,11 @@ pub fn build(
     let declared = lines.map(|lines| lines as usize + 1).filter(|all| n != *all && n + 1 != *all);
     if let Some(declared) = declared {
         of_axis.push(Finding::caution("fewer-lines").count("declared", declared).count("n", n));
+    }
+    if let Some(declared) =
+        made.stated.values.filter(|declared| *declared != n && axis.kind != AxisKind::Frequency)
+    {
+        of_axis.push(Finding::caution("fewer-values").count("declared", declared).count("n", n));
     }
     if table.len() == 2 && !has_axis && dialect.names.is_none() && !options.complex {
         of_axis.push(Finding::caution("two-channels"));
@@ -73,6 +90,9 @@ pub fn build(
     }
     Ok(records)
 }
+
+/// Seconds since 1970 of a measurement: from 2001 to 2096.
+const EPOCH: std::ops::Range<f64> = 1e9..4e9;
 
 struct Column {
     /// Place in the row, counted from 1.
@@ -115,6 +135,14 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
+    /// Whether the first of plain columns only numbers the rows: the axis stands beside it or in the head.
+    fn numbered(&self, table: &[Column]) -> bool {
+        let beside = || table.len() > 2 && table[1].rises();
+        let headed = self.stated.rate.is_some() || self.stated.line_width.is_some();
+        let counts = table.len() > 1 && table[0].values.len() > 2 && table[0].name.name.is_empty();
+        !self.is_table && counts && table[0].counts() && (headed || beside())
+    }
+
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
@@ -123,9 +151,16 @@ impl Made<'_> {
                 && column.reals().iter().all(|v| v.is_finite())
         };
         if self.is_table {
-            return self.dialect.named_abscissa().filter(|at| by_name(&table[*at]) || table[*at].rises());
+            let is = |at: &usize| {
+                by_name(&table[*at]) || table[*at].rises() || self.dialect.clock_at() == Some(*at)
+            };
+            return self.dialect.named_abscissa().filter(is);
         }
         let pair = self.options.complex && table.len() == 2 && !self.dialect.complex;
+        let clock = table.iter().position(|column| Some(column.at - 1) == self.dialect.clock_at());
+        if clock.is_some() {
+            return clock;
+        }
         let first = &table[0];
         let is = by_name(first) || (!pair && first.values.len() > 2 && first.rises());
         (table.len() > 1 && is).then_some(0)
@@ -133,11 +168,14 @@ impl Made<'_> {
 
     /// Axis from its column, and what is to be said of it.
     fn printed(&self, column: &Column, others: &[Column]) -> Result<Printed> {
+        let at = format!("column {}", column.at);
         let (name, label) = match column.name.name.as_str() {
-            "" => ("first column", "first column".to_owned()),
+            "" if column.at == 1 => ("first column", "first column".to_owned()),
+            "" => (at.as_str(), at.clone()),
             name => (name, format!("column {name:?}")),
         };
-        let by_name = column.name.axis(column.at == 1);
+        let clock = self.dialect.clock_at() == Some(column.at - 1);
+        let by_name = if clock { Some(AxisKind::Time) } else { column.name.axis(column.at == 1) };
         let values = column.reals();
         let (kind, factor, assumed) = match (&by_name, self.domain(values.len())) {
             (Some(kind), _) => {
@@ -152,12 +190,25 @@ impl Made<'_> {
                 (AxisKind::Other(name.to_owned()), 1.0, Some(Finding::caution("axis-kind-unsaid")))
             }
         };
-        // Instruments print times of single precision, too.
+        let epoch = values.first().filter(|_| !clock && kind == AxisKind::Time && column.name.unit.is_none());
+        let epoch = epoch.and_then(|first| {
+            let since_1970 = |(_, factor): &&(&str, f64)| EPOCH.contains(&(first * factor));
+            [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].iter().find(since_1970).copied()
+        });
+        let (from, factor) = epoch.map_or((0.0, factor), |(_, factor)| (values[0], factor));
+        let assumed = match epoch {
+            Some((unit, _)) => Some(Finding::caution("axis-epoch").name("unit", unit)),
+            None if clock => Some(Finding::note("axis-clock")),
+            None => assumed,
+        };
+        // Instruments print times of single precision, too; that has no steps finer than its last digit.
         let largest = values.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
-        let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1)
-            .max(largest * f64::from(f32::EPSILON) / 2.0);
+        let single = largest * f64::from(f32::EPSILON) / 2.0;
+        let finer = values.windows(2).all(|w| (w[1] - w[0]).abs() < single);
+        let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
+        let own = own.max(if finer { largest * f64::EPSILON } else { single });
         one_clock(&kind, column, (factor, own), others)?;
-        let values = values.iter().map(|v| v * factor).collect();
+        let values = values.iter().map(|v| (v - from) * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
         let findings = assumed.into_iter().chain(finding).collect();

@@ -1,5 +1,6 @@
 //! The careful path: one row after the other, each complaint with its line and column.
 
+use super::clock::Clock;
 use super::dialect::Dialect;
 use super::lines::{Fields, Line};
 use super::numbers::complex;
@@ -33,6 +34,7 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     let mut rows = Rows::default();
     let mut columns: Vec<Vec<Complex64>> = vec![Vec::new(); n];
     let (mut missing, mut blank_since) = (Missing::default(), None);
+    let (mut clock, clock_at) = (Clock::default(), dialect.clock_at());
     for line in dialect.rows(text) {
         if line.is_blank() {
             blank_since.get_or_insert(line.number);
@@ -60,11 +62,14 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
             }
         }
         for (i, ((at, field), values)) in fields.iter().zip(&mut columns).enumerate() {
-            if let Some(value) = reader.value(field) {
+            let timed = clock_at == Some(i);
+            if let Some(value) =
+                if timed { clock.seconds(field).map(Into::into) } else { reader.value(field) }
+            {
                 values.push(value);
                 continue;
             }
-            if !reader.is_missing(field) {
+            if timed || !reader.is_missing(field) {
                 return Err(reader.not_a_number(&line, *at, field));
             }
             if abscissa == Some(i) {
@@ -78,7 +83,8 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
             values.push(MISSING);
         }
     }
-    rows.missing = missing.check("missing value(s) (NaN, Inf or blank) in line(s)", allow_missing)?;
+    rows.missing =
+        missing.check("missing value(s) (NaN, Inf, over-range or blank) in line(s)", allow_missing)?;
     let kind = |values: Vec<Complex64>| {
         if dialect.complex {
             Values::Complex(values)

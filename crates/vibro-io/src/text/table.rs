@@ -11,19 +11,22 @@
 //! record.
 
 use super::Text;
+use super::clock;
 use super::dialect::{Dialect, Separator};
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::{Name, is_unit_row, unit_word};
+use super::preamble::{BESIDE, Preamble, beside, beside_rows, said};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
 
 const REMARKS: &[&str] = &["#", "%"];
 
-/// Rows that have a preamble beside them, at most.
-const BESIDE: usize = 40;
+/// Lines between rows and their names, at most, with the names.
+const DEEPEST: usize = 4;
 
 /// Finds the first row of numbers with names right above it; `None` where there is none.
 ///
@@ -41,16 +44,16 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
             let of =
                 |n: usize| rows.iter().filter(move |(_, count)| count.is_some_and(|c| (c > 1) == (n > 1)));
             for (separator, count) in of(2) {
-                match fit(&above, line, *separator, count.unwrap_or(0)) {
+                match fit(&above, line, *separator, count.unwrap_or(0), &text.head) {
                     Some((found, true)) => return Some(decided(found, text, options)),
                     found => misfit = misfit.or(found.map(|(found, _)| found)),
                 }
             }
             // One column last: `1,5` under `a,b` is no decimal comma.
+            let alone = |(separator, _): &(Separator, _)| fit(&above, line, *separator, 1, &text.head);
             if text.called_csv()
                 && misfit.is_none()
-                && let Some((separator, _)) = of(1).next()
-                && let Some((found, true)) = fit(&above, line, *separator, 1)
+                && let Some((found, true)) = of(1).find_map(alone)
             {
                 return Some(decided(found, text, options));
             }
@@ -60,66 +63,27 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     misfit.filter(|_| text.called_csv()).map(|found| decided(found, text, options))
 }
 
-/// A preamble in the first columns of the first rows, as oscilloscopes of Tektronix write it: key, value and unit, then time and value, with
-/// nothing before them further down.
-fn beside_rows(text: &Text) -> Option<Dialect> {
-    let separator = Separator::Char(b',');
-    let lines = Lines::new(&text.head, 0, 1, &[]).filter(|line| !line.is_blank()).take(BESIDE);
-    let rows: Vec<(u64, Fields)> =
-        lines.map_while(|l| Some((l.number, fields(l.text, separator).ok()?))).collect();
-    let number = |field: &(usize, Cow<str>)| number::parse(field.1.as_bytes()).is_some();
-    let blank = |field: &&(usize, Cow<str>)| field.1.is_empty();
-    let (first_line, first) = rows.first()?;
-    let last = &rows.last()?.1;
-    let skipped = last.iter().take_while(blank).count();
-    let columns = last.len().checked_sub(skipped)?
-        - last.iter().rev().take_while(blank).count().min(last.len() - skipped);
-    let whole = |row: &Fields| {
-        row.get(skipped..skipped + columns).is_some_and(|cells| cells.iter().all(number))
-            && row.iter().skip(skipped + columns).all(|field| blank(&field))
-    };
-    let keyed = first.first().is_some_and(|(_, key)| key.contains(char::is_alphabetic));
-    if skipped < 2 || columns == 0 || !keyed || !rows.iter().all(|(_, row)| whole(row)) {
-        return None;
-    }
-    let cells =
-        rows.iter().map(|(_, row)| row[..skipped].iter().map(|(_, f)| f.trim()).filter(|f| !f.is_empty()));
-    let said: Vec<Vec<&str>> =
-        cells.map(Iterator::collect).filter(|cells: &Vec<&str>| cells.len() > 1).collect();
-    let value = |key: &str| {
-        said.iter().find(|cells| cells[0].eq_ignore_ascii_case(key)).map(|cells| cells[1].to_owned())
-    };
-    let name = |name: Option<String>, unit| Name { name: name.unwrap_or_default(), unit: value(unit) };
-    let names = match columns {
-        2 => vec![name(Some("time".to_owned()), "horizontal units"), name(value("source"), "vertical units")],
-        _ => vec![Name::default(); columns],
-    };
-    Some(Dialect {
-        format: Format::Csv,
-        separator,
-        decimal: b'.',
-        complex: false,
-        columns,
-        skipped,
-        names: Some(names),
-        remarks: &[],
-        header: said.iter().map(|cells| format!("{}: {}", cells[0], cells[1..].join(" "))).collect(),
-        columns_from: *first_line,
-        first_line: *first_line,
-    })
-}
-
-/// Number of fields, where all are numbers or missing and at least one is a number.
+/// Number of fields, where all are numbers or missing or a clock and at least one is a number.
 fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let fields = fields(text, Separator::Char(mark)).ok()?;
+    let clock = clock::columns(&fields).unwrap_or(0..0);
     let point = options.decimal_comma != Some(true);
     let comma = options.decimal_comma != Some(false) && mark != b',';
+    // A preamble may say `Overload, 0`; one number with both marks is asked about.
+    let word = |text: &str| {
+        text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.to_lowercase().starts_with("nan")
+    };
+    let doubtful =
+        fields.len() == 1 && text.contains(',') && text.contains('.') && options.decimal_comma.is_none();
+    if word(&fields[0].1) || doubtful {
+        return None;
+    }
     let mut numbers = 0;
-    for (_, field) in &fields {
+    for (i, (_, field)) in fields.iter().enumerate() {
         let field = field.as_bytes();
         let number =
             (point && number::parse(field).is_some()) || (comma && number::parse_with(field, b',').is_some());
-        if !number && !number::is_missing(field) {
+        if !number && !number::is_missing(field) && !clock.contains(&i) {
             return None;
         }
         numbers += usize::from(number);
@@ -127,90 +91,127 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     (numbers > 0).then_some(fields.len())
 }
 
-/// The dialect with the decimal mark: as stated, else the first comma or point in the rows, where commas do not separate.
+/// The dialect with the decimal mark: as stated, else the last comma or point of the first number that has one, where commas do not separate.
 fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
-    let mut rows = found.rows(&text.head).filter(|line| line.remark.is_none());
-    let mut first = || rows.find_map(|line| line.text.bytes().find(|b| matches!(b, b',' | b'.')));
-    let comma = options.decimal_comma.or_else(|| first().map(|mark| mark == b','));
+    let rows = found.rows(&text.head).filter(|line| line.remark.is_none());
+    let cells = rows.flat_map(|line| found.cut(&line).unwrap_or_default().into_iter().enumerate());
+    let mut marks = cells
+        .filter(|(i, _)| found.clock_at() != Some(*i))
+        .filter_map(|(_, (_, cell))| cell.bytes().rfind(|b| matches!(b, b',' | b'.')));
+    let comma = options.decimal_comma.or_else(|| marks.next().map(|mark| mark == b','));
     let comma = comma == Some(true) && found.separator != Separator::Char(b',');
+    drop(marks);
     Dialect { decimal: if comma { b',' } else { b'.' }, ..found }
 }
 
-/// The dialect with the names that stand in the last lines above `first`, and whether there are as many as columns.
-fn fit(above: &[Line], first: Line, separator: Separator, count: usize) -> Option<(Dialect, bool)> {
-    let mut spoken = above.iter().filter(|l| l.remark.is_none()).rev();
-    let last = spoken.next()?;
-    let values = fields(first.text, separator).ok()?;
-    let mut names = headings(last, separator, &values)?;
-    let mut upper = spoken.next().and_then(|l| Some((l, headings(l, separator, &values)?)));
+/// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and whether there are as many as
+/// columns.
+fn fit(
+    above: &[Line],
+    first: Line,
+    separator: Separator,
+    count: usize,
+    head: &str,
+) -> Option<(Dialect, bool)> {
+    let spoken: Vec<&Line> = above.iter().filter(|l| l.remark.is_none()).rev().collect();
+    let rows =
+        Lines::new(head, first.at, first.number, REMARKS).filter(|l| !l.is_blank() && l.remark.is_none());
+    let rows: Vec<Fields> = rows.take(BESIDE).map_while(|l| fields(l.text, separator).ok()).collect();
+    // Keys of a preamble may have a column of their own, which is empty below.
+    let skipped = usize::from(rows.len() > 1 && rows.iter().all(|row| row.len() > 1 && row[0].1.is_empty()));
+    let values = rows.first()?.get(skipped..)?;
     let width = values.iter().rposition(|(_, f)| !f.is_empty()).map_or(0, |last| last + 1);
-    let stated = beside(upper.as_mut().map(|(_, fields)| fields), &mut names, width);
+    let deepest = spoken.iter().take(DEEPEST);
+    let mut block: Vec<Fields> = deepest.map_while(|l| headings(l, separator, skipped, values)).collect();
+    let (lower, uppers) = block.split_first_mut()?;
+    let stated = beside(uppers.first_mut(), lower, width);
+    let clock = clock::columns(values).map(|cells| {
+        let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
+        cells.start..cells.end + usize::from(ms)
+    });
+    let preamble = Preamble::of(&spoken, separator);
+    let fits = |columns: usize| count - skipped == columns || width == columns;
+    let title = is_title(&block[0], width, &preamble);
+    let (used, mut names) =
+        names_in(&block, clock.as_ref(), title, fits).unwrap_or_else(|| (0..0, vec![Name::default(); width]));
     let columns = names.len();
-    if columns == 1 && count > 1 {
+    if columns == 1 && count > 1 && !used.is_empty() {
         return None;
     }
-    let fits = count == columns || width == columns;
-    let (line, names) = match upper {
-        Some((line, upper))
-            if upper.len() == columns
-                && named(&upper)
-                && is_unit_row(names.iter().map(|(_, f)| f.as_ref())) =>
-        {
-            let pairs = upper.iter().zip(&names);
-            (line, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect::<Vec<Name>>())
-        }
-        _ if named(&names) => {
-            // `Second,Volt` under a preamble: units, and no names.
-            let units: Option<Vec<Name>> = names.iter().map(|(_, n)| unit_word(n)).collect();
-            (last, units.unwrap_or_else(|| names.iter().map(|(_, n)| Name::parse(n)).collect()))
-        }
-        _ => return None,
-    };
-    let preamble = above.iter().filter(|l| *l != last && *l != line).map(|l| said(l, separator));
+    if let Some(cells) = clock.clone().filter(|cells| cells.end <= columns) {
+        names.splice(cells, [Name { name: "time".to_owned(), unit: Some("s".to_owned()) }]);
+    }
+    let begin = || rows.iter().map(|row| number::parse(row.get(skipped)?.1.as_bytes()));
+    if used.is_empty() && columns > 1 && begin().zip(begin().skip(1)).all(|(a, b)| a < b) {
+        names[0].unit = preamble.axis_unit();
+    }
+    let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
+    let keyed = preamble.name(&mut names, rows.iter().flatten().all(whole));
+    // A row above is one of the values.
+    let is_row = |mark| row(spoken[0].text, mark, &Options::default()).is_some();
+    if used.is_empty() && (!keyed || matches!(separator, Separator::Char(mark) if is_row(mark))) {
+        return None;
+    }
+    let last = spoken.get(used.end.max(1) - 1)?.number;
+    let used: Vec<u64> = spoken.get(used)?.iter().map(|line| line.number).collect();
+    let header = above.iter().filter(|l| !used.contains(&l.number)).map(|l| said(l, separator));
     let dialect = Dialect {
         format: Format::Csv,
         separator,
         decimal: b'.',
         complex: false,
-        columns,
-        skipped: 0,
+        columns: names.len(),
+        skipped,
+        clock,
         names: Some(names),
         remarks: REMARKS,
-        header: preamble.chain(stated).collect(),
-        columns_from: line.number,
+        header: header.chain(stated).collect(),
+        columns_from: last,
         first_line: first.number,
     };
-    Some((dialect, fits))
+    Some((dialect, fits(columns)))
 }
 
-/// Statements in cells beyond the `width` of the rows: a word over a number, `Start` over `-2e-3`, or `t0 = -5e-7`. They are taken out.
-fn beside(upper: Option<&mut Fields>, lower: &mut Fields, width: usize) -> Vec<String> {
-    let over = |upper: &Fields| {
-        let mut pairs = upper.iter().zip(&*lower).skip(width);
-        upper.len() == lower.len() && pairs.all(|(key, value)| is_pair(&key.1, &value.1))
+/// Which lines of a block, counted upwards, name the columns, and the names: a row of units below its names, perhaps above comments; or names
+/// alone.
+fn names_in(
+    block: &[Fields],
+    clock: Option<&Range<usize>>,
+    title: bool,
+    fits: impl Fn(usize) -> bool,
+) -> Option<(Range<usize>, Vec<Name>)> {
+    let is_units = |at: &usize| {
+        let (units, upper) = (&block[*at], &block[*at + 1]);
+        let outside = |i: &usize| !clock.is_some_and(|cells| cells.contains(i));
+        let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
+        units.len() == upper.len() && named(upper) && (*at == 0 || fits(units.len())) && is_unit_row(cells)
     };
-    if width == 0 || lower.len() <= width {
-        return Vec::new();
+    if let Some(at) = (0..block.len() - 1).find(is_units) {
+        let pairs = block[at + 1].iter().zip(&block[at]);
+        return Some((at..at + 2, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect()));
     }
-    match upper {
-        Some(upper) if over(upper) => {
-            let keys = upper.split_off(width).into_iter().zip(lower.split_off(width));
-            keys.map(|((_, key), (_, value))| format!("{key}: {value}")).collect()
-        }
-        _ if lower[width..].iter().all(|(_, f)| f.is_empty() || f.contains('=')) => {
-            lower.split_off(width).into_iter().map(|(_, field)| field.into_owned()).collect()
-        }
-        _ => Vec::new(),
-    }
+    let lower = block.first().filter(|lower| named(lower) && !title)?;
+    // `Second,Volt` under a preamble: units, and no names.
+    let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
+    Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, n)| Name::parse(n)).collect())))
 }
 
-fn is_pair(key: &str, value: &str) -> bool {
-    key.contains(char::is_alphabetic) && number::parse(value.as_bytes()).is_some()
+/// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.
+fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
+    let alone = line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
+    let keyed = line.len() > width && Preamble::is_of_columns(&line[0].1);
+    keyed || alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
 }
 
-/// The fields of a line above the row `values`, without a blank one at the end that the row has no value for.
-fn headings<'a>(line: &Line<'a>, separator: Separator, values: &Fields) -> Option<Fields<'a>> {
+/// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its end that the row has no value for.
+fn headings<'a>(
+    line: &Line<'a>,
+    separator: Separator,
+    skipped: usize,
+    values: &[(usize, Cow<str>)],
+) -> Option<Fields<'a>> {
     let mut fields = fields(line.text, separator).ok()?;
+    fields.drain(..skipped.min(fields.len()));
     let last = fields.len().checked_sub(1)?;
     let unused = values.get(last).is_none_or(|(_, v)| v.is_empty());
     if last > 0 && fields[last].1.is_empty() && unused {
@@ -229,20 +230,6 @@ fn named(fields: &Fields) -> bool {
         field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
     };
     !statement && fields.iter().any(|(_, f)| is_name(f))
-}
-
-/// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.
-fn said(line: &Line, separator: Separator) -> String {
-    if let Some(text) = line.remark {
-        return text.to_owned();
-    }
-    let Some(fields) = fields(line.text, separator).ok().filter(|_| !line.text.contains([':', '='])) else {
-        return line.text.trim().to_owned();
-    };
-    let mut cells = fields.iter().map(|(_, f)| f.trim()).filter(|f| !f.is_empty());
-    let key = cells.next().unwrap_or_default().to_owned();
-    let value = cells.collect::<Vec<_>>().join(" ");
-    if value.is_empty() { key } else { format!("{key}: {value}") }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The end of a text of numbers: whether it is cut off, and how precisely its abscissa is printed.
 
 use super::Text;
+use super::clock;
 use super::dialect::{Dialect, Separator};
 use super::lines::{Line, Lines};
 use crate::{Source, number};
@@ -69,9 +70,14 @@ pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) ->
     let mut digits = Digits::default();
     let mut take = |line: Line| {
         let fields = dialect.cut(&line).unwrap_or_default();
-        let field = fields.get(column).filter(|_| line.remark.is_none()).map(|(_, f)| f.as_bytes());
-        if let Some((field, value)) = field.and_then(|f| Some((f, number::parse_with(f, dialect.decimal)?))) {
-            digits.take(field, dialect.decimal, value);
+        let Some((_, field)) = fields.get(column).filter(|_| line.remark.is_none()) else { return };
+        let (field, decimal) = if dialect.clock_at() == Some(column) {
+            (clock::printed_seconds(field).into(), b'.')
+        } else {
+            (field.clone(), dialect.decimal)
+        };
+        if let Some(value) = number::parse_with(field.as_bytes(), decimal) {
+            digits.take(field.as_bytes(), decimal, value);
         }
     };
     dialect.rows(&text.head).for_each(&mut take);

@@ -387,6 +387,18 @@ fn a_preamble_in_the_first_columns() {
 }
 
 #[test]
+fn no_row_is_lost_below_keys() {
+    for (head, row) in
+        [("Source,CH1,CH2\nVertical Units,V,V\n", ""), ("\"TraceName\",\"CH1\",\"CH2\"\n", ",")]
+    {
+        let found = of(format!("{head}{row}0.5,0.25\n{row}1.5,0.75\n{row}1.0,0.5\n"));
+        let read: Vec<(&str, &[f64])> =
+            found.records.iter().map(|r| (r.meta().name.as_str(), values(r))).collect();
+        assert_eq!(read, [("CH1", &[0.5, 1.5, 1.0][..]), ("CH2", &[0.25, 0.75, 0.5][..])], "{head}");
+    }
+}
+
+#[test]
 fn names_and_units_of_oscilloscopes() {
     for (text, name, start, step) in [
         ("x-axis,1,2\nsecond,Volt,Volt\n-1.0E-03,-250.0000E-03,1\n-0.5E-03,1,2\n0,2,1\n", "1", -1e-3, 5e-4),

@@ -42,7 +42,8 @@ pub fn continues(columns: &[Values]) -> bool {
     }
     let columns = reals;
     if columns.len() < 3 || columns[0].len() < FEWEST {
-        return false;
+        // A file of one line is one series.
+        return columns.len() > FEWEST && columns[0].len() == 1;
     }
     let rows = columns[0].len().min(LOOK);
     let last = columns.len() - 1;

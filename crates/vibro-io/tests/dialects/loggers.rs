@@ -1,0 +1,343 @@
+//! Loggers and data acquisition.
+
+use super::signal::{at, clock, comma, fixed, sci, table, value, with_end};
+use super::{Dialect, X, ch, read};
+
+pub const ALL: &[Dialect] = &[
+    Dialect {
+        of: "Hioki LR8400, LR8450",
+        oddity: "eight lines of settings a channel, a column `Event` at the end",
+        file: "AUTO0001.CSV",
+        text: || {
+            let head = "\"File name\",\"AUTO0001.CSV\",\"V 1.00a\"\n\"Title comment\",\"\"\n\"Start trigger time\",\"'09-12-16 13:52:32\"\n\
+                        \"CH\",\"A 1- 1\",\"A 1- 2\",\n\"Mode\",\"Voltage\",\"Voltage\",\n\"Range\",\"10V\",\"10V\",\n\"Comment\",\"\",\"\",\n\
+                        \"Scaling\",\"OFF\",\"OFF\",\n\"Ratio\",\" 1.00000E+00\",\" 1.00000E+00\",\n\"Offset\",\" 0.00000E+00\",\" 0.00000E+00\"\n\
+                        \"Time\",\"1-1[V]\",\"1-2[mV]\",\"Event\",\n";
+            table(head, |i| {
+                let (a, b) = (sci(value(0, i), 5, 2), sci(1e3 * value(1, i), 5, 2));
+                format!("{}, {a}, {b},{:.0},", sci(at(0.0, i), 9, 2), 1e3 * value(2, i))
+            })
+        },
+        outcome: read(
+            &[ch("1-1", "V", 0, 1.0, 5e-6), ch("1-2", "V", 1, 1.0, 5e-6), ch("Event", "", 2, 1e3, 0.5e-3)],
+            X::Even(0.0),
+            &["axis-unit-assumed", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "Campbell TOA5",
+        oddity: "names, units and processing in three rows; a timestamp in quotes, a record number",
+        file: "CR1000X_Table1.dat",
+        text: || {
+            let head = "\"TOA5\",\"Bench\",\"CR1000X\",\"12345\",\"CR1000X.Std.03.02\",\"CPU:Bench.CR1X\",\"59064\",\"Table1\"\n\
+                        \"TIMESTAMP\",\"RECORD\",\"Accel_x\",\"Accel_y\"\n\"TS\",\"RN\",\"m/s^2\",\"g\"\n\"\",\"\",\"Smp\",\"Smp\"\n";
+            table(head, |i| {
+                format!(
+                    "\"2020-01-24 {}\",{i},{},{}",
+                    clock(12, 0.0, i, 4),
+                    fixed(value(0, i), 6),
+                    fixed(value(1, i), 6)
+                )
+            })
+        },
+        outcome: read(
+            &[ch("Accel_x", "m/s²", 0, 1.0, 5e-7), ch("Accel_y", "m/s²", 1, 9.80665, 5e-7)],
+            X::Even(0.0),
+            &["axis-clock"],
+        ),
+    },
+    Dialect {
+        of: "Graphtec GL",
+        oddity: "number, date and milliseconds in columns of their own; `+` before positive values",
+        file: "200124-120000.CSV",
+        text: || {
+            let head = "Vendor,GRAPHTEC Corporation\nModel,GL980\nVersion,Ver1.20\nSampling interval,500us\nTotal data points,128\n\
+                        Start time,2020-01-24,12:00:00\nAMP settings\nCH,Signal name,Input,Range,Filter,Span\nCH1,Force,DC,5V,Off,5.000\n\
+                        Data\nNumber,Date&Time,ms,CH1,CH2\nNO.,Time,ms,V,mV\n";
+            table(head, |i| {
+                let ms = 0.5 * i as f64;
+                format!(
+                    "{},2020/01/24 12:00:00,{ms:05.1},{:+.5},{:+.2}",
+                    i + 1,
+                    value(0, i),
+                    1e3 * value(1, i)
+                )
+            })
+        },
+        outcome: read(
+            &[ch("CH1", "V", 0, 1.0, 5e-6), ch("CH2", "V", 1, 1.0, 5e-6)],
+            X::Even(0.0),
+            &["axis-clock"],
+        ),
+    },
+    Dialect {
+        of: "Dewesoft, text",
+        oddity: "a head of `key: value`, names with units in brackets between tabs",
+        file: "Export.txt",
+        text: || {
+            let head = "Data export\n\nFile name: Drill_0001.dxd\nStart time: 24.01.2020 12:00:00.000\nNumber of channels: 2\nSample rate: 2000 Hz\n\n\
+                        Time (s)\tAI 1/Force (N)\tAI 2/Acc (m/s2)\n";
+            table(head, |i| {
+                format!("{}\t{}\t{}", fixed(at(0.0, i), 6), sci(value(0, i), 6, 3), sci(value(1, i), 6, 3))
+            })
+        },
+        outcome: read(
+            &[ch("AI 1/Force", "N", 0, 1.0, 5e-7), ch("AI 2/Acc", "m/s²", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &[],
+        ),
+    },
+    Dialect {
+        of: "HBM catman, ASCII",
+        oddity: "tabs and decimal commas, names over units over a row of sensors",
+        file: "Versuch.asc",
+        text: || {
+            let head = "HBM_CATMAN_DATAFILE_40\r\nT0 = 24.01.2020 12:00:00\r\nZeit  1 - Standardmessrate\tKraft\tWeg\r\ns\tN\tmm\r\n\
+                        dt=0,5 ms\tU9B\tWA10\r\n";
+            with_end(&head.replace("\r\n", "\n"), "\r\n", |i| {
+                let row = [fixed(at(0.0, i), 6), fixed(value(0, i), 6), fixed(1e3 * value(1, i), 3)];
+                comma(&row.join("\t"))
+            })
+        },
+        outcome: read(&[ch("Kraft", "N", 0, 1.0, 5e-7), ch("Weg", "m", 1, 1.0, 5e-7)], X::Even(0.0), &[]),
+    },
+    Dialect {
+        of: "imc FAMOS, ASCII",
+        oddity: "units in brackets with blanks in them",
+        file: "Kanal_001.asc",
+        text: || {
+            table("Zeit\tKanal_001\tKanal_002\n[ s ]\t[ V ]\t[ m/s^2 ]\n", |i| {
+                format!("{}\t{}\t{}", fixed(at(0.0, i), 5), fixed(value(0, i), 6), fixed(value(1, i), 6))
+            })
+        },
+        outcome: read(
+            &[ch("Kanal_001", "V", 0, 1.0, 5e-7), ch("Kanal_002", "m/s²", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &[],
+        ),
+    },
+    Dialect {
+        of: "LabVIEW, Write to Spreadsheet",
+        oddity: "columns between tabs, and nothing else",
+        file: "data.txt",
+        text: || table("", |i| format!("{}\t{}", fixed(value(0, i), 6), fixed(value(1, i), 6))),
+        outcome: read(
+            &[ch("column 1", "", 0, 1.0, 5e-7), ch("column 2", "", 1, 1.0, 5e-7)],
+            X::Numbered,
+            &["abscissa-unsaid", "two-channels", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "LabVIEW, Export Waveforms to Spreadsheet",
+        oddity: "`t0` and `delta t` a channel, then dates with decimal commas",
+        file: "waveforms.txt",
+        text: || {
+            let head = "waveform\t[0]\t[1]\nt0\t24.01.2020 12:00:00,000000\t24.01.2020 12:00:00,000000\ndelta t\t0,000500\t0,000500\n\n\
+                        time\tY[0]\tY[1]\n";
+            table(head, |i| {
+                let row = [clock(12, 0.0, i, 6), sci(value(0, i), 6, 1), sci(value(1, i), 6, 1)];
+                format!("24.01.2020 {}", comma(&row.join("\t")))
+            })
+        },
+        outcome: read(
+            &[ch("Y[0]", "", 0, 1.0, 5e-7), ch("Y[1]", "", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &["axis-clock", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "MCC DAQami, TracerDAQ",
+        oddity: "US dates with AM and PM that pass midnight",
+        file: "daqami.csv",
+        text: || {
+            table("Sample,Date/Time,Ai0 (V),Ai1 (V)\n", |i| {
+                let (day, time) = if i < 32 {
+                    (24, clock(11, 3600.0 - 0.016 - 1e-9, i, 4))
+                } else {
+                    (25, clock(12, 0.0, i - 32, 4))
+                };
+                let half = if i < 32 { "PM" } else { "AM" };
+                format!("{i},1/{day}/2020 {time} {half},{},{}", fixed(value(0, i), 6), fixed(value(1, i), 6))
+            })
+        },
+        outcome: read(
+            &[ch("Ai0", "V", 0, 1.0, 5e-7), ch("Ai1", "V", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &["axis-clock"],
+        ),
+    },
+    Dialect {
+        of: "Yokogawa GP, DX; Keyence NR",
+        oddity: "date and time in two columns, units in a row of their own",
+        file: "000001.csv",
+        text: || {
+            table("Date,Time,CH01,CH02\n,,V,mm\n", |i| {
+                format!(
+                    "2020/01/24,{},{},{}",
+                    clock(12, 0.0, i, 4),
+                    fixed(value(0, i), 6),
+                    fixed(1e3 * value(1, i), 3)
+                )
+            })
+        },
+        outcome: read(
+            &[ch("CH01", "V", 0, 1.0, 5e-7), ch("CH02", "m", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &["axis-clock"],
+        ),
+    },
+    Dialect {
+        of: "Yokogawa DX, MV",
+        oddity: "`Ch` and `Unit` before tabs, above `Type`, `Kind` and a column of messages",
+        file: "010203.txt",
+        text: || {
+            let head = "YREC\nMeasure Data\tVersion 1.00.00\nModel\tMV1000\nLanguage Code\tShift_JIS\nSampling Interval\t500\tus\n\
+                        Ch\t001\t002\tMessage\nTag\tForce\tWay\t\nUnit\tN\tmm\t\nType\tMeas\tMeas\tMessage\n\
+                        Kind\tInst\tInst\tCount\nSampling Data\n";
+            table(head, |i| {
+                let (a, b) = (fixed(value(0, i), 6), fixed(1e3 * value(1, i), 3));
+                format!("2020/01/24 {}\t{a}\t{b}\t0", clock(12, 0.0, i, 4))
+            })
+        },
+        outcome: read(
+            &[ch("001", "N", 0, 1.0, 5e-7), ch("002", "m", 1, 1.0, 5e-7), ch("Message", "", 0, 0.0, 1.0)],
+            X::Even(0.0),
+            &["axis-clock", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "Hioki LR8431",
+        oddity: "a line of settings for each channel, then the names",
+        file: "WAVE0001.CSV",
+        text: || {
+            let head = "\"File name\",\"WAVE0001.CSV\",\"V 1.00\"\n\"Title comment\",\"\"\n\"Trigger Time\",\"'12-07-01 09:14:03\"\n\
+                        \"Ch\",\"Mode\",\"Range\",\"Comment\",\"Scaling\",\"Ratio\",\"Offset\"\n\
+                        \"CH-1\",\"Voltage\",\"10V\",\"\",\"Off\",\"-\",\"-\"\n\"CH-2\",\"Voltage\",\"10V\",\"\",\"Off\",\"-\",\"-\"\n\
+                        \"ALM\",\"Alarm\",\"\",\"\",\n\"Time\",\"CH-1[V]\",\"CH-2[V]\",\n";
+            table(head, |i| {
+                format!("{},{}, {},", fixed(at(0.0, i), 5), sci(value(0, i), 5, 2), sci(value(1, i), 5, 2))
+            })
+        },
+        outcome: read(
+            &[ch("CH-1", "V", 0, 1.0, 5e-6), ch("CH-2", "V", 1, 1.0, 5e-6)],
+            X::Even(0.0),
+            &["axis-unit-assumed"],
+        ),
+    },
+    Dialect {
+        of: "Thorlabs TSP",
+        oddity: "`--.---` where a sensor is missing",
+        file: "tsp.csv",
+        text: || {
+            table("Time [s];Force [N]\n", |i| {
+                let force = if i == 7 { "--.---".to_owned() } else { fixed(value(0, i), 3) };
+                format!("{};{force}", fixed(at(0.0, i), 5))
+            })
+        },
+        outcome: super::Outcome::Refused(super::Refusal {
+            words: &["line 9", "1 missing value(s)"],
+            option: "`--allow-missing`",
+            state: |reader| reader.allow_missing(true),
+            edit: |text| text,
+            right: super::Right {
+                channels: &[ch("Force", "N", 0, 1.0, 5e-4)],
+                x: X::Even(0.0),
+                findings: &["missing-kept"],
+            },
+        }),
+    },
+    Dialect {
+        of: "DATAQ WinDaq",
+        oddity: "relative time beside date and time of day",
+        file: "windaq.csv",
+        text: || {
+            table("Relative Time (s),Date,Time,Chan 1 (V),Chan 2 (g)\n", |i| {
+                let (a, b) = (fixed(value(0, i), 6), fixed(value(1, i), 6));
+                format!("{},01/24/2020,{},{a},{b}", fixed(at(0.0, i), 4), clock(12, 0.0, i, 3))
+            })
+        },
+        outcome: read(
+            &[ch("Chan 1", "V", 0, 1.0, 5e-7), ch("Chan 2", "m/s²", 1, 9.80665, 5e-7)],
+            X::Even(0.0),
+            &[],
+        ),
+    },
+    Dialect {
+        of: "Dewetron, over-range",
+        oddity: "`OVER` where the range ends, `---` where a sensor is off",
+        file: "over.csv",
+        text: || {
+            table("Time (s),Force (N)\n", |i| {
+                let force = match i {
+                    20 => "+OVER".to_owned(),
+                    40 => "---".to_owned(),
+                    _ => fixed(value(0, i), 6),
+                };
+                format!("{},{force}", fixed(at(0.0, i), 5))
+            })
+        },
+        outcome: super::Outcome::Refused(super::Refusal {
+            words: &["line 22", "2 missing value(s)"],
+            option: "`--allow-missing`",
+            state: |reader| reader.allow_missing(true),
+            edit: |text| text,
+            right: super::Right {
+                channels: &[ch("Force", "N", 0, 1.0, 5e-7)],
+                x: X::Even(0.0),
+                findings: &["missing-kept"],
+            },
+        }),
+    },
+    Dialect {
+        of: "dydaqmeas; epoch in ms",
+        oddity: "`Time Code` counts milliseconds since 1970",
+        file: "epoch_ms.csv",
+        text: || {
+            table("Timestamp,Kraft [N]\n", |i| {
+                format!("{:.1},{}", 1_579_867_200_000.0 + 0.5 * i as f64, fixed(value(0, i), 6))
+            })
+        },
+        outcome: read(&[ch("Kraft", "N", 0, 1.0, 5e-7)], X::Even(0.0), &["axis-epoch"]),
+    },
+    Dialect {
+        of: "Python logger; epoch in s",
+        oddity: "`timestamp` counts seconds since 1970",
+        file: "epoch.csv",
+        text: || {
+            table("timestamp,force [N]\n", |i| {
+                format!("{:.4},{}", 1_579_867_200.0 + at(0.0, i), fixed(value(0, i), 6))
+            })
+        },
+        outcome: read(&[ch("force", "N", 0, 1.0, 5e-7)], X::Even(0.0), &["axis-epoch"]),
+    },
+    Dialect {
+        of: "Arduino serial monitor",
+        oddity: "`12:00:01.123 -> 0.12`: the computer's clock before what was sent",
+        file: "serial.txt",
+        text: || {
+            table("", |i| {
+                format!("{} -> {}\t{}", clock(12, 1.0, i, 4), fixed(value(0, i), 4), fixed(value(1, i), 4))
+            })
+        },
+        outcome: read(
+            &[ch("column 1", "", 0, 1.0, 5e-5), ch("column 2", "", 1, 1.0, 5e-5)],
+            X::Even(0.0),
+            &["axis-clock", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "Arduino sketch",
+        oddity: "`micros` is the time in µs",
+        file: "putty.csv",
+        text: || {
+            table("micros,ax,ay\n", |i| {
+                format!("{},{},{}", 500 * i, fixed(value(0, i), 4), fixed(value(1, i), 4))
+            })
+        },
+        outcome: read(
+            &[ch("ax", "", 0, 1.0, 5e-5), ch("ay", "", 1, 1.0, 5e-5)],
+            X::Even(0.0),
+            &["unit-unsaid"],
+        ),
+    },
+];

@@ -1,0 +1,280 @@
+//! Text exports of instruments and programs, written by this program from public descriptions of their layouts: each is read
+//! right, or refused with one thing to state that reads it right. `docs/formats.md` says which, and is held to it here.
+//!
+//! All of them hold the same signals: closed forms that differ from each other, have both signs, and peak at a known place.
+
+mod loggers;
+mod programs;
+mod scopes;
+mod seismic;
+mod signal;
+mod vibration;
+
+use signal::{DX, N, value};
+use vibro_io::{Reader, Recording};
+use vibro_record::{AxisKind, Record};
+
+/// A layout of one instrument or program.
+struct Dialect {
+    /// Instrument or program.
+    of: &'static str,
+    oddity: &'static str,
+    /// Name of the file, which tells by its ending what the export calls itself.
+    file: &'static str,
+    text: fn() -> Vec<u8>,
+    outcome: Outcome,
+}
+
+enum Outcome {
+    Read(Right),
+    Refused(Refusal),
+}
+
+/// What must be said in place of an answer, and what to state then.
+struct Refusal {
+    /// Words of the message.
+    words: &'static [&'static str],
+    /// As it is typed.
+    option: &'static str,
+    state: fn(Reader) -> Reader,
+    /// What is mended in the text, where nothing that can be stated would do.
+    edit: fn(String) -> String,
+    right: Right,
+}
+
+/// What a right reading gives.
+struct Right {
+    channels: &'static [Channel],
+    x: X,
+    /// Codes of findings that must be there.
+    findings: &'static [&'static str],
+}
+
+struct Channel {
+    name: &'static str,
+    /// SI symbol; empty where the file says none.
+    unit: &'static str,
+    /// Which of the signals.
+    signal: usize,
+    /// Factor from the signal to SI.
+    factor: f64,
+    /// Half a unit in the last printed digit, in units of the signal.
+    digits: f64,
+}
+
+enum X {
+    /// Time from a start in s, in steps of the signals.
+    Even(f64),
+    /// Time from 0 in other steps.
+    Steps(f64),
+    /// Lines of a spectrum at such a distance in Hz.
+    Lines(f64),
+    /// Steps of the signals from 0, of what is not said.
+    Unsaid,
+    /// Values are numbered.
+    Numbered,
+    /// Time as printed, which is not even.
+    Uneven,
+}
+
+const fn ch(name: &'static str, unit: &'static str, signal: usize, factor: f64, digits: f64) -> Channel {
+    Channel { name, unit, signal, factor, digits }
+}
+
+const fn read(channels: &'static [Channel], x: X, findings: &'static [&'static str]) -> Outcome {
+    Outcome::Read(Right { channels, x, findings })
+}
+
+fn all() -> Vec<&'static Dialect> {
+    [scopes::ALL, loggers::ALL, vibration::ALL, programs::ALL, seismic::ALL].into_iter().flatten().collect()
+}
+
+/// What is wrong with a reading.
+fn faults(found: &Recording, right: &Right) -> Vec<String> {
+    let mut faults = Vec::new();
+    let names: Vec<&str> = found.records.iter().map(|r| r.meta().name.as_str()).collect();
+    if found.records.len() != right.channels.len() {
+        return vec![format!(
+            "{} records {names:?} in place of {}",
+            found.records.len(),
+            right.channels.len()
+        )];
+    }
+    for (record, channel) in found.records.iter().zip(right.channels) {
+        let (meta, axis) = (record.meta(), record.axis());
+        if (meta.name.as_str(), meta.unit.symbol()) != (channel.name, channel.unit) {
+            faults.push(format!(
+                "{:?} in {:?}, not {:?} in {:?}",
+                meta.name,
+                meta.unit.symbol(),
+                channel.name,
+                channel.unit
+            ));
+        }
+        let values: &[f64] = match record {
+            Record::Trace(trace) => &trace.values,
+            Record::Spectrum(spectrum) => match &spectrum.values {
+                vibro_record::Values::Real(values) => values,
+                vibro_record::Values::Complex(_) => &[],
+            },
+            Record::Frf(_) => &[],
+        };
+        if values.len() != N {
+            faults.push(format!("{} values of {:?}", values.len(), meta.name));
+            continue;
+        }
+        let right_value = |i: usize| value(channel.signal, i) * channel.factor;
+        let off = |i: &usize| {
+            // A value that is missing has no right value.
+            (values[*i] - right_value(*i)).abs() > channel.digits * channel.factor.abs() * (1.0 + 1e-9)
+        };
+        if let Some(i) = (0..N).find(off) {
+            faults.push(format!("value {i} of {:?} is {}, not {}", meta.name, values[i], right_value(i)));
+        }
+        let (kind, start, step) = match &right.x {
+            X::Even(start) => (AxisKind::Time, *start, Some(DX)),
+            X::Steps(step) => (AxisKind::Time, 0.0, Some(*step)),
+            X::Lines(step) => (AxisKind::Frequency, 0.0, Some(*step)),
+            X::Unsaid => (AxisKind::Other("first column".to_owned()), 0.0, Some(DX)),
+            X::Numbered => (AxisKind::Index, 0.0, Some(1.0)),
+            X::Uneven => (AxisKind::Time, axis.start(), None),
+        };
+        let close = |a: f64, b: f64, to: f64| (a - b).abs() <= to;
+        let even = match (axis.step(), step) {
+            // Both ends are printed to a hundredth of a step at least.
+            (Some(a), Some(b)) => close(a, b, 1e-3 * b) && close(axis.start(), start, 0.01 * b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        if axis.kind != kind || !even {
+            faults.push(format!(
+                "axis {:?} from {} by {:?}, not {kind:?} from {start} by {step:?}",
+                axis.kind,
+                axis.start(),
+                axis.step()
+            ));
+        }
+    }
+    let all = found.all_findings();
+    let codes: Vec<&str> = all.iter().map(|f| f.code).collect();
+    faults.extend(
+        right.findings.iter().filter(|c| !codes.contains(c)).map(|c| format!("no finding {c} in {codes:?}")),
+    );
+    // What must be known is what is expected, and no more: a caution too many teaches to pass over cautions.
+    let known = |code: &&&str| !right.findings.contains(code);
+    let more: Vec<&&str> = codes.iter().filter(known).collect();
+    if !more.is_empty() {
+        faults.push(format!("findings {more:?} too many"));
+    }
+    faults
+}
+
+/// What is wrong with how a dialect is read.
+fn wrong(dialect: &Dialect) -> Vec<String> {
+    let text = (dialect.text)();
+    let with = |reader: Reader| reader.from_reader(dialect.file, text.as_slice());
+    match (&dialect.outcome, with(Reader::new())) {
+        (Outcome::Read(right), Ok(found)) => faults(&found, right),
+        (Outcome::Read(_), Err(why)) => vec![format!("refused: {why}")],
+        (Outcome::Refused(_), Ok(found)) => {
+            let names: Vec<&str> = found.records.iter().map(|r| r.meta().name.as_str()).collect();
+            vec![format!("read as {names:?}")]
+        }
+        (Outcome::Refused(refusal), Err(why)) => {
+            let why = why.to_string();
+            let unsaid = refusal.words.iter().filter(|word| !why.contains(**word));
+            let mut wrong: Vec<String> =
+                unsaid.map(|word| format!("{why:?} does not say {word:?}")).collect();
+            let edited = match String::from_utf8(text.clone()) {
+                Ok(text) => (refusal.edit)(text).into_bytes(),
+                Err(_) => text.clone(),
+            };
+            match (refusal.state)(Reader::new()).from_reader(dialect.file, edited.as_slice()) {
+                Ok(found) => wrong.extend(faults(&found, &refusal.right)),
+                Err(why) => wrong.push(format!("refused with {} too: {why}", refusal.option)),
+            }
+            wrong
+        }
+    }
+}
+
+#[test]
+fn each_is_read_right_or_refused_with_what_reads_it() {
+    let mut wrong_ones = Vec::new();
+    for dialect in all() {
+        for fault in wrong(dialect) {
+            wrong_ones.push(format!("{} ({}): {fault}", dialect.of, dialect.oddity));
+        }
+    }
+    assert!(wrong_ones.is_empty(), "{} faults:\n{}", wrong_ones.len(), wrong_ones.join("\n"));
+}
+
+#[test]
+fn there_are_as_many_as_promised_and_no_two_alike() {
+    let all = all();
+    let distinct: std::collections::HashSet<Vec<u8>> = all.iter().map(|d| (d.text)()).collect();
+    assert!(all.len() >= 45, "{}", all.len());
+    assert_eq!(distinct.len(), all.len());
+}
+
+/// An editor or another system may change them: the reading stays the same.
+#[test]
+fn line_ends_marks_and_blank_lines_behind_change_nothing() {
+    let mut wrong_ones = Vec::new();
+    for dialect in all() {
+        let Outcome::Read(right) = &dialect.outcome else { continue };
+        let Ok(text) = String::from_utf8((dialect.text)()) else { continue };
+        if text.contains('\r') || text.starts_with('\u{feff}') {
+            continue;
+        }
+        for (how, changed) in [
+            ("CR LF", text.replace('\n', "\r\n")),
+            ("CR", text.replace('\n', "\r")),
+            ("byte order mark", format!("\u{feff}{text}")),
+            ("blank lines behind", format!("{text}\n\n")),
+            ("no last line end", text.trim_end_matches('\n').to_owned()),
+            ("blanks behind", text.replace('\n', "  \n")),
+        ] {
+            let said = match Reader::new().from_reader(dialect.file, changed.as_bytes()) {
+                Ok(found) => faults(&found, right),
+                Err(why) => vec![why.to_string()],
+            };
+            wrong_ones.extend(said.into_iter().map(|fault| format!("{} with {how}: {fault}", dialect.of)));
+        }
+    }
+    assert!(wrong_ones.is_empty(), "{} faults:\n{}", wrong_ones.len(), wrong_ones.join("\n"));
+}
+
+/// The table of `docs/formats.md`, row for row.
+#[test]
+fn the_table_of_the_documents_is_this_list() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/formats.md");
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let stands: Vec<&str> = text.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
+    let row = |dialect: &Dialect| {
+        let said = match &dialect.outcome {
+            Outcome::Read(right) if right.findings.is_empty() => "read".to_owned(),
+            Outcome::Read(right) => {
+                let codes: Vec<String> = right.findings.iter().map(|code| format!("`{code}`")).collect();
+                format!("read, says {}", codes.join(", "))
+            }
+            Outcome::Refused(refusal) => format!("refused: {}", refusal.option),
+        };
+        format!("| {} | {} | {said} |", dialect.of, dialect.oddity)
+    };
+    let rows: Vec<String> = all().into_iter().map(row).collect();
+    assert_eq!(stands, rows, "the table should be:\n{}", rows.join("\n"));
+}
+
+/// Whatever is cut off or garbled in one of them, it is an answer or an error.
+#[test]
+fn none_makes_the_reader_panic_when_it_is_cut_off() {
+    for dialect in all() {
+        let text = (dialect.text)();
+        for at in (1..text.len()).step_by(text.len() / 11 + 1) {
+            let _ = Reader::new().from_reader(dialect.file, &text[..at]);
+            let mut garbled = text.clone();
+            garbled[at] = b':';
+            let _ = Reader::new().allow_missing(true).from_reader(dialect.file, garbled.as_slice());
+        }
+    }
+}
