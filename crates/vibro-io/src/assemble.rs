@@ -118,11 +118,18 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     let long = steps.iter().filter(|d| **d > f64::midpoint(smallest, largest)).count();
     // Steps of one and of two units in the last digit: rounding of 1.25 ms to whole ones, or a sample that was lost.
     let doubled = smallest > 0.0 && largest > 1.5 * smallest;
-    let axis = if doubled && !is_rounding(&steps, f64::midpoint(smallest, largest)) {
+    let turns = rounding(&steps, f64::midpoint(smallest, largest));
+    // Seconds printed ten times each: the record may begin and end within one, so the step is that between their changes.
+    let between = turns.filter(|_| smallest == 0.0);
+    let between = between.map(|(first, last)| (values[last + 1] - values[first + 1]) / (last - first) as f64);
+    let mut axis = if doubled && turns.is_none() {
         Axis { kind, grid: Grid::Uneven(values) }
     } else {
         Axis::from_values(kind, values, resolution)
     };
+    if let (Grid::Even { step, .. }, Some(between)) = (&mut axis.grid, between) {
+        *step = between;
+    }
     let finding = match axis.step() {
         _ if axis.len() < 2 => None,
         // Steps may differ by rounding in binary; a thousandth of a step is visible.
@@ -212,13 +219,13 @@ impl Abscissa {
     }
 }
 
-/// Whether the longer steps come as regularly as rounding an even grid makes them: the distances between them differ by one
-/// at most. Fewer than three of them prove nothing.
-fn is_rounding(steps: &[f64], middle: f64) -> bool {
+/// The first and the last of the longer steps, where they come as regularly as rounding an even grid makes them: the distances between them
+/// differ by one at most. Fewer than three of them prove nothing.
+fn rounding(steps: &[f64], middle: f64) -> Option<(usize, usize)> {
     let long: Vec<usize> = steps.iter().enumerate().filter(|(_, d)| **d > middle).map(|(i, _)| i).collect();
     let gaps = long.windows(2).map(|w| w[1] - w[0]);
     let (least, most) = gaps.fold((usize::MAX, 0), |(a, b), gap| (a.min(gap), b.max(gap)));
-    long.len() >= 3 && most - least <= 1
+    (long.len() >= 3 && most - least <= 1).then(|| (long[0], long[long.len() - 1]))
 }
 
 /// Six digits are enough for a sentence.
@@ -229,6 +236,18 @@ pub fn short(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A logger of ten samples a second that prints whole ones, started within one.
+    #[test]
+    fn whole_seconds_of_a_faster_logger_give_its_rate() {
+        for n in [34, 65, 1003] {
+            let printed = (0..n).map(|i| (0.7 + 0.1 * f64::from(i)).floor()).collect();
+            let (axis, found) = from_values(AxisKind::Time, printed, 0.5, "column \"t\"");
+            // 0.7 + 0.1 i meets a whole second or just misses it by rounding: one sample in all that lie between.
+            assert!((axis.step().unwrap() - 0.1).abs() < 0.1 / f64::from(n - 20), "{n}: {:?}", axis.step());
+            assert_eq!(found.unwrap().code, "axis-rounded");
+        }
+    }
 
     #[test]
     fn only_what_a_person_must_know_is_said() {
