@@ -16,25 +16,32 @@ const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
     ("kg Kg", [0, 1, 0, 0, 0, 0], 1.0, false),
     ("g", [1, 0, -2, 0, 0, 0], 9.806_65, true),
     ("gn g_n", [1, 0, -2, 0, 0, 0], 9.806_65, false),
+    ("gal Gal", [1, 0, -2, 0, 0, 0], 1e-2, false),
     ("N", [1, 1, -2, 0, 0, 0], 1.0, true),
     ("lbf", [1, 1, -2, 0, 0, 0], 4.448_221_615_260_5, false),
+    ("kgf kp", [1, 1, -2, 0, 0, 0], 9.806_65, false),
+    ("Nm", [2, 1, -2, 0, 0, 0], 1.0, true),
     ("Pa", [-1, 1, -2, 0, 0, 0], 1.0, true),
     ("bar", [-1, 1, -2, 0, 0, 0], 1e5, true),
+    ("psi", [-1, 1, -2, 0, 0, 0], 6_894.757_293_168_361, false),
+    ("mmHg Torr torr", [-1, 1, -2, 0, 0, 0], 133.322_368_421_052_63, false),
     ("J", [2, 1, -2, 0, 0, 0], 1.0, true),
     ("W", [2, 1, -3, 0, 0, 0], 1.0, true),
     ("A", [0, 0, 0, 1, 0, 0], 1.0, true),
     ("V", [2, 1, -3, -1, 0, 0], 1.0, true),
     ("Hz", [0, 0, -1, 0, 0, 0], 1.0, true),
     ("cps", [0, 0, -1, 0, 0, 0], 1.0, false),
-    ("rpm", [0, 0, -1, 0, 0, 0], 1.0 / 60.0, false),
+    ("rpm cpm CPM", [0, 0, -1, 0, 0, 0], 1.0 / 60.0, false),
     ("K", [0, 0, 0, 0, 1, 0], 1.0, false),
     ("in inch", [1, 0, 0, 0, 0, 0], 0.0254, false),
-    ("ips", [1, 0, -1, 0, 0, 0], 0.0254, false),
-    ("mil", [1, 0, 0, 0, 0, 0], 2.54e-5, false),
+    ("ips IPS", [1, 0, -1, 0, 0, 0], 0.0254, false),
+    ("mph", [1, 0, -1, 0, 0, 0], 0.447_04, false),
+    ("mil mils", [1, 0, 0, 0, 0, 0], 2.54e-5, false),
     ("ft", [1, 0, 0, 0, 0, 0], 0.3048, false),
     ("rad", [0, 0, 0, 0, 0, 1], 1.0, false),
     ("deg °", [0, 0, 0, 0, 0, 1], std::f64::consts::PI / 180.0, false),
     ("%", [0, 0, 0, 0, 0, 0], 0.01, false),
+    ("ε", [0, 0, 0, 0, 0, 0], 1.0, true),
 ];
 
 /// Letters of a prefix, and its factor.
@@ -171,6 +178,7 @@ impl<'a> Reader<'a> {
 
     /// A factor; `below` a fraction bar a negative exponent is ambiguous.
     fn factor(&mut self, below: bool) -> Option<Parsed> {
+        let mut name = "";
         let base = if self.one(&['(']).is_some() {
             self.bracketed()?
         } else if self.one(&['√']).is_some() {
@@ -180,7 +188,7 @@ impl<'a> Reader<'a> {
             // Digits behind it would be another number, not its exponent.
             return Some((Dimension::NONE, 1.0));
         } else {
-            let name = self.take(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
+            name = self.take(|c| c.is_alphabetic() || matches!(c, '%' | '°' | '_'));
             if name.eq_ignore_ascii_case("sqrt") || name.eq_ignore_ascii_case("rt") {
                 self.one(&['('])?;
                 return root(self.bracketed()?);
@@ -189,6 +197,10 @@ impl<'a> Reader<'a> {
         };
         match self.power()? {
             2 => Some(base),
+            // Nobody divides by milliseconds: `ms-2` are metres.
+            halves if name == "ms" && halves < 0 && !below => {
+                Some((symbol("m")?.0.times(symbol("s")?.0.half_power(halves)?), 1.0))
+            }
             halves if below && halves < 0 => None,
             halves => Some((base.0.half_power(halves)?, base.1.powf(f64::from(halves) / 2.0))),
         }
@@ -262,6 +274,14 @@ mod tests {
     #[test]
     fn spellings_seen_in_exports() {
         check("mm/s", Quantity::Velocity, 1e-3);
+        check("ms-1", Quantity::Velocity, 1.0);
+        check("ms^-2", Quantity::Acceleration, 1.0);
+        check("ms⁻²", Quantity::Acceleration, 1.0);
+        check("mph", Quantity::Velocity, 0.44704);
+        check("Gal", Quantity::Acceleration, 1e-2);
+        check("psi", Quantity::Pressure, 4.448_221_615_260_5 / 0.0254 / 0.0254);
+        check("mmHg", Quantity::Pressure, 101_325.0 / 760.0);
+        check("µε", Quantity::Ratio, 1e-6);
         check("m/s²", Quantity::Acceleration, 1.0);
         check("m/s2", Quantity::Acceleration, 1.0);
         check("m/s^2", Quantity::Acceleration, 1.0);
