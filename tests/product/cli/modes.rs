@@ -56,8 +56,8 @@ fn lines_that_are_no_function_are_refused_until_it_is_stated() {
         .skip(1)
         .map(|row| std::array::from_fn(|i| row.split(',').nth(i).unwrap().parse().unwrap()))
         .collect();
-    fs::write(&numbered, lines.iter().map(|[_, re, im]| format!("({re:e}{im:+e}j)\n")).collect::<String>())
-        .unwrap();
+    let complex: Vec<String> = lines.iter().map(|[_, re, im]| format!("({re:e}{im:+e}j)")).collect();
+    fs::write(&numbered, complex.join("\n")).unwrap();
     fs::write(&spectrum, rows.replace("(m/s²)/N", "m/s²")).unwrap();
     let frequency =
         |args: &[&str]| json(args)["modes"][0]["frequency"]["value"].as_f64().expect("a frequency");
