@@ -57,6 +57,7 @@ mod tdms;
 mod text;
 mod uff;
 mod uff58;
+mod variables;
 mod wav;
 
 pub mod write;
