@@ -92,7 +92,9 @@ impl Walk<'_> {
         if let (Data::Numbers(Values::Real(values)), Datatype::FixedPoint { .. }) =
             (&mut data, dataset.dtype())
         {
-            values.iter_mut().for_each(|value| *value = *value * scale[0] + scale[1]);
+            for value in values {
+                *value = *value * scale[0] + scale[1];
+            }
         }
         let single = matches!(dataset.dtype(), Datatype::FloatingPoint { size: 4, .. });
         let array = |dimensions, values| Content::Array(Array { dimensions, values, single });
@@ -121,8 +123,9 @@ impl Walk<'_> {
                 _ if INTERNAL.contains(&word.as_str()) => continue,
                 Some(Data::Texts(texts)) => texts.join(", "),
                 Some(Data::Numbers(Values::Real(values))) if values.len() == 1 => {
-                    let place = SCALE.iter().position(|names| names.contains(&word.as_str()));
-                    place.into_iter().for_each(|k| scale[k] = values[0]);
+                    for (names, scale) in SCALE.iter().zip(&mut scale) {
+                        *scale = if names.contains(&word.as_str()) { values[0] } else { *scale };
+                    }
                     values[0].to_string()
                 }
                 _ => continue,

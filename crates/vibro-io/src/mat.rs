@@ -1,4 +1,4 @@
-//! MATLAB's MAT-file: level 5 (`save -v6` and `-v7`), which scipy writes too, and level 4 (`save -v4`), which PicoScope writes.
+//! MATLAB's MAT-file: level 5 (`save -v6` and `-v7`), which scipy writes too, and level 4 (`save -v4`), which `PicoScope` writes.
 //!
 //! ```text
 //! level 5   124 bytes of text, version 0x0100, IM (little endian) or MI (big endian)

@@ -765,7 +765,9 @@ proptest! {
         changes in prop::collection::vec((0usize..22, any::<u8>()), 1..4), class in 0u32..3, kind in 0u32..6,
     ) {
         let mut bytes = LITTLE.of_level_4([10 * kind + class, 2, 1, 1], "x", &[1; 32]);
-        changes.iter().for_each(|(at, value)| bytes[*at] = *value);
+        for (at, value) in changes {
+            bytes[at] = value;
+        }
         let _ = Reader::new().format(Some(Format::Mat)).from_reader("x.mat", bytes.as_slice());
     }
 

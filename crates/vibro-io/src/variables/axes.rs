@@ -65,13 +65,12 @@ impl Scalar {
             let inside = dialect.container(name);
             // Beside vectors a unit is theirs.
             let apart = dialect.bare(inside) != dialect.bare(scope);
-            let mut labels = notes.iter().filter(|(label, _)| {
-                let word = dialect.word(label);
-                dialect.container(label) == inside && X_UNIT.contains(&word.as_str())
-                    || apart
-                        && label.starts_with(inside)
-                        && (UNIT.contains(&word.as_str()) || word == "label")
-            });
+            let says = |label: &str| {
+                let (word, beside) = (dialect.word(label), dialect.container(label) == inside);
+                let word = word.as_str();
+                beside && X_UNIT.contains(&word) || apart && (UNIT.contains(&word) || word == "label")
+            };
+            let mut labels = notes.iter().filter(|(label, _)| label.starts_with(inside) && says(label));
             scalar.kind = None;
             if let Some(unit) = labels.find_map(|(_, text)| Unit::parse(text)) {
                 scalar.kind = Some(match unit.quantity() {
