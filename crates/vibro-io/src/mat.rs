@@ -35,20 +35,20 @@ pub static DIALECT: Dialect = Dialect {
 /// What gives the variables of a file.
 type Parse = fn(&[u8]) -> Result<Vec<(String, Content)>>;
 
-/// What reads a MAT-file, or which one it is that is not read here; `None` for other files.
-fn level(head: &[u8], source: &Source) -> Option<std::result::Result<Parse, &'static str>> {
+/// What reads a MAT-file, or which one it is that is not read here; `None` for other files. Level 4 has no signature: it is found only in a `named` file.
+fn level(head: &[u8], named: bool) -> Option<std::result::Result<Parse, &'static str>> {
     const LEVEL_7: &str = "a MAT-file of version 7.3, which is HDF5";
     match head.get(124..128) {
         Some(b"\0\x01IM" | b"\x01\0MI") => Some(Ok(level5::all)),
         Some(b"\0\x02IM" | b"\x02\0MI") => Some(Err(LEVEL_7)),
-        _ if source.extension() != "mat" => None,
+        _ if !named => None,
         _ if head.starts_with(HDF5) || head.get(512..520) == Some(HDF5) => Some(Err(LEVEL_7)),
         _ => level4::header(head).map(|_| Ok(level4::all as Parse)),
     }
 }
 
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
-    level(head, source).is_some()
+    level(head, source.extension() == "mat").is_some()
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
@@ -56,7 +56,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     if super::hdf5::sniff(source.head(), source) {
         return super::hdf5::read(source, options);
     }
-    let parse = level(source.head(), source).unwrap_or(Err("no MAT-file header")).map_err(|found| {
+    let parse = level(source.head(), true).unwrap_or(Err("no MAT-file header")).map_err(|found| {
         Error::usage(found, "a MAT-file of level 4 or 5")
             .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
     })?;

@@ -681,6 +681,8 @@ fn level_4_in_both_byte_orders_and_every_storage() {
         for (name, class) in [("lines", "char array of several rows"), ("thin", "sparse matrix")] {
             assert!(has_finding(&recording.findings, "variable-passed-over", &[name, class]));
         }
+        let forced = Reader::new().format(Some(Format::Mat)).from_reader("x", variables.concat().as_slice());
+        assert_eq!(forced.unwrap().records.len(), 8);
         // The last variable has 54 bytes: five words, "H" with its zero, and four numbers.
         let start = variables.concat().len() - 54;
         for end in start + 1..start + 54 {
