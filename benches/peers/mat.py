@@ -1,4 +1,4 @@
-"""MAT-files with structs and cell arrays in each other, written by scipy, read by `vibro` and by scipy: every value must be equal.
+"""MAT-files with structs and cell arrays in each other, and such of level 4, written by scipy, read by `vibro` and by scipy: every value must be equal.
 
     python -m venv peers && peers/bin/pip install numpy scipy
     peers/bin/python benches/peers/mat.py target/release/vibro
@@ -107,7 +107,10 @@ def main():
         for seed in range(files):
             draw = random.Random(seed)
             written = {f"v{i}": some(draw, 0) for i in range(3)} | {"last": values(draw, 5)}
-            savemat(path, written, do_compression=draw.random() < 0.5, long_field_names=draw.random() < 0.5)
+            if seed % 3:
+                savemat(path, written, do_compression=draw.random() < 0.5, long_field_names=draw.random() < 0.5)
+            else:
+                savemat(path, {f"v{i}": some(draw, 4) for i in range(5)} | {"last": written["last"]}, format="4")
             theirs = {}
             for key, value in loadmat(path).items():
                 if not key.startswith("__"):

@@ -13,9 +13,9 @@ pub enum Format {
     Uff,
     /// RIFF or RF64 wave.
     Wav,
-    /// HDF5, among it MAT-files of version 7.3.
+    /// HDF5.
     Hdf5,
-    /// MATLAB level 5 MAT-file.
+    /// MATLAB's MAT-file, of version 7.3 too.
     Mat,
     /// NI's TDMS.
     Tdms,

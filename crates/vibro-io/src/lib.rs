@@ -30,7 +30,7 @@
 //! |---|---|---|
 //! | `wav` | `wav` | RIFF and RF64 wave |
 //! | `hdf5` | `hdf5` | HDF5 of any program, MATLAB 7.3 (feature `hdf5`) |
-//! | `mat` | `mat` | MATLAB level 5 |
+//! | `mat` | `mat` | MATLAB level 4 and 5 |
 //! | `tdms` | `tdms` | LabVIEW's and NI-DAQmx' TDMS |
 //! | `lvm` | `lvm` | LabVIEW measurement |
 //! | `uff` | `uff`, `uff58` | Universal File Format, data sets 58 and 58b |
@@ -57,6 +57,7 @@ mod tdms;
 mod text;
 mod uff;
 mod uff58;
+mod variables;
 mod wav;
 
 pub mod write;

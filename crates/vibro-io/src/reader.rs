@@ -183,7 +183,7 @@ impl Reader {
             return Ok((entry.format, headers, findings));
         }
         let recording = self.read(&source)?;
-        Ok((entry.format, recording.records.par_iter().map(Header::of).collect(), recording.findings))
+        Ok((recording.format, recording.records.par_iter().map(Header::of).collect(), recording.findings))
     }
 
     /// The format of a source.

@@ -2,7 +2,7 @@
 //! arrays of structs are references into the group `#refs#`.
 
 use super::file::{Data, File, MOST_PATH, Member};
-use crate::mat::variable::{Array, Content};
+use crate::variables::{Array, Content};
 use hdf5_reader::dataset::Dataset;
 use hdf5_reader::{Attribute, Datatype};
 use std::collections::HashMap;

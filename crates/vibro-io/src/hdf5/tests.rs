@@ -3,6 +3,8 @@ use crate::Reader;
 use crate::tests::{has_finding, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;
+use vibro_record::units::Unit;
+use vibro_record::{AxisKind, Record};
 
 /// The values of the fixtures.
 fn v() -> impl Iterator<Item = f64> {

@@ -87,6 +87,13 @@ impl Order {
         self.matrix(1, &[1, members.len() as u32], name, &[members.concat()])
     }
 
+    /// A variable of level 4; `words` are type, rows, columns, complex or not.
+    fn of_level_4(self, words: [u32; 4], name: &str, content: &[u8]) -> Vec<u8> {
+        let words: Vec<u8> =
+            words.iter().chain(&[name.len() as u32 + 1]).flat_map(|w| self.word(*w)).collect();
+        [&words, name.as_bytes(), &[0], content].concat()
+    }
+
     fn file(self, variables: &[Vec<u8>]) -> Vec<u8> {
         let mut out = vec![b' '; 124];
         out.extend(self.put(&0x0100u16.to_le_bytes()));
@@ -615,14 +622,81 @@ fn other_levels_are_refused_by_name() {
     hdf5.extend(if cfg!(feature = "hdf5") { b"\0\0\0\0\0\0\0\0" } else { HDF5 });
     let error = reader.from_reader("x.mat", hdf5.as_slice()).unwrap_err().to_string();
     assert!(error.contains("version 7.3, which is HDF5") && error.contains("-v7"), "{error}");
-    let four: Vec<u8> = [0u32, 2, 1, 0, 2].iter().flat_map(|w| w.to_le_bytes()).chain(*b"x\0").collect();
-    let error = reader.from_reader("x.mat", four.as_slice()).unwrap_err().to_string();
-    assert!(error.contains("version 4"), "{error}");
+    let vax = LITTLE.of_level_4([2000, 2, 1, 0], "x", &[0; 16]);
+    let error = reader.from_reader("x.mat", vax.as_slice()).unwrap_err().to_string();
+    assert!(error.contains("byte 0: numbers of a VAX") && error.contains("-v7"), "{error}");
     // Text that `save -ascii` wrote is left to the reader of text.
     assert_eq!(
         reader.from_reader("x.mat", b" 1.0e+00\n 2.0e+00\n".as_slice()).unwrap().format,
         Format::Ascii
     );
+}
+
+#[test]
+fn level_4_in_both_byte_orders_and_every_storage() {
+    for (order, machine) in [(LITTLE, 0), (Order { big: true }, 1000)] {
+        let doubles =
+            |values: &[f64]| -> Vec<u8> { values.iter().flat_map(|v| order.put(&v.to_le_bytes())).collect() };
+        let singles = [0.1f32, -0.5].iter().flat_map(|v| order.put(&v.to_le_bytes()));
+        let i32s = [-70_000i32, 7].iter().flat_map(|v| order.put(&v.to_le_bytes()));
+        let i16s = [-2i16, 300].iter().flat_map(|v| order.put(&v.to_le_bytes()));
+        let u16s = [65_535u16, 3].iter().flat_map(|v| order.put(&v.to_le_bytes()));
+        let of = |kind: u32, rows, columns, parts, name, content: &[u8]| {
+            order.of_level_4([machine + kind, rows, columns, parts], name, content)
+        };
+        let variables = [
+            of(0, 1, 1, 0, "Tinterval", &doubles(&[0.25])),
+            of(0, 1, 1, 0, "Tstart", &doubles(&[-0.5])),
+            of(1, 1, 3, 0, "rig", &doubles(&[116.0, 119.0, 111.0])),
+            of(51, 1, 2, 0, "unit", b"mm"),
+            of(51, 2, 1, 0, "lines", b"ab"),
+            of(2, 2, 3, 0, "thin", &doubles(&[1.0; 6])),
+            of(10, 2, 1, 0, "as_f32", &singles.collect::<Vec<u8>>()),
+            of(20, 2, 1, 0, "as_i32", &i32s.collect::<Vec<u8>>()),
+            of(30, 1, 2, 0, "as_i16", &i16s.collect::<Vec<u8>>()),
+            of(40, 1, 2, 0, "as_u16", &u16s.collect::<Vec<u8>>()),
+            of(50, 1, 2, 0, "as_u8", &[255, 3]),
+            of(0, 2, 2, 0, "m", &doubles(&[1.0, 2.0, 3.0, 4.0])),
+            of(0, 1, 2, 1, "H", &doubles(&[1.0, 2.0, -3.0, -4.0])),
+        ];
+        let recording = Reader::new().from_reader("x.mat", variables.concat().as_slice()).unwrap();
+        let all: Vec<&[f64]> = recording.records[..7].iter().map(values).collect();
+        let expected: [&[f64]; 7] = [
+            &[f64::from(0.1f32), -0.5],
+            &[-70_000.0, 7.0],
+            &[-2.0, 300.0],
+            &[65_535.0, 3.0],
+            &[255.0, 3.0],
+            &[1.0, 2.0],
+            &[3.0, 4.0],
+        ];
+        assert_eq!(all, expected);
+        assert_eq!(recording.records[6].meta().name, "m(:,2)");
+        assert!(recording.records[..7].iter().all(|record| record.axis() == &Axis::time(-0.5, 0.25, 2)));
+        let Record::Spectrum(h) = &recording.records[7] else { panic!() };
+        assert_eq!(h.values, Values::Complex(vec![Complex64::new(1.0, -3.0), Complex64::new(2.0, -4.0)]));
+        for (name, text) in [("rig", "two"), ("unit", "mm")] {
+            assert!(h.meta.notes.contains(&(name.to_owned(), text.to_owned())));
+        }
+        for (name, class) in [("lines", "char array of several rows"), ("thin", "sparse matrix")] {
+            assert!(has_finding(&recording.findings, "variable-passed-over", &[name, class]));
+        }
+        let forced = Reader::new().format(Some(Format::Mat)).from_reader("x", variables.concat().as_slice());
+        assert_eq!(forced.unwrap().records.len(), 8);
+        // The last variable has 54 bytes: five words, "H" with its zero, and four numbers.
+        let start = variables.concat().len() - 54;
+        for end in start + 1..start + 54 {
+            let error =
+                Reader::new().from_reader("x.mat", &variables.concat()[..end]).unwrap_err().to_string();
+            assert!(
+                error.starts_with(&format!("x.mat, byte {start}: a variable that ends early")),
+                "{error}"
+            );
+        }
+    }
+    let huge = LITTLE.of_level_4([0, u32::MAX, u32::MAX, 1], "x", &[0; 16]);
+    let error = Reader::new().from_reader("x.mat", huge.as_slice()).unwrap_err().to_string();
+    assert!(error.contains("ends early"), "{error}");
 }
 
 #[test]
@@ -686,6 +760,17 @@ proptest! {
         let _ = Reader::new().from_reader("x.mat", order.file(std::slice::from_ref(&tail)).as_slice());
         let matrix = [order.word(14), order.word(tail.len() as u32), tail].concat();
         let _ = Reader::new().from_reader("x.mat", order.file(&[matrix]).as_slice());
+    }
+
+    #[test]
+    fn never_panics_on_changed_bytes_of_level_4(
+        changes in prop::collection::vec((0usize..22, any::<u8>()), 1..4), class in 0u32..3, kind in 0u32..6,
+    ) {
+        let mut bytes = LITTLE.of_level_4([10 * kind + class, 2, 1, 1], "x", &[1; 32]);
+        for (at, value) in changes {
+            bytes[at] = value;
+        }
+        let _ = Reader::new().format(Some(Format::Mat)).from_reader("x.mat", bytes.as_slice());
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Abscissae of the vectors of a MAT-file, as the names of other variables say them.
-//!
-//! What stands in a struct speaks of the vectors of that struct, however deep. Where the struct has none, it speaks of those beside it:
-//! `File_Header.SampleFrequency` of `Channel_1_Data`, `Signal.x_values.increment` of `Signal.y_values.values`.
+//! Abscissae and units of vectors, as the names of other variables say them.
 
-use super::variable::Array;
+use super::Array;
+use super::names::Meaning::{Increment, Rate, Start};
+use super::names::Trust::{Likely, Offered, Sure, Vague};
+use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
 use crate::assemble::{from_values, short};
 use crate::reader::{Options, POSSIBLE};
 use crate::{number, text};
@@ -12,107 +12,15 @@ use std::collections::HashMap;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
 
-/// What a scalar says of an abscissa.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Meaning {
-    /// Sampling rate in Hz.
-    Rate,
-    /// Step of time in s.
-    Step,
-    /// Step of time or of frequency.
-    Increment,
-    /// First value.
-    Start,
-}
-
-/// Whether a name means one thing only.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Trust {
-    /// It does.
-    Sure,
-    /// It does as a rule: taken, with a caution.
-    Likely,
-    /// `rate` may be that of a shaft: taken from 1 kHz on, where nothing better is said.
-    Vague,
-    /// Never taken, but named to the person.
-    Offered,
-}
-
-use Meaning::{Increment, Rate, Start, Step};
-use Trust::{Likely, Offered, Sure, Vague};
-
-/// Names in lower case without underscores, what they mean, and whether they mean nothing else.
-const NAMES: &[(&[&str], Meaning, Trust)] = &[
-    (&["fs", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency"], Rate, Sure),
-    (&["dt", "ts", "sampletime", "samplinginterval", "sampleinterval", "tinterval"], Step, Sure),
-    (&["increment", "xincrement"], Increment, Likely),
-    (&["tstart", "startvalue", "xstart"], Start, Sure),
-    (&["sr"], Rate, Likely),
-    (&["rate"], Rate, Vague),
-];
-/// Parts of such names.
-const PARTS: &[(&[&str], Trust)] = &[
-    (&["samplerate", "samplingrate", "samplefreq", "samplingfreq"], Likely),
-    (&["sampl", "rate", "freq"], Offered),
-];
-/// Names of what a struct is about: the struct's own name says what it is.
-const CONTENTS: [&str; 3] = ["data", "values", "value"];
 /// A shaft turns slower than this, in Hz.
 const SHAFT: f64 = 1000.0;
 
-/// The struct in which a variable stands, with its last dot; empty for variables of their own.
-pub fn container(name: &str) -> &str {
-    name.rfind('.').map_or("", |dot| &name[..=dot])
-}
-
-/// The last part of a name that is more than `Data`; of `X(1).Data` it is `X`.
-fn key(name: &str) -> &str {
-    let (container, last) = name.split_at(container(name).len());
-    match container.strip_suffix('.') {
-        Some(outer) if CONTENTS.contains(&last.to_lowercase().as_str()) => {
-            let index = outer.rfind(['(', '{']).filter(|_| outer.ends_with([')', '}']));
-            key(&outer[..index.unwrap_or(outer.len())])
-        }
-        _ => last,
-    }
-}
-
-/// The structs in which a variable stands, the innermost first; at last the file, whose name is empty.
-fn structs(name: &str) -> impl Iterator<Item = &str> {
-    std::iter::successors(Some(container(name)), |inner| inner.strip_suffix('.').map(container))
-}
-
-/// The struct of whose vectors a variable speaks. `vectors` are sorted.
-pub fn scope<'n>(name: &'n str, vectors: &[&str]) -> &'n str {
-    let has = |inside: &&str| {
-        let behind = vectors.partition_point(|vector| vector < inside);
-        vectors.get(behind).is_some_and(|vector| vector.starts_with(inside))
-    };
-    structs(name).find(has).unwrap_or_default()
-}
-
-/// What speaks of vectors, by their struct.
-pub struct Scoped<T>(HashMap<String, Vec<T>>);
-
-impl<T> Scoped<T> {
-    pub fn of<'n>(things: impl Iterator<Item = (&'n str, T)>) -> Scoped<T> {
-        let mut all: HashMap<String, Vec<T>> = HashMap::new();
-        things.for_each(|(scope, thing)| all.entry(scope.to_owned()).or_default().push(thing));
-        Scoped(all)
-    }
-
-    /// What speaks of a vector, the nearest first, with its struct.
-    pub fn over<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a T)> {
-        let all = structs(name).filter_map(|scope| Some((scope, self.0.get(scope)?)));
-        all.flat_map(|(scope, all)| all.iter().map(move |thing| (scope, thing)))
-    }
-}
-
 /// The kind of abscissa that a vector of this name holds, and its factor to s or Hz.
-fn kind(name: &str, unit: Option<&str>) -> Option<(AxisKind, f64)> {
+fn kind(dialect: &Dialect, name: &str, unit: Option<&str>) -> Option<(AxisKind, f64)> {
     // Recorders of control systems write `X.Data` and `Y.Data`.
-    let is_x = key(name) == "X" && !name.ends_with('X');
-    text::abscissa(if is_x || key(name) == "tout" { "time" } else { key(name) }, unit)
+    let key = dialect.key(name);
+    let is_x = key == "X" && !name.ends_with('X');
+    text::abscissa(if is_x || key == "tout" { "time" } else { key }, unit)
 }
 
 fn rises(values: &Values) -> Option<&[f64]> {
@@ -134,29 +42,35 @@ struct Scalar {
 }
 
 impl Scalar {
-    fn of(name: &str, said: &str, notes: &[(String, String)]) -> Option<Scalar> {
-        let word = key(name).replace('_', "").to_lowercase();
-        let named = NAMES.iter().find(|(names, ..)| names.contains(&word.as_str()));
-        let part = || PARTS.iter().find(|(parts, _)| parts.iter().any(|part| word.contains(part)));
-        let (meaning, mut trust) =
-            named.map(|n| (n.1, n.2)).or_else(|| part().map(|(_, trust)| (Rate, *trust)))?;
+    /// `scope` is where the scalar speaks.
+    fn of(
+        dialect: &Dialect,
+        (name, said): &(String, String),
+        scope: &str,
+        notes: &[(String, String)],
+    ) -> Option<Scalar> {
+        let (meaning, mut trust) = dialect.meaning(name)?;
         let value = number::parse(said.as_bytes()).or_else(|| {
             trust = trust.max(Likely);
             number::parse_with(said.as_bytes(), b',')
         })?;
         let mut scalar = Scalar {
-            name: name.to_owned(),
+            name: name.clone(),
             meaning,
             trust,
             kind: Some(AxisKind::Time),
             value: if meaning == Rate { 1.0 / value } else { value },
         };
         if matches!(meaning, Increment | Start) {
-            let inside = container(name);
-            let labels = notes.iter().filter(|(label, _)| {
-                label.starts_with(inside) && (is_unit(key(label)) || key(label) == "label")
-            });
-            let mut labels = labels.filter(|_| !inside.is_empty());
+            let inside = dialect.container(name);
+            // Beside vectors a unit is theirs.
+            let apart = dialect.bare(inside) != dialect.bare(scope);
+            let says = |label: &str| {
+                let (word, beside) = (dialect.word(label), dialect.container(label) == inside);
+                let word = word.as_str();
+                beside && X_UNIT.contains(&word) || apart && (UNIT.contains(&word) || word == "label")
+            };
+            let mut labels = notes.iter().filter(|(label, _)| label.starts_with(inside) && says(label));
             scalar.kind = None;
             if let Some(unit) = labels.find_map(|(_, text)| Unit::parse(text)) {
                 scalar.kind = Some(match unit.quantity() {
@@ -174,6 +88,7 @@ impl Scalar {
 
 /// What the file and the person say of abscissae.
 pub struct Axes<'a> {
+    pub dialect: &'static Dialect,
     options: &'a Options,
     /// With their names, times before frequencies.
     vectors: Scoped<(String, Axis)>,
@@ -185,29 +100,34 @@ pub struct Axes<'a> {
 impl<'a> Axes<'a> {
     /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length. `notes` are the scalars and texts.
     pub fn find<'n>(
+        dialect: &'static Dialect,
         arrays: &mut Vec<(String, Array)>,
         notes: &'n [(String, String)],
         options: &'a Options,
         findings: &mut Vec<Finding>,
     ) -> Axes<'a> {
-        let stated = units(notes, arrays);
-        let unit = |name: &str| stated.get(container(name)).copied();
-        let kinds: Vec<_> = arrays.iter().map(|(name, _)| kind(name, unit(name))).collect();
+        let stated = units(dialect, notes, arrays);
+        let own = |name| if dialect.attributes { name } else { dialect.bare(dialect.container(name)) };
+        let unit = |name| stated.get(own(name)).copied();
+        let kinds: Vec<_> = arrays.iter().map(|(name, _)| kind(dialect, name, unit(name))).collect();
         let values = arrays.iter().zip(&kinds);
         let values = values.filter(|((_, array), kind)| kind.is_none() || rises(&array.values).is_none());
         let mut values: Vec<&str> = values.map(|((name, _), _)| name.as_str()).collect();
         values.sort_unstable();
-        let scalar =
-            |(name, said): &'n (String, String)| Some((scope(name, &values), Scalar::of(name, said, notes)?));
-        let scalars = Scoped::of(notes.iter().filter_map(scalar));
-        let mut axes = Axes { options, vectors: Scoped(HashMap::new()), scalars, even: Vec::new() };
+        let scalar = |note: &'n (String, String)| {
+            let scope = dialect.scope(&note.0, &values);
+            Some((scope, Scalar::of(dialect, note, scope, notes)?))
+        };
+        let scalars = Scoped::of(dialect, notes.iter().filter_map(scalar));
+        let vectors = Scoped::of(dialect, std::iter::empty());
+        let mut axes = Axes { dialect, options, vectors, scalars, even: Vec::new() };
         let mut taken = vec![false; arrays.len()];
         let kinds = kinds.into_iter().enumerate().filter_map(|(at, kind)| Some((at, kind?)));
         let (mut kinds, lines): (Vec<_>, Vec<_>) = kinds.partition(|(_, (kind, _))| *kind == AxisKind::Time);
         kinds.extend(lines);
         for (at, (kind, factor)) in kinds {
             let (name, Array { dimensions, values: vector, single }) = &arrays[at];
-            let (n, scope) = (vector.len() as u64, scope(name, &values));
+            let (n, scope) = (vector.len() as u64, dialect.scope(name, &values));
             let others = arrays.iter().enumerate().filter(|(i, _)| *i != at && !taken[*i]);
             let mut others = others.filter(|(_, (of, _))| of.starts_with(scope));
             let fits = dimensions.contains(&n) && others.any(|(_, (_, other))| other.dimensions.contains(&n));
@@ -217,7 +137,7 @@ impl<'a> Axes<'a> {
                 findings.push(Finding::caution(code).name("variable", name.as_str()));
                 continue;
             };
-            if key(name) == "X" && unit(name).is_none() {
+            if dialect.key(name) == "X" && unit(name).is_none() {
                 findings.push(Finding::caution("axis-by-name").name("variable", name.as_str()));
             }
             let vector: Vec<f64> = vector.iter().map(|v| v * factor).collect();
@@ -235,7 +155,7 @@ impl<'a> Axes<'a> {
                 findings.push(found.name("used", used).number("rate", rate));
             }
             taken[at] = true;
-            axes.vectors.0.entry(scope.to_owned()).or_default().push((name.clone(), axis));
+            axes.vectors.add(scope, (name.clone(), axis));
         }
         let mut taken = taken.into_iter();
         arrays.retain(|_| !taken.next().unwrap_or(false));
@@ -264,14 +184,21 @@ impl<'a> Axes<'a> {
         if doubtful { Vec::new() } else { all }
     }
 
-    /// The axis of a record.
-    pub fn of(&self, values: &Values, meta: &mut Meta, findings: &mut Vec<Finding>) -> Result<Axis> {
-        let (n, complex, name) = (values.len(), matches!(values, Values::Complex(_)), meta.name.clone());
+    /// The axis of a record of the vector or matrix `name`.
+    pub fn of(
+        &self,
+        name: &str,
+        values: &Values,
+        meta: &mut Meta,
+        findings: &mut Vec<Finding>,
+    ) -> Result<Axis> {
+        let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
         let fits = |axis: &Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
-        let mut fitting = self.vectors.over(&name).filter(|(_, (_, axis))| fits(axis));
-        let said = self.chosen(&name, complex);
-        // What stands nearer is meant.
-        let nearest = said.first().map_or(0, |(scope, _)| scope.len());
+        let mut fitting = self.vectors.over(name).filter(|(_, (_, axis))| fits(axis));
+        let said = self.chosen(name, complex);
+        // What stands nearer is meant; a vector beside it is more than an attribute.
+        let beside = self.dialect.container(name).len();
+        let nearest = said.first().map_or(0, |(scope, _)| scope.len().min(beside));
         let first = fitting.next().filter(|(scope, _)| scope.len() >= nearest);
         let vector = first.map(|(_, (_, axis))| axis);
         match (self.options.rate, self.options.base_band) {
@@ -291,13 +218,13 @@ impl<'a> Axes<'a> {
         }
         if let Some((scope, (used, axis))) = first {
             if let Some((_, (other, _))) = fitting.find(|(of, (_, other))| *of == scope && other != axis) {
-                let found = Finding::caution("time-or-frequency").name("variable", name.as_str());
+                let found = Finding::caution("time-or-frequency").name("variable", meta.name.as_str());
                 findings.push(found.name("used", used).name("other", other));
             }
             return Ok(axis.clone());
         }
         let Some((scope, scalar)) = said.first() else {
-            meta.found(self.unsaid(&name, n));
+            meta.found(self.unsaid(name, n, &meta.name));
             return Ok(Axis::index(n));
         };
         let differs = |other: &&Scalar| (other.value / scalar.value - 1.0).abs() > 1e-6;
@@ -316,20 +243,25 @@ impl<'a> Axes<'a> {
             let found = Finding::caution("step-by-name").name("variable", &scalar.name).number(fact, value);
             meta.found(if let Some(other) = rival { found.name("other", &other.name) } else { found });
         }
-        let beside = |s: &&Scalar| s.meaning == Start && container(&s.name) == container(&scalar.name);
-        let start = self.scalars.over(&name).map(|(_, s)| s).find(beside).map_or(0.0, |s| s.value);
+        let starts = |(scope, s): &(&str, &Scalar)| {
+            let inside = self.dialect.container(&s.name);
+            let near = inside == self.dialect.container(&scalar.name)
+                || self.dialect.bare(inside) == self.dialect.bare(scope);
+            near && s.meaning == Start && (s.trust == Sure || scalar.meaning == Increment)
+        };
+        let start = self.scalars.over(name).find(starts).map_or(0.0, |(_, s)| s.value);
         let axis = if over_frequency { Axis::frequency } else { Axis::time };
         Ok(axis(start, scalar.value, n))
     }
 
     /// What to say of `n` values without an abscissa: which variables may hold it.
-    fn unsaid(&self, name: &str, n: usize) -> Finding {
+    fn unsaid(&self, name: &str, n: usize, record: &str) -> Finding {
         let mut found = Finding::caution("abscissa-unsaid");
         let offered = self.scalars.over(name).map(|(_, s)| s).filter(|s| s.trust >= Vague);
         if let Some(scalar) = offered.min_by_key(|s| !s.name.contains("ampl")) {
             found = found.name("variable", scalar.name.as_str()).number("rate", 1.0 / scalar.value);
         }
-        if let Some((vector, _, step)) = self.even.iter().find(|(of, len, _)| *len == n && of != name) {
+        if let Some((vector, _, step)) = self.even.iter().find(|(of, len, _)| *len == n && of != record) {
             found = found.name("vector", vector).number("rises", 1.0 / step);
         }
         found
@@ -341,21 +273,22 @@ impl<'a> Axes<'a> {
     }
 }
 
-fn is_unit(key: &str) -> bool {
-    matches!(key, "Unit" | "unit" | "Units" | "units")
-}
-
-/// The units that structs state of their only vector.
-pub fn units<'n>(notes: &'n [(String, String)], arrays: &[(String, Array)]) -> HashMap<&'n str, &'n str> {
+/// Units by the vector whose attribute they are, or by the struct that states them of its only vector or, as an attribute, of all.
+pub fn units<'n>(
+    dialect: &Dialect,
+    notes: &'n [(String, String)],
+    arrays: &[(String, Array)],
+) -> HashMap<&'n str, &'n str> {
     let mut vectors: HashMap<&str, usize> = HashMap::new();
     for (name, _) in arrays {
-        *vectors.entry(container(name)).or_default() += 1;
+        *vectors.entry(dialect.container(name)).or_default() += 1;
     }
-    let stated = notes.iter().map(|(name, text)| (name.split_at(container(name).len()), text.as_str()));
-    let stated = stated.filter(|((inside, word), text)| {
-        !inside.is_empty() && vectors.get(inside) == Some(&1) && is_unit(word) && Unit::parse(text).is_some()
+    let stated = notes.iter().map(|(name, text)| (dialect.container(name), name, text.trim()));
+    let stated = stated.filter(|(inside, name, text)| {
+        let only = !inside.is_empty() && vectors.get(inside) == Some(&1) && Unit::parse(text).is_some();
+        (only || dialect.attributes) && !text.is_empty() && UNIT.contains(&dialect.word(name).as_str())
     });
-    stated.map(|((inside, _), text)| (inside, text)).collect()
+    stated.map(|(inside, _, text)| (dialect.bare(inside), text)).collect()
 }
 
 /// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.

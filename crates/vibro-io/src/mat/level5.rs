@@ -1,35 +1,18 @@
-//! The variables of a MAT-file: elements of kind, size and content, padded to eight bytes.
+//! The variables of a MAT-file of level 5: elements of kind, size and content, padded to eight bytes.
 //!
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 5 MAT-File Format".
 
+use crate::variables::{Array, Content, MOST_TEXT};
 use flate2::read::ZlibDecoder;
 use num_complex::Complex64;
 use std::io::Read;
 use vibro_record::{Error, Place, Result, Values};
 
-/// Longest text that is kept.
-const MOST_TEXT: u64 = 4096;
+/// Bytes before the first variable, of which the last two are IM (little endian) or MI.
+const HEADER: usize = 128;
 /// Structs and cell arrays within each other are read to this depth, and to names of this length: both bound what one byte of a file can cost.
 const MOST_DEPTH: usize = 32;
 const MOST_NAME: usize = 512;
-
-/// What a variable holds.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Content {
-    Array(Array),
-    Text(String),
-    /// Of a class that is passed over, by its name.
-    Other(&'static str),
-}
-
-/// Numbers, column by column.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Array {
-    pub dimensions: Vec<u64>,
-    pub values: Values,
-    /// Whether values have the precision of 32-bit floats only.
-    pub single: bool,
-}
 
 /// Elements one after the other.
 struct Elements<'a> {
@@ -94,25 +77,9 @@ impl<'a> Elements<'a> {
 
     /// The next element as `count` numbers; integers beyond 2⁵³ are rounded.
     fn numbers(&mut self, count: u64) -> Result<Vec<f64>> {
-        fn of<const N: usize>(bytes: &[u8], big_endian: bool, value: fn([u8; N]) -> f64) -> Vec<f64> {
-            let little = |b: &[u8; N]| std::array::from_fn(|i| if big_endian { b[N - 1 - i] } else { b[i] });
-            bytes.as_chunks().0.iter().map(|b| value(little(b))).collect()
-        }
         let (kind, bytes) = self.part("values")?;
-        let big = self.big_endian;
-        let values = match kind {
-            1 => of(bytes, big, |b| f64::from(i8::from_le_bytes(b))),
-            2 => of(bytes, big, |b| f64::from(u8::from_le_bytes(b))),
-            3 => of(bytes, big, |b| f64::from(i16::from_le_bytes(b))),
-            4 => of(bytes, big, |b| f64::from(u16::from_le_bytes(b))),
-            5 => of(bytes, big, |b| f64::from(i32::from_le_bytes(b))),
-            6 => of(bytes, big, |b| f64::from(u32::from_le_bytes(b))),
-            7 => of(bytes, big, |b| f64::from(f32::from_le_bytes(b))),
-            9 => of(bytes, big, f64::from_le_bytes),
-            12 => of(bytes, big, |b| i64::from_le_bytes(b) as f64),
-            13 => of(bytes, big, |b| u64::from_le_bytes(b) as f64),
-            kind => return Err(self.fault(format!("values of kind {kind}"), "integers or floats")),
-        };
+        let values = numbers(kind, bytes, self.big_endian)
+            .ok_or_else(|| self.fault(format!("values of kind {kind}"), "integers or floats"))?;
         if values.len() as u64 != count {
             let found = format!("a variable that declares {count} values and holds {}", values.len());
             return Err(self.fault(found, "as many values as its dimensions say"));
@@ -121,10 +88,42 @@ impl<'a> Elements<'a> {
     }
 }
 
+/// Values of their real and, where they are complex, imaginary part.
+pub fn complex(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
+    match imaginary {
+        Some(im) => {
+            Values::Complex(real.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im)).collect())
+        }
+        None => Values::Real(real),
+    }
+}
+
+/// Numbers of a kind; `None` for one that is not of numbers.
+pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
+    fn of<const N: usize>(bytes: &[u8], big_endian: bool, value: fn([u8; N]) -> f64) -> Vec<f64> {
+        let little = |b: &[u8; N]| std::array::from_fn(|i| if big_endian { b[N - 1 - i] } else { b[i] });
+        bytes.as_chunks().0.iter().map(|b| value(little(b))).collect()
+    }
+    Some(match kind {
+        1 => of(bytes, big, |b| f64::from(i8::from_le_bytes(b))),
+        2 => of(bytes, big, |b| f64::from(u8::from_le_bytes(b))),
+        3 => of(bytes, big, |b| f64::from(i16::from_le_bytes(b))),
+        4 => of(bytes, big, |b| f64::from(u16::from_le_bytes(b))),
+        5 => of(bytes, big, |b| f64::from(i32::from_le_bytes(b))),
+        6 => of(bytes, big, |b| f64::from(u32::from_le_bytes(b))),
+        7 => of(bytes, big, |b| f64::from(f32::from_le_bytes(b))),
+        9 => of(bytes, big, f64::from_le_bytes),
+        12 => of(bytes, big, |b| i64::from_le_bytes(b) as f64),
+        13 => of(bytes, big, |b| u64::from_le_bytes(b) as f64),
+        _ => return None,
+    })
+}
+
 /// All variables of a file behind its header, with their names. What stands in structs and cell arrays is named as MATLAB writes it.
-pub fn all(bytes: &[u8], header: usize, big_endian: bool) -> Result<Vec<(String, Content)>> {
+pub fn all(bytes: &[u8]) -> Result<Vec<(String, Content)>> {
     let mut variables = Vec::new();
-    let mut file = Elements { rest: &bytes[header..], big_endian, place: Place::default() };
+    let mut file =
+        Elements { rest: &bytes[HEADER..], big_endian: bytes[HEADER - 2] == b'M', place: Place::default() };
     loop {
         file.place.byte = Some((bytes.len() - file.rest.len()) as u64);
         let Some((kind, content)) = file.next()? else { return Ok(variables) };
@@ -169,7 +168,7 @@ fn variable(
     let (_, flags) = elements.part("flags")?;
     let flags = elements.words(flags).next().unwrap_or(0);
     let class = flags & 0xff;
-    let (complex, logical) = (flags & 0x800 != 0, flags & 0x200 != 0);
+    let (has_two, logical) = (flags & 0x800 != 0, flags & 0x200 != 0);
     if class == 17 {
         // An object of the newer kind has no dimensions; what follows is not documented.
         variables.push((inside.map_or_else(String::new, |(name, _)| name), Content::Other("object")));
@@ -211,18 +210,14 @@ fn variable(
             return Ok(());
         }
         4 if count == 0 => Content::Text(String::new()),
-        4 if dimensions[0] != 1 || count > MOST_TEXT => {
+        4 if dimensions[0] != 1 || count > MOST_TEXT as u64 => {
             Content::Other("char array of several rows or more than 4096 characters")
         }
         4 => Content::Text(text(elements)?),
         6..=15 => {
             let real = elements.numbers(count)?;
-            let values = if complex {
-                let pairs = real.into_iter().zip(elements.numbers(count)?);
-                Values::Complex(pairs.map(|(re, im)| Complex64::new(re, im)).collect())
-            } else {
-                Values::Real(real)
-            };
+            let imaginary = if has_two { Some(elements.numbers(count)?) } else { None };
+            let values = complex(real, imaginary);
             Content::Array(Array { dimensions, values, single: class == 7 })
         }
         3 => Content::Other("object"),
@@ -246,7 +241,7 @@ fn fields(elements: &mut Elements) -> Result<Vec<String>> {
 }
 
 /// A name up to its first zero.
-fn string(bytes: &[u8]) -> String {
+pub fn string(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes.split(|b| *b == 0).next().unwrap_or_default()).into_owned()
 }
 

@@ -1,0 +1,177 @@
+//! Named variables to records, however a file stores them.
+//!
+//! A numeric vector is a record, and so is each column of a matrix; scalars and texts are notes on the records of their struct or group, and say
+//! abscissa and unit ([`names`], [`axes`]).
+
+mod axes;
+pub mod names;
+
+use super::Source;
+use super::missing::{self, Missing};
+use super::reader::{Options, Recording};
+use crate::assemble::{self, Spectral, to_si};
+use axes::Axes;
+use names::{Dialect, Scoped};
+use num_complex::Complex64;
+use vibro_record::units::Unit;
+use vibro_record::{Error, Fact, Finding, Meta, Place, Record, Result, Values};
+
+/// More columns than this are as a rule the samples of a matrix that lies on its side.
+pub const MOST_COLUMNS: u64 = 1000;
+/// Longest text that is kept.
+pub const MOST_TEXT: usize = 4096;
+/// Notes that a record takes at most: many scalars beside many vectors would fill the memory.
+const MOST_NOTES: usize = 200;
+
+/// What a variable holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    Array(Array),
+    Text(String),
+    /// Of a class that is passed over, by its name.
+    Other(&'static str),
+}
+
+/// Numbers in the order of the dialect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Array {
+    pub dimensions: Vec<u64>,
+    pub values: Values,
+    /// Whether values have the precision of 32-bit floats only.
+    pub single: bool,
+}
+
+/// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are those of the file.
+pub fn recording(
+    source: &Source,
+    dialect: &'static Dialect,
+    variables: Vec<(String, Content)>,
+    mut findings: Vec<Finding>,
+    options: &Options,
+) -> Result<Recording> {
+    let (mut arrays, mut notes) = (Vec::new(), Vec::new());
+    for (name, content) in variables {
+        match content {
+            Content::Text(text) => notes.push((name, text)),
+            Content::Other(class) => {
+                let passed = Finding::note("variable-passed-over");
+                let passed = if name.is_empty() { passed } else { passed.name("variable", name) };
+                findings.push(passed.name("class", class));
+            }
+            // MATLAB keeps the inside of objects and functions in a nameless array.
+            Content::Array(_) if name.is_empty() => {}
+            Content::Array(array) => match &array.values {
+                values if values.is_empty() => {
+                    findings.push(Finding::note("variable-empty").name("variable", name));
+                }
+                Values::Real(values) if values.len() == 1 => notes.push((name, values[0].to_string())),
+                _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
+                    let found = Finding::note("variable-many-dimensions").name("variable", name);
+                    findings.push(found.count("dimensions", array.dimensions.len()));
+                }
+                _ => arrays.push((name, array)),
+            },
+        }
+    }
+    let mut axes = Axes::find(dialect, &mut arrays, &notes, options, &mut findings);
+    let units = axes::units(dialect, &notes, &arrays);
+    let mut vectors: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
+    vectors.sort_unstable();
+    let beside = Scoped::of(dialect, notes.iter().map(|note| (dialect.scope(&note.0, &vectors), note)));
+    let (mut records, mut missing) = (Vec::new(), Missing::default());
+    for (of, array) in arrays {
+        let unit =
+            units.get(of.as_str()).or_else(|| units.get(dialect.bare(dialect.container(&of)))).copied();
+        for (name, mut values) in split(&of, array, &axes, options, &mut findings) {
+            for i in missing::mark(&mut values) {
+                missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
+            }
+            records.push((of.clone(), name, values, unit));
+        }
+    }
+    if records.is_empty() {
+        let error = Error::usage("no numeric vector or matrix", "at least one to make a record of");
+        return Err(match findings.iter().find_map(|found| found.fact("reason")) {
+            Some(Fact::Name(why)) => {
+                error.aside(why.clone()).hint("write its arrays as MAT (v7), CSV or WAV")
+            }
+            _ => error,
+        });
+    }
+    if options.complex && records.iter().all(|(.., values, _)| matches!(values, Values::Real(_))) {
+        return Err(Error::usage("no matrix of two columns", "one, for complex values were stated")
+            .hint("leave out that values are complex")
+            .setting("complex"));
+    }
+    findings.extend(missing::kept(missing.check("value(s) are NaN or infinite:", options.allow_missing)?));
+    if !dialect.attributes && options.unit.is_none() && records.iter().any(|(.., unit)| unit.is_none()) {
+        findings.push(Finding::caution("format-without-units"));
+    }
+    axes.offer(records.iter().map(|(_, name, values, _)| (name, values)));
+    let record = |(of, name, mut values, unit): (String, String, Values, Option<&str>)| {
+        let mut meta = Meta::new(name, Unit::opaque(""));
+        let axis = axes.of(&of, &values, &mut meta, &mut findings)?;
+        for (scope, (name, text)) in beside.over(&of) {
+            let inside = if dialect.attributes { &name[scope.len()..] } else { name };
+            let inside = inside.trim_start_matches(dialect.separator);
+            if !meta.notes.iter().any(|(nearer, _)| nearer == inside) {
+                meta.notes.push((inside.to_owned(), text.clone()));
+            }
+            if meta.notes.len() == MOST_NOTES {
+                break;
+            }
+        }
+        meta.step("read", &[("file", &source.name()), ("format", &dialect.format.name())]);
+        let stated = dialect.attributes || options.unit.is_some() || unit.is_some();
+        let factor = if stated { options.adopt(&mut meta, unit) } else { 1.0 };
+        to_si(&mut values, factor)?;
+        assemble::record(meta, axis, values, Spectral::default())
+    };
+    let records = records.into_iter().map(record).collect::<Result<Vec<Record>>>()?;
+    Ok(Recording { path: source.path().to_owned(), format: dialect.format, records, findings })
+}
+
+/// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the abscissa. Where complex values
+/// were stated, two columns are one record.
+fn split(
+    name: &str,
+    Array { dimensions, values, .. }: Array,
+    axes: &Axes,
+    options: &Options,
+    findings: &mut Vec<Finding>,
+) -> Vec<(String, Values)> {
+    let mut long = dimensions.into_iter().filter(|d| *d > 1);
+    let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
+        return vec![(name.to_owned(), values)];
+    };
+    let dialect = axes.dialect;
+    let has = |n: u64| axes.has(name, n);
+    let wide = columns > rows.max(dialect.wide);
+    let pair = options.complex && rows == 2 && columns > 2;
+    let lying = !has(rows) && (wide || pair || (has(columns) && rows <= columns.max(MOST_COLUMNS)));
+    if lying && !pair && !has(columns) {
+        let found = Finding::caution("matrix-by-rows").name("variable", name);
+        findings.push(found.number("rows", rows as f64).number("columns", columns as f64));
+    }
+    let (rows, columns) = (rows as usize, columns as usize);
+    let (n, count) = if lying { (columns, rows) } else { (rows, columns) };
+    let (first, step) = if lying == dialect.by_rows { (n, 1) } else { (1, count) };
+    let part = |k: usize| match &values {
+        Values::Real(all) => Values::Real(every(all, k * first, step, n)),
+        Values::Complex(all) => Values::Complex(every(all, k * first, step, n)),
+    };
+    if options.complex
+        && count == 2
+        && let (Values::Real(re), Values::Real(im)) = (part(0), part(1))
+    {
+        let pairs = re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im));
+        return vec![(name.to_owned(), Values::Complex(pairs.collect()))];
+    }
+    let [open, close] = dialect.brackets;
+    let index = |k: usize| if lying { format!("{open}{k},:{close}") } else { format!("{open}:,{k}{close}") };
+    (0..count).map(|k| (format!("{name}{}", index(dialect.first + k)), part(k))).collect()
+}
+
+fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {
+    all.iter().skip(from).step_by(step).take(n).copied().collect()
+}

@@ -1,0 +1,155 @@
+//! What the names of variables say: where they stand, of which vectors they speak, and what of them.
+//!
+//! What stands in a struct or group speaks of the vectors in it, however deep, and an attribute of its vector. Where a struct has none, it speaks of
+//! those beside it: `File_Header.SampleFrequency` of `Channel_1_Data`, `Signal.x_values.increment` of `Signal.y_values.values`.
+
+use crate::format::Format;
+use std::collections::HashMap;
+
+/// How a format writes names and matrices.
+#[derive(Debug)]
+pub struct Dialect {
+    pub format: Format,
+    /// Behind the name of a struct or group.
+    pub separator: char,
+    /// Around the index of a row or column, and the first index.
+    pub brackets: [char; 2],
+    pub first: usize,
+    /// Whether matrices are stored row after row.
+    pub by_rows: bool,
+    /// A matrix with more columns than rows, and than this, is taken for one that lies on its side.
+    pub wide: u64,
+    /// Whether groups and vectors have attributes: the unit of a group is that of all in it, and notes go by their names in the group.
+    pub attributes: bool,
+}
+
+/// What a scalar says of an abscissa.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Meaning {
+    /// Sampling rate in Hz.
+    Rate,
+    /// Step of time in s.
+    Step,
+    /// Step of time or of frequency.
+    Increment,
+    /// First value.
+    Start,
+}
+
+/// Whether a name means one thing only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Trust {
+    /// It does.
+    Sure,
+    /// It does as a rule: a step is taken with a caution, a start where it stands beside an increment.
+    Likely,
+    /// `rate` may be that of a shaft: taken from 1 kHz on, where nothing better is said.
+    Vague,
+    /// Not taken unless its unit is stated, but named to the person.
+    Offered,
+}
+
+use Meaning::{Increment, Rate, Start, Step};
+use Trust::{Likely, Offered, Sure, Vague};
+
+/// Names as [`Dialect::word`] gives them, what they mean, and whether they mean nothing else.
+const NAMES: &[(&[&str], Meaning, Trust)] = &[
+    (&["fs", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency"], Rate, Sure),
+    (&["dt", "ts", "deltat", "sampletime", "samplinginterval", "sampleinterval", "tinterval"], Step, Sure),
+    (&["wfincrement"], Step, Sure),
+    (&["increment", "xincrement", "xinc", "xspacing"], Increment, Likely),
+    (&["dx", "deltax"], Increment, Offered),
+    (&["t0", "tstart", "startvalue", "xstart", "xorg", "xorigin", "xoffset", "wfstartoffset"], Start, Sure),
+    (&["x0"], Start, Likely),
+    (&["sr"], Rate, Likely),
+    (&["rate"], Rate, Vague),
+];
+/// Parts of such names.
+const PARTS: &[(&[&str], Trust)] = &[
+    (&["samplerate", "samplingrate", "samplefreq", "samplingfreq"], Likely),
+    (&["sampl", "rate", "freq"], Offered),
+];
+/// Names of the unit of values, and of that of their abscissa.
+pub const UNIT: &[&str] = &["unit", "units", "yunit", "yunits", "unity", "unitstring"];
+pub const X_UNIT: &[&str] = &["xunit", "xunits", "unitx"];
+/// Names of what a struct is about: the struct's own name says what it is.
+const CONTENTS: [&str; 3] = ["data", "values", "value"];
+
+impl Dialect {
+    /// The struct in which a variable stands, with its last separator; empty for variables of their own.
+    pub fn container<'n>(&self, name: &'n str) -> &'n str {
+        name.rfind(self.separator).map_or("", |at| &name[..=at])
+    }
+
+    /// The name of a struct without its last separator.
+    pub fn bare<'n>(&self, container: &'n str) -> &'n str {
+        container.strip_suffix(self.separator).unwrap_or(container)
+    }
+
+    /// The last part of a name that is more than `Data`; of `X(1).Data` it is `X`.
+    pub fn key<'n>(&self, name: &'n str) -> &'n str {
+        let (container, last) = name.split_at(self.container(name).len());
+        match container.strip_suffix(self.separator) {
+            Some(outer) if CONTENTS.contains(&last.to_lowercase().as_str()) => {
+                let index = outer.rfind(['(', '{']).filter(|_| outer.ends_with([')', '}']));
+                self.key(&outer[..index.unwrap_or(outer.len())])
+            }
+            _ => last,
+        }
+    }
+
+    /// The key in lower case, of letters and digits alone.
+    pub fn word(&self, name: &str) -> String {
+        self.key(name).chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase()
+    }
+
+    /// What a scalar of this name says.
+    pub fn meaning(&self, name: &str) -> Option<(Meaning, Trust)> {
+        let word = self.word(name);
+        let named = NAMES.iter().find(|(names, ..)| names.contains(&word.as_str()));
+        let part = || PARTS.iter().find(|(parts, _)| parts.iter().any(|part| word.contains(part)));
+        named.map(|n| (n.1, n.2)).or_else(|| part().map(|(_, trust)| (Rate, *trust)))
+    }
+
+    /// The structs in which a variable stands, the innermost first; at last the file, whose name is empty.
+    pub fn structs<'n>(&self, name: &'n str) -> impl Iterator<Item = &'n str> {
+        let outer = |inner: &&'n str| inner.strip_suffix(self.separator).map(|inner| self.container(inner));
+        std::iter::successors(Some(self.container(name)), outer)
+    }
+
+    /// The struct of whose vectors a variable speaks, or the vector whose attribute it is. `vectors` are sorted.
+    pub fn scope<'n>(&self, name: &'n str, vectors: &[&str]) -> &'n str {
+        let of = |inside: &'n str| {
+            let behind = vectors.partition_point(|vector| *vector < inside);
+            let has = vectors.get(behind).is_some_and(|vector| vector.starts_with(inside));
+            let vector = || vectors.binary_search(&self.bare(inside)).is_ok();
+            if has { Some(inside) } else { vector().then(|| self.bare(inside)) }
+        };
+        self.structs(name).find_map(of).unwrap_or_default()
+    }
+}
+
+/// What speaks of vectors, by their struct.
+pub struct Scoped<T> {
+    dialect: &'static Dialect,
+    things: HashMap<String, Vec<T>>,
+}
+
+impl<T> Scoped<T> {
+    pub fn of<'n>(dialect: &'static Dialect, things: impl Iterator<Item = (&'n str, T)>) -> Scoped<T> {
+        let mut all = Scoped { dialect, things: HashMap::new() };
+        things.for_each(|(scope, thing)| all.add(scope, thing));
+        all
+    }
+
+    pub fn add(&mut self, scope: &str, thing: T) {
+        self.things.entry(scope.to_owned()).or_default().push(thing);
+    }
+
+    /// What speaks of a vector, the nearest first, with its struct.
+    pub fn over<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a T)> {
+        let scopes = std::iter::once(name).chain(self.dialect.structs(name));
+        let all = scopes.filter_map(|scope| Some((scope, self.things.get(scope)?)));
+        all.flat_map(|(scope, all)| all.iter().map(move |thing| (scope, thing)))
+    }
+}
