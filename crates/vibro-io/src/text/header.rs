@@ -18,6 +18,8 @@ pub struct Stated {
     pub rate: Option<f64>,
     /// Number of values of a series.
     pub values: Option<usize>,
+    /// Whether it is a step that is stated, as above the values of one series, and no rate.
+    pub of_one_series: bool,
     /// First instant in s.
     pub start: Option<f64>,
     /// Distance of spectral lines in Hz.
@@ -138,8 +140,9 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "x axis delta"
         | "hresolution"
         | "horizontal interval" => {
-            stated.rate =
-                quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
+            let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
+            stated.of_one_series |= rate.is_some();
+            stated.rate = rate.or(stated.rate);
         }
         // Without a unit these may be anything.
         "clock" | "interval" | "time interval" if value.ends_with(char::is_alphabetic) => {

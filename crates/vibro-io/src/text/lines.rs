@@ -5,6 +5,8 @@
 
 use super::clock;
 use super::dialect::Separator;
+use super::names;
+use crate::number;
 use std::borrow::Cow;
 
 /// Fields of a line, each with the byte at which it begins.
@@ -133,6 +135,16 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
         }
         at += end + 1;
     }
+}
+
+/// Whether a line that is no row is meant as one: as many cells, the first begins with a digit, one is a number, and they are no units.
+pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
+    let Ok(cells) = fields(line, separator) else { return false };
+    let number = |text: &str| [b'.', b','].iter().any(|m| number::parse_with(text.as_bytes(), *m).is_some());
+    cells.len() == columns
+        && cells[0].1.trim_start_matches(['-', '+', '<', '>']).starts_with(|c: char| c.is_ascii_digit())
+        && cells.iter().any(|(_, cell)| number(cell))
+        && !names::is_unit_row(cells.iter().map(|(_, cell)| cell.as_ref()))
 }
 
 #[cfg(test)]

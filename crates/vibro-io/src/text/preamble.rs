@@ -137,6 +137,7 @@ pub fn beside_rows(text: &Text) -> Option<Dialect> {
         format: Format::Csv,
         separator,
         decimal: b'.',
+        stated: false,
         complex: false,
         columns,
         skipped,
