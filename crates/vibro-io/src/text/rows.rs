@@ -146,6 +146,10 @@ impl Reader<'_> {
             let hint = "state whether the decimal mark is a comma or a point; the other mark groups digits";
             return error.hint(hint).setting("decimal");
         }
+        // No value can be missing there.
+        if self.dialect.names.is_some() && line.text[..at].trim_matches([' ', '"']).is_empty() {
+            return error.hint(self.hint(line, "remove the line, or put # before it"));
+        }
         let hint = "write NaN in place of a bad value and allow missing values; put # before a remark";
         error.hint(self.hint(line, hint)).setting("allow_missing")
     }

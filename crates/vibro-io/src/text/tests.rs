@@ -222,8 +222,8 @@ fn what_is_assumed_is_said() {
     let lone = read_with(&Reader::new(), "velocity [mm/s]\n1,5\n2,5\n").unwrap();
     assert_eq!(values(&lone.records[0]), [1.5 * 1e-3, 2.5 * 1e-3]);
     assert!(has_finding(&lone.findings, "decimal-comma-assumed", &[]));
-    let error = read_with(&Reader::new(), "time [h],a\n0,1\n1,2\n").unwrap_err().to_string();
-    assert!(error.contains("the unit \"h\" of the abscissa"), "{error}");
+    let error = read_with(&Reader::new(), "time [moon],a\n0,1\n1,2\n").unwrap_err().to_string();
+    assert!(error.contains("the unit \"moon\" of the abscissa"), "{error}");
     let error = read_with(&Reader::new(), "time [s]\n0\n1\n").unwrap_err().to_string();
     assert!(error.contains("only an abscissa"), "{error}");
 }
@@ -506,4 +506,88 @@ fn clocks_before_a_trigger_and_of_days() {
     assert!(axis.len() == 4 && axis.step().is_some_and(|step| (step - 0.1).abs() < 1e-12), "{axis:?}");
     let recording = of("Time,a\n0.23:59:58,1\n0.23:59:59,2\n1.00:00:00,3\n1.00:00:01,4\n");
     assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 1.0, 4));
+}
+
+#[test]
+fn units_of_times_that_mean_something_else_elsewhere() {
+    for (unit, factor) in [
+        ("h", 3600.0),
+        ("H", 3600.0),
+        ("days", 86_400.0),
+        ("Min", 60.0),
+        ("S", 1.0),
+        ("MS", 1e-3),
+        ("us", 1e-6),
+    ] {
+        for text in
+            [format!("Time ({unit}),a\n"), format!("Time [{unit}],a\n"), format!("Time,a\n{unit},V\n")]
+        {
+            let recording = of(text.clone() + "0,1\n1,2\n2,3\n");
+            assert_eq!(recording.records[0].axis(), &Axis::time(0.0, factor, 3), "{text}");
+            assert!(!has_finding(&recording.findings, "axis-unit-unknown", &[]), "{text}");
+        }
+    }
+    let others = of("Time (s),Drop (d),Acc (Min),AI 2 (Gs),CH1(MV)\n0,1,2,3,4\n1,1,2,3,4\n");
+    assert!(others.records.iter().zip([1.0, 2.0, 3.0, 4.0]).all(|(r, v)| values(r) == [v, v]));
+}
+
+#[test]
+fn a_unit_above_all_is_that_of_one_column() {
+    let one = of("Unit: g\nTime (s),Acc,Speed (rpm)\n0,1,60\n1,1,60\n");
+    assert_eq!((values(&one.records[0]), values(&one.records[1])), (&[9.80665; 2][..], &[1.0; 2][..]));
+    let two = of("Unit: g\nTime (s),Acc,Force\n0,1,2\n1,1,2\n");
+    assert_eq!((values(&two.records[0]), values(&two.records[1])), (&[1.0; 2][..], &[2.0; 2][..]));
+    assert!(has_finding(&two.all_findings(), "unit-unsaid", &[]));
+}
+
+#[test]
+fn what_a_preamble_states() {
+    for (head, step) in [
+        ("Sample Rate;51200,0", Some(1.0 / 51_200.0)),
+        ("Sample Rate;51,2;kHz", Some(1.0 / 51_200.0)),
+        ("Sampling rate: 500 mHz", Some(2.0)),
+        ("Sampling rate [mHz]: 500", Some(2.0)),
+        ("Sampling rate: 2 MHz", Some(0.5e-6)),
+        ("Start: 0\nIncrement: 0.5", Some(0.5)),
+        ("Increment;0,5;ms", Some(0.5e-3)),
+        // May be 51.2 or 51 200; may be any.
+        ("Sample Rate: 51,200", None),
+        ("Increment;100", None),
+        ("Rate: 10", None),
+    ] {
+        let recording = of(format!("{head}\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n"));
+        let axis = recording.records[0].axis();
+        let close = |step: f64| axis.step().is_some_and(|found| (found / step - 1.0).abs() < 1e-12);
+        assert!(step.map_or(axis.kind == AxisKind::Index, close), "{head}: {axis:?}");
+    }
+    let one = of("Sample Interval (us),20\nCH1 (V)\n0.5\n0.25\n");
+    assert_eq!(one.records[0].axis().kind, AxisKind::Time);
+}
+
+#[test]
+fn an_epoch_is_taken_off_before_it_is_scaled() {
+    let rows: String = (0..50).map(|i| format!("{},1\n", 1_700_000_000_000_u64 + i)).collect();
+    let recording = of("Timestamp (ms),Acc (g)\n".to_owned() + &rows);
+    assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 1e-3, 50));
+    // A few hours in ms are no epoch.
+    assert_eq!(of("Time (ms),a\n5000,1\n5001,2\n5002,3\n").records[0].axis().start(), 5.0);
+}
+
+#[test]
+fn two_numbers_of_a_clock_are_said_to_be_hours_and_minutes() {
+    let said = |text: &str| has_finding(&of(text).all_findings(), "axis-clock-minutes", &[]);
+    assert!(said("Time,a\n00:00,1\n00:01,2\n00:02,3\n"));
+    assert!(!said("Time,a\n0:00:00,1\n0:00:01,2\n0:00:02,3\n"));
+    assert!(!said("Time,a\n00:00.0,1\n00:00.5,2\n00:01.0,3\n"));
+    assert!(!said("Time,a\n2020-01-24 00:00,1\n2020-01-24 00:01,2\n2020-01-24 00:02,3\n"));
+}
+
+#[test]
+fn words_below_the_rows_are_put_behind_a_mark() {
+    let error = read_with(&Reader::new(), "Time (s),a\n0,1\n1,2\nMax,2\n\n").unwrap_err().to_string();
+    assert!(
+        error.contains("line 4, column 1") && error.contains("put #") && !error.contains("allow"),
+        "{error}"
+    );
+    assert_eq!(of("Time (s),a\n0,1\n1,2\n#Max,2\n\n").records[0].axis().len(), 2);
 }
