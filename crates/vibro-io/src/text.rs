@@ -90,12 +90,7 @@ pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
 
 pub(crate) fn read_table(source: &Source, options: &Options) -> Result<Recording> {
     with_text(source, |text| match table::detect(text, options) {
-        Some(dialect) => {
-            if !dialect.stated {
-                table::grouped(text, &dialect)?;
-            }
-            read(text, &dialect, options)
-        }
+        Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
         None => Err(Error::usage(
             "no row of numbers with names of columns right above it",
             "e.g. `time [s],velocity [mm/s]`, then rows of numbers",

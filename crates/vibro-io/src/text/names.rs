@@ -239,13 +239,17 @@ const DAY: &str = "day";
 
 /// The unit behind the name of a time, where it has other letters elsewhere or means something else there: `d`, `H`, `Min`, `MS`.
 fn long(name: &str, unit: &str) -> Option<&'static str> {
-    let lower = unit.trim().to_lowercase();
-    let units =
-        [(HOUR, "h hr hrs std hours"), (DAY, "d days"), ("min", "mins"), ("s", ""), ("ms", ""), ("µs", "us")];
-    let found =
-        units.iter().find(|(unit, also)| *unit == lower || also.split(' ').any(|also| also == lower))?;
+    let found = match unit.trim().to_lowercase().as_str() {
+        "h" | "hr" | "hrs" | "std" => HOUR,
+        "d" | "day" | "days" => DAY,
+        "min" => "min",
+        "s" => "s",
+        "ms" => "ms",
+        "us" => "µs",
+        _ => return None,
+    };
     let named = Name { name: name.trim().to_owned(), unit: None };
-    (!lower.is_empty() && named.axis(true) == Some(AxisKind::Time) && !named.is_vague()).then_some(found.0)
+    (named.axis(true) == Some(AxisKind::Time) && !named.is_vague()).then_some(found)
 }
 
 /// The symbol of a unit that is written as a word; any other text as it is.

@@ -43,10 +43,9 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     }
     let said = |l: &Line| l.remark.unwrap_or(l.text.trim()).to_owned();
     let mut header: Vec<String> = above.iter().map(said).collect();
-    if let Some(stated) = count_and_step(&rows) {
-        header.push(stated);
-        rows.remove(0);
-    }
+    let stated = count_and_step(&rows);
+    rows.drain(..usize::from(stated.is_some()));
+    header.extend(stated);
     let Some(mut first) = rows.first() else {
         let found = match header.first() {
             Some(line) => format!("no row of numbers (the first line is {:?})", shorten(line)),
@@ -101,13 +100,12 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
 
 /// `300 0.005` above rows of three columns and more: number of values and step in s, as Fortran programs write them.
 fn count_and_step(rows: &[Line]) -> Option<String> {
-    let columns = |line: &Line| line.text.split_whitespace().count();
-    let (below, columns) = (columns(rows.get(1)?), columns(rows.get(2)?));
-    let (count, step) = rows[0].text.trim().split_once(char::is_whitespace)?;
-    let step = step.trim();
-    let number = number::parse(step.as_bytes()).is_some();
+    let columns = |i: usize| rows.get(i).map_or(0, |line| line.text.split_whitespace().count());
+    let (count, step) = rows.first()?.text.trim().split_once(char::is_whitespace)?;
     let whole = count.bytes().all(|b| b.is_ascii_digit()) && step.contains('.');
-    (whole && number && columns > 2 && below == columns).then(|| format!("NPTS={count}, DT={step}"))
+    let stated = whole && number::parse(step.as_bytes()).is_some();
+    (stated && columns(2) > 2 && columns(1) == columns(2))
+        .then(|| format!("NPTS={count}, DT={}", step.trim()))
 }
 
 /// Whether every token of a line is a number, a piece of a complex number or a missing value, and at least one is a number.

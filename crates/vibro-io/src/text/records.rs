@@ -225,10 +225,10 @@ impl Made<'_> {
     /// Whether a clock has two numbers and no date: hours and minutes, or minutes and seconds.
     fn minutes(&self) -> bool {
         let first = self.dialect.rows(&self.text.head).next().and_then(|line| self.dialect.cut(&line).ok());
-        let cell = self.dialect.clock_at().and_then(|at| Some(first?.get(at)?.1.clone().into_owned()));
-        cell.is_some_and(|cell| {
-            cell.split(':').count() == 2 && cell.bytes().all(|b| b.is_ascii_digit() || b == b':')
-        })
+        let cell = self.dialect.clock_at().and_then(|at| first.as_ref()?.get(at));
+        let colons =
+            |(_, cell): &(usize, Cow<str>)| cell.split(|c: char| c.is_ascii_digit()).collect::<String>();
+        cell.map(colons).as_deref() == Some(":")
     }
 
     /// Time or frequency, by what a person or the header states of `n` values.

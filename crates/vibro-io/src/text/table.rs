@@ -47,11 +47,10 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
             for (separator, count) in of(2) {
                 let count = count.unwrap_or(0);
                 // Rows above this one that do not parse are rows: reading will complain, with the place.
-                let torn = |l: &&Line| l.remark.is_some() || is_torn(l.text, *separator, count);
-                let (upper, torn) = above.split_at(above.len() - above.iter().rev().take_while(torn).count());
-                let first = torn.iter().find(|l| l.remark.is_none());
-                if let Some((found, true)) = first.and_then(|l| fit(upper, *l, *separator, count, &text.head))
-                {
+                let torn = above.iter().rev().take_while(|l| is_torn(l.text, *separator, count)).count();
+                let (upper, torn) = above.split_at(above.len() - torn);
+                let torn = torn.first().and_then(|first| fit(upper, *first, *separator, count, &text.head));
+                if let Some((found, true)) = torn {
                     return Some(decided(found, text, options));
                 }
                 match fit(&above, line, *separator, count, &text.head) {
@@ -123,11 +122,9 @@ fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
 /// Names the first of them.
 pub fn grouped(text: &Text, dialect: &Dialect) -> Result<()> {
     let mut columns = vec![(None, false); dialect.columns];
-    for line in dialect.rows(&text.head).filter(|line| line.remark.is_none()) {
-        for (i, (at, cell)) in dialect.cut(&line).unwrap_or_default().into_iter().enumerate() {
-            let Some((first, whole)) = columns.get_mut(i).filter(|_| dialect.clock_at() != Some(i)) else {
-                continue;
-            };
+    for line in dialect.rows(&text.head).filter(|line| line.remark.is_none() && !dialect.stated) {
+        let cells = dialect.cut(&line).unwrap_or_default().into_iter().zip(&mut columns).enumerate();
+        for (_, ((at, cell), (first, whole))) in cells.filter(|(i, _)| dialect.clock_at() != Some(*i)) {
             if number::may_be_grouped(cell.as_bytes()) {
                 first.get_or_insert((in_line(line.number).column(line.column(at)), shorten(&cell)));
             } else if cell.contains([',', '.']) {
@@ -137,16 +134,13 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<()> {
             }
         }
     }
-    match columns.into_iter().find_map(|(first, whole)| first.filter(|_| whole)) {
-        Some((place, cell)) => Err(Error::input(
-            place,
-            format!("{cell:?} beside whole numbers may be grouped digits"),
-            "a file where this can be told",
-        )
-        .hint("say which mark is the decimal one: comma or point; the other groups digits")
-        .setting("decimal")),
-        None => Ok(()),
-    }
+    let doubtful = columns.into_iter().find_map(|(first, whole)| first.filter(|_| whole));
+    doubtful.map_or(Ok(()), |(place, cell)| {
+        let found = format!("{cell:?} beside whole numbers may be grouped digits");
+        Err(Error::input(place, found, "a file where this can be told")
+            .hint("say which mark is the decimal one: comma or point; the other groups digits")
+            .setting("decimal"))
+    })
 }
 
 /// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and whether there are as many as
