@@ -478,8 +478,8 @@ fn decimal_commas_in_quotes_between_commas() {
 fn columns_under_the_step_of_a_series_are_asked_about() {
     let mut noise = vibro_math::Noise::new(7);
     let drawn: Vec<f64> = (0..75).map(|_| (noise.normal() * 1e3).round() / 1e3).collect();
-    let rows: String =
-        drawn.chunks(5).map(|row| row.iter().map(|v| format!("{v} ")).collect::<String>() + "\n").collect();
+    let row = |row: &[f64]| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ") + "\n";
+    let rows: String = drawn.chunks(5).map(row).collect();
     let with = |head: &str, reader: Reader| reader.from_reader("x.txt", (head.to_owned() + &rows).as_bytes());
     for head in ["dt = 0.001 s\n", "NPTS= 500, DT= .001 SEC\n", "NPTS= 60, DT= .001 SEC\n"] {
         let error = with(head, Reader::new()).unwrap_err().to_string();
@@ -566,7 +566,7 @@ fn what_a_preamble_states() {
 
 #[test]
 fn an_epoch_is_taken_off_before_it_is_scaled() {
-    let rows: String = (0..50).map(|i| format!("{},1\n", 1_700_000_000_000_u64 + i)).collect();
+    let rows: String = (0..50).map(|i| (1_700_000_000_000_u64 + i).to_string() + ",1\n").collect();
     let recording = of("Timestamp (ms),Acc (g)\n".to_owned() + &rows);
     assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 1e-3, 50));
     // A few hours in ms are no epoch.
