@@ -286,7 +286,7 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     for field in fields.filter(|f| !f.trim().is_empty()) {
         let unit = symbol(bare_unit(field));
         let understood = Unit::parse(unit).is_some()
-            || long("time", unit).is_some()
+            || matches!(unit, "h" | "d" | HOUR)
             || COUNTERS.contains(&unit.to_lowercase().as_str());
         total += 1;
         known += usize::from(understood);

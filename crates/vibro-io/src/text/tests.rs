@@ -519,14 +519,15 @@ fn units_of_times_that_mean_something_else_elsewhere() {
         ("MS", 1e-3),
         ("us", 1e-6),
     ] {
-        for text in
-            [format!("Time ({unit}),a\n"), format!("Time [{unit}],a\n"), format!("Time,a\n{unit},V\n")]
-        {
+        for text in [format!("Time ({unit}),a\n"), format!("Time [{unit}],a\n")] {
             let recording = of(text.clone() + "0,1\n1,2\n2,3\n");
             assert_eq!(recording.records[0].axis(), &Axis::time(0.0, factor, 3), "{text}");
             assert!(!has_finding(&recording.findings, "axis-unit-unknown", &[]), "{text}");
         }
     }
+    assert_eq!(of("Time,a\nh,V\n0,1\n1,2\n").records[0].axis().step(), Some(3600.0));
+    // Statistics above the names are no units.
+    assert_eq!(of("Time,Force\n(s),(N)\nMin,-1\nMax,1\n0,1\n1,2\n").records[0].meta().name, "Force");
     let others = of("Time (s),Drop (d),Acc (Min),AI 2 (Gs),CH1(MV)\n0,1,2,3,4\n1,1,2,3,4\n");
     assert!(others.records.iter().zip([1.0, 2.0, 3.0, 4.0]).all(|(r, v)| values(r) == [v, v]));
 }
