@@ -42,21 +42,40 @@ pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     let text = text.trim_ascii();
     match prefix(text, decimal) {
         Some((value, used)) if used == text.len() => Some(value),
-        Some(_) => ungrouped(text, decimal),
+        Some(_) => ungrouped(text, decimal, false),
         None => None,
     }
 }
 
+/// As [`parse_with`], where a person stated the decimal mark: then the other mark groups digits, also of whole numbers.
+pub(crate) fn parse_stated(text: &[u8], decimal: u8) -> Option<f64> {
+    parse_with(text, decimal).or_else(|| ungrouped(text.trim_ascii(), decimal, true))
+}
+
+/// Whether `text` is a whole number in groups of three digits between the marks that decimals have, too: `1,000`.
+pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
+    [b'.', b','].iter().any(|decimal| {
+        !text.contains(decimal)
+            && parse_with(text, *decimal).is_none()
+            && ungrouped(text, *decimal, true).is_some()
+    })
+}
+
 /// A number whose digits stand in groups of three: between apostrophes or narrow blanks, or between the other mark where its own mark
-/// shows that it is the other.
+/// shows that it is the other or a person `stated` that.
 #[cold]
-fn ungrouped(text: &[u8], decimal: u8) -> Option<f64> {
+fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let text = std::str::from_utf8(text).ok()?;
     let mark = if decimal == b',' { '.' } else { ',' };
     let own = char::from(decimal);
     let group = text.find(['\'', '’', '\u{a0}', '\u{202f}', '\u{2009}', mark])?;
-    let group = text[group..].chars().next().filter(|group| *group != mark || text.contains(own))?;
+    let group =
+        text[group..].chars().next().filter(|group| *group != mark || stated || text.contains(own))?;
     let whole = text.split(own).next()?.trim_start_matches(['-', '+']);
+    // Nobody groups `0.123`.
+    if group == mark && whole.starts_with('0') {
+        return None;
+    }
     let mut parts = whole.split(group);
     let threes = (1..=3).contains(&parts.next()?.len()) && parts.all(|part| part.len() == 3);
     if threes { parse_with(text.replace(group, "").as_bytes(), decimal) } else { None }

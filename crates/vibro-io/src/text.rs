@@ -90,7 +90,7 @@ pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
 
 pub(crate) fn read_table(source: &Source, options: &Options) -> Result<Recording> {
     with_text(source, |text| match table::detect(text, options) {
-        Some(dialect) => read(text, &dialect, options),
+        Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
         None => Err(Error::usage(
             "no row of numbers with names of columns right above it",
             "e.g. `time [s],velocity [mm/s]`, then rows of numbers",
@@ -106,7 +106,8 @@ pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recordi
 
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
     let plain = dialect.columns > 1 && dialect.names.is_none() && !dialect.complex;
-    let declared = Stated::of(dialect.header.iter().map(String::as_str)).values;
+    let stated = Stated::of(dialect.header.iter().map(String::as_str));
+    let declared = stated.values;
     if plain && (options.wrapped == Some(true) || options.wrapped.is_none() && declared.is_some()) {
         let values = wrapped::flat(text, dialect)?;
         if let Some(values) = values.filter(|v| options.wrapped.is_some() || declared == Some(v.len())) {
@@ -117,12 +118,21 @@ fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> 
     let shape = Shape::of(dialect, text.source.head());
     let tail = tail::of(text.source)?;
     let end = text.source.len() - (tail.len() - tail.trim_ascii_end().len()) as u64;
+    let one_step = plain && options.wrapped.is_none() && dialect.clock.is_none() && stated.of_one_series;
     let clean = shape.map(|shape| fast::read(text.source, &shape, end)).transpose()?.flatten();
     let rows = match clean {
         Some(columns) => Rows { columns, ..Rows::default() },
-        None => carefully(text, dialect, options)?,
+        None => carefully(text, dialect, options).map_err(|why| {
+            // The last line of one series is shorter.
+            if one_step && dialect.columns > 2 { wrapped::question(dialect.columns) } else { why }
+        })?,
     };
-    if plain && options.wrapped.is_none() && wrapped::continues(&rows.columns) {
+    let n = rows.columns.first().map_or(0, Values::len);
+    let series = || one_step && declared != Some(n) || declared.is_some_and(|declared| declared > n);
+    if plain
+        && options.wrapped.is_none()
+        && (wrapped::continues(&rows.columns) || series() && wrapped::no_abscissa(&rows.columns))
+    {
         return Err(wrapped::question(dialect.columns));
     }
     records_of(text, dialect, rows, options)

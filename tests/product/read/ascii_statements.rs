@@ -143,7 +143,7 @@ fn what_a_person_states_wins_with_a_doubt_that_names_both() {
     let unit = told(&Reader::new().unit(Unit::parse("m/s")), "unit: mm/s\n1\n2\n");
     assert_eq!(values(&unit), [1.0, 2.0]);
     assert!(says(&unit, &["\"mm/s\"", "m/s was stated"]), "{:?}", sentences(&unit.all_findings()));
-    let other = told(&Reader::new().rate(Some(5.0)), "rate: 100\n1\n2\n");
+    let other = told(&Reader::new().rate(Some(5.0)), "rate: 100 Hz\n1\n2\n");
     assert_eq!(axis(&other), (&AxisKind::Time, Some(0.2)));
     assert!(says(&other, &["100 Hz", "5 Hz"]), "{:?}", sentences(&other.all_findings()));
     for impossible in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320] {

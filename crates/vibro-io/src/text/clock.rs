@@ -34,7 +34,8 @@ pub fn is_clock(text: &str) -> bool {
     if duration(text).is_some() {
         return true;
     }
-    text.starts_with(|c: char| c.is_ascii_alphanumeric()) && words(text).all(|word| part(word).is_some())
+    let unsigned = text.strip_prefix('-').unwrap_or(text);
+    unsigned.starts_with(|c: char| c.is_ascii_alphanumeric()) && words(text).all(|word| part(word).is_some())
 }
 
 /// Cells side by side as one.
@@ -129,11 +130,23 @@ fn number(text: &str) -> Option<f64> {
     number::parse_with(text.as_bytes(), b'.').or_else(|| number::parse_with(text.as_bytes(), b','))
 }
 
-/// `h:m`, `h:m:s`, `h:m:s:ms` and, where the last has decimals, `m:s`; a zone behind them says nothing within one file.
+/// `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms` and, where the last has decimals, `m:s`; a zone behind them says nothing within one file.
 fn seconds(word: &str) -> Option<f64> {
+    // Before a trigger.
+    if let Some(before) = word.strip_prefix('-') {
+        return seconds(before).map(|seconds| -seconds);
+    }
     let word = word.trim_end_matches('Z').split(['+', '-']).next()?;
     let cells: Vec<f64> =
         word.split(':').map(|cell| number(cell).filter(|n| *n >= 0.0)).collect::<Option<_>>()?;
+    if let Some((days, time)) =
+        word.split_once('.').filter(|(days, time)| !days.contains(':') && time.contains(':'))
+    {
+        return Some(number(days)? * DAY + seconds(time)?);
+    }
+    if word.split(':').rev().skip(1).any(|cell| !cell.bytes().all(|b| b.is_ascii_digit())) {
+        return None;
+    }
     let of = |h: f64, m: f64, s: f64| (m < 60.0 && s < 61.0).then_some((h * 60.0 + m) * 60.0 + s);
     match *cells {
         [m, s] if word.contains(['.', ',']) => of(0.0, m, s),

@@ -3,7 +3,7 @@
 use super::clock;
 use super::lines::{Fields, Line, Lines, fields};
 use super::names::Name;
-use crate::Format;
+use crate::{Format, number};
 use std::ops::Range;
 
 /// How rows are to be cut and read, and what stands above them.
@@ -15,6 +15,8 @@ pub struct Dialect {
     pub separator: Separator,
     /// Decimal mark.
     pub decimal: u8,
+    /// Whether a person stated the decimal mark.
+    pub stated: bool,
     /// Whether a cell holds `(re+imj)`, `re+imj`, `re - im i`, … in place of one real number.
     pub complex: bool,
     /// Columns of a row.
@@ -67,6 +69,15 @@ impl Dialect {
     /// The column of date and time.
     pub(crate) fn clock_at(&self) -> Option<usize> {
         self.clock.as_ref().map(|cells| cells.start)
+    }
+
+    /// A real number as a cell holds it.
+    pub(crate) fn number(&self, cell: &[u8]) -> Option<f64> {
+        if self.stated {
+            number::parse_stated(cell, self.decimal)
+        } else {
+            number::parse_with(cell, self.decimal)
+        }
     }
 
     /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not count.

@@ -34,7 +34,7 @@ pub struct Shape<'a> {
 impl<'a> Shape<'a> {
     /// The shape of rows of real numbers that begin in `head`; `None` for others.
     pub fn of(dialect: &'a Dialect, head: &[u8]) -> Option<Shape<'a>> {
-        if dialect.complex || dialect.skipped > 0 {
+        if dialect.complex || dialect.skipped > 0 || dialect.separator == Separator::Char(dialect.decimal) {
             return None;
         }
         let first_byte = dialect.first_byte(head);

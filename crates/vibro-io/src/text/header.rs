@@ -18,6 +18,8 @@ pub struct Stated {
     pub rate: Option<f64>,
     /// Number of values of a series.
     pub values: Option<usize>,
+    /// Whether it is a step that is stated, as above the values of one series, and no rate.
+    pub of_one_series: bool,
     /// First instant in s.
     pub start: Option<f64>,
     /// Distance of spectral lines in Hz.
@@ -31,6 +33,9 @@ pub struct Stated {
     /// Header lines as key and value; the key is empty where a line has none.
     pub notes: Vec<(String, String)>,
 }
+
+/// `mHz`, apart from megahertz in lower case.
+const MILLIHERTZ: &str = "millihertz";
 
 /// More lines than any analyser has.
 const MOST_LINES: f64 = 1e9;
@@ -46,7 +51,7 @@ impl Stated {
             for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
                 let (key, value) = split(line.trim());
                 stated.notes.push((key.to_owned(), value.to_owned()));
-                let key = key.to_lowercase();
+                let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
                 let of_axis = ["x-axis unit", "x axis unit", "xunits", "hunit", "horizontal units"];
                 lines_apart |= of_axis.contains(&key.as_str()) && matches!(value, "Hz" | "Hertz" | "hertz");
                 if key.is_empty() {
@@ -101,11 +106,16 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
     let hertz = || {
         // Samples a second are written `S/s`, `Sa/s` and `Sps`.
-        let value = value.to_lowercase().replace("sa/s", "hz").replace("sps", "hz").replace("s/s", "hz");
-        quantity(&value, unit_in_key, &[("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)])
+        let value = value.replace("mHz", MILLIHERTZ).to_lowercase();
+        let value = value.replace("sa/s", "hz").replace("sps", "hz").replace("s/s", "hz");
+        quantity(&value, unit_in_key, &HERTZ)
     };
+    let bare = unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit());
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
+        // Without a unit these may be anything, but for an increment beside a start.
+        "rate" | "clock" | "interval" | "time interval" if bare => {}
+        "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
             stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)]).and_then(line_count);
         }
@@ -132,18 +142,18 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "time step"
         | "delta time"
         | "increment"
+        | "clock"
+        | "interval"
+        | "time interval"
         | "tinc"
         | "x increment"
         | "xinc"
         | "x axis delta"
         | "hresolution"
         | "horizontal interval" => {
-            stated.rate =
-                quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
-        }
-        // Without a unit these may be anything.
-        "clock" | "interval" | "time interval" if value.ends_with(char::is_alphabetic) => {
-            stated.rate = quantity(value, "", &SECONDS).and_then(|dt| checked(1.0 / dt)).or(stated.rate);
+            let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
+            stated.of_one_series |= rate.is_some();
+            stated.rate = rate.or(stated.rate);
         }
         "npts" | "number of points" | "number of samples" | "record length" | "memory length"
         | "blocksize" | "total data points" => {
@@ -194,6 +204,9 @@ fn free_text(line: &str, stated: &mut Stated) {
     }
 }
 
+const HERTZ: [(&str, f64); 6] =
+    [(MILLIHERTZ, 1e-3), ("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)];
+
 const SECONDS: [(&str, f64); 7] =
     [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
 
@@ -204,7 +217,11 @@ fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64
 
 fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> {
     let value = value.trim();
-    let (number, used) = number::prefix(value.as_bytes(), b'.')?;
+    let printed = value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next()?;
+    // `51,200` may be 51 200.
+    let comma =
+        printed.contains(',') && !printed.contains('.') && !number::may_be_grouped(printed.as_bytes());
+    let (number, used) = number::prefix(value.as_bytes(), if comma { b',' } else { b'.' })?;
     let rest = value.get(used..)?.trim().trim_matches(['[', ']']).to_lowercase();
     let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
     let factor = units.iter().find(|u| u.0 == unit)?.1;

@@ -5,6 +5,8 @@
 
 use super::clock;
 use super::dialect::Separator;
+use super::names;
+use crate::number;
 use std::borrow::Cow;
 
 /// Fields of a line, each with the byte at which it begins.
@@ -133,6 +135,20 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
         }
         at += end + 1;
     }
+}
+
+/// Whether a line that is no row is meant as one: as many cells, the first begins with a digit, one is a number, another is none, and they
+/// are no units.
+pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
+    let cells = fields(line, separator).unwrap_or_default();
+    let cells: Vec<&str> = cells.iter().map(|(_, cell)| cell.as_ref()).collect();
+    let is = |cell: &str, mark| number::parse_with(cell.as_bytes(), mark).is_some();
+    let number = |cell: &&str| is(cell, b'.') || is(cell, b',');
+    let word = |c: &&str| !number(c) && !number::is_missing(c.as_bytes()) && !clock::is_clock(c);
+    let digit =
+        |cell: &&str| cell.trim_start_matches(['-', '+', '<', '>']).starts_with(|c: char| c.is_ascii_digit());
+    let torn = cells.len() == columns && cells.first().is_some_and(digit);
+    torn && cells.iter().any(number) && cells.iter().any(word) && !names::is_unit_row(cells.into_iter())
 }
 
 #[cfg(test)]

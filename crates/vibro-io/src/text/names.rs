@@ -37,14 +37,16 @@ impl Name {
                 && !unit.is_empty()
         };
         if let Some((name, unit)) = bracketed(text, '[', ']').filter(|found| !numbered(found)) {
-            let unit = Some(symbol(unit.trim()).to_owned()).filter(|u| !u.is_empty());
+            let unit = long(name, unit).unwrap_or(symbol(unit.trim()));
+            let unit = Some(unit.to_owned()).filter(|u| !u.is_empty());
             return Name { name: name.trim_end().to_owned(), unit };
         }
         let known = |name: &str, unit: &str| {
             let (name, unit) = (name.trim_end(), symbol(unit.trim()));
+            let unit = long(name, unit).unwrap_or(unit);
             // `X (100g)` is a sensor of that range.
             let multiple = unit.starts_with(|c: char| c.is_ascii_digit()) && !unit.starts_with("1/");
-            (!name.is_empty() && !multiple && (Unit::parse(unit).is_some() || unit == HOUR))
+            (!name.is_empty() && !multiple && (Unit::parse(unit).is_some() || matches!(unit, HOUR | DAY)))
                 .then(|| Name { name: name.to_owned(), unit: Some(unit.to_owned()) })
         };
         text.split_once(" / ")
@@ -67,7 +69,10 @@ impl Name {
     pub(crate) fn with_unit_row(text: &str, unit: &str) -> Name {
         match bare_unit(unit) {
             "" => Name::parse(text),
-            unit => Name { name: text.trim().to_owned(), unit: Some(symbol(unit).to_owned()) },
+            unit => {
+                let unit = long(text, unit).unwrap_or(symbol(unit)).to_owned();
+                Name { name: text.trim().to_owned(), unit: Some(unit) }
+            }
         }
     }
 
@@ -83,8 +88,8 @@ impl Name {
             };
             return Ok((1.0, Some(assumed.name("unit", domain(kind).1))));
         };
-        if text == HOUR {
-            return Ok((3600.0, None));
+        if let Some((_, factor)) = [(HOUR, 3600.0), (DAY, 86_400.0)].iter().find(|(long, _)| text == long) {
+            return Ok((*factor, None));
         }
         let unit = Unit::parse(text).ok_or_else(|| {
             let found = format!("the unit {text:?} of the abscissa {:?}", self.name);
@@ -230,6 +235,23 @@ const COUNTERS: [&str; 5] = ["sequence", "samples", "points", "no.", "rn"];
 /// Hours have no symbol among the units of values.
 const HOUR: &str = "hour";
 
+const DAY: &str = "day";
+
+/// The unit behind the name of a time, where it has other letters elsewhere or means something else there: `d`, `H`, `Min`, `MS`.
+fn long(name: &str, unit: &str) -> Option<&'static str> {
+    let found = match unit.trim().to_lowercase().as_str() {
+        "h" | "hr" | "hrs" | "std" => HOUR,
+        "d" | "day" | "days" => DAY,
+        "min" => "min",
+        "s" => "s",
+        "ms" => "ms",
+        "us" => "µs",
+        _ => return None,
+    };
+    let named = Name { name: name.trim().to_owned(), unit: None };
+    (named.axis(true) == Some(AxisKind::Time) && !named.is_vague()).then_some(found)
+}
+
 /// The symbol of a unit that is written as a word; any other text as it is.
 fn symbol(text: &str) -> &str {
     let lower = text.to_lowercase();
@@ -263,7 +285,9 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {
         let unit = symbol(bare_unit(field));
-        let understood = Unit::parse(unit).is_some() || COUNTERS.contains(&unit.to_lowercase().as_str());
+        let understood = Unit::parse(unit).is_some()
+            || matches!(unit, "h" | "d" | HOUR)
+            || COUNTERS.contains(&unit.to_lowercase().as_str());
         total += 1;
         known += usize::from(understood);
         sure += usize::from(understood || bare_unit(field).len() < field.trim().len());

@@ -9,7 +9,7 @@
 //! Complex values stand as `(re+imj)` or as two columns under a header with `real` and `imag`.
 
 use super::dialect::{Dialect, Separator};
-use super::lines::{Line, Lines, fields};
+use super::lines::{Line, Lines, fields, is_torn};
 use super::{Text, clock, in_line, names, shorten};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
@@ -25,7 +25,7 @@ const ENOUGH: usize = 24;
 /// # Errors
 /// If there is no row of numbers, or if it cannot be told whether commas are decimal marks.
 pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
-    let mut header = Vec::new();
+    let mut above: Vec<Line> = Vec::new();
     let mut rows: Vec<Line> = Vec::new();
     let mut comma = false;
     for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
@@ -36,12 +36,17 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
             comma |= line.text.contains(',');
             rows.push(line);
         } else if rows.is_empty() {
-            header.push(line.remark.unwrap_or(line.text.trim()).to_owned());
+            above.push(line);
         } else if line.remark.is_none() {
             break; // reading the rows will complain, with the place
         }
     }
-    let Some(first) = rows.first() else {
+    let said = |l: &Line| l.remark.unwrap_or(l.text.trim()).to_owned();
+    let mut header: Vec<String> = above.iter().map(said).collect();
+    let stated = count_and_step(&rows);
+    rows.drain(..usize::from(stated.is_some()));
+    header.extend(stated);
+    let Some(mut first) = rows.first() else {
         let found = match header.first() {
             Some(line) => format!("no row of numbers (the first line is {:?})", shorten(line)),
             None => "no row of numbers".to_owned(),
@@ -60,6 +65,13 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     };
     let whole = imaginary(first.text.trim());
     let complex = whole || cells.iter().any(|(_, c)| imaginary(c));
+    // Rows above the first that do not parse are rows: reading will complain, with the place.
+    let torn = |l: &&Line| l.remark.is_none() && is_torn(l.text, separator, cells.len());
+    let named = above.len() - above.iter().rev().take_while(torn).count();
+    if named < above.len() && names::above(&header[..named], cells.len(), separator).is_some() {
+        first = &above[named];
+        header.truncate(named);
+    }
     let clock = clock::columns(&cells);
     let joined = clock.as_ref().map_or(0, |cells| cells.len() - 1);
     let columns = if whole && separator == Separator::Blank { 1 } else { cells.len() - joined };
@@ -73,6 +85,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
         format: Format::Ascii,
         separator,
         decimal,
+        stated: options.decimal_comma.is_some(),
         complex,
         columns,
         skipped: 0,
@@ -83,6 +96,16 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
         first_line: first.number,
         header,
     })
+}
+
+/// `300 0.005` above rows of three columns and more: number of values and step in s, as Fortran programs write them.
+fn count_and_step(rows: &[Line]) -> Option<String> {
+    let columns = |i: usize| rows.get(i).map_or(0, |line| line.text.split_whitespace().count());
+    let (count, step) = rows.first()?.text.trim().split_once(char::is_whitespace)?;
+    let whole = count.bytes().all(|b| b.is_ascii_digit()) && step.contains('.');
+    let stated = whole && number::parse(step.as_bytes()).is_some();
+    (stated && columns(2) > 2 && columns(1) == columns(2))
+        .then(|| format!("NPTS={count}, DT={}", step.trim()))
 }
 
 /// Whether every token of a line is a number, a piece of a complex number or a missing value, and at least one is a number.

@@ -137,6 +137,7 @@ pub fn beside_rows(text: &Text) -> Option<Dialect> {
         format: Format::Csv,
         separator,
         decimal: b'.',
+        stated: false,
         complex: false,
         columns,
         skipped,
@@ -180,7 +181,14 @@ pub fn said(line: &Line, separator: Separator) -> String {
     let Some(cells) = fields(line.text, separator).ok().filter(|_| line.remark.is_none()) else {
         return whole();
     };
-    let cells: Vec<String> = cells.into_iter().map(|(_, cell)| cell.into_owned()).collect();
+    let mut cells: Vec<String> = cells.into_iter().map(|(_, cell)| cell.into_owned()).collect();
+    // Rows of one column show no separator: a key with a unit and a number do.
+    if let Some((key, value)) = line.text.split_once([',', ';']).filter(|_| cells.len() == 1)
+        && key.ends_with([')', ']'])
+        && number::parse(value.as_bytes()).is_some()
+    {
+        cells = vec![key.to_owned(), value.to_owned()];
+    }
     if cells[0].trim_end_matches(':').contains([':', '=']) { whole() } else { statement(&cells) }
 }
 

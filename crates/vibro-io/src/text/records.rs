@@ -29,7 +29,7 @@ pub fn build(
     let n = rows.columns.first().map_or(0, Values::len);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
-    let made = Made { text, tail, dialect, is_table, options, stated };
+    let mut made = Made { text, tail, dialect, is_table, options, stated };
     let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let columns = rows.columns.into_iter().zip(names).enumerate();
@@ -74,7 +74,12 @@ pub fn build(
         of_axis.push(Finding::caution("two-channels"));
     }
     let mut records = Vec::new();
-    for (i, column) in made.joined(table, &axis)?.into_iter().enumerate() {
+    let table = made.joined(table, &axis)?;
+    if is_table && table.iter().filter(|column| column.name.unit.is_none()).count() > 1 {
+        // Which of them has the unit that stands above all is not said.
+        made.stated.unit = None;
+    }
+    for (i, column) in table.into_iter().enumerate() {
         let mut record = made.record(i, column, &axis)?;
         record.meta_mut().declared_n = declared;
         if !is_table {
@@ -190,16 +195,18 @@ impl Made<'_> {
                 (AxisKind::Other(name.to_owned()), 1.0, Some(Finding::caution("axis-kind-unsaid")))
             }
         };
-        let epoch = values.first().filter(|_| !clock && kind == AxisKind::Time && column.name.unit.is_none());
+        let epoch = values.first().filter(|_| !clock && kind == AxisKind::Time);
+        let unsaid = column.name.unit.is_none();
         let epoch = epoch.and_then(|first| {
-            let since_1970 = |(_, factor): &&(&str, f64)| EPOCH.contains(&(first * factor));
+            let since_1970 = |(_, f): &&(&str, f64)| EPOCH.contains(&(first * f)) && (unsaid || *f == factor);
             [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].iter().find(since_1970).copied()
         });
         let (from, factor) = epoch.map_or((0.0, factor), |(_, factor)| (values[0], factor));
         let assumed = match epoch {
-            Some((unit, _)) => Some(Finding::caution("axis-epoch").name("unit", unit)),
-            None if clock => Some(Finding::note("axis-clock")),
-            None => assumed,
+            Some((unit, _)) if unsaid => Some(Finding::caution("axis-epoch").name("unit", unit)),
+            None if clock && self.minutes() => Some(Finding::caution("axis-clock-minutes")),
+            _ if clock || epoch.is_some() => Some(Finding::note("axis-clock")),
+            _ => assumed,
         };
         // Instruments print times of single precision, too; that has no steps finer than its last digit.
         let largest = values.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
@@ -213,6 +220,15 @@ impl Made<'_> {
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
         let findings = assumed.into_iter().chain(finding).collect();
         Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), findings })
+    }
+
+    /// Whether a clock has two numbers and no date: hours and minutes, or minutes and seconds.
+    fn minutes(&self) -> bool {
+        let first = self.dialect.rows(&self.text.head).next().and_then(|line| self.dialect.cut(&line).ok());
+        let cell = self.dialect.clock_at().and_then(|at| first.as_ref()?.get(at));
+        let colons =
+            |(_, cell): &(usize, Cow<str>)| cell.split(|c: char| c.is_ascii_digit()).collect::<String>();
+        cell.map(colons).as_deref() == Some(":")
     }
 
     /// Time or frequency, by what a person or the header states of `n` values.

@@ -111,11 +111,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn value(&self, field: &str) -> Option<Complex64> {
         let (field, decimal) = (field.as_bytes(), self.dialect.decimal);
-        if self.dialect.complex {
-            complex(field, decimal)
-        } else {
-            Some(number::parse_with(field, decimal)?.into())
-        }
+        if self.dialect.complex { complex(field, decimal) } else { Some(self.dialect.number(field)?.into()) }
     }
 
     fn is_missing(&self, field: &str) -> bool {
@@ -147,8 +143,12 @@ impl Reader<'_> {
         if number::parse_with(field.as_bytes(), other).is_some()
             || (field.contains('.') && field.contains(','))
         {
-            let hint = "state whether the decimal mark is a comma or a point; export digits without groups";
+            let hint = "state whether the decimal mark is a comma or a point; the other mark groups digits";
             return error.hint(hint).setting("decimal");
+        }
+        // No value can be missing there.
+        if self.dialect.names.is_some() && line.text[..at].trim_matches([' ', '"']).is_empty() {
+            return error.hint(self.hint(line, "remove the line, or put # before it"));
         }
         let hint = "write NaN in place of a bad value and allow missing values; put # before a remark";
         error.hint(self.hint(line, hint)).setting("allow_missing")

@@ -10,15 +10,16 @@
 //! A time, a frequency or a counter is the abscissa by its name. Columns `X_re` and `X_im` over frequency are one complex
 //! record.
 
-use super::Text;
 use super::clock;
 use super::dialect::{Dialect, Separator};
-use super::lines::{Fields, Line, Lines, fields};
+use super::lines::{Fields, Line, Lines, fields, is_torn};
 use super::names::{Name, is_unit_row, unit_word};
 use super::preamble::{BESIDE, Preamble, beside, beside_rows, said};
+use super::{Text, in_line, shorten};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
 use std::ops::Range;
+use vibro_record::{Error, Result};
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
@@ -44,7 +45,15 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
             let of =
                 |n: usize| rows.iter().filter(move |(_, count)| count.is_some_and(|c| (c > 1) == (n > 1)));
             for (separator, count) in of(2) {
-                match fit(&above, line, *separator, count.unwrap_or(0), &text.head) {
+                let count = count.unwrap_or(0);
+                // Rows above this one that do not parse are rows: reading will complain, with the place.
+                let torn = above.iter().rev().take_while(|l| is_torn(l.text, *separator, count)).count();
+                let (upper, torn) = above.split_at(above.len() - torn);
+                let torn = torn.first().and_then(|first| fit(upper, *first, *separator, count, &text.head));
+                if let Some((found, true)) = torn {
+                    return Some(decided(found, text, options));
+                }
+                match fit(&above, line, *separator, count, &text.head) {
                     Some((found, true)) => return Some(decided(found, text, options)),
                     found => misfit = misfit.or(found.map(|(found, _)| found)),
                 }
@@ -68,7 +77,8 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let fields = fields(text, Separator::Char(mark)).ok()?;
     let clock = clock::columns(&fields).unwrap_or(0..0);
     let point = options.decimal_comma != Some(true);
-    let comma = options.decimal_comma != Some(false) && mark != b',';
+    // Between commas a decimal comma stands in quotes.
+    let comma = options.decimal_comma != Some(false) && (mark != b',' || text.contains('"'));
     // A preamble may say `Overload, 0`; one number with both marks is asked about.
     let word = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.to_lowercase().starts_with("nan")
@@ -81,8 +91,9 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     let mut numbers = 0;
     for (i, (_, field)) in fields.iter().enumerate() {
         let field = field.as_bytes();
-        let number =
-            (point && number::parse(field).is_some()) || (comma && number::parse_with(field, b',').is_some());
+        let stated = |mark| number::parse_stated(field, mark).is_some() && options.decimal_comma.is_some();
+        let number = |mark| number::parse_with(field, mark).is_some() || stated(mark);
+        let number = (point && number(b'.')) || (comma && number(b','));
         if !number && !number::is_missing(field) && !clock.contains(&i) {
             return None;
         }
@@ -99,9 +110,37 @@ fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
         .filter(|(i, _)| found.clock_at() != Some(*i))
         .filter_map(|(_, (_, cell))| cell.bytes().rfind(|b| matches!(b, b',' | b'.')));
     let comma = options.decimal_comma.or_else(|| marks.next().map(|mark| mark == b','));
-    let comma = comma == Some(true) && found.separator != Separator::Char(b',');
     drop(marks);
-    Dialect { decimal: if comma { b',' } else { b'.' }, ..found }
+    let stated = options.decimal_comma.is_some();
+    Dialect { decimal: if comma == Some(true) { b',' } else { b'.' }, stated, ..found }
+}
+
+/// Refuses whole numbers with a mark before their last three digits, `1,000` beside `998`, where nothing shows that the mark is not the decimal
+/// one.
+///
+/// # Errors
+/// Names the first of them.
+pub fn grouped(text: &Text, dialect: &Dialect) -> Result<()> {
+    let mut columns = vec![(None, false); dialect.columns];
+    for line in dialect.rows(&text.head).filter(|line| line.remark.is_none() && !dialect.stated) {
+        let cells = dialect.cut(&line).unwrap_or_default().into_iter().zip(&mut columns).enumerate();
+        for (_, ((at, cell), (first, whole))) in cells.filter(|(i, _)| dialect.clock_at() != Some(*i)) {
+            if number::may_be_grouped(cell.as_bytes()) {
+                first.get_or_insert((in_line(line.number).column(line.column(at)), shorten(&cell)));
+            } else if cell.contains([',', '.']) {
+                return Ok(());
+            } else {
+                *whole |= !cell.is_empty();
+            }
+        }
+    }
+    let doubtful = columns.into_iter().find_map(|(first, whole)| first.filter(|_| whole));
+    doubtful.map_or(Ok(()), |(place, cell)| {
+        let found = format!("{cell:?} beside whole numbers may be grouped digits");
+        Err(Error::input(place, found, "a file where this can be told")
+            .hint("say which mark is the decimal one: comma or point; the other groups digits")
+            .setting("decimal"))
+    })
 }
 
 /// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and whether there are as many as
@@ -159,6 +198,7 @@ fn fit(
         format: Format::Csv,
         separator,
         decimal: b'.',
+        stated: false,
         complex: false,
         columns: names.len(),
         skipped,

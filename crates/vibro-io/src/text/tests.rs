@@ -222,8 +222,8 @@ fn what_is_assumed_is_said() {
     let lone = read_with(&Reader::new(), "velocity [mm/s]\n1,5\n2,5\n").unwrap();
     assert_eq!(values(&lone.records[0]), [1.5 * 1e-3, 2.5 * 1e-3]);
     assert!(has_finding(&lone.findings, "decimal-comma-assumed", &[]));
-    let error = read_with(&Reader::new(), "time [h],a\n0,1\n1,2\n").unwrap_err().to_string();
-    assert!(error.contains("the unit \"h\" of the abscissa"), "{error}");
+    let error = read_with(&Reader::new(), "time [moon],a\n0,1\n1,2\n").unwrap_err().to_string();
+    assert!(error.contains("the unit \"moon\" of the abscissa"), "{error}");
     let error = read_with(&Reader::new(), "time [s]\n0\n1\n").unwrap_err().to_string();
     assert!(error.contains("only an abscissa"), "{error}");
 }
@@ -422,4 +422,173 @@ fn names_and_units_of_oscilloscopes() {
         let close = (trace.axis.step().unwrap() / step - 1.0).abs() < 1e-9;
         assert!(close && (trace.axis.start() - start).abs() < 1e-12, "{text}: {:?}", trace.axis);
     }
+}
+
+#[test]
+fn rows_below_the_names_that_do_not_parse_are_no_names() {
+    for word in ["#N/A", "Error", "SAT", "?", "<-10", "no data", "1.2V"] {
+        for (separator, file) in [(",", "x.csv"), ("\t", "x.txt"), (";", "x.dat")] {
+            let row = |i: u32, cell: &str| [&format!("0.0{i}"), cell, "1.5\n"].join(separator);
+            let torn: String = (0..6).map(|i| row(i, word)).collect();
+            let text =
+                ["Time (s)", "Acc (g)", "F (N)\n"].join(separator) + &torn + &row(6, "0.5") + &row(7, "0.6");
+            let error = Reader::new().from_reader(file, text.as_bytes()).unwrap_err().to_string();
+            assert!(error.contains("line 2, column 6: found"), "{word} {file}: {error}");
+        }
+    }
+    let error = Reader::new().from_reader("x.txt", "time[s] a[g] b[g]\n0 ? 1\n1 2 3\n2 3 4\n".as_bytes());
+    assert!(error.unwrap_err().to_string().contains("line 2, column 3"));
+    // Channel numbers under a title are names; a row of units may hold a 1.
+    assert_eq!(of("Recorder,a,b\nx-axis,1,2\n0,1.5,2\n1,2.5,3\n").records[0].meta().name, "1");
+    assert_eq!(of("No,Time,Acc\n1,s,V\n1,0,2.5\n2,1,3\n3,2,3\n").records.last().unwrap().meta().name, "Acc");
+}
+
+#[test]
+fn grouped_whole_numbers_are_asked_about_and_read_as_stated() {
+    let point = Reader::new().decimal_comma(Some(false));
+    for (text, comma) in [
+        ("t [s]\tF [N]\n0\t\"998\"\n1\t\"-1,000\"\n", false),
+        ("t [s],F [N]\n0,998\n1,\"-1,000\"\n", false),
+        ("t [s];F [N]\n0;998\n1;-1.000\n", true),
+    ] {
+        let error = read_with(&Reader::new(), text).unwrap_err().to_string();
+        assert!(error.contains("line 3, column") && error.contains("(decimal)"), "{text}: {error}");
+        let stated = read_with(&point.clone().decimal_comma(Some(comma)), text).unwrap();
+        assert_eq!(values(&stated.records[0]), [998.0, -1000.0], "{text}");
+        let other = read_with(&point.clone().decimal_comma(Some(!comma)), text);
+        if let Ok(other) = other.map_err(|why| assert!(text.contains(',') && !comma, "{text}: {why}")) {
+            assert_eq!(values(&other.records[0]), [998.0, -1.0], "{text}");
+        }
+    }
+    // A zero before the mark, other numbers of decimals, or decimals in every cell: no groups.
+    for text in ["t;a\n0;0,125\n1;1,125\n2;3\n", "t;a\n0;1,125\n1;1,5\n2;3\n", "t;a\n0;1,125\n1;1,500\n"] {
+        assert_eq!(values(&of(text).records[0])[1], if text.contains("1,5") { 1.5 } else { 1.125 }, "{text}");
+    }
+}
+
+#[test]
+fn decimal_commas_in_quotes_between_commas() {
+    let recording = of("Time (s),A (V)\n\"0,000\",\"-1,5\"\n\"0,001\",\"2,25\"\n");
+    assert_eq!(values(&recording.records[0]), [-1.5, 2.25]);
+    assert_eq!(*recording.records[0].axis(), Axis::time(0.0, 1e-3, 2));
+}
+
+/// Noise in columns under a step is one series or channels: only a person knows.
+#[test]
+fn columns_under_the_step_of_a_series_are_asked_about() {
+    let mut noise = vibro_math::Noise::new(7);
+    let drawn: Vec<f64> = (0..75).map(|_| (noise.normal() * 1e3).round() / 1e3).collect();
+    let row = |row: &[f64]| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ") + "\n";
+    let rows: String = drawn.chunks(5).map(row).collect();
+    let with = |head: &str, reader: Reader| reader.from_reader("x.txt", (head.to_owned() + &rows).as_bytes());
+    for head in ["dt = 0.001 s\n", "NPTS= 500, DT= .001 SEC\n", "NPTS= 60, DT= .001 SEC\n"] {
+        let error = with(head, Reader::new()).unwrap_err().to_string();
+        assert!(error.contains("(wrapped, columns)"), "{head}: {error}");
+        let series = with(head, Reader::new().wrapped(Some(true))).unwrap();
+        assert_eq!(values(&series.records[0]), drawn, "{head}");
+        assert_eq!(has_finding(&series.all_findings(), "fewer-values", &[]), head.contains("NPTS"), "{head}");
+        assert_eq!(with(head, Reader::new().wrapped(Some(false))).unwrap().records.len(), 5);
+    }
+    for head in ["Sampling rate: 1000 Hz\n", "NPTS= 15, DT= .001 SEC\n", ""] {
+        assert_eq!(with(head, Reader::new()).unwrap().records.len(), 5, "{head}");
+    }
+    // The first line of Fortran programs: the count proves it.
+    let series = with("  75  0.001\n", Reader::new()).unwrap();
+    assert_eq!((values(&series.records[0]), series.records[0].axis().step()), (&drawn[..], Some(1e-3)));
+    let error = with("  80  0.001\n", Reader::new()).unwrap_err().to_string();
+    assert!(error.contains("(wrapped, columns)"), "{error}");
+}
+
+#[test]
+fn clocks_before_a_trigger_and_of_days() {
+    let recording = of("Elapsed Time,a\n-00:00:00.2,1\n-00:00:00.1,2\n00:00:00.0,3\n00:00:00.1,4\n");
+    let axis = recording.records[0].axis();
+    assert!(axis.len() == 4 && axis.step().is_some_and(|step| (step - 0.1).abs() < 1e-12), "{axis:?}");
+    let recording = of("Time,a\n0.23:59:58,1\n0.23:59:59,2\n1.00:00:00,3\n1.00:00:01,4\n");
+    assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 1.0, 4));
+}
+
+#[test]
+fn units_of_times_that_mean_something_else_elsewhere() {
+    for (unit, factor) in [
+        ("h", 3600.0),
+        ("H", 3600.0),
+        ("days", 86_400.0),
+        ("Min", 60.0),
+        ("S", 1.0),
+        ("MS", 1e-3),
+        ("us", 1e-6),
+    ] {
+        for text in [format!("Time ({unit}),a\n"), format!("Time [{unit}],a\n")] {
+            let recording = of(text.clone() + "0,1\n1,2\n2,3\n");
+            assert_eq!(recording.records[0].axis(), &Axis::time(0.0, factor, 3), "{text}");
+            assert!(!has_finding(&recording.findings, "axis-unit-unknown", &[]), "{text}");
+        }
+    }
+    assert_eq!(of("Time,a\nh,V\n0,1\n1,2\n").records[0].axis().step(), Some(3600.0));
+    // Statistics above the names are no units.
+    assert_eq!(of("Time,Force\n(s),(N)\nMin,-1\nMax,1\n0,1\n1,2\n").records[0].meta().name, "Force");
+    let others = of("Time (s),Drop (d),Acc (Min),AI 2 (Gs),CH1(MV)\n0,1,2,3,4\n1,1,2,3,4\n");
+    assert!(others.records.iter().zip([1.0, 2.0, 3.0, 4.0]).all(|(r, v)| values(r) == [v, v]));
+}
+
+#[test]
+fn a_unit_above_all_is_that_of_one_column() {
+    let one = of("Unit: g\nTime (s),Acc,Speed (rpm)\n0,1,60\n1,1,60\n");
+    assert_eq!((values(&one.records[0]), values(&one.records[1])), (&[9.80665; 2][..], &[1.0; 2][..]));
+    let two = of("Unit: g\nTime (s),Acc,Force\n0,1,2\n1,1,2\n");
+    assert_eq!((values(&two.records[0]), values(&two.records[1])), (&[1.0; 2][..], &[2.0; 2][..]));
+    assert!(has_finding(&two.all_findings(), "unit-unsaid", &[]));
+}
+
+#[test]
+fn what_a_preamble_states() {
+    for (head, step) in [
+        ("Sample Rate;51200,0", Some(1.0 / 51_200.0)),
+        ("Sample Rate;51,2;kHz", Some(1.0 / 51_200.0)),
+        ("Sampling rate: 500 mHz", Some(2.0)),
+        ("Sampling rate [mHz]: 500", Some(2.0)),
+        ("Sampling rate: 2 MHz", Some(0.5e-6)),
+        ("Start: 0\nIncrement: 0.5", Some(0.5)),
+        ("Increment;0,5;ms", Some(0.5e-3)),
+        // May be 51.2 or 51 200; may be any.
+        ("Sample Rate: 51,200", None),
+        ("Increment;100", None),
+        ("Rate: 10", None),
+    ] {
+        let recording = of(format!("{head}\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n"));
+        let axis = recording.records[0].axis();
+        let close = |step: f64| axis.step().is_some_and(|found| (found / step - 1.0).abs() < 1e-12);
+        assert!(step.map_or(axis.kind == AxisKind::Index, close), "{head}: {axis:?}");
+    }
+    let one = of("Sample Interval (us),20\nCH1 (V)\n0.5\n0.25\n");
+    assert_eq!(one.records[0].axis().kind, AxisKind::Time);
+}
+
+#[test]
+fn an_epoch_is_taken_off_before_it_is_scaled() {
+    let rows: String = (0..50).map(|i| (1_700_000_000_000_u64 + i).to_string() + ",1\n").collect();
+    let recording = of("Timestamp (ms),Acc (g)\n".to_owned() + &rows);
+    assert_eq!(recording.records[0].axis(), &Axis::time(0.0, 1e-3, 50));
+    // A few hours in ms are no epoch.
+    assert_eq!(of("Time (ms),a\n5000,1\n5001,2\n5002,3\n").records[0].axis().start(), 5.0);
+}
+
+#[test]
+fn two_numbers_of_a_clock_are_said_to_be_hours_and_minutes() {
+    let said = |text: &str| has_finding(&of(text).all_findings(), "axis-clock-minutes", &[]);
+    assert!(said("Time,a\n00:00,1\n00:01,2\n00:02,3\n"));
+    assert!(!said("Time,a\n0:00:00,1\n0:00:01,2\n0:00:02,3\n"));
+    assert!(!said("Time,a\n00:00.0,1\n00:00.5,2\n00:01.0,3\n"));
+    assert!(!said("Time,a\n2020-01-24 00:00,1\n2020-01-24 00:01,2\n2020-01-24 00:02,3\n"));
+}
+
+#[test]
+fn words_below_the_rows_are_put_behind_a_mark() {
+    let error = read_with(&Reader::new(), "Time (s),a\n0,1\n1,2\nMax,2\n\n").unwrap_err().to_string();
+    assert!(
+        error.contains("line 4, column 1") && error.contains("put #") && !error.contains("allow"),
+        "{error}"
+    );
+    assert_eq!(of("Time (s),a\n0,1\n1,2\n#Max,2\n\n").records[0].axis().len(), 2);
 }

@@ -56,6 +56,12 @@ pub fn continues(columns: &[Values]) -> bool {
     within > 0.0 && over < 2.0 * within && within < 0.7 * down && over < 0.7 * down
 }
 
+/// Whether there are three columns or more and the first is no abscissa.
+pub fn no_abscissa(columns: &[Values]) -> bool {
+    let Some(Values::Real(first)) = columns.first().filter(|_| columns.len() > 2) else { return false };
+    first.windows(2).any(|w| w[1] <= w[0])
+}
+
 fn mean(steps: impl Iterator<Item = f64>) -> f64 {
     let (sum, n) = steps.fold((0.0, 0usize), |(sum, n), step| (sum + step, n + 1));
     sum / n as f64
@@ -64,7 +70,7 @@ fn mean(steps: impl Iterator<Item = f64>) -> f64 {
 /// Asks what a person must say.
 pub fn question(columns: usize) -> Error {
     let found =
-        format!("{columns} columns that continue each other, and nothing says that they are one series");
+        format!("{columns} columns that may continue each other, and nothing says that they are channels");
     Error::usage(found, "channels, or one series row after row")
         .hint("say that the rows continue each other, or that each column is a channel")
         .setting("wrapped")

@@ -73,8 +73,8 @@ enum X {
     Unsaid,
     /// Values are numbered.
     Numbered,
-    /// Time as printed, which is not even.
-    Uneven,
+    /// Time in two segments, each from a start in s in steps of the signals.
+    Segments(f64),
 }
 
 const fn ch(name: &'static str, unit: &'static str, signal: usize, factor: f64, digits: f64) -> Channel {
@@ -132,26 +132,24 @@ fn faults(found: &Recording, right: &Right) -> Vec<String> {
             faults.push(format!("value {i} of {:?} is {}, not {}", meta.name, values[i], right_value(i)));
         }
         let (kind, start, step) = match &right.x {
-            X::Even(start) => (AxisKind::Time, *start, Some(DX)),
-            X::Steps(step) => (AxisKind::Time, 0.0, Some(*step)),
-            X::Lines(step) => (AxisKind::Frequency, 0.0, Some(*step)),
-            X::Unsaid => (AxisKind::Other("first column".to_owned()), 0.0, Some(DX)),
-            X::Numbered => (AxisKind::Index, 0.0, Some(1.0)),
-            X::Uneven => (AxisKind::Time, axis.start(), None),
+            X::Even(start) | X::Segments(start) => (AxisKind::Time, *start, DX),
+            X::Steps(step) => (AxisKind::Time, 0.0, *step),
+            X::Lines(step) => (AxisKind::Frequency, 0.0, *step),
+            X::Unsaid => (AxisKind::Other("first column".to_owned()), 0.0, DX),
+            X::Numbered => (AxisKind::Index, 0.0, 1.0),
         };
-        let close = |a: f64, b: f64, to: f64| (a - b).abs() <= to;
-        let even = match (axis.step(), step) {
-            // Both ends are printed to a hundredth of a step at least.
-            (Some(a), Some(b)) => close(a, b, 1e-3 * b) && close(axis.start(), start, 0.01 * b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        if axis.kind != kind || !even {
+        let segments = matches!(right.x, X::Segments(_));
+        let instant = |i: usize| start + step * (if segments { i % (N / 2) } else { i }) as f64;
+        // Instants are printed to a hundredth of a step at least.
+        let off = |i: &usize| (axis.at(*i) - instant(*i)).abs() > 0.01 * step;
+        if axis.kind != kind || axis.step().is_some() == segments {
             faults.push(format!(
-                "axis {:?} from {} by {:?}, not {kind:?} from {start} by {step:?}",
+                "axis {:?} in steps of {:?}, not {kind:?} of {step}",
                 axis.kind,
-                axis.start(),
                 axis.step()
             ));
+        } else if let Some(i) = (0..N).find(off) {
+            faults.push(format!("instant {i} is {}, not {}", axis.at(i), instant(i)));
         }
     }
     let all = found.all_findings();

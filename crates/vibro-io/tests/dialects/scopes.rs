@@ -207,7 +207,7 @@ pub const ALL: &[Dialect] = &[
         },
         outcome: read(
             &[ch("Ampl", "", 0, 1.0, U)],
-            X::Uneven,
+            X::Segments(START),
             &["axis-backwards", "axis-unit-assumed", "unit-unsaid"],
         ),
     },

@@ -69,4 +69,11 @@ pub const ALL: &[Dialect] = &[
         },
         outcome: read(&[ch("column 1", "", 0, 1.0, 5e-7)], X::Even(0.0), &["axis-clock", "unit-unsaid"]),
     },
+    Dialect {
+        of: "Fortran program",
+        oddity: "count and step in the first line, five values a line",
+        file: "accel.txt",
+        text: || wrapped("   128  0.0005\n", 5, |v| format!("{:>15}", sci(v, 7, 2))),
+        outcome: read(&[ch("", "", 0, 1.0, 5e-8)], X::Even(0.0), &["unit-unsaid"]),
+    },
 ];

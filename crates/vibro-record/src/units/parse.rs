@@ -238,7 +238,8 @@ fn root(inner: Parsed) -> Option<Parsed> {
 fn symbol(name: &str) -> Option<Parsed> {
     let find = |name: &str| SYMBOLS.iter().find(|s| s.0.split(' ').any(|symbol| symbol == name));
     let prefixed = || {
-        let first = name.chars().next()?;
+        // Gauss, and millivolts in capitals: no bench has gigaseconds or megavolts.
+        let first = name.chars().next().filter(|_| !matches!(name, "Gs" | "MV"))?;
         let (_, scale) = PREFIXES.iter().find(|p| p.0.contains(first))?;
         Some((find(&name[first.len_utf8()..]).filter(|s| s.3)?, *scale))
     };
