@@ -258,12 +258,10 @@ fn scaled(n: u32, properties: &[(String, Said)], raw: &[f64]) -> std::result::Re
     let object = Object {
         path: vec!["g".into(), "a".into()],
         properties: count.into_iter().chain(properties).collect(),
-        declared: 0,
-        unreadable: None,
         slots: vec![segment::Slot::Real],
+        ..Object::default()
     };
-    let values =
-        Scales::of(std::slice::from_ref(&object), &object).apply(&object.slots, vec![raw.to_vec()])?;
+    let values = Scales::of(&[], &object).apply(&object.slots, vec![raw.to_vec()])?;
     if let Values::Real(values) = values { Ok(values) } else { panic!() }
 }
 
