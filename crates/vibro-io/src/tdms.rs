@@ -73,7 +73,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
                 Err(scale) => {
                     findings.push(named(Finding::caution("scale-unknown")).name("scale", scale.as_str()));
                     left.get_or_insert_with(|| {
-                        format!("no channel with a scale that is known: {name:?} has {scale}")
+                        format!("no channel with a scale that is known: {name:?} ({scale})")
                     });
                 }
             }

@@ -19,7 +19,8 @@ pub struct Clock {
 
 impl Clock {
     fn of(channel: &Channel, findings: &mut Vec<Finding>) -> Option<Clock> {
-        let unit = channel.object.text("unit_string").filter(|unit| !unit.is_empty());
+        // Of a time `h` is no other unit than this.
+        let unit = channel.object.text("unit_string").map(|unit| if unit == "h" { "hour" } else { unit });
         let Name { name, unit } = Name::with_unit_row(channel.name, unit.unwrap_or_default());
         let whole = name.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_' || c == ' ');
         let kind = |name: &str, unit: Option<String>| {
