@@ -53,9 +53,9 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let mut segments = 0;
     loop {
         let mut behind = lines.clone();
-        let next = behind.next();
+        let more = behind.next().is_some();
         let head = Head::of(&mut lines);
-        if next.is_some_and(|line| segments > 0 && (!head.ended || is_row(line, separator))) {
+        if !head.ended && more && segments > 0 {
             let place = Place { line: Some(behind.number), ..Place::default() };
             return Err(Error::input(place, "a line behind a segment that begins no head", END_OF_HEADER)
                 .hint("take out the blank line above it, or this line and all behind it"));
@@ -96,16 +96,6 @@ impl<'a> Iterator for Lines<'a> {
                 return Some(line);
             }
             special = !mark(SPECIAL[1]);
-        }
-    }
-}
-
-impl Lines<'_> {
-    /// Goes to the next line that is not blank.
-    fn skip_blank(&mut self) {
-        let mut ahead = self.clone();
-        while ahead.next().is_some_and(|line| line.trim().is_empty()) {
-            *self = ahead.clone();
         }
     }
 }
@@ -211,15 +201,10 @@ impl<'h, 'a> Segment<'h, 'a> {
         let mut decimal = general.said("decimal_separator").and_then(|mark| mark.bytes().next());
         let (mut row, mut blank, mut ahead) = (0, 0, lines.clone());
         while let Some(line) = ahead.next() {
-            if line.trim().is_empty() && line.contains(separator) {
+            if line.trim().is_empty() {
                 // Between rows it is one whose values are missing.
                 (blank, *lines) = (blank + 1, ahead.clone());
                 continue;
-            }
-            if line.trim().is_empty() {
-                *lines = ahead;
-                lines.skip_blank();
-                break;
             }
             if blank > 0 && !is_row(line, separator) {
                 break;

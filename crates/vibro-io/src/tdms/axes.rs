@@ -5,7 +5,7 @@ use super::segment::{Object, Slot, Value};
 use crate::assemble::{Abscissa, domain, epoch, from_values, short};
 use crate::reader::Options;
 use crate::text::names::Name;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
@@ -64,10 +64,6 @@ impl Clock {
         let clock = Clock { name: channel.name.to_owned(), findings: findings.collect(), axis };
         (sure || clock.axis.step().is_some()).then_some(clock)
     }
-
-    fn is_time(&self) -> bool {
-        self.axis.kind == AxisKind::Time
-    }
 }
 
 /// Takes the clocks out of the channels and gives them to those of their group and length; where there are several, each to those behind it.
@@ -75,35 +71,21 @@ impl Clock {
 /// # Errors
 /// If it cannot be told which channels are whose.
 pub fn assign(channels: &mut Vec<Channel>, findings: &mut Vec<Finding>) -> Result<()> {
-    let mut sets: HashMap<(&str, usize), Vec<usize>> = HashMap::new();
-    let mut groups: HashMap<&str, usize> = HashMap::new();
+    let mut sets: BTreeMap<(&str, usize), Vec<usize>> = BTreeMap::new();
     for (i, channel) in channels.iter().enumerate() {
         sets.entry((channel.group, channel.values.len())).or_default().push(i);
-        *groups.entry(channel.group).or_default() += 1;
     }
-    let mut clocks: Vec<Option<Rc<Clock>>> = channels
-        .iter()
-        .map(|channel| (groups[channel.group] > 1).then(|| Clock::of(channel, findings))?.map(Rc::new))
-        .collect();
-    let mut sets: Vec<((&str, usize), Vec<usize>)> = sets.into_iter().collect();
-    sets.sort_unstable();
+    let clocks = channels.iter().map(|channel| Clock::of(channel, findings).map(Rc::new));
+    let mut clocks: Vec<Option<Rc<Clock>>> = clocks.collect();
     for (_, set) in sets {
-        let timed = |i: &usize| {
+        let timed = set.iter().any(|i| {
             let (kind, step, _) = stated(channels[*i].object);
-            kind == AxisKind::Time && step.is_some_and(|(_, step)| step != 1.0)
-        };
-        let time = set.iter().find_map(|i| clocks[*i].as_ref().filter(|clock| clock.is_time()));
-        let time = time.map(|clock| clock.name.clone());
-        let timed = time.is_some() || set.iter().any(timed);
-        // Over time a frequency that rises may be that of a run-up.
+            let by_step = kind == AxisKind::Time && step.is_some_and(|(_, step)| step != 1.0);
+            by_step || clocks[*i].as_ref().is_some_and(|clock| clock.axis.kind == AxisKind::Time)
+        });
+        // Over time a frequency that rises is that of a run-up.
         for i in set.iter().filter(|_| timed) {
-            if let Some(lines) = clocks[*i].take_if(|clock| !clock.is_time())
-                && let (Some(time), Some(of)) =
-                    (&time, set.iter().find(|of| *of > i).or(set.iter().find(|i| clocks[**i].is_none())))
-            {
-                let found = Finding::caution("time-or-frequency").name("variable", channels[*of].name);
-                findings.push(found.name("used", time.as_str()).name("other", lines.name.as_str()));
-            }
+            clocks[*i].take_if(|clock| clock.axis.kind != AxisKind::Time);
         }
         let own: Vec<&Rc<Clock>> = set.iter().filter_map(|i| clocks[*i].as_ref()).collect();
         let Some(first) = own.first().copied().cloned() else { continue };

@@ -14,26 +14,16 @@ pub struct Scales<'a> {
     n: u32,
 }
 
-/// How a scale makes its values of those of others.
+/// How a scale makes its values of its inputs.
 enum Step {
     /// Raw values of a column.
     Raw(usize),
-    /// Coefficients in rising order, and the input.
-    Polynomial(Vec<f64>, u32),
-    /// Rows in rising order, and the input.
-    Table(Vec<(f64, f64)>, u32),
+    /// Coefficients in rising order.
+    Polynomial(Vec<f64>),
+    /// Rows in rising order.
+    Table(Vec<(f64, f64)>),
     /// One input, and another times a sign.
-    Sum(u32, u32, f64),
-}
-
-impl Step {
-    fn inputs(&mut self) -> Vec<&mut u32> {
-        match self {
-            Step::Raw(_) => vec![],
-            Step::Polynomial(_, input) | Step::Table(_, input) => vec![input],
-            Step::Sum(one, other, _) => vec![one, other],
-        }
-    }
+    Sum(f64),
 }
 
 impl<'a> Scales<'a> {
@@ -69,34 +59,31 @@ impl<'a> Scales<'a> {
         // From the last scale down to the raw values, each once. Numbers are one higher here: the raw values are 0.
         let (mut wanted, mut chain) = (BTreeSet::from([self.n]), Vec::new());
         while let Some(number) = wanted.pop_last() {
-            let mut step = self.step(number.wrapping_sub(1), slots)?;
-            for input in step.inputs() {
-                *input = input.wrapping_add(1);
-                if *input >= number {
-                    return Err(format!("scale {}, whose input leads back to itself", number - 1));
-                }
-                wanted.insert(*input);
+            let (step, mut inputs) = self.step(number.wrapping_sub(1), slots)?;
+            inputs.iter_mut().for_each(|input| *input = input.wrapping_add(1));
+            if inputs.iter().any(|input| *input >= number) {
+                return Err(format!("scale {}, whose input leads back to itself", number - 1));
             }
-            chain.push((number, step));
+            wanted.extend(&inputs);
+            chain.push((number, step, inputs));
         }
         chain.reverse();
-        let numbers: Vec<u32> = chain.iter().map(|(number, _)| *number).collect();
-        let place = |number: &u32| numbers.partition_point(|known| known < number) as u32;
-        let raw = |step: &Step| {
-            if let Step::Raw(i) = step { Some(columns.get(*i).map_or(0, Vec::len)) } else { None }
-        };
-        let n = chain.iter().filter_map(|(_, step)| raw(step)).min().unwrap_or(0);
-        chain.iter_mut().flat_map(|(_, step)| step.inputs()).for_each(|input| *input = place(input));
-        let mut made = vec![0.0; chain.len()];
+        let raw =
+            chain.iter().filter_map(|(_, step, _)| if let Step::Raw(i) = step { Some(*i) } else { None });
+        let n = raw.map(|i| columns.get(i).map_or(0, Vec::len)).min().unwrap_or(0);
+        let place = |number: u32| chain.partition_point(|(known, ..)| *known < number);
+        let steps: Vec<(&Step, Vec<usize>)> = chain
+            .iter()
+            .map(|(_, step, inputs)| (step, inputs.iter().map(|input| place(*input)).collect()))
+            .collect();
+        let mut made = vec![0.0; steps.len()];
         let value = |row: usize| {
-            for (i, (_, step)) in chain.iter().enumerate() {
+            for (i, (step, inputs)) in steps.iter().enumerate() {
                 made[i] = match step {
                     Step::Raw(column) => columns[*column][row],
-                    Step::Polynomial(all, of) => {
-                        all.iter().rev().fold(0.0, |sum, c| sum * made[*of as usize] + c)
-                    }
-                    Step::Table(table, of) => between(table, made[*of as usize]),
-                    Step::Sum(one, other, sign) => made[*one as usize] + sign * made[*other as usize],
+                    Step::Polynomial(all) => all.iter().rev().fold(0.0, |sum, c| sum * made[inputs[0]] + c),
+                    Step::Table(table) => between(table, made[inputs[0]]),
+                    Step::Sum(sign) => made[inputs[0]] + sign * made[inputs[1]],
                 };
             }
             made[made.len() - 1]
@@ -105,11 +92,12 @@ impl<'a> Scales<'a> {
     }
 
     /// What scale `i` does.
-    fn step(&self, i: u32, slots: &[Slot]) -> Result<Step, String> {
+    fn step(&self, i: u32, slots: &[Slot]) -> Result<(Step, Vec<u32>), String> {
         let number = |key: &str| self.from.number(&format!("NI_Scale[{i}]_{key}"));
         let Some(kind) = self.from.text(&format!("NI_Scale[{i}]_Scale_Type")) else {
             // The scaler of a DAQmx channel, which stands in the layout of its raw data.
-            return Ok(Step::Raw(slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0)));
+            let column = slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0);
+            return Ok((Step::Raw(column), Vec::new()));
         };
         let input = |key: &str| number(&format!("{kind}_{key}Input_Source")).map_or(RAW, |n| n as u32);
         let missing = |what: &str| format!("{kind} without {what}");
@@ -118,13 +106,13 @@ impl<'a> Scales<'a> {
             let n = number(&format!("{name}_Size")).unwrap_or(4.0);
             (0..n as u32).map(|j| number(&format!("{name}[{j}]")).ok_or_else(|| missing(name))).collect()
         };
-        match kind {
+        Ok(match kind {
             "Linear" => {
                 let one = |key: &str| number(key).ok_or_else(|| missing(key));
                 let slope = one("Linear_Slope")?;
-                Ok(Step::Polynomial(vec![one("Linear_Y_Intercept")?, slope], input("")))
+                (Step::Polynomial(vec![one("Linear_Y_Intercept")?, slope]), vec![input("")])
             }
-            "Polynomial" => Ok(Step::Polynomial(list("Polynomial_Coefficients")?, input(""))),
+            "Polynomial" => (Step::Polynomial(list("Polynomial_Coefficients")?), vec![input("")]),
             "Table" => {
                 let (from, to) = (list("Table_Pre_Scaled_Values")?, list("Table_Scaled_Values")?);
                 let mut table: Vec<(f64, f64)> = from.into_iter().zip(to).collect();
@@ -132,17 +120,17 @@ impl<'a> Scales<'a> {
                 if table.len() < 2 || table.windows(2).any(|w| w[0].0 == w[1].0) {
                     return Err(missing("a table that rises"));
                 }
-                Ok(Step::Table(table, input("")))
+                (Step::Table(table), vec![input("")])
             }
             // NI subtracts the left operand from the right one.
             "Add" | "Subtract" => {
                 let sign = if kind == "Add" { 1.0 } else { -1.0 };
-                Ok(Step::Sum(input("Right_Operand_"), input("Left_Operand_"), sign))
+                (Step::Sum(sign), vec![input("Right_Operand_"), input("Left_Operand_")])
             }
             // It says who scales, and changes nothing.
-            "AdvancedAPI" => Ok(Step::Polynomial(vec![0.0, 1.0], input(""))),
-            other => Err(other.to_owned()),
-        }
+            "AdvancedAPI" => (Step::Polynomial(vec![0.0, 1.0]), vec![input("")]),
+            other => return Err(other.to_owned()),
+        })
     }
 }
 

@@ -459,8 +459,6 @@ fn only_a_name_makes_an_abscissa() {
     let both =
         group(&[("Time", &unit("s"), &rising), ("Frequency", &unit("Hz"), &rising), ("a", &[], &[1.0; 4])]);
     assert_eq!(steps(&both).len(), 2);
-    let found = recording(&both).unwrap().findings;
-    assert!(has_finding(&found, "time-or-frequency", &["variable=a", "used=Time", "other=Frequency"]));
     let lines = group(&[("Frequency", &unit("kHz"), &rising), ("A", &unit("g"), &[1.0; 4])]);
     assert_eq!(steps(&lines), [("A".into(), AxisKind::Frequency, Some(2000.0))]);
     // What is no abscissa of another channel is kept.
