@@ -107,19 +107,12 @@ pub fn assign(channels: &mut Vec<Channel>, findings: &mut Vec<Finding>) -> Resul
             let hint = "write each of them with its channels to a group of its own";
             return Err(Error::usage(found, "one clock for all channels of a group").hint(hint));
         }
+        let said = if other.is_some() { own.len() } else { 1 };
+        findings.extend(own.iter().take(said).flat_map(|clock| clock.findings.iter().cloned()));
         let mut now = &first;
         for i in set {
             match &clocks[i] {
-                Some(clock) => {
-                    findings.extend(
-                        clock
-                            .findings
-                            .iter()
-                            .filter(|_| other.is_some() || Rc::ptr_eq(clock, &first))
-                            .cloned(),
-                    );
-                    now = clock;
-                }
+                Some(clock) => now = clock,
                 None => channels[i].clock = Some(Rc::clone(now)),
             }
         }

@@ -59,8 +59,8 @@ impl<'a> Scales<'a> {
         // From the last scale down to the raw values, each once. Numbers are one higher here: the raw values are 0.
         let (mut wanted, mut chain) = (BTreeSet::from([self.n]), Vec::new());
         while let Some(number) = wanted.pop_last() {
-            let (step, mut inputs) = self.step(number.wrapping_sub(1), slots)?;
-            inputs.iter_mut().for_each(|input| *input = input.wrapping_add(1));
+            let (step, inputs) = self.step(number.wrapping_sub(1), slots)?;
+            let inputs: Vec<u32> = inputs.into_iter().map(|input| input.wrapping_add(1)).collect();
             if inputs.iter().any(|input| *input >= number) {
                 return Err(format!("scale {}, whose input leads back to itself", number - 1));
             }
