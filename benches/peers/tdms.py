@@ -64,7 +64,7 @@ def daqmx(order, n, scalers, widths):
 def scales(draw):
     """A chain of one to three scales, or none."""
     n = draw.randrange(4)
-    out = {"NI_Number_Of_Scales": n} if n else {}
+    out = {"NI_Number_Of_Scales": n, "NI_Scaling_Status": draw.choice(["scaled", "unscaled"])} if n else {}
     for i in range(n):
         name = f"NI_Scale[{i}]_"
         source = draw.choice([0xFFFFFFFF] + list(range(i)))

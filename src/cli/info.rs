@@ -75,8 +75,10 @@ fn line(text: &mut String, r: &Header, numbered: bool) {
         _ => r.n.to_string(),
     };
     let axis = match r.kind {
-        _ if numbered => "",
+        // The file may number one channel and time another.
+        "trace" if r.dx.is_some() && r.rate.is_none() => "",
         "trace" => "s",
+        _ if numbered => "",
         _ => "Hz",
     };
     let step = match r.dx {

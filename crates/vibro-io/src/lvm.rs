@@ -52,7 +52,14 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     let (mut records, mut findings, mut missed) = (Vec::new(), Vec::new(), Missing::default());
     let mut segments = 0;
     loop {
+        let mut behind = lines.clone();
+        let more = behind.next().is_some();
         let head = Head::of(&mut lines);
+        if !head.ended && more && segments > 0 {
+            let place = Place { line: Some(behind.number), ..Place::default() };
+            return Err(Error::input(place, "a line behind a segment that begins no head", END_OF_HEADER)
+                .hint("take out the blank line above it, or this line and all behind it"));
+        }
         if !head.ended {
             break;
         }
@@ -69,6 +76,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 }
 
 /// Lines with their numbers.
+#[derive(Clone)]
 struct Lines<'a> {
     rest: std::str::Lines<'a>,
     number: u64,
@@ -90,6 +98,13 @@ impl<'a> Iterator for Lines<'a> {
             special = !mark(SPECIAL[1]);
         }
     }
+}
+
+/// Whether the first cell of a line that is not blank holds a number.
+fn is_row(line: &str, separator: char) -> bool {
+    let cell = line.split(separator).map(str::trim).find(|cell| !cell.is_empty()).unwrap_or_default();
+    let number = |decimal| number::parse_with(cell.as_bytes(), decimal).is_some();
+    number(b'.') || number(b',') || number::is_missing(cell.as_bytes())
 }
 
 /// Tags in lower case, each with its values; those of a channel stand above its column.
@@ -156,7 +171,7 @@ struct Segment<'h, 'a> {
 }
 
 impl<'h, 'a> Segment<'h, 'a> {
-    /// Reads the names and the rows behind a head, up to a blank line.
+    /// Reads the names and the rows behind a head, up to a blank line that no row follows.
     fn read(
         lines: &mut Lines<'a>,
         general: &'h Head<'a>,
@@ -184,8 +199,17 @@ impl<'h, 'a> Segment<'h, 'a> {
         let mut columns: Vec<Column> = names[..comment].iter().map(column).collect();
         let mut comments = Vec::new();
         let mut decimal = general.said("decimal_separator").and_then(|mark| mark.bytes().next());
-        let mut row = 0;
-        while let Some(line) = lines.next().filter(|line| !line.trim().is_empty()) {
+        let (mut row, mut blank, mut ahead) = (0, 0, lines.clone());
+        while let Some(line) = ahead.next() {
+            if line.trim().is_empty() {
+                // Between rows it is one whose values are missing.
+                (blank, *lines) = (blank + 1, ahead.clone());
+                continue;
+            }
+            if blank > 0 && !is_row(line, separator) {
+                break;
+            }
+            (row, blank, *lines) = (row + blank, 0, ahead.clone());
             let decimal =
                 *decimal.get_or_insert(if line.contains('.') || separator == ',' { b'.' } else { b',' });
             for (i, field) in line.split(separator).map(str::trim).enumerate() {
@@ -270,7 +294,8 @@ impl<'h, 'a> Segment<'h, 'a> {
         };
         let (start, step) = (number("x0").unwrap_or(0.0), number("delta_x"));
         let stated = step.map(|step| (start, step));
-        let Some(x) = x.filter(|x| n > 1 && x.values.len() >= n) else { return Abscissa::even(kind, stated) };
+        let x = x.filter(|x| n > 1 && x.values.len() >= n && x.values.iter().all(|v| v.is_finite()));
+        let Some(x) = x else { return Abscissa::even(kind, stated) };
         let (values, resolution) = (&x.values[..n], x.digits.resolution());
         let agrees = |(start, step): &(f64, f64)| {
             let last = start + step * (n - 1) as f64;
@@ -278,8 +303,15 @@ impl<'h, 'a> Segment<'h, 'a> {
         };
         let (axis, found) =
             from_values(kind.clone(), values.to_vec(), resolution, &format!("column {:?}", x.name));
-        if let Some(stated) = stated.filter(|stated| axis.step().is_some() && agrees(stated)) {
-            return Abscissa::even(kind, Some(stated));
+        if let (Some(stated), Some(step)) = (stated, axis.step()) {
+            if agrees(&stated) {
+                return Abscissa::even(kind, Some(stated));
+            }
+            if (step / stated.1 - 1.0).abs() > 1e-3 {
+                let found =
+                    Finding::caution("header-step-differs").name("column", format!("column {:?}", x.name));
+                meta.found(found.number("header", stated.1).number("step", step));
+            }
         }
         match axis {
             Axis { grid: Grid::Even { start, step, .. }, .. } => {

@@ -92,6 +92,36 @@ fn what_the_head_promises_and_the_rows_do_not_hold() {
     assert!(recording(&none).unwrap_err().to_string().contains("without values"));
 }
 
+#[test]
+fn no_row_is_lost() {
+    let text = |rows: &str| {
+        head("Tab", "No")
+            + "Channels\t1\nX0\t0\nDelta_X\t1\n***End_of_Header***\nX_Value\ta\tComment\n"
+            + rows
+    };
+    // A row of separators only.
+    let gap = text("\t1.0\n\t\n\t3.0\n\t\n");
+    assert!(recording(&gap).unwrap_err().to_string().contains("1 value(s) are missing: 2 of \"a\""));
+    let kept = crate::Reader::new().allow_missing(true).from_reader("x.lvm", gap.as_bytes()).unwrap();
+    let values = &traces(&kept)[0].values;
+    assert_eq!((values.len(), values[2]), (3, 3.0));
+    let said = recording(&text("\t1.0\n\n\t3.0\n")).unwrap_err().to_string();
+    assert!(said.contains("missing: 2 of"), "{said}");
+    let said = recording(&text("\t1.0\n\nChannels\t1\n")).unwrap_err().to_string();
+    assert!(said.contains("line 14") && said.contains("begins no head"), "{said}");
+    assert!(recording(&text("\t1.0\n\n\n\t\n")).is_ok());
+}
+
+#[test]
+fn an_x_column_against_the_head() {
+    let text = head("Tab", "One")
+        + "Channels\t1\nX0\t0\nDelta_X\t0.5\n***End_of_Header***\nX_Value\ta\tComment\n0.0\t1.0\n2.0\t2.0\n4.0\t3.0\n";
+    let found = recording(&text).unwrap();
+    let a = traces(&found)[0];
+    assert_eq!(a.axis.step(), Some(2.0));
+    assert!(has_finding(&a.meta.findings, "header-step-differs", &["header=0.5", "step=2"]));
+}
+
 proptest! {
     #[test]
     fn damaged_files_never_panic(at in 0usize..200, byte in 0u8..128, end in 0usize..200) {

@@ -1,5 +1,7 @@
 //! How raw data lie in a segment, whatever their order: parts, one after the other, of equal rows with fields in them.
 
+use std::sync::Arc;
+
 /// Raw data of a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
@@ -9,7 +11,7 @@ pub struct Layout {
     pub len: u64,
     pub big_endian: bool,
     /// One chunk; chunks follow each other to the end.
-    pub parts: Vec<Part>,
+    pub parts: Arc<[Part]>,
 }
 
 /// Rows of equal width.

@@ -2,6 +2,7 @@
 
 use super::segment::{Object, Slot};
 use num_complex::Complex64;
+use std::collections::BTreeSet;
 use vibro_record::Values;
 
 /// The input that is the raw values themselves.
@@ -13,21 +14,32 @@ pub struct Scales<'a> {
     n: u32,
 }
 
+/// How a scale makes its values of its inputs.
+enum Step {
+    /// Raw values of a column.
+    Raw(usize),
+    /// Coefficients in rising order.
+    Polynomial(Vec<f64>),
+    /// Rows in rising order.
+    Table(Vec<(f64, f64)>),
+    /// One input, and another times a sign.
+    Sum(f64),
+}
+
 impl<'a> Scales<'a> {
-    /// The scales that hold for `channel`.
-    pub fn of(objects: &'a [Object], channel: &'a Object) -> Scales<'a> {
-        let above =
-            objects.iter().filter(|o| channel.path.starts_with(&o.path) && o.path.len() < channel.path.len());
-        let mut holders: Vec<&Object> = above.collect();
-        holders.sort_by_key(|o| std::cmp::Reverse(o.path.len()));
+    /// The scales that hold for `channel`; `above` are the file and its groups, groups first.
+    pub fn of(above: &[&'a Object], channel: &'a Object) -> Scales<'a> {
         // Older files do not say how many there are.
         let index = |key: &str| key.strip_prefix("NI_Scale[")?.split_once("]_Scale_Type")?.0.parse().ok();
-        let last = |o: &Object| o.properties.iter().filter_map(|(key, _)| index(key)).max();
+        let last = |o: &Object| o.properties.keys().filter_map(|key| index(key)).max();
         let count = |o: &Object| {
             let said = o.number("NI_Number_Of_Scales").map(|n| n as u32);
             said.or_else(|| last(o).map(|i: u32| i.saturating_add(1))).unwrap_or(0)
         };
+        let holders = above.iter().copied().filter(|o| channel.path.starts_with(&o.path));
         let from = std::iter::once(channel).chain(holders).find(|o| count(o) > 0);
+        // What was written with its scales applied still lists them.
+        let from = from.filter(|from| from.text("NI_Scaling_Status") != Some("scaled"));
         from.map_or(Scales { from: channel, n: 0 }, |from| Scales { from, n: count(from) })
     }
 
@@ -41,45 +53,66 @@ impl<'a> Scales<'a> {
             let pairs = real.into_iter().zip(imaginary);
             return Ok(Values::Complex(pairs.map(|(re, im)| Complex64::new(re, im)).collect()));
         }
-        let raw = |id: u32| slots.iter().position(|slot| *slot == Slot::Scaler(id)).unwrap_or(0);
         if self.n == 0 {
             return Ok(Values::Real(columns.swap_remove(0)));
         }
-        self.value(self.n - 1, self.n, &mut |id| columns.get(raw(id)).cloned().unwrap_or_default())
-            .map(Values::Real)
+        // From the last scale down to the raw values, each once. Numbers are one higher here: the raw values are 0.
+        let (mut wanted, mut chain) = (BTreeSet::from([self.n]), Vec::new());
+        while let Some(number) = wanted.pop_last() {
+            let (step, inputs) = self.step(number.wrapping_sub(1), slots)?;
+            let inputs: Vec<u32> = inputs.into_iter().map(|input| input.wrapping_add(1)).collect();
+            if inputs.iter().any(|input| *input >= number) {
+                return Err(format!("scale {}, whose input leads back to itself", number - 1));
+            }
+            wanted.extend(&inputs);
+            chain.push((number, step, inputs));
+        }
+        chain.reverse();
+        let raw =
+            chain.iter().filter_map(|(_, step, _)| if let Step::Raw(i) = step { Some(*i) } else { None });
+        let n = raw.map(|i| columns.get(i).map_or(0, Vec::len)).min().unwrap_or(0);
+        let place = |number: u32| chain.partition_point(|(known, ..)| *known < number);
+        let steps: Vec<(&Step, Vec<usize>)> = chain
+            .iter()
+            .map(|(_, step, inputs)| (step, inputs.iter().map(|input| place(*input)).collect()))
+            .collect();
+        let mut made = vec![0.0; steps.len()];
+        let value = |row: usize| {
+            for (i, (step, inputs)) in steps.iter().enumerate() {
+                made[i] = match step {
+                    Step::Raw(column) => columns[*column][row],
+                    Step::Polynomial(all) => all.iter().rev().fold(0.0, |sum, c| sum * made[inputs[0]] + c),
+                    Step::Table(table) => between(table, made[inputs[0]]),
+                    Step::Sum(sign) => made[inputs[0]] + sign * made[inputs[1]],
+                };
+            }
+            made[made.len() - 1]
+        };
+        Ok(Values::Real((0..n).map(value).collect()))
     }
 
-    /// What scale `i` gives, after at most `depth` others.
-    fn value(&self, i: u32, depth: u32, raw: &mut dyn FnMut(u32) -> Vec<f64>) -> Result<Vec<f64>, String> {
+    /// What scale `i` does.
+    fn step(&self, i: u32, slots: &[Slot]) -> Result<(Step, Vec<u32>), String> {
         let number = |key: &str| self.from.number(&format!("NI_Scale[{i}]_{key}"));
         let Some(kind) = self.from.text(&format!("NI_Scale[{i}]_Scale_Type")) else {
             // The scaler of a DAQmx channel, which stands in the layout of its raw data.
-            return Ok(raw(i));
+            let column = slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0);
+            return Ok((Step::Raw(column), Vec::new()));
         };
-        if depth == 0 {
-            return Err(format!("{kind}, whose input leads back to itself"));
-        }
-        let mut input = |key: &str| match number(key).map_or(RAW, |n| n as u32) {
-            RAW => Ok(raw(RAW)),
-            source => self.value(source, depth - 1, raw),
-        };
+        let input = |key: &str| number(&format!("{kind}_{key}Input_Source")).map_or(RAW, |n| n as u32);
         let missing = |what: &str| format!("{kind} without {what}");
         let list = |name: &str| -> Result<Vec<f64>, String> {
             // Four is NI's rule where the number of coefficients is left out.
             let n = number(&format!("{name}_Size")).unwrap_or(4.0);
             (0..n as u32).map(|j| number(&format!("{name}[{j}]")).ok_or_else(|| missing(name))).collect()
         };
-        let each = |values: Vec<f64>, f: &dyn Fn(f64) -> f64| Ok(values.into_iter().map(f).collect());
-        match kind {
+        Ok(match kind {
             "Linear" => {
-                let slope = number("Linear_Slope").ok_or_else(|| missing("Linear_Slope"))?;
-                let intercept = number("Linear_Y_Intercept").ok_or_else(|| missing("Linear_Y_Intercept"))?;
-                each(input("Linear_Input_Source")?, &|v| v * slope + intercept)
+                let one = |key: &str| number(key).ok_or_else(|| missing(key));
+                let slope = one("Linear_Slope")?;
+                (Step::Polynomial(vec![one("Linear_Y_Intercept")?, slope]), vec![input("")])
             }
-            "Polynomial" => {
-                let all: Vec<f64> = list("Polynomial_Coefficients")?;
-                each(input("Polynomial_Input_Source")?, &|v| all.iter().rev().fold(0.0, |sum, c| sum * v + c))
-            }
+            "Polynomial" => (Step::Polynomial(list("Polynomial_Coefficients")?), vec![input("")]),
             "Table" => {
                 let (from, to) = (list("Table_Pre_Scaled_Values")?, list("Table_Scaled_Values")?);
                 let mut table: Vec<(f64, f64)> = from.into_iter().zip(to).collect();
@@ -87,19 +120,17 @@ impl<'a> Scales<'a> {
                 if table.len() < 2 || table.windows(2).any(|w| w[0].0 == w[1].0) {
                     return Err(missing("a table that rises"));
                 }
-                each(input("Table_Input_Source")?, &|v| between(&table, v))
+                (Step::Table(table), vec![input("")])
             }
+            // NI subtracts the left operand from the right one.
             "Add" | "Subtract" => {
-                let left = input(&format!("{kind}_Left_Operand_Input_Source"))?;
-                let right = input(&format!("{kind}_Right_Operand_Input_Source"))?;
-                // NI subtracts the left operand from the right one.
                 let sign = if kind == "Add" { 1.0 } else { -1.0 };
-                Ok(right.into_iter().zip(left).map(|(right, left)| right + sign * left).collect())
+                (Step::Sum(sign), vec![input("Right_Operand_"), input("Left_Operand_")])
             }
             // It says who scales, and changes nothing.
-            "AdvancedAPI" => input("AdvancedAPI_Input_Source"),
-            other => Err(other.to_owned()),
-        }
+            "AdvancedAPI" => (Step::Polynomial(vec![0.0, 1.0]), vec![input("")]),
+            other => return Err(other.to_owned()),
+        })
     }
 }
 

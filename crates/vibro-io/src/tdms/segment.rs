@@ -1,8 +1,9 @@
 //! Segments of a TDMS file: objects with their properties, and where their raw data lie.
 
 use super::layout::{Field, Kind, Layout, Part, time};
-use std::collections::HashMap;
-use std::io::{Read, Seek, SeekFrom};
+use std::collections::{BTreeMap, HashMap};
+use std::io::{BufReader, Read, Seek};
+use std::sync::Arc;
 use vibro_record::{Error, Finding, Place, Result};
 
 /// Bytes before the objects of a segment.
@@ -37,21 +38,36 @@ pub enum Value {
     Other,
 }
 
+impl Value {
+    /// As a person reads it.
+    pub fn text(&self) -> Option<String> {
+        match self {
+            Value::Text(text) => Some(text.clone()),
+            Value::Number(number) => Some(number.to_string()),
+            Value::Other => None,
+        }
+    }
+}
+
 /// What a column of raw values is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slot {
     Real,
     Imaginary,
+    /// Seconds since 1904.
+    Instant,
     /// A DAQmx scaler with this number.
     Scaler(u32),
 }
 
 /// The file, a group or a channel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Object {
     /// Nothing, the group, or the group and the channel.
     pub path: Vec<String>,
-    pub properties: Vec<(String, Value)>,
+    pub properties: BTreeMap<String, Value>,
+    /// What its properties were, and how many values stood before another segment changed them.
+    pub changes: Vec<(String, Value, u64)>,
     /// Values that the file declares.
     pub declared: u64,
     /// What its raw data are where they are no numbers.
@@ -61,18 +77,14 @@ pub struct Object {
 }
 
 impl Object {
-    fn value(&self, key: &str) -> Option<&Value> {
-        self.properties.iter().find(|(name, _)| name == key).map(|(_, value)| value)
-    }
-
     /// A property that is a number.
     pub fn number(&self, key: &str) -> Option<f64> {
-        if let Some(Value::Number(number)) = self.value(key) { Some(*number) } else { None }
+        if let Some(Value::Number(number)) = self.properties.get(key) { Some(*number) } else { None }
     }
 
     /// A property that is text.
     pub fn text(&self, key: &str) -> Option<&str> {
-        if let Some(Value::Text(text)) = self.value(key) { Some(text) } else { None }
+        if let Some(Value::Text(text)) = self.properties.get(key) { Some(text) } else { None }
     }
 }
 
@@ -96,11 +108,10 @@ pub struct Segments {
 ///
 /// # Errors
 /// If the file cannot be read, or a segment is not what the format says.
-pub fn all(file: &mut (impl Read + Seek), len: u64) -> Result<Segments> {
+pub fn all(file: &mut BufReader<impl Read + Seek>, len: u64) -> Result<Segments> {
     let mut known = Known::default();
     let (mut layouts, mut findings, mut at) = (Vec::new(), Vec::new(), 0);
     while at < len {
-        let place = Place::byte("", at);
         let io = |e| Error::io("read", "", e);
         let mut lead = [0; LEAD_IN as usize];
         let cut = Finding::caution("segment-cut").number("at", at as f64);
@@ -108,9 +119,9 @@ pub fn all(file: &mut (impl Read + Seek), len: u64) -> Result<Segments> {
             findings.push(cut);
             break;
         }
-        file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut lead)).map_err(io)?;
+        go(file, at).and_then(|()| file.read_exact(&mut lead)).map_err(io)?;
         if !lead.starts_with(b"TDSm") {
-            return Err(Error::input(place, "bytes that begin no segment", "TDSm")
+            return Err(Error::input(in_byte(at), "bytes that begin no segment", "TDSm")
                 .hint("the file is damaged; copy it again from the computer that wrote it"));
         }
         let contents = u32::from_le_bytes([lead[4], lead[5], lead[6], lead[7]]);
@@ -130,10 +141,10 @@ pub fn all(file: &mut (impl Read + Seek), len: u64) -> Result<Segments> {
             known.describe(&mut Words { rest: &bytes, big_endian, at: begin }, contents & NEW_LIST != 0)?;
         }
         if contents & RAW_DATA != 0 {
-            let parts = known.parts(contents & INTERLEAVED != 0, at)?;
+            let parts = known.shared_parts(contents & INTERLEAVED != 0, at)?;
             let chunk =
                 parts.iter().fold(0u64, |sum, part| sum.saturating_add(part.rows.saturating_mul(part.width)));
-            if chunk > 0 {
+            if chunk > 0 && declared.max(end) > raw_at {
                 known.declare((declared.max(end) - raw_at).div_ceil(chunk));
                 layouts.push(Layout { at: raw_at, len: end - raw_at, big_endian, parts });
             }
@@ -141,6 +152,12 @@ pub fn all(file: &mut (impl Read + Seek), len: u64) -> Result<Segments> {
         at = declared;
     }
     Ok(Segments { objects: known.objects, layouts, findings })
+}
+
+/// Goes to a byte without losing what was read ahead.
+pub fn go(file: &mut BufReader<impl Read + Seek>, to: u64) -> std::io::Result<()> {
+    let at = file.stream_position()?;
+    file.seek_relative(to.wrapping_sub(at) as i64)
 }
 
 /// What the segments so far say.
@@ -152,25 +169,24 @@ struct Known {
     last: Vec<Option<Index>>,
     /// The objects of the present segment that have raw data or none, in their order.
     active: Vec<(usize, Option<Index>)>,
+    /// The place of an object among the active ones.
+    place: HashMap<usize, usize>,
+    /// The parts of the present objects, interleaved or not.
+    parts: Option<(bool, Arc<[Part]>)>,
 }
 
 impl Known {
     /// Takes the description of a segment.
     fn describe(&mut self, words: &mut Words, new_list: bool) -> Result<()> {
+        self.parts = None;
         if new_list {
             self.active.clear();
+            self.place.clear();
         }
         for _ in 0..words.u32()? {
             let path = words.text()?;
             let object = *self.by_path.entry(path.clone()).or_insert_with(|| {
-                let (path, slots) = (names(&path), Vec::new());
-                self.objects.push(Object {
-                    path,
-                    properties: Vec::new(),
-                    declared: 0,
-                    unreadable: None,
-                    slots,
-                });
+                self.objects.push(Object { path: names(&path), ..Object::default() });
                 self.last.push(None);
                 self.objects.len() - 1
             });
@@ -194,21 +210,30 @@ impl Known {
                 (found.slots, found.unreadable) = (slots, unreadable);
                 self.last[object] = Some(index.clone());
             }
-            match self.active.iter_mut().find(|(known, _)| *known == object) {
+            let place = *self.place.entry(object).or_insert(self.active.len());
+            match self.active.get_mut(place) {
                 Some((_, known)) => *known = index,
                 None => self.active.push((object, index)),
             }
+            let Object { properties, changes, declared, .. } = &mut self.objects[object];
             for _ in 0..words.u32()? {
                 let (key, code) = (words.text()?, words.u32()?);
                 let value = words.value(code)?;
-                let properties = &mut self.objects[object].properties;
-                match properties.iter_mut().find(|(name, _)| *name == key) {
-                    Some((_, known)) => *known = value,
-                    None => properties.push((key, value)),
-                }
+                let before = properties.insert(key.clone(), value);
+                let before = before.filter(|before| *declared > 0 && properties.get(&key) != Some(before));
+                changes.extend(before.map(|before| (key, before, *declared)));
             }
         }
         Ok(())
+    }
+
+    /// The parts of a chunk, which segments without a description share.
+    fn shared_parts(&mut self, interleaved: bool, at: u64) -> Result<Arc<[Part]>> {
+        let known = self.parts.take().filter(|(was, _)| *was == interleaved);
+        let parts =
+            known.map_or_else(|| self.parts(interleaved, at).map(Arc::from), |(_, parts)| Ok(parts))?;
+        self.parts = Some((interleaved, Arc::clone(&parts)));
+        Ok(parts)
     }
 
     /// The parts of a chunk of the segment that begins at byte `at`.
@@ -222,7 +247,7 @@ impl Known {
                     let part = match parts.last_mut().filter(|_| interleaved) {
                         Some(part) if part.rows != *rows => {
                             let found = format!("{rows} and {} interleaved values", part.rows);
-                            return Err(Error::input(Place::byte("", at), found, "as many of each channel"));
+                            return Err(Error::input(in_byte(at), found, "as many of each channel"));
                         }
                         Some(part) => part,
                         None => {
@@ -248,7 +273,7 @@ impl Known {
                         let fits = |part: &&mut Part| *offset as u64 + kind.size() <= part.width;
                         let Some(part) = buffers.get_mut(*buffer).filter(fits) else {
                             let found = format!("a DAQmx scaler at byte {offset} of buffer {buffer}");
-                            return Err(Error::input(Place::byte("", at), found, "one inside its buffer"));
+                            return Err(Error::input(in_byte(at), found, "one inside its buffer"));
                         };
                         part.rows = part.rows.max(*rows);
                         part.fields.push(Field { object: *object, slot, offset: *offset, kind: *kind });
@@ -268,6 +293,11 @@ impl Known {
             }
         }
     }
+}
+
+/// The place of a complaint; the reader adds the file.
+fn in_byte(at: u64) -> Place {
+    Place { byte: Some(at), ..Place::default() }
 }
 
 /// Names of a path: `/'group'/'channel'`, quotes doubled.
@@ -298,7 +328,7 @@ struct Words<'a> {
 
 impl<'a> Words<'a> {
     fn fault(&self, found: impl Into<String>, expected: &str) -> Error {
-        Error::input(Place::byte("", self.at), found, expected)
+        Error::input(in_byte(self.at), found, expected)
             .hint("the file is damaged or of a kind not known here; export it as text or UFF-58")
     }
 
@@ -352,7 +382,8 @@ impl<'a> Words<'a> {
             9 | 0x19 => f64::from(f32::from_le_bytes(self.word()?)),
             10 | 0x1a => f64::from_le_bytes(self.word()?),
             0x0008_000c => return self.bytes(8).map(|_| Value::Other),
-            0x0010_000d => return self.bytes(16).map(|_| Value::Other),
+            // Extended precision, and complex numbers.
+            0x0b | 0x1b | 0x0010_000d => return self.bytes(16).map(|_| Value::Other),
             other => return Err(self.fault(format!("a property of type {other:#x}"), "a type of TDMS 2.0")),
         }))
     }
@@ -373,6 +404,7 @@ impl<'a> Words<'a> {
         let fields = match code {
             0x0008_000c => complex(Kind::F32),
             0x0010_000d => complex(Kind::F64),
+            0x44 => vec![(Slot::Instant, 0, Kind::Time)],
             _ => vec![(Slot::Real, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
         };
         let width = fields.iter().map(|(_, _, kind)| kind.size()).sum();
@@ -427,7 +459,6 @@ fn number(code: u32) -> Option<Kind> {
         8 => Kind::U64,
         9 | 0x19 => Kind::F32,
         10 | 0x1a => Kind::F64,
-        0x44 => Kind::Time,
         _ => return None,
     })
 }

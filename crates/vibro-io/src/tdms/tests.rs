@@ -1,7 +1,7 @@
 use super::*;
 use crate::tests::has_finding;
 use proptest::prelude::*;
-use vibro_record::Trace;
+use vibro_record::{AxisKind, Trace};
 
 /// Writes TDMS segments, in either order of bytes.
 #[derive(Default)]
@@ -258,12 +258,10 @@ fn scaled(n: u32, properties: &[(String, Said)], raw: &[f64]) -> std::result::Re
     let object = Object {
         path: vec!["g".into(), "a".into()],
         properties: count.into_iter().chain(properties).collect(),
-        declared: 0,
-        unreadable: None,
         slots: vec![segment::Slot::Real],
+        ..Object::default()
     };
-    let values =
-        Scales::of(std::slice::from_ref(&object), &object).apply(&object.slots, vec![raw.to_vec()])?;
+    let values = Scales::of(&[], &object).apply(&object.slots, vec![raw.to_vec()])?;
     if let Values::Real(values) = values { Ok(values) } else { panic!() }
 }
 
@@ -386,6 +384,231 @@ fn what_is_no_measurement_is_refused() {
     assert!(said(&junk).contains("begin no segment"));
     writer.segment(ALL, &[("/'g'/'a'", Raw::Of(0x1b, 2), &[])], &[0; 16]);
     assert!(said(&writer.bytes).contains("type 0x1b"));
+}
+
+/// A file of one segment with channels of a group `g`: name, properties, values.
+fn group(channels: &[(&str, &[Prop], &[f64])]) -> Vec<u8> {
+    let mut writer = Writer::new(false);
+    let raw: Vec<u8> = channels.iter().flat_map(|(.., values)| writer.doubles(values)).collect();
+    let paths: Vec<String> = channels.iter().map(|(name, ..)| format!("/'g'/'{name}'")).collect();
+    let objects: Vec<(&str, Raw, &[Prop])> = channels
+        .iter()
+        .zip(&paths)
+        .map(|((_, properties, values), path)| (path.as_str(), Raw::Of(10, values.len() as u64), *properties))
+        .collect();
+    writer.segment(ALL, &objects, &raw);
+    writer.bytes
+}
+
+fn every(step: f64, n: usize) -> Vec<f64> {
+    (0..n).map(|i| step * i as f64).collect()
+}
+
+/// Names and steps of the records.
+fn steps(bytes: &[u8]) -> Vec<(String, AxisKind, Option<f64>)> {
+    let of = |r: &Record| (r.meta().name.clone(), r.axis().kind.clone(), r.axis().step());
+    recording(bytes).unwrap().records.iter().map(of).collect()
+}
+
+#[test]
+fn values_that_were_written_scaled_keep_their_scales_as_notes_only() {
+    let status = |status| {
+        [
+            Prop::U32("NI_Number_Of_Scales", 1),
+            Prop::Text("NI_Scaling_Status", status),
+            Prop::Text("NI_Scale[0]_Scale_Type", "Linear"),
+            Prop::F64("NI_Scale[0]_Linear_Slope", 2.0),
+            Prop::F64("NI_Scale[0]_Linear_Y_Intercept", 1.0),
+        ]
+    };
+    let found = traces(&group(&[("a", &status("scaled"), &[3.0]), ("b", &status("unscaled"), &[3.0])]));
+    assert_eq!([found[0].values[0], found[1].values[0]], [3.0, 7.0]);
+}
+
+#[test]
+fn a_stated_step_against_a_channel_of_times() {
+    let (times, step) = (every(0.5, 4), |dt| [Prop::F64("wf_increment", dt)]);
+    let differ = group(&[("Time", &[], &times), ("a", &step(1.0), &[1.0; 4])]);
+    assert_eq!(steps(&differ), [("a".into(), AxisKind::Time, Some(0.5))]);
+    let said = recording(&differ).unwrap().all_findings();
+    assert!(has_finding(&said, "vector-against-rate", &["variable=Time", "used=vector", "rate=1"]));
+    assert!(has_finding(&said, "axis-unit-assumed", &["unit=s"]));
+    // A rate that a person states is above both.
+    let stated = crate::Reader::new().rate(Some(8.0)).from_reader("x.tdms", &differ[..]).unwrap();
+    assert_eq!(stated.records[0].axis().step(), Some(0.125));
+    let agree = group(&[("Time", &[Prop::Text("unit_string", "s")], &times), ("a", &step(0.5), &[1.0; 4])]);
+    let mut agree = recording(&agree).unwrap();
+    agree.records[0].meta_mut().findings.retain(|found| found.code != "unit-unsaid");
+    assert!(agree.all_findings().is_empty() && agree.records[0].axis().step() == Some(0.5));
+}
+
+#[test]
+fn only_a_name_makes_an_abscissa() {
+    let unit = |unit| [Prop::Text("unit_string", unit)];
+    let wave = |unit| [Prop::Text("unit_string", unit), Prop::F64("wf_increment", 0.1)];
+    let rising = every(2.0, 4);
+    let run_up =
+        group(&[("speed", &unit("Hz"), &rising), ("tach", &unit("s"), &rising), ("a", &[], &[1.0; 4])]);
+    assert!(steps(&run_up).iter().all(|(_, kind, _)| *kind == AxisKind::Index) && steps(&run_up).len() == 3);
+    // A frequency that rises over a stated or a stored time is a channel.
+    let stated = group(&[("Frequency", &wave("Hz"), &rising), ("a", &wave("g"), &[1.0; 4])]);
+    assert_eq!(
+        steps(&stated).iter().filter(|(_, kind, dt)| *kind == AxisKind::Time && *dt == Some(0.1)).count(),
+        2
+    );
+    let both =
+        group(&[("Time", &unit("s"), &rising), ("Frequency", &unit("Hz"), &rising), ("a", &[], &[1.0; 4])]);
+    assert_eq!(steps(&both).len(), 2);
+    let lines = group(&[("Frequency", &unit("kHz"), &rising), ("A", &unit("g"), &[1.0; 4])]);
+    assert_eq!(steps(&lines), [("A".into(), AxisKind::Frequency, Some(2000.0))]);
+    // What is no abscissa of another channel is kept.
+    let short = group(&[("Time", &unit("s"), &rising), ("a", &unit("g"), &[1.0; 5])]);
+    assert!(has_finding(
+        &recording(&short).unwrap().findings,
+        "abscissa-of-other-length",
+        &["variable=Time"]
+    ));
+    let back = group(&[("Time", &unit("s"), &[0.0, 1.0, 0.5]), ("a", &unit("g"), &[1.0; 3])]);
+    assert!(has_finding(&recording(&back).unwrap().findings, "abscissa-not-rising", &["variable=Time"]));
+    assert_eq!((steps(&short).len(), steps(&back).len()), (2, 2));
+}
+
+#[test]
+fn each_clock_is_of_the_channels_behind_it() {
+    let s = [Prop::Text("unit_string", "s")];
+    let (fast, slow, one) = (every(0.5, 4), every(5.0, 4), [1.0; 4]);
+    let follow =
+        group(&[("Zeit", &s, &fast), ("a", &[], &one), ("Zeit_langsam", &s, &slow), ("b", &[], &one)]);
+    let time = |name: &str, dt| (name.to_owned(), AxisKind::Time, Some(dt));
+    assert_eq!(steps(&follow), [time("a", 0.5), time("b", 5.0)]);
+    let beside = group(&[("Zeit", &s, &fast), ("Zeit2", &s, &slow), ("a", &[], &one), ("b", &[], &one)]);
+    let said = recording(&beside).unwrap_err().to_string();
+    assert!(said.contains("\"Zeit\" and \"Zeit2\" run over 1.5 and 15"), "{said}");
+    let same = group(&[("Time", &s, &fast), ("Time 2", &s, &fast), ("a", &[], &one)]);
+    assert_eq!(steps(&same), [time("a", 0.5)]);
+    let flight = [0.1, 0.2, 0.4, 0.5];
+    let values = group(&[("Time", &s, &fast), ("time of flight", &s, &flight)]);
+    assert_eq!(steps(&values), [time("time of flight", 0.5)]);
+}
+
+#[test]
+fn times_of_other_units_and_digits() {
+    let of = |times: &[f64], unit| {
+        let unit = [Prop::Text("unit_string", unit)];
+        let bytes = group(&[("Time", &unit, times), ("a", &[], &vec![1.0; times.len()])]);
+        let found = recording(&bytes).unwrap();
+        (found.records[0].axis().clone(), found.findings)
+    };
+    // Nanoseconds since 1970, 1 ms apart.
+    let (axis, found) = of(&every(1e6, 5).iter().map(|t| t + 1.7e18).collect::<Vec<_>>(), "");
+    assert!(has_finding(&found, "axis-epoch", &["unit=ns"]) && axis.start() == 0.0);
+    // Doubles near 1.7e18 are 256 ns apart.
+    assert!((axis.step().unwrap() - 1e-3).abs() < 256e-9);
+    let (axis, found) = of(&every(1.0, 5), "h");
+    assert_eq!((axis.step(), found.len()), (Some(3600.0), 0));
+    let (_, found) = of(&every(1.0, 5), "hh:mm");
+    assert!(has_finding(&found, "axis-unit-unknown", &["said=hh:mm", "unit=s"]));
+    // 1 ms behind 100 s in single precision, which is 8 µs there.
+    let single: Vec<f64> = (0..50).map(|i| f64::from((100.0 + f64::from(i) * 1e-3) as f32)).collect();
+    let (axis, found) = of(&single, "s");
+    assert!((axis.step().unwrap() - 1e-3).abs() < 8e-6 / 49.0);
+    assert!(has_finding(&found, "axis-rounded", &[]) && found.len() == 1);
+    // An uneven clock is said once.
+    let (_, found) = of(&[0.0, 1.0, 5.0], "s");
+    assert_eq!(found.iter().map(|found| found.code).collect::<Vec<_>>(), ["axis-uneven"]);
+}
+
+#[test]
+fn the_unit_of_the_abscissa() {
+    let of = |unit: &str, name: &str| {
+        let wave = [
+            Prop::F64("wf_increment", 0.5),
+            Prop::Text("wf_xunit_string", unit),
+            Prop::Text("wf_xname", name),
+        ];
+        let found = recording(&group(&[("a", &wave, &[1.0, 2.0])])).unwrap();
+        let axis = found.records[0].axis();
+        (axis.kind.clone(), axis.step(), found.all_findings())
+    };
+    assert_eq!(of("ms", "").1, Some(0.5e-3));
+    assert_eq!((of("kHz", "").0, of("kHz", "").1), (AxisKind::Frequency, Some(500.0)));
+    assert_eq!((of("", "Frequency").0, of("hz", "").0), (AxisKind::Frequency, AxisKind::Frequency));
+    assert_eq!(
+        (of("mm", "Position").0, of("mm", "").1),
+        (AxisKind::Other("Position [mm]".into()), Some(0.5))
+    );
+    assert!(has_finding(&of("ticks", "").2, "axis-unit-unknown", &["said=ticks", "unit=s"]));
+}
+
+#[test]
+fn what_changes_between_values() {
+    let two = |first: &[Prop], second: &[Prop], more: bool| {
+        let mut writer = Writer::new(false);
+        let raw = writer.doubles(&[1.0, 2.0]);
+        writer.segment(ALL, &[("/'g'/'a'", Raw::Of(10, 2), first), ("/'g'/'b'", Raw::Of(10, 0), &[])], &raw);
+        let (contents, index) = if more { (META | RAW, Raw::AsBefore) } else { (META, Raw::None) };
+        writer.segment(contents, &[("/'g'/'a'", index, second)], if more { &raw } else { &[] });
+        recording(&writer.bytes)
+    };
+    let unit = |unit| [Prop::Text("unit_string", unit)];
+    let said = two(&unit("V"), &unit("mV"), true).unwrap_err().to_string();
+    assert!(said.contains("unit_string changes from V to mV behind value 2"), "{said}");
+    // What is put right behind all values holds for all, and what is said first later, too.
+    let late = |first: &str| two(&[Prop::Text("unit_string", first)], &unit("mV"), first.is_empty()).unwrap();
+    assert_eq!([late("V"), late("")].map(|found| found.records[0].max_abs().unwrap().1), [2e-3; 2]);
+    let start = |dt, at| [Prop::F64("wf_increment", dt), Prop::F64("wf_start_time", at)];
+    let of = |first: &[Prop], second: &[Prop]| two(first, second, true).unwrap().all_findings();
+    let found = of(&start(0.5, 0.0), &start(0.25, 1.0));
+    assert!(has_finding(&found, "step-changed", &["before=0.5", "step=0.25", "n=2"]));
+    assert!(has_finding(&of(&start(0.5, 0.0), &start(0.5, 61.0)), "start-changed", &["gap=60", "n=2"]));
+    // Two values of half a second: the second segment begins where it should.
+    assert!(!has_finding(&of(&start(0.5, 0.0), &start(0.5, 1.0)), "start-changed", &[]));
+}
+
+#[test]
+fn many_segments_scales_and_channels_cost_what_is_there() {
+    // 29 sums, each of the one before and itself: 2²⁸ times the value.
+    let sum = |i: usize| {
+        let side =
+            |side: &str| (format!("NI_Scale[{i}]_Add_{side}_Operand_Input_Source"), Ok(i as f64 - 1.0));
+        [(format!("NI_Scale[{i}]_Scale_Type"), Err("Add")), side("Left"), side("Right")]
+    };
+    let chain: Vec<_> = linear(0, 1.0, 0.0, u32::MAX).into_iter().chain((1..29).flat_map(sum)).collect();
+    assert_eq!(scaled(29, &chain, &[1.0]).unwrap(), [2f64.powi(28)]);
+    // Segments share the parts of the one that describes them; empty ones hold nothing.
+    let mut writer = Writer::new(false);
+    let raw = writer.doubles(&[1.0, 2.0]);
+    writer.segment(ALL, &[("/'g'/'a'", Raw::Of(10, 1), &[]), ("/'g'/'b'", Raw::Of(10, 1), &[])], &raw);
+    for _ in 0..3 {
+        writer.segment(RAW, &[], &[]).segment(RAW, &[], &raw);
+    }
+    let n = writer.bytes.len() as u64;
+    let found = segment::all(&mut BufReader::new(std::io::Cursor::new(&writer.bytes)), n).unwrap();
+    assert_eq!(found.layouts.len(), 4);
+    assert!(
+        found.layouts.iter().all(|layout| std::sync::Arc::ptr_eq(&layout.parts, &found.layouts[0].parts))
+    );
+    assert_eq!(traces(&writer.bytes)[1].values, [2.0; 4]);
+}
+
+#[test]
+fn complaints_name_the_file_and_the_scale() {
+    let scale = [Prop::U32("NI_Number_Of_Scales", 1), Prop::Text("NI_Scale[0]_Scale_Type", "RTD")];
+    let said = recording(&group(&[("temp", &scale, &[1.0])])).unwrap_err().to_string();
+    assert!(said.contains("\"temp\"") && said.contains("RTD"), "{said}");
+    let mut bytes = group(&[("a", &[], &[1.0])]);
+    bytes.extend([b'x'; 64]);
+    assert!(recording(&bytes).unwrap_err().to_string().contains("x.tdms, byte"));
+    let units = [Prop::Text("unit_string", ""), Prop::Text("NI_UnitDescription", "V")];
+    assert_eq!(traces(&group(&[("a", &units, &[1.0])]))[0].meta.unit.symbol(), "V");
+    // A property of extended precision: its type and 16 bytes in place of 10 and 8.
+    let bytes = group(&[("a", &[Prop::F64("cal", 1.0)], &[5.0])]);
+    let at = bytes.windows(3).position(|word| word == b"cal").unwrap() + 3;
+    let mut extended = [&bytes[..at], &[0x0b, 0, 0, 0], &[0; 16], &bytes[at + 12..]].concat();
+    for length in [12, 20] {
+        extended[length] += 8;
+    }
+    assert_eq!(traces(&extended)[0].values, [5.0]);
 }
 
 fn small() -> Vec<u8> {

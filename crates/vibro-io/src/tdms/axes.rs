@@ -1,0 +1,201 @@
+//! The abscissa of a channel: its waveform properties, or a channel of its group that is one by its name.
+
+use super::Channel;
+use super::segment::{Object, Slot, Value};
+use crate::assemble::{Abscissa, domain, epoch, from_values, short};
+use crate::reader::Options;
+use crate::text::names::Name;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
+
+/// A channel that is the abscissa of others.
+pub struct Clock {
+    name: String,
+    axis: Axis,
+    findings: Vec<Finding>,
+}
+
+impl Clock {
+    fn of(channel: &Channel, findings: &mut Vec<Finding>) -> Option<Clock> {
+        // Of a time `h` is no other unit than this.
+        let unit = channel.object.text("unit_string").map(|unit| if unit == "h" { "hour" } else { unit });
+        let Name { name, unit } = Name::with_unit_row(channel.name, unit.unwrap_or_default());
+        let whole = name.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_' || c == ' ');
+        let kind = |name: &str, unit: Option<String>| {
+            Name { name: name.to_owned(), unit }.axis(name.len() == 1).filter(|_| name != "x" && name != "X")
+        };
+        let named = |name: &str| kind(name, None).filter(|of| kind(name, unit.clone()).as_ref() == Some(of));
+        // `Zeit_langsam` is a clock where it rises evenly, `time of flight` does not.
+        let first = whole.split(['_', ' ']).next().filter(|word| word.len() > 1);
+        let first = || named(first?).filter(|kind| *kind == AxisKind::Time);
+        let (kind, sure) = named(whole).map(|kind| (kind, true)).or_else(|| Some((first()?, false)))?;
+        let Values::Real(values) = &channel.values else { return None };
+        if values.len() < 2 || !values.is_sorted_by(|a, b| a < b) {
+            if sure && values.len() > 1 {
+                findings.push(Finding::caution("abscissa-not-rising").name("variable", channel.name));
+            }
+            return None;
+        }
+        let label = format!("channel {:?}", channel.name);
+        let instants = channel.object.slots == [Slot::Instant];
+        let epoch = epoch(values[0]).filter(|_| unit.is_none() && !instants && kind == AxisKind::Time);
+        let read = Name { name, unit: unit.clone() }.to_axis(&kind).ok();
+        let (factor, assumed) = match (epoch, read) {
+            _ if instants => (1.0, Some(Finding::note("axis-clock"))),
+            (Some((unit, factor)), _) => (factor, Some(Finding::caution("axis-epoch").name("unit", unit))),
+            (_, Some(read)) => read,
+            (_, None) => {
+                let found = Finding::caution("axis-unit-unknown").name("said", unit.unwrap_or_default());
+                (1.0, Some(found.name("unit", domain(&kind).1)))
+            }
+        };
+        let from = if instants || epoch.is_some() { values[0] } else { 0.0 };
+        let (start, last) = (values[0], values[values.len() - 1]);
+        let largest = start.abs().max(last.abs());
+        // Sums of steps drift by rounding; numbers of single precision have no more than that.
+        let single = values.iter().all(|v| f64::from(*v as f32) == *v);
+        let digits = largest * if single { f64::from(f32::EPSILON) / 2.0 } else { f64::EPSILON };
+        let resolution = digits.max(0.5e-6 * (last - start) / (values.len() - 1) as f64);
+        let values = values.iter().map(|v| (v - from) * factor).collect();
+        let (axis, uneven) = from_values(kind, values, resolution * factor, &label);
+        let findings = assumed.map(|found| found.name("column", label.as_str())).into_iter().chain(uneven);
+        let clock = Clock { name: channel.name.to_owned(), findings: findings.collect(), axis };
+        (sure || clock.axis.step().is_some()).then_some(clock)
+    }
+}
+
+/// Takes the clocks out of the channels and gives them to those of their group and length; where there are several, each to those behind it.
+///
+/// # Errors
+/// If it cannot be told which channels are whose.
+pub fn assign(channels: &mut Vec<Channel>, findings: &mut Vec<Finding>) -> Result<()> {
+    let mut sets: BTreeMap<(&str, usize), Vec<usize>> = BTreeMap::new();
+    for (i, channel) in channels.iter().enumerate() {
+        sets.entry((channel.group, channel.values.len())).or_default().push(i);
+    }
+    let clocks = channels.iter().map(|channel| Clock::of(channel, findings).map(Rc::new));
+    let mut clocks: Vec<Option<Rc<Clock>>> = clocks.collect();
+    for (_, set) in sets {
+        let timed = set.iter().any(|i| {
+            let (kind, step, _) = stated(channels[*i].object);
+            let by_step = kind == AxisKind::Time && step.is_some_and(|(_, step)| step != 1.0);
+            by_step || clocks[*i].as_ref().is_some_and(|clock| clock.axis.kind == AxisKind::Time)
+        });
+        // Over time a frequency that rises is that of a run-up.
+        for i in set.iter().filter(|_| timed) {
+            clocks[*i].take_if(|clock| clock.axis.kind != AxisKind::Time);
+        }
+        let own: Vec<&Rc<Clock>> = set.iter().filter_map(|i| clocks[*i].as_ref()).collect();
+        let Some(first) = own.first().copied().cloned() else { continue };
+        if own.len() == set.len() {
+            for i in set {
+                let found = Finding::caution("abscissa-of-other-length");
+                findings.push(found.name("variable", channels[i].name));
+                clocks[i] = None;
+            }
+            continue;
+        }
+        let other = own.iter().find(|clock| clock.axis != first.axis).copied();
+        let is = |i: usize| clocks[i].is_some();
+        let follow = is(set[0]) && !is(set[set.len() - 1]) && !set.windows(2).any(|w| is(w[0]) && is(w[1]));
+        if let Some(other) = other.filter(|_| !follow) {
+            let span = |axis: &Axis| short(axis.at(axis.len() - 1) - axis.start());
+            let (a, b) = (span(&first.axis), span(&other.axis));
+            let found = format!("{:?} and {:?} run over {a} and {b}", first.name, other.name);
+            let hint = "write each of them with its channels to a group of its own";
+            return Err(Error::usage(found, "one clock for all channels of a group").hint(hint));
+        }
+        let said = if other.is_some() { own.len() } else { 1 };
+        findings.extend(own.iter().take(said).flat_map(|clock| clock.findings.iter().cloned()));
+        let mut now = &first;
+        for i in set {
+            match &clocks[i] {
+                Some(clock) => now = clock,
+                None => channels[i].clock = Some(Rc::clone(now)),
+            }
+        }
+    }
+    let mut clocks = clocks.iter();
+    channels.retain(|_| clocks.next().is_some_and(Option::is_none));
+    Ok(())
+}
+
+/// What the waveform properties say: kind, start and step in s or Hz, and what is assumed of their unit.
+fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
+    let name = object.text("wf_xname").unwrap_or_default();
+    let lines = name.to_lowercase().starts_with("freq");
+    let kind = if lines { AxisKind::Frequency } else { AxisKind::Time };
+    let said = object.text("wf_xunit_string").map(str::trim).filter(|unit| !unit.is_empty());
+    let said = said.map(|unit| if unit.eq_ignore_ascii_case("hz") { "Hz" } else { unit });
+    let (kind, factor, found) = match (said, said.and_then(Unit::parse)) {
+        (Some(_), Some(unit)) if unit.quantity() == Quantity::Time => (AxisKind::Time, unit.factor(), None),
+        (Some(_), Some(unit)) if unit.symbol().ends_with("Hz") => (AxisKind::Frequency, unit.factor(), None),
+        (Some(said), Some(_)) => {
+            let name = if name.is_empty() { "abscissa" } else { name };
+            (AxisKind::Other(format!("{name} [{said}]")), 1.0, None)
+        }
+        (Some(said), None) => {
+            let found = Finding::caution("axis-unit-unknown").name("said", said).name("column", "abscissa");
+            let unit = domain(&kind).1;
+            (kind, 1.0, Some(found.name("unit", unit)))
+        }
+        (None, _) => (kind, 1.0, None),
+    };
+    let start = object.number("wf_start_offset").unwrap_or(0.0);
+    (kind, object.number("wf_increment").map(|step| (start * factor, step * factor)), found)
+}
+
+/// The axis of a channel: its clock, with the stated step where both agree, for that has more digits; else what is stated.
+pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
+    let (object, n) = (channel.object, channel.values.len());
+    let (kind, step, found) = stated(object);
+    let free = options.rate.is_none() && options.base_band.is_none();
+    let Some(clock) = &channel.clock else {
+        meta.findings.extend(found);
+        if free && let Some((_, step)) = step {
+            meta.findings.extend(changes(object, step));
+        }
+        return Abscissa::even(kind, step).axis(n, options, meta);
+    };
+    let Clock { name, axis, .. } = &**clock;
+    let own = axis.step().unwrap_or(f64::NAN);
+    let abscissa = match step.filter(|(_, step)| *step > 0.0) {
+        Some((_, step)) if kind == axis.kind && (own / step - 1.0).abs() <= 1e-4 => {
+            Abscissa::even(kind, Some((axis.start(), step)))
+        }
+        Some((_, step)) if options.rate.is_none() && kind == AxisKind::Time => {
+            let found = Finding::caution("vector-against-rate").name("variable", name.as_str());
+            meta.found(found.name("used", "vector").number("rate", 1.0 / step));
+            Abscissa::of(axis.clone())
+        }
+        _ => Abscissa::of(axis.clone()),
+    };
+    // What is to be said of an uneven clock is said of the file.
+    if free && abscissa.even.is_none() { axis.clone() } else { abscissa.axis(n, options, meta) }
+}
+
+/// Where segments contradict the even `step` of all values.
+fn changes(object: &Object, step: f64) -> Vec<Finding> {
+    let of = |key: &str| {
+        let all = object.changes.iter().filter(move |(of, _, at)| of == key && *at < object.declared);
+        let all = all
+            .filter_map(|(_, before, at)| if let Value::Number(x) = before { Some((*x, *at)) } else { None });
+        all.collect::<Vec<(f64, u64)>>()
+    };
+    let mut found = Vec::new();
+    if let (Some((before, at)), Some(now)) = (of("wf_increment").first(), object.number("wf_increment")) {
+        let changed = Finding::doubt("step-changed").number("before", *before).number("step", now);
+        found.push(changed.number("n", *at as f64));
+    }
+    let starts = of("wf_start_time");
+    let behind = starts.iter().skip(1).map(|(time, _)| *time).chain(object.number("wf_start_time"));
+    let gaps = starts.iter().zip(behind).map(|((_, at), now)| (now - starts[0].0 - *at as f64 * step, *at));
+    if let Some((gap, at)) = gaps.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
+        && gap.abs() > step.max(1e-3)
+    {
+        found.push(Finding::caution("start-changed").number("gap", gap).number("n", at as f64));
+    }
+    found
+}
