@@ -120,7 +120,7 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     let doubled = smallest > 0.0 && largest > 1.5 * smallest;
     let turns = rounding(&steps, f64::midpoint(smallest, largest));
     // Seconds printed ten times each: the record may begin and end within one, so the step is that between their changes.
-    let between = turns.filter(|_| smallest == 0.0);
+    let between = turns.filter(|_| smallest == 0.0 && 2 * long < steps.len());
     let between = between.map(|(first, last)| (values[last + 1] - values[first + 1]) / (last - first) as f64);
     let mut axis = if doubled && turns.is_none() {
         Axis { kind, grid: Grid::Uneven(values) }
