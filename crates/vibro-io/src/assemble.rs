@@ -228,6 +228,12 @@ fn rounding(steps: &[f64], middle: f64) -> Option<(usize, usize)> {
     (long.len() >= 3 && most - least <= 1).then(|| (long[0], long[long.len() - 1]))
 }
 
+/// Unit of a time without one that is counted from 1970, from 2001 to 2096, and its factor to s.
+pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
+    let since_1970 = |(_, factor): &(&str, f64)| (1e9..4e9).contains(&(first * factor));
+    [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].into_iter().find(since_1970)
+}
+
 /// Six digits are enough for a sentence.
 pub fn short(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
