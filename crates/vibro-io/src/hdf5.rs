@@ -126,6 +126,7 @@ impl Walk<'_> {
             Data::Texts(texts) if texts.iter().map(String::len).sum::<usize>() <= MOST_TEXT => {
                 Content::Text(texts.join(", "))
             }
+            Data::Numbers(values) if dataset.ndim() == 1 => array(vec![values.len() as u64], values),
             Data::Numbers(values) => array(dataset.shape().to_vec(), values),
             Data::Table(fields) => {
                 let vector = |values: Vec<f64>| array(vec![values.len() as u64], Values::Real(values));

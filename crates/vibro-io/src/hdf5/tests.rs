@@ -233,6 +233,15 @@ fn stored_numbers_are_no_measured_values() {
 }
 
 #[test]
+fn what_was_written_is_read_and_the_rest_is_not_made_up() {
+    let recording = fixture("half_written.h5");
+    for name in ["plain", "packed"] {
+        assert!(values(&recording, name).iter().copied().eq(v()), "{name}");
+    }
+    assert!(has_finding(&recording.findings, "fewer-values", &["declared=100000000", "n=24"]));
+}
+
+#[test]
 fn what_is_declared_and_not_there_is_left_out() {
     let recording = fixture("declared.h5");
     assert_eq!(names(&recording), ["v"]);

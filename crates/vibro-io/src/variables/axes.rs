@@ -8,7 +8,7 @@ use crate::assemble::{epoch, from_values, short};
 use crate::number;
 use crate::reader::{Options, POSSIBLE};
 use crate::text::names::Name;
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::HashMap;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Result, Values};
@@ -44,22 +44,14 @@ fn kind(
         Some(values) if said.unit.is_none() && kind == AxisKind::Time => {
             let (first, last) = (values[0], values[values.len() - 1]);
             let step = (last - first) / (values.len() - 1) as f64;
-            let found = |code| Some(Finding::caution(code));
-            match epoch(first) {
-                Some((unit, factor)) => {
-                    Some((kind, [first, factor], found("axis-epoch").map(|of| of.name("unit", unit))))
-                }
-                None if !dialect.attributes && DATENUM.contains(&first) && step < 1.0 => {
-                    let days = found("axis-unit-assumed").map(|of| of.name("unit", "d"));
-                    Some((kind, [first, 86_400.0], days))
-                }
-                // Of other formats it is said that units are assumed.
-                None => (step < TICKS).then_some((
-                    kind,
-                    [0.0, 1.0],
-                    assumed.filter(|_| !seconds && dialect.attributes),
-                )),
+            let days = !dialect.attributes && DATENUM.contains(&first) && step < 1.0;
+            let days = days.then_some(("axis-unit-assumed", "d", 86_400.0));
+            let dated = epoch(first).map(|(unit, factor)| ("axis-epoch", unit, factor)).or(days);
+            if let Some((code, unit, factor)) = dated {
+                return Some((kind, [first, factor], Some(Finding::caution(code).name("unit", unit))));
             }
+            // Of other formats it is said that units are assumed.
+            (step < TICKS).then_some((kind, [0.0, 1.0], assumed.filter(|_| !seconds && dialect.attributes)))
         }
         _ => Some((kind, [0.0, factor], assumed)),
     }
@@ -153,7 +145,7 @@ pub struct Axes<'a> {
     vectors: Scoped<(String, Axis)>,
     scalars: Scoped<Scalar>,
     /// By struct, how deep the outermost array in it stands, and the longest length of those.
-    outer: HashMap<String, (usize, u64)>,
+    outer: HashMap<String, (Reverse<usize>, Option<u64>)>,
     /// Vectors that rise evenly and are not known as abscissae: name, length and step.
     even: Vec<(String, usize, f64)>,
 }
@@ -184,14 +176,10 @@ impl<'a> Axes<'a> {
         let vectors = Scoped::of(dialect, std::iter::empty());
         let mut axes = Axes { dialect, options, vectors, scalars, outer: HashMap::new(), even: Vec::new() };
         for (name, array) in arrays.iter() {
-            let (depth, n) = (dialect.structs(name).count(), array.dimensions.iter().copied().max());
+            let at = (Reverse(dialect.structs(name).count()), array.dimensions.iter().copied().max());
             for scope in dialect.structs(name) {
-                let outer = axes.outer.entry(scope.to_owned()).or_insert((depth, 0));
-                *outer = match depth.cmp(&outer.0) {
-                    Ordering::Less => (depth, n.unwrap_or(0)),
-                    Ordering::Equal => (depth, outer.1.max(n.unwrap_or(0))),
-                    Ordering::Greater => *outer,
-                };
+                let outer = axes.outer.entry(scope.to_owned()).or_insert(at);
+                *outer = at.max(*outer);
             }
         }
         let mut taken = vec![false; arrays.len()];
@@ -257,8 +245,8 @@ impl<'a> Axes<'a> {
     fn chosen<'s>(&'s self, name: &'s str, n: usize, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
         // What is shorter and stands deeper than the vectors of a struct has as a rule been made of them, at another rate.
         let depth = self.dialect.structs(name).count();
-        let made =
-            |scope: &str| self.outer.get(scope).is_some_and(|(d, long)| *d < depth && 2 * n as u64 <= *long);
+        let shorter = |(d, long): &(Reverse<usize>, Option<u64>)| d.0 < depth && Some(2 * n as u64) <= *long;
+        let made = |scope: &str| self.outer.get(scope).is_some_and(shorter);
         let says = |s: &Scalar| {
             s.meaning != Start && s.trust != Offered && !(complex && s.kind == Some(AxisKind::Time))
         };
