@@ -21,13 +21,24 @@ use crate::variables::names::Dialect;
 use crate::variables::{self, Array, Content, MOST_TEXT};
 use file::{Data, File, Member};
 use hdf5_reader::{Attribute, Dataset, Datatype};
-use vibro_record::{Result, Values};
+use vibro_record::{Finding, Result, Values};
 
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// What programs write for themselves, as [`Dialect::word`] gives it.
 const INTERNAL: &[&str] = &["class", "name", "dimensionlist", "dimensionlabels", "referencelist"];
-/// Names of the factor and of the offset that make values of stored integers.
-const SCALE: [&[&str]; 2] = [&["scalefactor", "yinc", "yincrement"], &["addoffset", "yorg", "yorigin"]];
+/// Names of what makes values of stored numbers: factor, offset and reference of the integers of an oscilloscope, factor and offset of
+/// any number, and the number that stands for a missing value.
+const SCALE: [&[&str]; 6] = [
+    &["yinc", "yincrement"],
+    &["yorg", "yorigin"],
+    &["yref", "yreference"],
+    &["scalefactor"],
+    &["addoffset"],
+    &["fillvalue", "missingvalue"],
+];
+type Scale = [f64; SCALE.len()];
+/// Names of factors of integers that say neither of what nor which way.
+const FACTORS: [&str; 3] = ["scale", "gain", "conversion"];
 
 static DIALECT: Dialect = Dialect {
     format: Format::Hdf5,
@@ -52,7 +63,8 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         (&mat::DIALECT, matlab::variables(&mut file, members)?)
     } else {
         let mut walk = Walk { file: &mut file, variables: Vec::new() };
-        let scale = walk.stated("", &root.attributes().unwrap_or_default(), [1.0, 0.0]);
+        let scale =
+            walk.stated("", &root.attributes().unwrap_or_default(), [1.0, 0.0, 0.0, 1.0, 0.0, f64::NAN]);
         walk.group("", members, scale)?;
         (&DIALECT, walk.variables)
     };
@@ -66,7 +78,7 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     /// Adds what stands in a group, whose path ends with `/`.
-    fn group(&mut self, path: &str, members: Vec<(String, Member)>, scale: [f64; 2]) -> Result<()> {
+    fn group(&mut self, path: &str, members: Vec<(String, Member)>, scale: Scale) -> Result<()> {
         for (name, member) in members {
             let name = format!("{path}{name}");
             match &member {
@@ -83,17 +95,29 @@ impl Walk<'_> {
     }
 
     /// Adds a dataset or its fields, and the attributes of vectors and matrices.
-    fn dataset(&mut self, name: &str, dataset: &Dataset, mut scale: [f64; 2]) {
+    fn dataset(&mut self, name: &str, dataset: &Dataset, mut scale: Scale) {
         let Some(mut data) = self.file.data(name, dataset) else { return };
         let long = dataset.shape().iter().filter(|n| **n > 1).count();
         if matches!(data, Data::Table(_)) || (1..=2).contains(&long) {
             scale = self.stated(&format!("{name}/"), &dataset.attributes(), scale);
         }
-        if let (Data::Numbers(Values::Real(values)), Datatype::FixedPoint { .. }) =
-            (&mut data, dataset.dtype())
-        {
+        if let Data::Numbers(Values::Real(values)) = &mut data {
+            let counts = matches!(dataset.dtype(), Datatype::FixedPoint { .. });
+            let doubtful = |of: &Attribute| {
+                FACTORS.contains(&DIALECT.word(&of.name).as_str())
+                    && matches!(file::attribute(of), Some(Data::Numbers(Values::Real(by))) if by != [1.0])
+            };
+            if counts
+                && long > 0
+                && let Some(of) = dataset.attributes().into_iter().find(doubtful)
+            {
+                let found = Finding::caution("scale-unknown").name("variable", name);
+                return self.file.findings.push(found.name("scale", of.name));
+            }
+            let [factor, offset, reference, scale, add, missing] = scale;
             for value in values {
-                *value = *value * scale[0] + scale[1];
+                let raw = if counts { (*value - reference) * factor + offset } else { *value };
+                *value = if *value == missing { f64::NAN } else { raw * scale + add };
             }
         }
         let single = matches!(dataset.dtype(), Datatype::FloatingPoint { size: 4, .. });
@@ -102,6 +126,7 @@ impl Walk<'_> {
             Data::Texts(texts) if texts.iter().map(String::len).sum::<usize>() <= MOST_TEXT => {
                 Content::Text(texts.join(", "))
             }
+            Data::Numbers(values) if dataset.ndim() == 1 => array(vec![values.len() as u64], values),
             Data::Numbers(values) => array(dataset.shape().to_vec(), values),
             Data::Table(fields) => {
                 let vector = |values: Vec<f64>| array(vec![values.len() as u64], Values::Real(values));
@@ -116,8 +141,8 @@ impl Walk<'_> {
     }
 
     /// Adds the texts and numbers among attributes. Returns the scale that they state, else that from above.
-    fn stated(&mut self, path: &str, attributes: &[Attribute], mut scale: [f64; 2]) -> [f64; 2] {
-        for attribute in attributes.iter().filter(|attribute| !attribute.name.starts_with('_')) {
+    fn stated(&mut self, path: &str, attributes: &[Attribute], mut scale: Scale) -> Scale {
+        for attribute in attributes {
             let word = DIALECT.word(&attribute.name);
             let text = match file::attribute(attribute) {
                 _ if INTERNAL.contains(&word.as_str()) => continue,
@@ -130,7 +155,9 @@ impl Walk<'_> {
                 }
                 _ => continue,
             };
-            self.variables.push((format!("{path}{}", attribute.name), Content::Text(text)));
+            if !attribute.name.starts_with('_') {
+                self.variables.push((format!("{path}{}", attribute.name), Content::Text(text)));
+            }
         }
         scale
     }

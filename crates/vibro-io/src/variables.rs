@@ -91,7 +91,7 @@ pub fn recording(
     }
     if records.is_empty() {
         let error = Error::usage("no numeric vector or matrix", "at least one to make a record of");
-        return Err(match findings.iter().find_map(|found| found.fact("reason")) {
+        return Err(match findings.iter().find_map(|found| found.fact("reason").or(found.fact("scale"))) {
             Some(Fact::Name(why)) => {
                 error.aside(why.clone()).hint("write its arrays as MAT (v7), CSV or WAV")
             }

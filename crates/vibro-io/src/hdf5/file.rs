@@ -22,6 +22,8 @@ use vibro_record::{Error, Finding, Result, Values};
 
 /// No filter makes more of a byte: deflate gives 258 for two bits.
 const MOST_UNPACKED: u64 = 1032;
+/// From so many times the bytes of the file on, what a dataset declares may not have been written.
+const MANY: u64 = 16;
 /// Groups within each other are read to this depth, and paths to this length.
 const MOST_DEPTH: usize = 32;
 pub const MOST_PATH: usize = 512;
@@ -157,7 +159,16 @@ impl File {
     pub fn data(&mut self, name: &str, dataset: &Dataset) -> Option<Data> {
         match self.held(dataset) {
             Ok(Data::Other(class)) => self.pass(name, class),
-            Ok(data) => return Some(data),
+            Ok(data) => {
+                let declared = dataset.num_elements().unwrap_or_default() as usize;
+                if let Data::Numbers(values) = &data
+                    && values.len() < declared
+                {
+                    let found = Finding::caution("fewer-values").about(name);
+                    self.findings.push(found.count("declared", declared).count("n", values.len()));
+                }
+                return Some(data);
+            }
             Err(fault) => self.unreadable(name, &fault),
         }
         None
@@ -167,6 +178,13 @@ impl File {
         let header = self.open.get_or_parse_header(dataset.address())?;
         let packed = header.messages.iter().any(|message| matches!(message, HdfMessage::FilterPipeline(_)));
         let (declared, most) = (dataset.raw_byte_len()? as u64, if packed { MOST_UNPACKED } else { 1 });
+        let layout = dataset.raw_datatype()?;
+        if declared > self.len.saturating_mul(most.min(MANY)) && dataset.ndim() == 1 {
+            let there = written(dataset).unwrap_or_default();
+            if !there.is_empty() {
+                return decoded(dataset.dtype(), &layout, dataset.raw_element_size()?, || Ok(there));
+            }
+        }
         if declared > self.len.saturating_mul(most) {
             let found = format!("{declared} bytes are declared, the file has {}", self.len);
             return Err(Fault::InvalidData(found));
@@ -177,7 +195,6 @@ impl File {
                 Ok(Data::Texts(dataset.read_strings()?))
             }
             kind => {
-                let layout = dataset.raw_datatype()?;
                 if matches!(kind, Datatype::FloatingPoint { size: 8, .. }) && described(&layout, &[kind])[0] {
                     let values = match dataset.chunks() {
                         None if dataset.ndim() > 0 => by_rows(dataset)?,
@@ -194,6 +211,20 @@ impl File {
 /// Refuses a file that the crate cannot open.
 fn damaged(fault: &Fault) -> Error {
     Error::usage(fault.to_string(), "HDF5 that can be read").hint("write its arrays as MAT (v7), CSV or WAV")
+}
+
+/// The bytes of a dataset of one dimension up to the first chunk that was not written.
+fn written(dataset: &Dataset) -> std::result::Result<Vec<u8>, Fault> {
+    let (size, mut bytes) = (dataset.raw_element_size()?, Vec::new());
+    let mut chunks = dataset.iter_chunks()?.collect::<std::result::Result<Vec<_>, _>>()?;
+    chunks.sort_by_key(|chunk| chunk.offsets()[0]);
+    for chunk in chunks {
+        if chunk.offsets()[0] as usize * size == bytes.len() {
+            bytes.extend_from_slice(chunk.bytes());
+        }
+    }
+    bytes.truncate(dataset.raw_byte_len()?);
+    Ok(bytes)
 }
 
 /// The values of a dataset in one piece, rows after rows: what is read needs no room of its size beside them.

@@ -80,7 +80,10 @@ fn every_number_is_read_in_both_orders_of_bytes() {
     assert_eq!(recording.records.len(), 23);
     assert_eq!(
         texts(&recording.findings),
-        ["variable-passed-over variable=table/mark class=field that is no number"]
+        [
+            "variable-passed-over variable=table/mark class=field that is no number",
+            "axis-unit-assumed unit=s column=vector \"table/t\"",
+        ]
     );
 }
 
@@ -173,6 +176,69 @@ fn counts_of_an_oscilloscope_are_taken_through_their_scale() {
     // Millimetres are no abscissa of a trace.
     assert!(values(&recording, "packed").iter().copied().eq(v().map(|v| 0.25 * v - 1.0)));
     assert_eq!(named(&recording, "packed").axis().kind, AxisKind::Index);
+}
+
+#[test]
+fn the_unit_of_a_clock_stands_in_its_name_or_is_assumed_aloud() {
+    let recording = fixture("clocks.h5");
+    let even = |name: &str| {
+        let axis = named(&recording, name).axis();
+        (axis.kind.clone(), axis.start(), crate::assemble::short(axis.step().unwrap()))
+    };
+    for (name, step) in [
+        ("time_ms/v", 2e-3),
+        ("timestamp/v", 2e-3),
+        ("time/v", 2.0),
+        ("speed/v", 0.01),
+        ("device/raw/v", 1e-3),
+        ("speed/speed", 0.01),
+        ("by sampling_rate", 1.0 / 51.2e3),
+        ("by dt", 20e-6),
+    ] {
+        let (kind, _, found) = even(name);
+        assert_eq!((kind, found), (AxisKind::Time, crate::assemble::short(step)), "{name}");
+    }
+    // Instants of 256 ns each: that of the ends is right to one of them in 23 steps.
+    assert!((named(&recording, "timestamp_ns/v").axis().step().unwrap() - 1e-6).abs() < 256e-9 / 23.0);
+    // Nanoseconds in a name keep the instants, a clock without a unit is counted from its first value.
+    assert_eq!((even("timestamp/v").1, even("timestamp_ns/v").1), (0.0, 1.7e9));
+    // Neither ticks are seconds, nor blocks hertz.
+    for name in ["ticks timestamp/v", "by fs", "device/support/level 10/v"] {
+        assert_eq!(named(&recording, name).axis().kind, AxisKind::Index, "{name}");
+    }
+    let means = named(&recording, "device/support/level 10/v").meta();
+    assert!(has_finding(&means.findings, "abscissa-unsaid", &["sampling rate", "rate=1000"]));
+    for (code, facts) in [
+        ("axis-epoch", ["unit=ms", "timestamp/timestamp"]),
+        ("axis-unit-assumed", ["unit=s", "time/time"]),
+        // Floats of 64 bits have steps of 256 ns at 1.7e18.
+        ("axis-rounded", ["timestamp_ns", "smallest"]),
+    ] {
+        assert!(has_finding(&recording.findings, code, &facts), "{code}: {:?}", texts(&recording.findings));
+    }
+}
+
+#[test]
+fn stored_numbers_are_no_measured_values() {
+    let keeping = Reader::new().allow_missing(true);
+    let bytes = include_bytes!("../../../../fixtures/hdf5/scales.h5");
+    let recording = keeping.from_reader("scales.h5", &bytes[..]).unwrap();
+    assert!(values(&recording, "reference").iter().copied().eq(v().map(|v| 0.5 * v + 10.0)));
+    assert!(values(&recording, "float").iter().copied().eq(v().map(|v| 0.5 * v + 10.0)));
+    let filled = values(&recording, "filled");
+    assert!(filled[0].is_nan() && filled[1..].iter().copied().eq(v().skip(1).map(|v| 0.5 * v)));
+    assert_eq!(recording.records.len(), 3);
+    assert!(has_finding(&recording.findings, "scale-unknown", &["variable=unclear", "scale=scale"]));
+    assert!(Reader::new().from_reader("scales.h5", &bytes[..]).unwrap_err().to_string().contains("NaN"));
+}
+
+#[test]
+fn what_was_written_is_read_and_the_rest_is_not_made_up() {
+    let recording = fixture("half_written.h5");
+    for name in ["plain", "packed"] {
+        assert!(values(&recording, name).iter().copied().eq(v()), "{name}");
+    }
+    assert!(has_finding(&recording.findings, "fewer-values", &["declared=100000000", "n=24"]));
 }
 
 #[test]

@@ -4,23 +4,57 @@ use super::Array;
 use super::names::Meaning::{Increment, Rate, Start};
 use super::names::Trust::{Likely, Offered, Sure, Vague};
 use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
-use crate::assemble::{from_values, short};
+use crate::assemble::{epoch, from_values, short};
+use crate::number;
 use crate::reader::{Options, POSSIBLE};
-use crate::{number, text};
+use crate::text::names::Name;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Result, Values};
 
 /// A shaft turns slower than this, in Hz.
 const SHAFT: f64 = 1000.0;
 
-/// The kind of abscissa that a vector of this name holds, and its factor to s or Hz.
-fn kind(dialect: &Dialect, name: &str, unit: Option<&str>) -> Option<(AxisKind, f64)> {
+/// Days since the year 0 as MATLAB counts them, from 2001 to 2096.
+const DATENUM: std::ops::Range<f64> = 730_852.0..765_700.0;
+/// Times without a unit that rise by so much count the ticks of a clock.
+const TICKS: f64 = 1000.0;
+/// From here on, in s, steps are taken before they are scaled.
+const FAR: f64 = 1e6;
+
+/// The kind of abscissa that a vector of this name holds, from where it is counted, its factor to s or Hz, and what is assumed.
+fn kind(
+    dialect: &Dialect,
+    name: &str,
+    unit: Option<&str>,
+    values: &Values,
+) -> Option<(AxisKind, [f64; 2], Option<Finding>)> {
     // Recorders of control systems write `X.Data` and `Y.Data`.
     let key = dialect.key(name);
-    let is_x = key == "X" && !name.ends_with('X');
-    text::abscissa(if is_x || key == "tout" { "time" } else { key }, unit)
+    let seconds = key == "tout" || key == "X" && !name.ends_with('X');
+    let mut said = Name::parse(if seconds { "time" } else { key });
+    said.unit = unit.filter(|unit| !unit.is_empty()).map(str::to_owned).or(said.unit);
+    // A channel in s or Hz need not be the abscissa of others.
+    let by_unit = Name { name: String::new(), ..said.clone() }.axis(true).is_some();
+    let by_name = Name { unit: None, ..said.clone() }.axis(true).is_some();
+    let kind = said.axis(true).filter(|_| !said.is_vague() && (by_name || !by_unit))?;
+    let (factor, assumed) = said.to_axis(&kind).ok()?;
+    match rises(values) {
+        Some(values) if said.unit.is_none() && kind == AxisKind::Time => {
+            let (first, last) = (values[0], values[values.len() - 1]);
+            let step = (last - first) / (values.len() - 1) as f64;
+            let days = !dialect.attributes && DATENUM.contains(&first) && step < 1.0;
+            let days = days.then_some(("axis-unit-assumed", "d", 86_400.0));
+            let dated = epoch(first).map(|(unit, factor)| ("axis-epoch", unit, factor)).or(days);
+            if let Some((code, unit, factor)) = dated {
+                return Some((kind, [first, factor], Some(Finding::caution(code).name("unit", unit))));
+            }
+            // Of other formats it is said that units are assumed.
+            (step < TICKS).then_some((kind, [0.0, 1.0], assumed.filter(|_| !seconds && dialect.attributes)))
+        }
+        _ => Some((kind, [0.0, factor], assumed)),
+    }
 }
 
 fn rises(values: &Values) -> Option<&[f64]> {
@@ -49,7 +83,8 @@ impl Scalar {
         scope: &str,
         notes: &[(String, String)],
     ) -> Option<Scalar> {
-        let (meaning, mut trust) = dialect.meaning(name)?;
+        let own = Name::parse(dialect.key(name));
+        let (meaning, mut trust) = dialect.meaning(&own.name)?;
         let value = number::parse(said.as_bytes()).or_else(|| {
             trust = trust.max(Likely);
             number::parse_with(said.as_bytes(), b',')
@@ -61,8 +96,16 @@ impl Scalar {
             kind: Some(AxisKind::Time),
             value: if meaning == Rate { 1.0 / value } else { value },
         };
+        let (inside, word) = (dialect.container(name), dialect.word(&own.name));
+        let its_own = |label: &str| {
+            dialect.container(label) == inside
+                && dialect
+                    .word(label)
+                    .strip_prefix(&word)
+                    .is_some_and(|rest| matches!(rest, "unit" | "units"))
+        };
+        let labelled = notes.iter().find(|(label, _)| its_own(label)).map(|(_, text)| text.clone());
         if matches!(meaning, Increment | Start) {
-            let inside = dialect.container(name);
             // Beside vectors a unit is theirs.
             let apart = dialect.bare(inside) != dialect.bare(scope);
             let says = |label: &str| {
@@ -72,7 +115,8 @@ impl Scalar {
             };
             let mut labels = notes.iter().filter(|(label, _)| label.starts_with(inside) && says(label));
             scalar.kind = None;
-            if let Some(unit) = labels.find_map(|(_, text)| Unit::parse(text)) {
+            let label = labels.find_map(|(_, text)| Unit::parse(text));
+            if let Some(unit) = labelled.or(own.unit).and_then(|text| Unit::parse(&text)).or(label) {
                 scalar.kind = Some(match unit.quantity() {
                     Quantity::Time => AxisKind::Time,
                     Quantity::Frequency if unit.symbol().ends_with("Hz") => AxisKind::Frequency,
@@ -80,6 +124,13 @@ impl Scalar {
                 });
                 scalar.value *= unit.factor();
                 scalar.trust = Sure;
+            }
+        } else if let Some(text) = labelled.or(own.unit) {
+            let quantity = if meaning == Rate { Quantity::Frequency } else { Quantity::Time };
+            match Unit::parse(&text).filter(|unit| unit.quantity() == quantity) {
+                Some(unit) if meaning == Rate => scalar.value /= unit.hertz().unwrap_or(unit.factor()),
+                Some(unit) => scalar.value *= unit.factor(),
+                None => scalar.trust = Offered,
             }
         }
         (meaning == Start || POSSIBLE.contains(&(1.0 / scalar.value))).then_some(scalar)
@@ -93,6 +144,8 @@ pub struct Axes<'a> {
     /// With their names, times before frequencies.
     vectors: Scoped<(String, Axis)>,
     scalars: Scoped<Scalar>,
+    /// By struct, how deep the outermost array in it stands, and the longest length of those.
+    outer: HashMap<String, (Reverse<usize>, Option<u64>)>,
     /// Vectors that rise evenly and are not known as abscissae: name, length and step.
     even: Vec<(String, usize, f64)>,
 }
@@ -109,7 +162,8 @@ impl<'a> Axes<'a> {
         let stated = units(dialect, notes, arrays);
         let own = |name| if dialect.attributes { name } else { dialect.bare(dialect.container(name)) };
         let unit = |name| stated.get(own(name)).copied();
-        let kinds: Vec<_> = arrays.iter().map(|(name, _)| kind(dialect, name, unit(name))).collect();
+        let kinds: Vec<_> =
+            arrays.iter().map(|(name, array)| kind(dialect, name, unit(name), &array.values)).collect();
         let values = arrays.iter().zip(&kinds);
         let values = values.filter(|((_, array), kind)| kind.is_none() || rises(&array.values).is_none());
         let mut values: Vec<&str> = values.map(|((name, _), _)| name.as_str()).collect();
@@ -120,12 +174,19 @@ impl<'a> Axes<'a> {
         };
         let scalars = Scoped::of(dialect, notes.iter().filter_map(scalar));
         let vectors = Scoped::of(dialect, std::iter::empty());
-        let mut axes = Axes { dialect, options, vectors, scalars, even: Vec::new() };
+        let mut axes = Axes { dialect, options, vectors, scalars, outer: HashMap::new(), even: Vec::new() };
+        for (name, array) in arrays.iter() {
+            let at = (Reverse(dialect.structs(name).count()), array.dimensions.iter().copied().max());
+            for scope in dialect.structs(name) {
+                let outer = axes.outer.entry(scope.to_owned()).or_insert(at);
+                *outer = at.max(*outer);
+            }
+        }
         let mut taken = vec![false; arrays.len()];
         let kinds = kinds.into_iter().enumerate().filter_map(|(at, kind)| Some((at, kind?)));
-        let (mut kinds, lines): (Vec<_>, Vec<_>) = kinds.partition(|(_, (kind, _))| *kind == AxisKind::Time);
+        let (mut kinds, lines): (Vec<_>, Vec<_>) = kinds.partition(|(_, (kind, ..))| *kind == AxisKind::Time);
         kinds.extend(lines);
-        for (at, (kind, factor)) in kinds {
+        for (at, (kind, [from, factor], assumed)) in kinds {
             let (name, Array { dimensions, values: vector, single }) = &arrays[at];
             let (n, scope) = (vector.len() as u64, dialect.scope(name, &values));
             let others = arrays.iter().enumerate().filter(|(i, _)| *i != at && !taken[*i]);
@@ -140,11 +201,18 @@ impl<'a> Axes<'a> {
             if dialect.key(name) == "X" && unit(name).is_none() {
                 findings.push(Finding::caution("axis-by-name").name("variable", name.as_str()));
             }
-            let vector: Vec<f64> = vector.iter().map(|v| v * factor).collect();
-            let drift = drift(&vector, *single);
-            let (axis, finding) = from_values(kind, vector, drift, &format!("vector {name:?}"));
-            findings.extend(finding);
-            let said = axes.chosen(name, false).into_iter();
+            let label = format!("vector {name:?}");
+            let drift = drift(vector, *single) * factor;
+            // Seconds since 1970 have no room for the digits of their steps.
+            let first = if (vector[0] * factor).abs() >= FAR { vector[0] } else { from };
+            let vector = vector.iter().map(|v| (v - first) * factor).collect();
+            let (mut axis, finding) = from_values(kind, vector, drift, &label);
+            match &mut axis.grid {
+                Grid::Even { start, .. } => *start += (first - from) * factor,
+                Grid::Uneven(values) => values.iter_mut().for_each(|v| *v += (first - from) * factor),
+            }
+            findings.extend(assumed.map(|found| found.name("column", label)).into_iter().chain(finding));
+            let said = axes.chosen(name, axis.len(), false).into_iter();
             let mut said = said.filter(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
             let said = options.rate.or_else(|| Some(1.0 / said.next()?.1.value));
             if let Some(rate) = said.filter(|_| axis.kind == AxisKind::Time)
@@ -173,12 +241,16 @@ impl<'a> Axes<'a> {
         self.even = even.collect();
     }
 
-    /// The scalars that say the step of a vector, the most certain first; none where that is not certain enough.
-    fn chosen<'s>(&'s self, name: &'s str, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
+    /// The scalars that say the step of a vector of `n` values, the most certain first; none where that is not certain enough.
+    fn chosen<'s>(&'s self, name: &'s str, n: usize, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
+        // What is shorter and stands deeper than the vectors of a struct has as a rule been made of them, at another rate.
+        let depth = self.dialect.structs(name).count();
+        let shorter = |(d, long): &(Reverse<usize>, Option<u64>)| d.0 < depth && Some(2 * n as u64) <= *long;
+        let made = |scope: &str| self.outer.get(scope).is_some_and(shorter);
         let says = |s: &Scalar| {
             s.meaning != Start && s.trust != Offered && !(complex && s.kind == Some(AxisKind::Time))
         };
-        let mut all: Vec<_> = self.scalars.over(name).filter(|(_, s)| says(s)).collect();
+        let mut all: Vec<_> = self.scalars.over(name).filter(|(of, s)| says(s) && !made(of)).collect();
         all.sort_by_key(|(scope, s)| (s.trust == Vague, Reverse(scope.len()), s.trust));
         let doubtful = all.first().is_some_and(|(_, s)| s.trust == Vague && s.value * SHAFT > 1.0);
         if doubtful { Vec::new() } else { all }
@@ -195,7 +267,7 @@ impl<'a> Axes<'a> {
         let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
         let fits = |axis: &Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
         let mut fitting = self.vectors.over(name).filter(|(_, (_, axis))| fits(axis));
-        let said = self.chosen(name, complex);
+        let said = self.chosen(name, n, complex);
         // What stands nearer is meant; a vector beside it is more than an attribute.
         let beside = self.dialect.container(name).len();
         let nearest = said.first().map_or(0, |(scope, _)| scope.len().min(beside));
@@ -224,7 +296,7 @@ impl<'a> Axes<'a> {
             return Ok(axis.clone());
         }
         let Some((scope, scalar)) = said.first() else {
-            meta.found(self.unsaid(name, n, &meta.name));
+            meta.found(self.unsaid(name, values, &meta.name));
             return Ok(Axis::index(n));
         };
         let differs = |other: &&Scalar| (other.value / scalar.value - 1.0).abs() > 1e-6;
@@ -254,10 +326,15 @@ impl<'a> Axes<'a> {
         Ok(axis(start, scalar.value, n))
     }
 
-    /// What to say of `n` values without an abscissa: which variables may hold it.
-    fn unsaid(&self, name: &str, n: usize, record: &str) -> Finding {
+    /// What to say of values without an abscissa: which variables may hold it.
+    fn unsaid(&self, name: &str, values: &Values, record: &str) -> Finding {
+        let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
         let mut found = Finding::caution("abscissa-unsaid");
-        let offered = self.scalars.over(name).map(|(_, s)| s).filter(|s| s.trust >= Vague);
+        let offered = self
+            .scalars
+            .over(name)
+            .map(|(_, s)| s)
+            .filter(|s| s.trust >= Vague || s.meaning != Start && !complex);
         if let Some(scalar) = offered.min_by_key(|s| !s.name.contains("ampl")) {
             found = found.name("variable", scalar.name.as_str()).number("rate", 1.0 / scalar.value);
         }
@@ -291,9 +368,10 @@ pub fn units<'n>(
     stated.map(|(inside, _, text)| (dialect.bare(inside), text)).collect()
 }
 
-/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴.
+/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴, those of 64 to 2⁻⁵³.
 fn drift(values: &[f64], single: bool) -> f64 {
     let (first, last) = (values[0], values[values.len() - 1]);
     let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
-    if single { drift.max(first.abs().max(last.abs()) * f64::from(f32::EPSILON) / 2.0) } else { drift }
+    let digits = if single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    drift.max(first.abs().max(last.abs()) * digits / 2.0)
 }
