@@ -26,11 +26,10 @@ use crate::{Format, Source, missing};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
-use names::Name;
 use rows::Rows;
 use std::borrow::Cow;
 pub(crate) use tail::Digits;
-use vibro_record::{AxisKind, Error, Finding, Place, Result, Values};
+use vibro_record::{Error, Finding, Place, Result, Values};
 
 /// A text and what is known of it before its rows are read.
 pub(crate) struct Text<'a> {
@@ -157,14 +156,6 @@ fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> 
         if encoding::lone_cr(&bytes, false) { encoding::with_lf(bytes.into_owned()).into() } else { bytes };
     let whole = encoding::decode(&bytes);
     rows::read(whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)
-}
-
-/// What a channel of this name and unit is where it is an abscissa, and the factor of its values to s or Hz.
-pub(crate) fn abscissa(name: &str, unit: Option<&str>) -> Option<(AxisKind, f64)> {
-    let name = Name { unit: unit.filter(|unit| !unit.is_empty()).map(str::to_owned), ..Name::parse(name) };
-    let kind = name.axis(true).filter(|_| !name.is_vague())?;
-    let (factor, _) = name.to_axis(&kind).ok()?;
-    Some((kind, factor))
 }
 
 /// The place of a complaint; the reader adds the file.

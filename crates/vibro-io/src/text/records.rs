@@ -29,7 +29,7 @@ pub fn build(
     let n = rows.columns.first().map_or(0, Values::len);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
-    let mut made = Made { text, tail, dialect, is_table, options, stated };
+    let made = Made { text, tail, dialect, is_table, options, stated };
     let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let columns = rows.columns.into_iter().zip(names).enumerate();
@@ -75,9 +75,9 @@ pub fn build(
     }
     let mut records = Vec::new();
     let table = made.joined(table, &axis)?;
-    if is_table && table.iter().filter(|column| column.name.unit.is_none()).count() > 1 {
-        // Which of them has the unit that stands above all is not said.
-        made.stated.unit = None;
+    let without = table.iter().filter(|column| column.name.unit.is_none()).count();
+    if let Some(unit) = made.stated.unit.as_deref().filter(|_| is_table && without > 1) {
+        of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
     }
     for (i, column) in table.into_iter().enumerate() {
         let mut record = made.record(i, column, &axis)?;
@@ -95,9 +95,6 @@ pub fn build(
     }
     Ok(records)
 }
-
-/// Seconds since 1970 of a measurement: from 2001 to 2096.
-const EPOCH: std::ops::Range<f64> = 1e9..4e9;
 
 struct Column {
     /// Place in the row, counted from 1.
@@ -197,10 +194,7 @@ impl Made<'_> {
         };
         let epoch = values.first().filter(|_| !clock && kind == AxisKind::Time);
         let unsaid = column.name.unit.is_none();
-        let epoch = epoch.and_then(|first| {
-            let since_1970 = |(_, f): &&(&str, f64)| EPOCH.contains(&(first * f)) && (unsaid || *f == factor);
-            [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].iter().find(since_1970).copied()
-        });
+        let epoch = epoch.and_then(|first| assemble::epoch(*first)).filter(|(_, f)| unsaid || *f == factor);
         let (from, factor) = epoch.map_or((0.0, factor), |(_, factor)| (values[0], factor));
         let assumed = match epoch {
             Some((unit, _)) if unsaid => Some(Finding::caution("axis-epoch").name("unit", unit)),

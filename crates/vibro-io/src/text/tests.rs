@@ -533,12 +533,13 @@ fn units_of_times_that_mean_something_else_elsewhere() {
 }
 
 #[test]
-fn a_unit_above_all_is_that_of_one_column() {
+fn a_unit_above_all_is_that_of_those_without_one_and_said_of_several() {
     let one = of("Unit: g\nTime (s),Acc,Speed (rpm)\n0,1,60\n1,1,60\n");
     assert_eq!((values(&one.records[0]), values(&one.records[1])), (&[9.80665; 2][..], &[1.0; 2][..]));
     let two = of("Unit: g\nTime (s),Acc,Force\n0,1,2\n1,1,2\n");
-    assert_eq!((values(&two.records[0]), values(&two.records[1])), (&[1.0; 2][..], &[2.0; 2][..]));
-    assert!(has_finding(&two.all_findings(), "unit-unsaid", &[]));
+    assert_eq!((values(&two.records[0]), values(&two.records[1])), (&[9.80665; 2][..], &[19.6133; 2][..]));
+    assert!(has_finding(&two.all_findings(), "unit-for-all", &["unit=g", "n=2"]));
+    assert!(!has_finding(&one.all_findings(), "unit-for-all", &[]));
 }
 
 #[test]
