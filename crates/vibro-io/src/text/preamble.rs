@@ -34,7 +34,8 @@ fn key(cell: &str) -> String {
 impl Preamble {
     /// Of lines above the rows.
     pub fn of(lines: &[&Line], separator: Separator) -> Preamble {
-        let cells = lines.iter().filter_map(|line| fields(line.text, separator).ok());
+        let keyed = |line: &&&Line| line.text.trim_start_matches([' ', '"']).starts_with(char::is_alphabetic);
+        let cells = lines.iter().filter(keyed).filter_map(|line| fields(line.text, separator).ok());
         Preamble(cells.map(|cells| cells.into_iter().map(|(_, cell)| cell.into_owned()).collect()).collect())
     }
 
