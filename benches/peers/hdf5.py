@@ -11,13 +11,13 @@ import random
 import subprocess
 import sys
 import tempfile
-import time
 import warnings
 from pathlib import Path
 
 import h5py
 import hdf5storage
 import numpy as np
+from whole_process import fastest
 
 KINDS = ["i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", "f4", "f8", "c8", "c16"]
 UNITS = {"m": 1.0, "mm/s": 1e-3, "kN": 1e3, "µm": 1e-6, "V": 1.0}
@@ -154,15 +154,6 @@ def differences(vibro, path, folder, expected):
         if step and values.dtype.kind != "c" and abs(records[name]["dx"] / step - 1) > 1e-12:
             wrong.append(f"{name}: step {records[name]['dx']} for {step}")
     return wrong
-
-
-def fastest(command):
-    took = []
-    for _ in range(7):
-        start = time.perf_counter()
-        subprocess.run(command, check=True, capture_output=True)
-        took.append(time.perf_counter() - start)
-    return min(took) * 1e3
 
 
 def main():

@@ -11,11 +11,11 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
 from nptdms import TdmsFile
+from whole_process import fastest
 
 META, NEW, RAW, MIXED, BIG = 2, 4, 8, 32, 64
 TYPES = {1: "i1", 2: "i2", 3: "i4", 4: "i8", 5: "u1", 6: "u2", 7: "u4", 8: "u8", 9: "f4", 10: "f8"}
@@ -171,12 +171,7 @@ def main():
         path.write_bytes(segment("<", META | NEW | RAW, objects, np.random.default_rng(1).normal(size=4 * n).tobytes()))
         program = f"from nptdms import TdmsFile\nfor c in TdmsFile.read({str(path)!r})['g'].channels(): c[:].max()"
         for command in ([vibro, "info", str(path)], [sys.executable, "-c", program]):
-            took = []
-            for _ in range(7):
-                start = time.perf_counter()
-                subprocess.run(command, check=True, capture_output=True)
-                took.append(time.perf_counter() - start)
-            print(f"{min(took) * 1e3:.0f} ms", *command[:2])
+            print(f"{fastest(command):.0f} ms", *command[:2])
     sys.exit(wrong > 0)
 
 

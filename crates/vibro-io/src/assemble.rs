@@ -1,7 +1,7 @@
 //! Values to records: which kind they are, over which axis.
 
 use crate::Options;
-use vibro_record::units::{self, Unit};
+use vibro_record::units::{self, Quantity, Unit};
 use vibro_record::{
     Axis, AxisKind, Error, Finding, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace,
     Values, Window,
@@ -226,6 +226,23 @@ fn rounding(steps: &[f64], middle: f64) -> Option<(usize, usize)> {
     let gaps = long.windows(2).map(|w| w[1] - w[0]);
     let (least, most) = gaps.fold((usize::MAX, 0), |(a, b), gap| (a.min(gap), b.max(gap)));
     (long.len() >= 3 && most - least <= 1).then(|| (long[0], long[long.len() - 1]))
+}
+
+/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴, those of 64 to 2⁻⁵³.
+pub fn drift(values: &[f64], single: bool) -> f64 {
+    let (first, last) = (values[0], values[values.len() - 1]);
+    let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
+    let digits = if single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    drift.max(first.abs().max(last.abs()) * digits / 2.0)
+}
+
+/// The kind of abscissa that a unit is of. Revolutions have the dimension of a frequency, yet are no frequency axis.
+pub fn kind_of(unit: &Unit) -> Option<AxisKind> {
+    match unit.quantity() {
+        Quantity::Time => Some(AxisKind::Time),
+        Quantity::Frequency if unit.symbol().ends_with("Hz") => Some(AxisKind::Frequency),
+        _ => None,
+    }
 }
 
 /// Unit of a time without one that is counted from 1970, from 2001 to 2096, and its factor to s.

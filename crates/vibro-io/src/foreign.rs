@@ -51,7 +51,7 @@ const TABLE: &[Foreign] = &[
     by_bytes("a Parquet table", 0, b"PAR1", TEXT),
     by_bytes("a NumPy array", 0, b"\x93NUMPY", "write it as CSV or MAT, with its rate"),
     #[cfg(not(feature = "hdf5"))]
-    by_bytes("an HDF5 file", 0, b"\x89HDF\r\n\x1a\n", "write its arrays as MAT (v7), CSV or WAV"),
+    by_bytes("an HDF5 file", 0, b"\x89HDF\r\n\x1a\n", crate::variables::EXPORT),
     by_bytes("an Excel sheet", 0, b"PK\x03\x04", SHEET),
     by_bytes("an Excel sheet, or another Office file", 0, b"\xd0\xcf\x11\xe0", SHEET),
     by_bytes("a FLAC recording", 0, b"fLaC", "turn it into WAV, e.g. with `flac -d`"),

@@ -37,6 +37,8 @@ const SCALE: [&[&str]; 6] = [
     &["fillvalue", "missingvalue"],
 ];
 type Scale = [f64; SCALE.len()];
+/// That of stored numbers which are the values.
+const AS_STORED: Scale = [1.0, 0.0, 0.0, 1.0, 0.0, f64::NAN];
 /// Names of factors of integers that say neither of what nor which way.
 const FACTORS: [&str; 3] = ["scale", "gain", "conversion"];
 
@@ -63,8 +65,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         (&mat::DIALECT, matlab::variables(&mut file, members)?)
     } else {
         let mut walk = Walk { file: &mut file, variables: Vec::new() };
-        let scale =
-            walk.stated("", &root.attributes().unwrap_or_default(), [1.0, 0.0, 0.0, 1.0, 0.0, f64::NAN]);
+        let scale = walk.stated("", &root.attributes().unwrap_or_default(), AS_STORED);
         walk.group("", members, scale)?;
         (&DIALECT, walk.variables)
     };
@@ -98,26 +99,33 @@ impl Walk<'_> {
     fn dataset(&mut self, name: &str, dataset: &Dataset, mut scale: Scale) {
         let Some(mut data) = self.file.data(name, dataset) else { return };
         let long = dataset.shape().iter().filter(|n| **n > 1).count();
+        let attributes = dataset.attributes();
         if matches!(data, Data::Table(_)) || (1..=2).contains(&long) {
-            scale = self.stated(&format!("{name}/"), &dataset.attributes(), scale);
+            scale = self.stated(&format!("{name}/"), &attributes, scale);
         }
         if let Data::Numbers(Values::Real(values)) = &mut data {
             let counts = matches!(dataset.dtype(), Datatype::FixedPoint { .. });
-            let doubtful = |of: &Attribute| {
+            let doubtful = |of: &&Attribute| {
                 FACTORS.contains(&DIALECT.word(&of.name).as_str())
                     && matches!(file::attribute(of), Some(Data::Numbers(Values::Real(by))) if by != [1.0])
             };
             if counts
                 && long > 0
-                && let Some(of) = dataset.attributes().into_iter().find(doubtful)
+                && let Some(of) = attributes.iter().find(doubtful)
             {
                 let found = Finding::caution("scale-unknown").name("variable", name);
-                return self.file.findings.push(found.name("scale", of.name));
+                return self.file.findings.push(found.name("scale", of.name.as_str()));
             }
+            let as_stored = scale[..5] == AS_STORED[..5] && scale[5].is_nan();
             let [factor, offset, reference, scale, add, missing] = scale;
-            for value in values {
-                let raw = if counts { (*value - reference) * factor + offset } else { *value };
-                *value = if *value == missing { f64::NAN } else { raw * scale + add };
+            let measured = |stored: f64| {
+                let raw = if counts { (stored - reference) * factor + offset } else { stored };
+                if stored == missing { f64::NAN } else { raw * scale + add }
+            };
+            if !as_stored {
+                for value in values {
+                    *value = measured(*value);
+                }
             }
         }
         let single = matches!(dataset.dtype(), Datatype::FloatingPoint { size: 4, .. });

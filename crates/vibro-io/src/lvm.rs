@@ -25,7 +25,7 @@ use super::{Source, number};
 use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
 use std::collections::HashMap;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Place, Record, Result, Values};
+use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
 
 const BEGIN: &str = "LabVIEW Measurement";
 const END_OF_HEADER: &str = "***End_of_Header***";
@@ -263,9 +263,7 @@ impl<'h, 'a> Segment<'h, 'a> {
             meta.notes.extend(self.comments.iter().map(|text| ("Comment".to_owned(), text.clone())));
             meta.step("read", &[("file", &source.name()), ("format", &"lvm")]);
             let mut values = Values::Real(column.values.clone());
-            for i in missing::mark(&mut values) {
-                missed.take(&Place::default(), format!("{} of {:?}", i + 1, column.name));
-            }
+            missed.mark(&column.name, &mut values);
             let n = values.len();
             let declared = said("samples").and_then(|text| text.parse::<usize>().ok()).filter(|d| *d > n);
             meta.declared_n = declared;
@@ -313,13 +311,9 @@ impl<'h, 'a> Segment<'h, 'a> {
                 meta.found(found.number("header", stated.1).number("step", step));
             }
         }
-        match axis {
-            Axis { grid: Grid::Even { start, step, .. }, .. } => {
-                meta.findings.extend(found);
-                Abscissa::even(kind, Some((start, step)))
-            }
-            uneven => Abscissa { stored: uneven.values(), ..Abscissa::even(kind, None) },
-        }
+        // Of an uneven one it is said where it becomes the axis.
+        meta.findings.extend(found.filter(|_| axis.step().is_some()));
+        Abscissa::of(axis)
     }
 }
 

@@ -55,6 +55,13 @@ impl Missing {
         }
     }
 
+    /// Makes the values of the record `name` that are not finite missing, and counts them.
+    pub fn mark(&mut self, name: &str, values: &mut Values) {
+        for i in mark(values) {
+            self.take(&Place::default(), format!("{} of {name:?}", i + 1));
+        }
+    }
+
     /// Refuses all of them at once; `what` stands between their number and their places.
     ///
     /// # Errors

@@ -10,6 +10,7 @@
 //! values are no measurement. The file `_index` beside it is not needed.
 
 mod axes;
+mod description;
 mod layout;
 mod scale;
 mod segment;
@@ -20,15 +21,16 @@ use super::missing::{self, Missing};
 use super::reader::{Options, Recording};
 use crate::assemble::{self, Spectral, to_si};
 use axes::Clock;
+use description::Value;
 use layout::Layout;
 use rayon::prelude::*;
 use scale::Scales;
-use segment::{Object, Segments, Value};
+use segment::{Object, Segments};
 use std::cmp::Reverse;
 use std::io::{BufReader, Read, Seek};
 use std::rc::Rc;
 use vibro_record::units::Unit;
-use vibro_record::{Error, Finding, Meta, Place, Record, Result, Values};
+use vibro_record::{Error, Finding, Meta, Record, Result, Values};
 
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 20;
@@ -81,9 +83,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
     }
     let mut missed = Missing::default();
     for Channel { name, values, .. } in &mut channels {
-        for i in missing::mark(values) {
-            missed.take(&Place::default(), format!("{} of {name:?}", i + 1));
-        }
+        missed.mark(name, values);
     }
     findings.extend(missing::kept(missed.check("value(s) are NaN or infinite:", options.allow_missing)?));
     let several = channels.iter().any(|channel| channel.group != channels[0].group);

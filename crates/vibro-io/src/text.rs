@@ -104,6 +104,7 @@ pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recordi
 }
 
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
+    let tail = tail::of(text.source)?;
     let plain = dialect.columns > 1 && dialect.names.is_none() && !dialect.complex;
     let stated = Stated::of(dialect.header.iter().map(String::as_str));
     let declared = stated.values;
@@ -111,11 +112,10 @@ fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> 
         let values = wrapped::flat(text, dialect)?;
         if let Some(values) = values.filter(|v| options.wrapped.is_some() || declared == Some(v.len())) {
             let rows = Rows { columns: vec![Values::Real(values)], ..Rows::default() };
-            return records_of(text, &Dialect { columns: 1, ..dialect.clone() }, rows, options);
+            return records_of(text, &tail, &Dialect { columns: 1, ..dialect.clone() }, rows, options);
         }
     }
     let shape = Shape::of(dialect, text.source.head());
-    let tail = tail::of(text.source)?;
     let end = text.source.len() - (tail.len() - tail.trim_ascii_end().len()) as u64;
     let one_step = plain && options.wrapped.is_none() && dialect.clock.is_none() && stated.of_one_series;
     let clean = shape.map(|shape| fast::read(text.source, &shape, end)).transpose()?.flatten();
@@ -134,18 +134,23 @@ fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> 
     {
         return Err(wrapped::question(dialect.columns));
     }
-    records_of(text, dialect, rows, options)
+    records_of(text, &tail, dialect, rows, options)
 }
 
-fn records_of(text: &Text, dialect: &Dialect, rows: Rows, options: &Options) -> Result<Recording> {
-    let tail = tail::of(text.source)?;
+fn records_of(
+    text: &Text,
+    tail: &[u8],
+    dialect: &Dialect,
+    rows: Rows,
+    options: &Options,
+) -> Result<Recording> {
     let mut findings: Vec<Finding> =
-        tail::cut_off(&tail, dialect.separator, dialect.decimal).into_iter().collect();
+        tail::cut_off(tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
     if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
-    let records = records::build(text, &tail, dialect, rows, options, &mut findings)?;
+    let records = records::build(text, tail, dialect, rows, options, &mut findings)?;
     Ok(Recording { path: text.source.path().to_owned(), format: dialect.format, records, findings })
 }
 

@@ -14,7 +14,7 @@ use axes::Axes;
 use names::{Dialect, Scoped};
 use num_complex::Complex64;
 use vibro_record::units::Unit;
-use vibro_record::{Error, Fact, Finding, Meta, Place, Record, Result, Values};
+use vibro_record::{Error, Fact, Finding, Meta, Record, Result, Values};
 
 /// More columns than this are as a rule the samples of a matrix that lies on its side.
 pub const MOST_COLUMNS: u64 = 1000;
@@ -22,6 +22,9 @@ pub const MOST_COLUMNS: u64 = 1000;
 pub const MOST_TEXT: usize = 4096;
 /// Notes that a record takes at most: many scalars beside many vectors would fill the memory.
 const MOST_NOTES: usize = 200;
+
+/// What to do with a file whose arrays cannot be read.
+pub const EXPORT: &str = "write its arrays as MAT (v7), CSV or WAV";
 
 /// What a variable holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,18 +86,14 @@ pub fn recording(
         let unit =
             units.get(of.as_str()).or_else(|| units.get(dialect.bare(dialect.container(&of)))).copied();
         for (name, mut values) in split(&of, array, &axes, options, &mut findings) {
-            for i in missing::mark(&mut values) {
-                missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
-            }
+            missing.mark(&name, &mut values);
             records.push((of.clone(), name, values, unit));
         }
     }
     if records.is_empty() {
         let error = Error::usage("no numeric vector or matrix", "at least one to make a record of");
         return Err(match findings.iter().find_map(|found| found.fact("reason").or(found.fact("scale"))) {
-            Some(Fact::Name(why)) => {
-                error.aside(why.clone()).hint("write its arrays as MAT (v7), CSV or WAV")
-            }
+            Some(Fact::Name(why)) => error.aside(why.clone()).hint(EXPORT),
             _ => error,
         });
     }

@@ -4,6 +4,7 @@
 
 use super::lzf;
 use crate::Source;
+use crate::variables::EXPORT;
 use hdf5_reader::attribute_api::Attribute;
 use hdf5_reader::dataset::{Dataset, SliceInfo, SliceInfoElem};
 use hdf5_reader::error::Error as Fault;
@@ -210,7 +211,7 @@ impl File {
 
 /// Refuses a file that the crate cannot open.
 fn damaged(fault: &Fault) -> Error {
-    Error::usage(fault.to_string(), "HDF5 that can be read").hint("write its arrays as MAT (v7), CSV or WAV")
+    Error::usage(fault.to_string(), "HDF5 that can be read").hint(EXPORT)
 }
 
 /// The bytes of a dataset of one dimension up to the first chunk that was not written.

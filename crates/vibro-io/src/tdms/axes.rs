@@ -1,13 +1,14 @@
 //! The abscissa of a channel: its waveform properties, or a channel of its group that is one by its name.
 
 use super::Channel;
-use super::segment::{Object, Slot, Value};
-use crate::assemble::{Abscissa, domain, epoch, from_values, short};
+use super::description::{Slot, Value};
+use super::segment::Object;
+use crate::assemble::{Abscissa, domain, drift, epoch, from_values, kind_of, short};
 use crate::reader::Options;
 use crate::text::names::Name;
 use std::collections::BTreeMap;
 use std::rc::Rc;
-use vibro_record::units::{Quantity, Unit};
+use vibro_record::units::Unit;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
 
 /// A channel that is the abscissa of others.
@@ -52,12 +53,7 @@ impl Clock {
             }
         };
         let from = if instants || epoch.is_some() { values[0] } else { 0.0 };
-        let (start, last) = (values[0], values[values.len() - 1]);
-        let largest = start.abs().max(last.abs());
-        // Sums of steps drift by rounding; numbers of single precision have no more than that.
-        let single = values.iter().all(|v| f64::from(*v as f32) == *v);
-        let digits = largest * if single { f64::from(f32::EPSILON) / 2.0 } else { f64::EPSILON };
-        let resolution = digits.max(0.5e-6 * (last - start) / (values.len() - 1) as f64);
+        let resolution = drift(values, values.iter().all(|v| f64::from(*v as f32) == *v));
         let values = values.iter().map(|v| (v - from) * factor).collect();
         let (axis, uneven) = from_values(kind, values, resolution * factor, &label);
         let findings = assumed.map(|found| found.name("column", label.as_str())).into_iter().chain(uneven);
@@ -130,11 +126,15 @@ fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
     let said = object.text("wf_xunit_string").map(str::trim).filter(|unit| !unit.is_empty());
     let said = said.map(|unit| if unit.eq_ignore_ascii_case("hz") { "Hz" } else { unit });
     let (kind, factor, found) = match (said, said.and_then(Unit::parse)) {
-        (Some(_), Some(unit)) if unit.quantity() == Quantity::Time => (AxisKind::Time, unit.factor(), None),
-        (Some(_), Some(unit)) if unit.symbol().ends_with("Hz") => (AxisKind::Frequency, unit.factor(), None),
-        (Some(said), Some(_)) => {
-            let name = if name.is_empty() { "abscissa" } else { name };
-            (AxisKind::Other(format!("{name} [{said}]")), 1.0, None)
+        (Some(said), Some(unit)) => {
+            let other = || {
+                (
+                    AxisKind::Other(format!("{} [{said}]", if name.is_empty() { "abscissa" } else { name })),
+                    1.0,
+                )
+            };
+            let (kind, factor) = kind_of(&unit).map_or_else(other, |kind| (kind, unit.factor()));
+            (kind, factor, None)
         }
         (Some(said), None) => {
             let found = Finding::caution("axis-unit-unknown").name("said", said).name("column", "abscissa");

@@ -1,6 +1,7 @@
 //! From raw values to measured ones: the scales `NI_Scale[0]`, `NI_Scale[1]`, … of a channel, the last of which gives the result.
 
-use super::segment::{Object, Slot};
+use super::description::Slot;
+use super::segment::Object;
 use num_complex::Complex64;
 use std::collections::BTreeSet;
 use vibro_record::Values;

@@ -1,10 +1,11 @@
 //! Segments of a TDMS file: objects with their properties, and where their raw data lie.
 
-use super::layout::{Field, Kind, Layout, Part, time};
+use super::description::{Index, Slot, Value, Words, in_byte};
+use super::layout::{Field, Layout, Part};
 use std::collections::{BTreeMap, HashMap};
 use std::io::{BufReader, Read, Seek};
 use std::sync::Arc;
-use vibro_record::{Error, Finding, Place, Result};
+use vibro_record::{Error, Finding, Result};
 
 /// Bytes before the objects of a segment.
 const LEAD_IN: u64 = 28;
@@ -14,51 +15,8 @@ const NEW_LIST: u32 = 1 << 2;
 const RAW_DATA: u32 = 1 << 3;
 const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
-/// Types of DAQmx scalers, in the order of their numbers.
-const DAQMX: [Kind; 10] = [
-    Kind::U8,
-    Kind::I8,
-    Kind::U16,
-    Kind::I16,
-    Kind::U32,
-    Kind::I32,
-    Kind::U64,
-    Kind::I64,
-    Kind::F32,
-    Kind::F64,
-];
 /// The length of a segment that was not finished.
 const OPEN: u64 = u64::MAX;
-
-/// The value of a property.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    Number(f64),
-    Text(String),
-    Other,
-}
-
-impl Value {
-    /// As a person reads it.
-    pub fn text(&self) -> Option<String> {
-        match self {
-            Value::Text(text) => Some(text.clone()),
-            Value::Number(number) => Some(number.to_string()),
-            Value::Other => None,
-        }
-    }
-}
-
-/// What a column of raw values is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slot {
-    Real,
-    Imaginary,
-    /// Seconds since 1904.
-    Instant,
-    /// A DAQmx scaler with this number.
-    Scaler(u32),
-}
 
 /// The file, a group or a channel.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -86,15 +44,6 @@ impl Object {
     pub fn text(&self, key: &str) -> Option<&str> {
         if let Some(Value::Text(text)) = self.properties.get(key) { Some(text) } else { None }
     }
-}
-
-/// How the raw data of an object lie in the chunks of a segment.
-#[derive(Debug, Clone, PartialEq)]
-enum Index {
-    /// Rows of numbers; of other things, one row of all their bytes.
-    Plain { rows: u64, width: u64, fields: Vec<(Slot, usize, Kind)> },
-    /// Rows that all channels of a DAQmx buffer share, the widths of the buffers, and the scalers with their buffers.
-    Shared { rows: u64, widths: Vec<u64>, fields: Vec<(usize, Slot, usize, Kind)> },
 }
 
 /// Objects in their order, and the raw data of each segment.
@@ -295,11 +244,6 @@ impl Known {
     }
 }
 
-/// The place of a complaint; the reader adds the file.
-fn in_byte(at: u64) -> Place {
-    Place { byte: Some(at), ..Place::default() }
-}
-
 /// Names of a path: `/'group'/'channel'`, quotes doubled.
 fn names(path: &str) -> Vec<String> {
     let (mut names, mut rest) = (Vec::new(), path);
@@ -316,149 +260,4 @@ fn names(path: &str) -> Vec<String> {
         rest = body.get(end + 1..).unwrap_or_default();
     }
     names
-}
-
-/// Words of a description.
-struct Words<'a> {
-    rest: &'a [u8],
-    big_endian: bool,
-    /// Byte of the file at which they begin.
-    at: u64,
-}
-
-impl<'a> Words<'a> {
-    fn fault(&self, found: impl Into<String>, expected: &str) -> Error {
-        Error::input(in_byte(self.at), found, expected)
-            .hint("the file is damaged or of a kind not known here; export it as text or UFF-58")
-    }
-
-    fn bytes(&mut self, n: usize) -> Result<&'a [u8]> {
-        let Some((bytes, rest)) = self.rest.split_at_checked(n) else {
-            return Err(self.fault("a description that ends early", "whole objects and properties"));
-        };
-        self.rest = rest;
-        self.at += n as u64;
-        Ok(bytes)
-    }
-
-    /// Bytes of a number, little endian.
-    fn word<const N: usize>(&mut self) -> Result<[u8; N]> {
-        let mut word = [0; N];
-        word.copy_from_slice(self.bytes(N)?);
-        if self.big_endian {
-            word.reverse();
-        }
-        Ok(word)
-    }
-
-    fn u32(&mut self) -> Result<u32> {
-        self.word().map(u32::from_le_bytes)
-    }
-
-    fn u64(&mut self) -> Result<u64> {
-        self.word().map(u64::from_le_bytes)
-    }
-
-    fn text(&mut self) -> Result<String> {
-        let n = self.u32()? as usize;
-        Ok(String::from_utf8_lossy(self.bytes(n)?).into_owned())
-    }
-
-    /// The value of a property of a type.
-    fn value(&mut self, code: u32) -> Result<Value> {
-        Ok(Value::Number(match code {
-            0x20 => return self.text().map(Value::Text),
-            0x21 => return Ok(Value::Text((self.word::<1>()? != [0]).to_string())),
-            0 => return Ok(Value::Other),
-            0x44 => time(self.word()?),
-            1 => f64::from(i8::from_le_bytes(self.word()?)),
-            2 => f64::from(i16::from_le_bytes(self.word()?)),
-            3 => f64::from(i32::from_le_bytes(self.word()?)),
-            4 => i64::from_le_bytes(self.word()?) as f64,
-            5 => f64::from(u8::from_le_bytes(self.word()?)),
-            6 => f64::from(u16::from_le_bytes(self.word()?)),
-            7 => f64::from(self.u32()?),
-            8 => self.u64()? as f64,
-            9 | 0x19 => f64::from(f32::from_le_bytes(self.word()?)),
-            10 | 0x1a => f64::from_le_bytes(self.word()?),
-            0x0008_000c => return self.bytes(8).map(|_| Value::Other),
-            // Extended precision, and complex numbers.
-            0x0b | 0x1b | 0x0010_000d => return self.bytes(16).map(|_| Value::Other),
-            other => return Err(self.fault(format!("a property of type {other:#x}"), "a type of TDMS 2.0")),
-        }))
-    }
-
-    /// The layout of raw data that begins with this word.
-    fn index(&mut self, kind: u32) -> Result<Index> {
-        let digital = kind == 0x126a;
-        if digital || kind == 0x1269 {
-            return self.shared(digital);
-        }
-        let code = self.u32()?;
-        self.one_dimension()?;
-        let rows = self.u64()?;
-        if code == 0x20 {
-            return Ok(Index::Plain { rows: 1, width: self.u64()?, fields: Vec::new() });
-        }
-        let complex = |kind: Kind| vec![(Slot::Real, 0, kind), (Slot::Imaginary, kind.size() as usize, kind)];
-        let fields = match code {
-            0x0008_000c => complex(Kind::F32),
-            0x0010_000d => complex(Kind::F64),
-            0x44 => vec![(Slot::Instant, 0, Kind::Time)],
-            _ => vec![(Slot::Real, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
-        };
-        let width = fields.iter().map(|(_, _, kind)| kind.size()).sum();
-        Ok(Index::Plain { rows, width, fields })
-    }
-
-    /// The layout of DAQmx data: scalers, then the widths of the buffers.
-    fn shared(&mut self, digital: bool) -> Result<Index> {
-        // The type says only that these are raw data of DAQmx.
-        self.u32()?;
-        self.one_dimension()?;
-        let rows = self.u64()?;
-        let mut fields = Vec::new();
-        for _ in 0..self.u32()? {
-            let (code, buffer, offset) = (self.u32()?, self.u32()? as usize, self.u32()? as usize);
-            let (offset, kind) = if digital {
-                self.bytes(1)?;
-                (offset / 8, Kind::Bit((offset % 8) as u8))
-            } else {
-                self.bytes(4)?;
-                (offset, *DAQMX.get(code as usize).ok_or_else(|| self.type_unknown(code))?)
-            };
-            fields.push((buffer, Slot::Scaler(self.u32()?), offset, kind));
-        }
-        let n = self.u32()?;
-        let widths = (0..n).map(|_| self.u32().map(u64::from)).collect::<Result<_>>()?;
-        Ok(Index::Shared { rows, widths, fields })
-    }
-
-    fn one_dimension(&mut self) -> Result<()> {
-        match self.u32()? {
-            1 => Ok(()),
-            n => Err(self.fault(format!("raw data of {n} dimensions"), "one dimension")),
-        }
-    }
-
-    fn type_unknown(&self, code: u32) -> Error {
-        self.fault(format!("raw data of type {code:#x}"), "integers, floats, complex numbers, times or text")
-    }
-}
-
-/// The number that a type of raw data is.
-fn number(code: u32) -> Option<Kind> {
-    Some(match code {
-        1 => Kind::I8,
-        2 => Kind::I16,
-        3 => Kind::I32,
-        4 => Kind::I64,
-        5 | 0x21 => Kind::U8,
-        6 => Kind::U16,
-        7 => Kind::U32,
-        8 => Kind::U64,
-        9 | 0x19 => Kind::F32,
-        10 | 0x1a => Kind::F64,
-        _ => return None,
-    })
 }

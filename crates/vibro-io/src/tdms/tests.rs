@@ -258,7 +258,7 @@ fn scaled(n: u32, properties: &[(String, Said)], raw: &[f64]) -> std::result::Re
     let object = Object {
         path: vec!["g".into(), "a".into()],
         properties: count.into_iter().chain(properties).collect(),
-        slots: vec![segment::Slot::Real],
+        slots: vec![description::Slot::Real],
         ..Object::default()
     };
     let values = Scales::of(&[], &object).apply(&object.slots, vec![raw.to_vec()])?;

@@ -2,7 +2,7 @@
 
 use super::dialect::Separator;
 use super::header;
-use crate::assemble::domain;
+use crate::assemble::{domain, kind_of};
 use vibro_record::units::{Quantity, Unit, spelled};
 use vibro_record::{AxisKind, Error, Finding, Result};
 
@@ -102,14 +102,7 @@ impl Name {
     /// Whether the values are an abscissa: by name, or (only asked of a first column) by unit alone.
     pub fn axis(&self, first: bool) -> Option<AxisKind> {
         let unit = self.unit.as_deref().map(Unit::parse_or_opaque);
-        let by_unit = match unit.as_ref().map(Unit::quantity) {
-            Some(Quantity::Time) => Some(AxisKind::Time),
-            // Revolutions have the dimension of a frequency, yet are no frequency axis.
-            Some(Quantity::Frequency) if unit.as_ref().is_some_and(|u| u.symbol().ends_with("Hz")) => {
-                Some(AxisKind::Frequency)
-            }
-            _ => None,
-        };
+        let by_unit = unit.as_ref().and_then(kind_of);
         let key = self.name.to_lowercase();
         let word = match key.as_str() {
             "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" => Some(AxisKind::Time),

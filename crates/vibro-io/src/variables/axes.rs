@@ -4,7 +4,7 @@ use super::Array;
 use super::names::Meaning::{Increment, Rate, Start};
 use super::names::Trust::{Likely, Offered, Sure, Vague};
 use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
-use crate::assemble::{epoch, from_values, short};
+use crate::assemble::{drift, epoch, from_values, kind_of, short};
 use crate::number;
 use crate::reader::{Options, POSSIBLE};
 use crate::text::names::Name;
@@ -117,11 +117,7 @@ impl Scalar {
             scalar.kind = None;
             let label = labels.find_map(|(_, text)| Unit::parse(text));
             if let Some(unit) = labelled.or(own.unit).and_then(|text| Unit::parse(&text)).or(label) {
-                scalar.kind = Some(match unit.quantity() {
-                    Quantity::Time => AxisKind::Time,
-                    Quantity::Frequency if unit.symbol().ends_with("Hz") => AxisKind::Frequency,
-                    _ => return None,
-                });
+                scalar.kind = Some(kind_of(&unit)?);
                 scalar.value *= unit.factor();
                 scalar.trust = Sure;
             }
@@ -366,12 +362,4 @@ pub fn units<'n>(
         (only || dialect.attributes) && !text.is_empty() && UNIT.contains(&dialect.word(name).as_str())
     });
     stated.map(|(inside, _, text)| (dialect.bare(inside), text)).collect()
-}
-
-/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴, those of 64 to 2⁻⁵³.
-fn drift(values: &[f64], single: bool) -> f64 {
-    let (first, last) = (values[0], values[values.len() - 1]);
-    let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
-    let digits = if single { f64::from(f32::EPSILON) } else { f64::EPSILON };
-    drift.max(first.abs().max(last.abs()) * digits / 2.0)
 }

@@ -1,0 +1,207 @@
+//! The description of a segment, word by word: properties, and how the raw data of an object lie.
+
+use super::layout::{Kind, time};
+use vibro_record::{Error, Place, Result};
+
+/// Types of DAQmx scalers, in the order of their numbers.
+const DAQMX: [Kind; 10] = [
+    Kind::U8,
+    Kind::I8,
+    Kind::U16,
+    Kind::I16,
+    Kind::U32,
+    Kind::I32,
+    Kind::U64,
+    Kind::I64,
+    Kind::F32,
+    Kind::F64,
+];
+
+/// The value of a property.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    Number(f64),
+    Text(String),
+    Other,
+}
+
+impl Value {
+    /// As a person reads it.
+    pub fn text(&self) -> Option<String> {
+        match self {
+            Value::Text(text) => Some(text.clone()),
+            Value::Number(number) => Some(number.to_string()),
+            Value::Other => None,
+        }
+    }
+}
+
+/// What a column of raw values is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slot {
+    Real,
+    Imaginary,
+    /// Seconds since 1904.
+    Instant,
+    /// A DAQmx scaler with this number.
+    Scaler(u32),
+}
+
+/// How the raw data of an object lie in the chunks of a segment.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Index {
+    /// Rows of numbers; of other things, one row of all their bytes.
+    Plain { rows: u64, width: u64, fields: Vec<(Slot, usize, Kind)> },
+    /// Rows that all channels of a DAQmx buffer share, the widths of the buffers, and the scalers with their buffers.
+    Shared { rows: u64, widths: Vec<u64>, fields: Vec<(usize, Slot, usize, Kind)> },
+}
+
+/// Words of a description.
+pub struct Words<'a> {
+    pub rest: &'a [u8],
+    pub big_endian: bool,
+    /// Byte of the file at which they begin.
+    pub at: u64,
+}
+
+impl<'a> Words<'a> {
+    pub fn fault(&self, found: impl Into<String>, expected: &str) -> Error {
+        Error::input(in_byte(self.at), found, expected)
+            .hint("the file is damaged or of a kind not known here; export it as text or UFF-58")
+    }
+
+    fn bytes(&mut self, n: usize) -> Result<&'a [u8]> {
+        let Some((bytes, rest)) = self.rest.split_at_checked(n) else {
+            return Err(self.fault("a description that ends early", "whole objects and properties"));
+        };
+        self.rest = rest;
+        self.at += n as u64;
+        Ok(bytes)
+    }
+
+    /// Bytes of a number, little endian.
+    fn word<const N: usize>(&mut self) -> Result<[u8; N]> {
+        let mut word = [0; N];
+        word.copy_from_slice(self.bytes(N)?);
+        if self.big_endian {
+            word.reverse();
+        }
+        Ok(word)
+    }
+
+    pub fn u32(&mut self) -> Result<u32> {
+        self.word().map(u32::from_le_bytes)
+    }
+
+    pub fn u64(&mut self) -> Result<u64> {
+        self.word().map(u64::from_le_bytes)
+    }
+
+    pub fn text(&mut self) -> Result<String> {
+        let n = self.u32()? as usize;
+        Ok(String::from_utf8_lossy(self.bytes(n)?).into_owned())
+    }
+
+    /// The value of a property of a type.
+    pub fn value(&mut self, code: u32) -> Result<Value> {
+        Ok(Value::Number(match code {
+            0x20 => return self.text().map(Value::Text),
+            0x21 => return Ok(Value::Text((self.word::<1>()? != [0]).to_string())),
+            0 => return Ok(Value::Other),
+            0x44 => time(self.word()?),
+            1 => f64::from(i8::from_le_bytes(self.word()?)),
+            2 => f64::from(i16::from_le_bytes(self.word()?)),
+            3 => f64::from(i32::from_le_bytes(self.word()?)),
+            4 => i64::from_le_bytes(self.word()?) as f64,
+            5 => f64::from(u8::from_le_bytes(self.word()?)),
+            6 => f64::from(u16::from_le_bytes(self.word()?)),
+            7 => f64::from(self.u32()?),
+            8 => self.u64()? as f64,
+            9 | 0x19 => f64::from(f32::from_le_bytes(self.word()?)),
+            10 | 0x1a => f64::from_le_bytes(self.word()?),
+            0x0008_000c => return self.bytes(8).map(|_| Value::Other),
+            // Extended precision, and complex numbers.
+            0x0b | 0x1b | 0x0010_000d => return self.bytes(16).map(|_| Value::Other),
+            other => return Err(self.fault(format!("a property of type {other:#x}"), "a type of TDMS 2.0")),
+        }))
+    }
+
+    /// The layout of raw data that begins with this word.
+    pub fn index(&mut self, kind: u32) -> Result<Index> {
+        let digital = kind == 0x126a;
+        if digital || kind == 0x1269 {
+            return self.shared(digital);
+        }
+        let code = self.u32()?;
+        self.one_dimension()?;
+        let rows = self.u64()?;
+        if code == 0x20 {
+            return Ok(Index::Plain { rows: 1, width: self.u64()?, fields: Vec::new() });
+        }
+        let complex = |kind: Kind| vec![(Slot::Real, 0, kind), (Slot::Imaginary, kind.size() as usize, kind)];
+        let fields = match code {
+            0x0008_000c => complex(Kind::F32),
+            0x0010_000d => complex(Kind::F64),
+            0x44 => vec![(Slot::Instant, 0, Kind::Time)],
+            _ => vec![(Slot::Real, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
+        };
+        let width = fields.iter().map(|(_, _, kind)| kind.size()).sum();
+        Ok(Index::Plain { rows, width, fields })
+    }
+
+    /// The layout of DAQmx data: scalers, then the widths of the buffers.
+    fn shared(&mut self, digital: bool) -> Result<Index> {
+        // The type says only that these are raw data of DAQmx.
+        self.u32()?;
+        self.one_dimension()?;
+        let rows = self.u64()?;
+        let mut fields = Vec::new();
+        for _ in 0..self.u32()? {
+            let (code, buffer, offset) = (self.u32()?, self.u32()? as usize, self.u32()? as usize);
+            let (offset, kind) = if digital {
+                self.bytes(1)?;
+                (offset / 8, Kind::Bit((offset % 8) as u8))
+            } else {
+                self.bytes(4)?;
+                (offset, *DAQMX.get(code as usize).ok_or_else(|| self.type_unknown(code))?)
+            };
+            fields.push((buffer, Slot::Scaler(self.u32()?), offset, kind));
+        }
+        let n = self.u32()?;
+        let widths = (0..n).map(|_| self.u32().map(u64::from)).collect::<Result<_>>()?;
+        Ok(Index::Shared { rows, widths, fields })
+    }
+
+    fn one_dimension(&mut self) -> Result<()> {
+        match self.u32()? {
+            1 => Ok(()),
+            n => Err(self.fault(format!("raw data of {n} dimensions"), "one dimension")),
+        }
+    }
+
+    fn type_unknown(&self, code: u32) -> Error {
+        self.fault(format!("raw data of type {code:#x}"), "integers, floats, complex numbers, times or text")
+    }
+}
+
+/// The number that a type of raw data is.
+fn number(code: u32) -> Option<Kind> {
+    Some(match code {
+        1 => Kind::I8,
+        2 => Kind::I16,
+        3 => Kind::I32,
+        4 => Kind::I64,
+        5 | 0x21 => Kind::U8,
+        6 => Kind::U16,
+        7 => Kind::U32,
+        8 => Kind::U64,
+        9 | 0x19 => Kind::F32,
+        10 | 0x1a => Kind::F64,
+        _ => return None,
+    })
+}
+
+/// The place of a complaint; the reader adds the file.
+pub fn in_byte(at: u64) -> Place {
+    Place { byte: Some(at), ..Place::default() }
+}
