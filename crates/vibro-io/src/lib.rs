@@ -40,6 +40,7 @@
 //! records into files again.
 
 mod assemble;
+mod binary;
 mod choose;
 mod foreign;
 mod format;

@@ -263,7 +263,9 @@ impl<'h, 'a> Segment<'h, 'a> {
             meta.notes.extend(self.comments.iter().map(|text| ("Comment".to_owned(), text.clone())));
             meta.step("read", &[("file", &source.name()), ("format", &"lvm")]);
             let mut values = Values::Real(column.values.clone());
-            missed.mark(&column.name, &mut values);
+            for i in missing::mark(&mut values) {
+                missed.take(&Place::default(), format!("{} of {:?}", i + 1, column.name));
+            }
             let n = values.len();
             let declared = said("samples").and_then(|text| text.parse::<usize>().ok()).filter(|d| *d > n);
             meta.declared_n = declared;

@@ -1,6 +1,7 @@
 //! The complaint about values that are missing.
 
 use num_complex::Complex64;
+use rayon::prelude::*;
 use vibro_record::{Error, Finding, Place, Result, Values, lanes};
 
 /// How many places a complaint lists.
@@ -34,6 +35,22 @@ pub(super) fn mark(values: &mut Values) -> Vec<usize> {
     }
 }
 
+/// Makes values of records that are not finite missing; where they are not `allowed`, their names and numbers are in the refusal.
+///
+/// # Errors
+/// If there are any and they are not `allowed`.
+pub(super) fn checked<'a>(
+    records: impl ParallelIterator<Item = (&'a str, &'a mut Values)>,
+    allowed: bool,
+) -> Result<Option<Finding>> {
+    let marked: Vec<_> = records.map(|(name, values)| (name, mark(values))).collect();
+    let mut missing = Missing::default();
+    for (name, i) in marked.iter().flat_map(|(name, odd)| odd.iter().map(move |i| (name, i))) {
+        missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
+    }
+    Ok(kept(missing.check("value(s) are NaN or infinite:", allowed)?))
+}
+
 /// Values that are missing: how many, and where the first of them stand.
 #[derive(Debug, Default)]
 pub(super) struct Missing {
@@ -52,13 +69,6 @@ impl Missing {
         self.count += 1;
         if self.listed.len() <= LISTED && self.listed.last() != Some(&listed) {
             self.listed.push(listed);
-        }
-    }
-
-    /// Makes the values of the record `name` that are not finite missing, and counts them.
-    pub fn mark(&mut self, name: &str, values: &mut Values) {
-        for i in mark(values) {
-            self.take(&Place::default(), format!("{} of {name:?}", i + 1));
         }
     }
 

@@ -6,6 +6,7 @@ use super::{Source, SweepList, foreign};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result};
 
@@ -258,14 +259,19 @@ pub struct Header {
 impl Header {
     /// Header of a record that is in memory.
     pub fn of(record: &Record) -> Header {
-        let (meta, axis) = (record.meta(), record.axis());
-        let (largest, range) = (record.max_abs(), record.range());
+        Header::with(record, record.extremes())
+    }
+
+    /// Header of a record that has, or would have, these values.
+    pub(super) fn with(record: &Record, extremes: Extremes) -> Header {
+        let (meta, axis, largest) = (record.meta(), record.axis(), extremes.largest());
+        let ends = extremes.range().filter(|_| !record.is_complex());
         let step = axis.step().filter(|_| axis.kind == AxisKind::Time);
         Header {
             rate: step.map(|step| 1.0 / step),
             duration: step.map(|step| step * axis.len() as f64),
-            min: range.map(|(min, _)| min),
-            max: range.map(|(_, max)| max),
+            min: ends.map(|(min, _)| min),
+            max: ends.map(|(_, max)| max),
             name: meta.name.clone(),
             kind: record.kind(),
             quantity: meta.quantity.name(),

@@ -17,7 +17,7 @@ mod segment;
 
 use super::Source;
 use super::format::Format;
-use super::missing::{self, Missing};
+use super::missing;
 use super::reader::{Options, Recording};
 use crate::assemble::{self, Spectral, to_si};
 use axes::Clock;
@@ -28,7 +28,7 @@ use scale::Scales;
 use segment::{Object, Segments};
 use std::cmp::Reverse;
 use std::io::{BufReader, Read, Seek};
-use std::rc::Rc;
+use std::sync::Arc;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Finding, Meta, Record, Result, Values};
 
@@ -81,11 +81,8 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
             }
         }
     }
-    let mut missed = Missing::default();
-    for Channel { name, values, .. } in &mut channels {
-        missed.mark(name, values);
-    }
-    findings.extend(missing::kept(missed.check("value(s) are NaN or infinite:", options.allow_missing)?));
+    let all = channels.par_iter_mut().map(|channel| (channel.name, &mut channel.values));
+    findings.extend(missing::checked(all, options.allow_missing)?);
     let several = channels.iter().any(|channel| channel.group != channels[0].group);
     axes::assign(&mut channels, &mut findings)?;
     let record = |mut channel: Channel| {
@@ -126,7 +123,7 @@ struct Channel<'a> {
     name: &'a str,
     values: Values,
     /// The channel of its group that is its abscissa.
-    clock: Option<Rc<Clock>>,
+    clock: Option<Arc<Clock>>,
 }
 
 /// The unit or scale that changes between values of a channel: no single one holds for all.
@@ -172,7 +169,8 @@ fn values(
                     if columns.len() <= field.slot {
                         columns.resize(field.slot + 1, Vec::new());
                     }
-                    field.take(&block, part.width as usize, layout.big_endian, &mut columns[field.slot]);
+                    let (width, column) = (part.width as usize, &mut columns[field.slot]);
+                    field.kind.take(&block, field.offset, width, layout.big_endian, column);
                 }
             }
         }

@@ -7,12 +7,13 @@ mod axes;
 pub mod names;
 
 use super::Source;
-use super::missing::{self, Missing};
+use super::missing;
 use super::reader::{Options, Recording};
 use crate::assemble::{self, Spectral, to_si};
 use axes::Axes;
 use names::{Dialect, Scoped};
 use num_complex::Complex64;
+use rayon::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Fact, Finding, Meta, Record, Result, Values};
 
@@ -81,14 +82,12 @@ pub fn recording(
     let mut vectors: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
     vectors.sort_unstable();
     let beside = Scoped::of(dialect, notes.iter().map(|note| (dialect.scope(&note.0, &vectors), note)));
-    let (mut records, mut missing) = (Vec::new(), Missing::default());
+    let mut records = Vec::new();
     for (of, array) in arrays {
         let unit =
             units.get(of.as_str()).or_else(|| units.get(dialect.bare(dialect.container(&of)))).copied();
-        for (name, mut values) in split(&of, array, &axes, options, &mut findings) {
-            missing.mark(&name, &mut values);
-            records.push((of.clone(), name, values, unit));
-        }
+        let parts = split(&of, array, &axes, options, &mut findings).into_iter();
+        records.extend(parts.map(|(name, values)| (of.clone(), name, values, unit)));
     }
     if records.is_empty() {
         let error = Error::usage("no numeric vector or matrix", "at least one to make a record of");
@@ -102,7 +101,8 @@ pub fn recording(
             .hint("leave out that values are complex")
             .setting("complex"));
     }
-    findings.extend(missing::kept(missing.check("value(s) are NaN or infinite:", options.allow_missing)?));
+    let all = records.par_iter_mut().map(|(_, name, values, _)| (name.as_str(), values));
+    findings.extend(missing::checked(all, options.allow_missing)?);
     if !dialect.attributes && options.unit.is_none() && records.iter().any(|(.., unit)| unit.is_none()) {
         findings.push(Finding::caution("format-without-units"));
     }

@@ -23,7 +23,7 @@ use super::{Header, Source};
 use layout::Layout;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
-use vibro_record::lanes;
+use vibro_record::lanes::{self, Extremes};
 use vibro_record::units::{self, Unit};
 use vibro_record::{Axis, Error, Finding, Meta, Place, Record, Result, Stream, Trace};
 
@@ -51,34 +51,16 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
 /// Goes over the samples a block at a time.
 pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
     let mut wave = Wave::open(source, options)?;
-    // Index and value of the largest magnitude of each channel, and both ends of its values.
-    let mut largest: Vec<Option<(usize, f64)>> = vec![None; wave.channels.len()];
-    let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); wave.channels.len()];
-    let (mut block, mut n) = (Vec::new(), 0);
-    loop {
-        let frames = wave.append(&mut block)?;
-        if frames == 0 {
-            break;
+    let (mut block, mut seen) = (Vec::new(), vec![Extremes::NONE; wave.channels.len()]);
+    while wave.append(&mut block)? > 0 {
+        for (values, seen) in block.iter_mut().zip(&mut seen) {
+            seen.take(values);
+            values.clear();
         }
-        for ((values, largest), ends) in block.iter_mut().zip(&mut largest).zip(&mut ends) {
-            for (i, value) in values.drain(..).enumerate() {
-                *ends = (ends.0.min(value), ends.1.max(value));
-                if value.abs() > largest.map_or(-1.0, |(_, max)| max) {
-                    *largest = Some((n + i, value.abs()));
-                }
-            }
-        }
-        n += frames;
     }
     wave.finished();
-    let headers =
-        wave.channels.into_iter().zip(largest.into_iter().zip(ends)).map(|(trace, (largest, ends))| {
-            let (max_at, duration) =
-                (largest.map(|(i, _)| trace.axis.at(i)), trace.axis.step().map(|dt| dt * n as f64));
-            let (min, max) = largest.map(|_| ends).unzip();
-            let max_abs = largest.map(|(_, max)| max);
-            Header { n, duration, min, max, max_abs, max_at, ..Header::of(&Record::Trace(trace)) }
-        });
+    let traces = wave.channels.into_iter().map(Record::Trace).zip(seen);
+    let headers = traces.map(|(trace, seen)| Header::with(&trace, seen));
     Ok((headers.collect(), wave.layout.findings))
 }
 

@@ -46,6 +46,58 @@ pub fn survey(values: &[f64]) -> Survey {
     }
 }
 
+/// Values of which the first largest is looked for while they are near.
+const NEAR: usize = 4096;
+
+/// Both ends of values that may come block by block; missing ones (NaN) are left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    low: f64,
+    high: f64,
+    /// Values so far.
+    n: usize,
+    at: usize,
+}
+
+impl Extremes {
+    /// Of no values.
+    pub const NONE: Extremes = Extremes { low: f64::INFINITY, high: f64::NEG_INFINITY, n: 0, at: 0 };
+
+    /// Of these values.
+    pub fn of(values: &[f64]) -> Extremes {
+        let mut all = Extremes::NONE;
+        all.take(values);
+        all
+    }
+
+    /// Adds the next values.
+    pub fn take(&mut self, values: &[f64]) {
+        for near in values.chunks(NEAR) {
+            let seen = survey(near);
+            let most = seen.high.max(-seen.low);
+            if most > self.high.max(-self.low) {
+                self.at = self.n + near.iter().position(|v| v.abs() == most).unwrap_or_default();
+            }
+            *self = Extremes {
+                low: self.low.min(seen.low),
+                high: self.high.max(seen.high),
+                n: self.n + near.len(),
+                ..*self
+            };
+        }
+    }
+
+    /// Least and largest value; `None` where there is none.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        (self.low <= self.high).then_some((self.low, self.high))
+    }
+
+    /// The first index of the largest magnitude, and this; `None` where there is none.
+    pub fn largest(&self) -> Option<(usize, f64)> {
+        self.range().map(|(low, high)| (self.at, high.max(-low)))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,6 +121,13 @@ mod tests {
                 }
             }
         }
+        let values: Vec<f64> = (0..3 * NEAR).map(|i| ((i * 7919) % 1009) as f64 - 600.0).collect();
+        let mut parts = Extremes::NONE;
+        values.chunks(1000).for_each(|part| parts.take(part));
+        assert_eq!(parts, Extremes::of(&values));
+        let first = values.iter().position(|v| *v == -600.0).unwrap();
+        assert_eq!((parts.range(), parts.largest()), (Some((-600.0, 408.0)), Some((first, 600.0))));
+        assert_eq!([Extremes::of(&[f64::NAN]).range(), Extremes::NONE.range()], [None; 2]);
         assert_eq!(survey(&[1.0, f64::NAN, 3.0]), Survey { low: 1.0, high: 3.0, finite: false });
     }
 }

@@ -16,6 +16,7 @@ mod traces;
 pub mod units;
 mod window;
 
+use lanes::Extremes;
 use num_complex::Complex64;
 
 pub use axis::{Axis, AxisKind, Grid};
@@ -27,13 +28,6 @@ pub use sweep::{Direction, Sweep, SweepPoint};
 pub use trace::Trace;
 pub use traces::{Stream, Traces, find_channel};
 pub use window::Window;
-
-/// Largest magnitude and its first index.
-fn largest(values: &[f64]) -> Option<(usize, f64)> {
-    let seen = lanes::survey(values);
-    let most = seen.high.max(-seen.low);
-    Some((values.iter().position(|v| v.abs() == most)?, most))
-}
 
 /// Anything a file can hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,28 +96,15 @@ impl Record {
         }
     }
 
-    /// Least and largest value; `None` of complex values, and where all are missing.
-    pub fn range(&self) -> Option<(f64, f64)> {
-        let (Record::Trace(Trace { values, .. })
-        | Record::Spectrum(Spectrum { values: Values::Real(values), .. })) = self
-        else {
-            return None;
-        };
-        let seen = lanes::survey(values);
-        (seen.low <= seen.high).then_some((seen.low, seen.high))
-    }
-
-    /// Largest magnitude and the index of the first that has it; `None` for no values or only missing ones.
-    pub fn max_abs(&self) -> Option<(usize, f64)> {
-        let complex = |values: &[Complex64]| {
-            let sizes: Vec<f64> = values.iter().map(|v| v.norm()).collect();
-            largest(&sizes)
-        };
-        match self {
+    /// Both ends of the values, or of the magnitudes of complex ones.
+    pub fn extremes(&self) -> Extremes {
+        let complex = |values: &[Complex64]| values.iter().map(|v| v.norm()).collect();
+        let sizes: Vec<f64> = match self {
             Record::Trace(Trace { values, .. })
-            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => largest(values),
+            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => return Extremes::of(values),
             Record::Spectrum(Spectrum { values: Values::Complex(values), .. }) => complex(values),
             Record::Frf(r) => complex(&r.values),
-        }
+        };
+        Extremes::of(&sizes)
     }
 }

@@ -4,6 +4,7 @@
 
 use super::lzf;
 use crate::Source;
+use crate::binary::Kind;
 use crate::variables::EXPORT;
 use hdf5_reader::attribute_api::Attribute;
 use hdf5_reader::dataset::{Dataset, SliceInfo, SliceInfoElem};
@@ -262,8 +263,7 @@ fn decoded(
 ) -> std::result::Result<Data, Fault> {
     Ok(match kind {
         Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } if described(layout, &[kind])[0] => {
-            let values = read()?.chunks_exact(size.max(1)).map(|bytes| number(bytes, kind)).collect();
-            Data::Numbers(Values::Real(values))
+            Data::Numbers(Values::Real(column(&read()?, 0, size, kind).unwrap_or_default()))
         }
         Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } => {
             Data::Other("number of an unusual layout")
@@ -272,10 +272,8 @@ fn decoded(
             let exact = described(layout, &fields.iter().map(|field| &field.datatype).collect::<Vec<_>>());
             let bytes = read()?;
             let column = |(field, exact): (&CompoundField, bool)| {
-                let (name, kind) = (field.name.clone(), &field.datatype);
-                let at = |row: &[u8]| row.get(field.byte_offset as usize..).map(|bytes| number(bytes, kind));
-                let column = || bytes.chunks_exact(size.max(1)).map(at).collect::<Option<Vec<f64>>>();
-                (name, exact.then(column).flatten())
+                let column = || column(&bytes, field.byte_offset as usize, size, &field.datatype);
+                (field.name.clone(), exact.then(column).flatten())
             };
             let columns: Vec<_> = fields.iter().zip(exact).map(column).collect();
             match &columns[..] {
@@ -287,7 +285,7 @@ fn decoded(
             }
         }
         Datatype::Reference { ref_type: ReferenceType::Object, .. } => {
-            let addresses = read()?.chunks_exact(size.max(1)).map(|bytes| word(bytes, false)).collect();
+            let addresses = read()?.as_chunks().0.iter().map(|bytes| u64::from_le_bytes(*bytes)).collect();
             Data::References(addresses)
         }
         Datatype::Enum { .. } => Data::Other("enumeration"),
@@ -296,51 +294,49 @@ fn decoded(
     })
 }
 
-/// Up to eight bytes.
-fn word(bytes: &[u8], big_endian: bool) -> u64 {
-    let mut word = [0; 8];
-    let n = bytes.len().min(8);
-    word[..n].copy_from_slice(&bytes[..n]);
-    if big_endian {
-        word[..n].reverse();
-    }
-    u64::from_le_bytes(word)
+/// Which numbers those of a datatype are, and whether big-endian.
+fn number(kind: &Datatype) -> Option<(Kind, bool)> {
+    let (kind, order) = match kind {
+        Datatype::FixedPoint { size, signed, byte_order } => {
+            let kind = match (size, signed) {
+                (1, true) => Kind::I8,
+                (1, false) => Kind::U8,
+                (2, true) => Kind::I16,
+                (2, false) => Kind::U16,
+                (4, true) => Kind::I32,
+                (4, false) => Kind::U32,
+                (8, true) => Kind::I64,
+                (8, false) => Kind::U64,
+                _ => return None,
+            };
+            (kind, byte_order)
+        }
+        Datatype::FloatingPoint { size: 4, byte_order } => (Kind::F32, byte_order),
+        Datatype::FloatingPoint { size: 8, byte_order } => (Kind::F64, byte_order),
+        _ => return None,
+    };
+    Some((kind, *order == ByteOrder::BigEndian))
 }
 
-/// The number at the start of `bytes`.
-fn number(bytes: &[u8], kind: &Datatype) -> f64 {
-    let word = |size: u8, order: &ByteOrder| {
-        word(bytes.get(..usize::from(size)).unwrap_or_default(), *order == ByteOrder::BigEndian)
-    };
-    match kind {
-        Datatype::FixedPoint { size, signed: false, byte_order } => word(*size, byte_order) as f64,
-        Datatype::FixedPoint { size, byte_order, .. } => {
-            let above = 64 - 8 * u32::from(*size);
-            ((word(*size, byte_order) << above) as i64 >> above) as f64
-        }
-        Datatype::FloatingPoint { size: 8, byte_order } => f64::from_bits(word(8, byte_order)),
-        Datatype::FloatingPoint { size: 4, byte_order } => {
-            f64::from(f32::from_bits(word(4, byte_order) as u32))
-        }
-        _ => f64::NAN,
-    }
+/// The numbers at byte `offset` of each row of `width` bytes; `None` where they are none or do not fit.
+fn column(bytes: &[u8], offset: usize, width: usize, of: &Datatype) -> Option<Vec<f64>> {
+    let ((kind, big_endian), mut column) = (number(of)?, Vec::new());
+    (offset as u64 + kind.size() <= width as u64).then_some(())?;
+    kind.take(bytes, offset, width, big_endian, &mut column);
+    Some(column)
 }
 
 /// How the message of a datatype describes an integer that fills its bytes, or a float of IEEE 754, behind the byte of its class.
 fn description(kind: &Datatype) -> Option<Vec<u8>> {
-    let (order, flags, sign, size, properties) = match kind {
-        Datatype::FixedPoint { size: size @ 1..=8, signed, byte_order } => {
-            (byte_order, u8::from(*signed) << 3, 0, *size, [].as_slice())
-        }
-        Datatype::FloatingPoint { size: 4, byte_order } => {
-            (byte_order, 0x20, 31, 4, &[23, 8, 0, 23, 127, 0, 0, 0][..])
-        }
-        Datatype::FloatingPoint { size: 8, byte_order } => {
-            (byte_order, 0x20, 63, 8, &[52, 11, 0, 52, 0xff, 3, 0, 0][..])
-        }
-        _ => return None,
+    let (number, big_endian) = number(kind)?;
+    let (flags, sign, properties): (u8, u8, &[u8]) = match (number, kind) {
+        (Kind::F32, _) => (0x20, 31, &[23, 8, 0, 23, 127, 0, 0, 0]),
+        (Kind::F64, _) => (0x20, 63, &[52, 11, 0, 52, 0xff, 3, 0, 0]),
+        (_, Datatype::FixedPoint { signed: true, .. }) => (8, 0, &[]),
+        _ => (0, 0, &[]),
     };
-    let flags = flags | u8::from(*order == ByteOrder::BigEndian);
+    let size = number.size() as u8;
+    let flags = flags | u8::from(big_endian);
     Some([&[flags, sign, 0, size, 0, 0, 0, 0, 0, size * 8, 0], properties].concat())
 }
 

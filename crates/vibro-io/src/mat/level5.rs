@@ -2,6 +2,7 @@
 //!
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 5 MAT-File Format".
 
+use crate::binary::Kind;
 use crate::variables::{Array, Content, MOST_TEXT};
 use flate2::read::ZlibDecoder;
 use num_complex::Complex64;
@@ -100,23 +101,22 @@ pub fn complex(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
 
 /// Numbers of a kind; `None` for one that is not of numbers.
 pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
-    fn of<const N: usize>(bytes: &[u8], big_endian: bool, value: fn([u8; N]) -> f64) -> Vec<f64> {
-        let little = |b: &[u8; N]| std::array::from_fn(|i| if big_endian { b[N - 1 - i] } else { b[i] });
-        bytes.as_chunks().0.iter().map(|b| value(little(b))).collect()
-    }
-    Some(match kind {
-        1 => of(bytes, big, |b| f64::from(i8::from_le_bytes(b))),
-        2 => of(bytes, big, |b| f64::from(u8::from_le_bytes(b))),
-        3 => of(bytes, big, |b| f64::from(i16::from_le_bytes(b))),
-        4 => of(bytes, big, |b| f64::from(u16::from_le_bytes(b))),
-        5 => of(bytes, big, |b| f64::from(i32::from_le_bytes(b))),
-        6 => of(bytes, big, |b| f64::from(u32::from_le_bytes(b))),
-        7 => of(bytes, big, |b| f64::from(f32::from_le_bytes(b))),
-        9 => of(bytes, big, f64::from_le_bytes),
-        12 => of(bytes, big, |b| i64::from_le_bytes(b) as f64),
-        13 => of(bytes, big, |b| u64::from_le_bytes(b) as f64),
+    let kind = match kind {
+        1 => Kind::I8,
+        2 => Kind::U8,
+        3 => Kind::I16,
+        4 => Kind::U16,
+        5 => Kind::I32,
+        6 => Kind::U32,
+        7 => Kind::F32,
+        9 => Kind::F64,
+        12 => Kind::I64,
+        13 => Kind::U64,
         _ => return None,
-    })
+    };
+    let (width, mut values) = (kind.size() as usize, Vec::new());
+    kind.take(bytes, 0, width, big, &mut values);
+    Some(values)
 }
 
 /// All variables of a file behind its header, with their names. What stands in structs and cell arrays is named as MATLAB writes it.

@@ -7,7 +7,7 @@ use crate::assemble::{Abscissa, domain, drift, epoch, from_values, kind_of, shor
 use crate::reader::Options;
 use crate::text::names::Name;
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::Arc;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
 
@@ -71,8 +71,8 @@ pub fn assign(channels: &mut Vec<Channel>, findings: &mut Vec<Finding>) -> Resul
     for (i, channel) in channels.iter().enumerate() {
         sets.entry((channel.group, channel.values.len())).or_default().push(i);
     }
-    let clocks = channels.iter().map(|channel| Clock::of(channel, findings).map(Rc::new));
-    let mut clocks: Vec<Option<Rc<Clock>>> = clocks.collect();
+    let clocks = channels.iter().map(|channel| Clock::of(channel, findings).map(Arc::new));
+    let mut clocks: Vec<Option<Arc<Clock>>> = clocks.collect();
     for (_, set) in sets {
         let timed = set.iter().any(|i| {
             let (kind, step, _) = stated(channels[*i].object);
@@ -83,7 +83,7 @@ pub fn assign(channels: &mut Vec<Channel>, findings: &mut Vec<Finding>) -> Resul
         for i in set.iter().filter(|_| timed) {
             clocks[*i].take_if(|clock| clock.axis.kind != AxisKind::Time);
         }
-        let own: Vec<&Rc<Clock>> = set.iter().filter_map(|i| clocks[*i].as_ref()).collect();
+        let own: Vec<&Arc<Clock>> = set.iter().filter_map(|i| clocks[*i].as_ref()).collect();
         let Some(first) = own.first().copied().cloned() else { continue };
         if own.len() == set.len() {
             for i in set {
@@ -109,7 +109,7 @@ pub fn assign(channels: &mut Vec<Channel>, findings: &mut Vec<Finding>) -> Resul
         for i in set {
             match &clocks[i] {
                 Some(clock) => now = clock,
-                None => channels[i].clock = Some(Rc::clone(now)),
+                None => channels[i].clock = Some(Arc::clone(now)),
             }
         }
     }

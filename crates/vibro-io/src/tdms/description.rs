@@ -1,6 +1,6 @@
 //! The description of a segment, word by word: properties, and how the raw data of an object lie.
 
-use super::layout::{Kind, time};
+use crate::binary::{Kind, time};
 use vibro_record::{Error, Place, Result};
 
 /// Types of DAQmx scalers, in the order of their numbers.

@@ -1,5 +1,6 @@
 //! How raw data lie in a segment, whatever their order: parts, one after the other, of equal rows with fields in them.
 
+use crate::binary::Kind;
 use std::sync::Arc;
 
 /// Raw data of a segment.
@@ -33,83 +34,4 @@ pub struct Field {
     /// Byte of the row at which it begins.
     pub offset: usize,
     pub kind: Kind,
-}
-
-/// What a number is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    I8,
-    I16,
-    I32,
-    I64,
-    U8,
-    U16,
-    U32,
-    U64,
-    F32,
-    F64,
-    /// Seconds since 1904 with a fraction of 2⁻⁶⁴ s.
-    Time,
-    /// One bit of a byte.
-    Bit(u8),
-}
-
-impl Kind {
-    /// Bytes.
-    pub fn size(self) -> u64 {
-        match self {
-            Kind::I8 | Kind::U8 | Kind::Bit(_) => 1,
-            Kind::I16 | Kind::U16 => 2,
-            Kind::I32 | Kind::U32 | Kind::F32 => 4,
-            Kind::I64 | Kind::U64 | Kind::F64 => 8,
-            Kind::Time => 16,
-        }
-    }
-}
-
-impl Field {
-    /// Adds its number of each row of `width` bytes to `out`; integers beyond 2⁵³ are rounded.
-    pub fn take(&self, rows: &[u8], width: usize, big_endian: bool, out: &mut Vec<f64>) {
-        let at = (rows, self.offset, width, big_endian);
-        match self.kind {
-            Kind::I8 => column(at, out, |b| f64::from(i8::from_le_bytes(b))),
-            Kind::U8 => column(at, out, |b| f64::from(u8::from_le_bytes(b))),
-            Kind::I16 => column(at, out, |b| f64::from(i16::from_le_bytes(b))),
-            Kind::U16 => column(at, out, |b| f64::from(u16::from_le_bytes(b))),
-            Kind::I32 => column(at, out, |b| f64::from(i32::from_le_bytes(b))),
-            Kind::U32 => column(at, out, |b| f64::from(u32::from_le_bytes(b))),
-            Kind::I64 => column(at, out, |b| i64::from_le_bytes(b) as f64),
-            Kind::U64 => column(at, out, |b| u64::from_le_bytes(b) as f64),
-            Kind::F32 => column(at, out, |b| f64::from(f32::from_le_bytes(b))),
-            Kind::F64 => column(at, out, f64::from_le_bytes),
-            Kind::Time => column(at, out, time),
-            Kind::Bit(bit) => column(at, out, |[byte]| f64::from(byte >> bit & 1)),
-        }
-    }
-}
-
-/// Seconds since 1904.
-pub fn time(bytes: [u8; 16]) -> f64 {
-    let both = i128::from_le_bytes(bytes);
-    (both >> 64) as f64 + (both as u64) as f64 / 2f64.powi(64)
-}
-
-/// Numbers of `N` bytes, little endian after they were turned.
-fn column<const N: usize>(
-    (rows, offset, width, big_endian): (&[u8], usize, usize, bool),
-    out: &mut Vec<f64>,
-    value: impl Fn([u8; N]) -> f64,
-) {
-    let turned = |mut bytes: [u8; N]| {
-        if big_endian {
-            bytes.reverse();
-        }
-        value(bytes)
-    };
-    if width == N {
-        out.extend(rows.as_chunks::<N>().0.iter().map(|bytes| turned(*bytes)));
-        return;
-    }
-    let cell = |row: &[u8]| row.get(offset..).and_then(<[u8]>::first_chunk).copied();
-    out.extend(rows.chunks_exact(width).filter_map(cell).map(turned));
 }

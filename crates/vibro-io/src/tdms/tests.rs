@@ -555,7 +555,10 @@ fn what_changes_between_values() {
     assert!(said.contains("unit_string changes from V to mV behind value 2"), "{said}");
     // What is put right behind all values holds for all, and what is said first later, too.
     let late = |first: &str| two(&[Prop::Text("unit_string", first)], &unit("mV"), first.is_empty()).unwrap();
-    assert_eq!([late("V"), late("")].map(|found| found.records[0].max_abs().unwrap().1), [2e-3; 2]);
+    assert_eq!(
+        [late("V"), late("")].map(|found| found.records[0].extremes().largest().unwrap().1),
+        [2e-3; 2]
+    );
     let start = |dt, at| [Prop::F64("wf_increment", dt), Prop::F64("wf_start_time", at)];
     let of = |first: &[Prop], second: &[Prop]| two(first, second, true).unwrap().all_findings();
     let found = of(&start(0.5, 0.0), &start(0.25, 1.0));
