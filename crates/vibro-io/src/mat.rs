@@ -18,7 +18,7 @@ use super::Source;
 use super::format::Format;
 use super::reader::{Options, Recording};
 use crate::variables::names::Dialect;
-use crate::variables::{self, Content, MOST_COLUMNS};
+use crate::variables::{self, Content};
 use vibro_record::{Error, Result};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
@@ -28,7 +28,7 @@ pub static DIALECT: Dialect = Dialect {
     brackets: ['(', ')'],
     first: 1,
     by_rows: false,
-    wide: MOST_COLUMNS,
+    wide: 64,
     attributes: false,
 };
 

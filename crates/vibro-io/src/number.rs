@@ -32,6 +32,9 @@ const MISSING: [&str; 15] = [
     "burnout",
 ];
 
+/// What instruments print for infinity and for no number (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
+const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
+
 /// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives `None`.
 pub fn parse(text: &[u8]) -> Option<f64> {
     parse_with(text, b'.')
@@ -81,7 +84,7 @@ fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     if threes { parse_with(text.replace(group, "").as_bytes(), decimal) } else { None }
 }
 
-/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `--.--`, `NA`, `1.#QNAN`, `***`, `OVER`, …
+/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `--.--`, `NA`, `1.#QNAN`, `***`, `OVER`, `9.9E+37`, …
 pub(crate) fn is_missing(text: &[u8]) -> bool {
     let text = text.trim_ascii();
     let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);
@@ -89,7 +92,11 @@ pub(crate) fn is_missing(text: &[u8]) -> bool {
         return true;
     }
     let lower = text.to_ascii_lowercase();
+    let overload = || {
+        String::from_utf8_lossy(&lower).replace(',', ".").parse().is_ok_and(|v: f64| OVERLOAD.contains(&v))
+    };
     MISSING.iter().any(|word| word.as_bytes() == lower)
+        || lower.starts_with(b"9") && overload()
         || lower.starts_with(b"nan(")
         || lower.starts_with(b"1.#")
 }
@@ -254,7 +261,7 @@ fn slow(mantissa: &[u8], decimal: u8, exponent: i32) -> Option<f64> {
         mantissa.iter().map(|b| if *b == decimal { '.' } else { char::from(*b) }).collect();
     text.push('e');
     text.push_str(&exponent.to_string());
-    text.parse::<f64>().ok().filter(|v| v.is_finite())
+    text.parse::<f64>().ok().filter(|v| v.is_finite() && !OVERLOAD.contains(v))
 }
 
 #[cfg(test)]

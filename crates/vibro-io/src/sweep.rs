@@ -1,7 +1,7 @@
 //! The spectra of a sweep, read together.
 
 use super::{Format, Reader, Recording, SweepList};
-use vibro_record::units::{Quantity, Unit};
+use vibro_record::units::{Quantity, Unit, is_level};
 use vibro_record::{
     Axis, Direction, Error, Finding, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint,
     Values, Window,
@@ -186,24 +186,19 @@ const LINEAR: &str = "export linear amplitudes; levels in decibels are not read"
 
 /// The words by which a file says that its values are levels: their unit, or a header line that states unit, scale or level.
 fn decibels(meta: &Meta) -> Option<String> {
-    let level = |word: &str| {
-        let word = word.trim().to_lowercase();
-        word.starts_with("db") || word.starts_with("decibel")
-    };
-    let unit = meta.unit.symbol();
-    if !meta.unit.is_known() && level(unit) {
-        return Some(unit.to_owned());
+    if meta.unit.is_level() {
+        return Some(meta.unit.symbol().to_owned());
     }
     // The line right above the values names their column.
     let above = meta.notes.last().filter(|(key, _)| key.is_empty()).map(|(_, line)| line);
-    let bracketed = |name: &&String| name.split(['[', '(']).skip(1).any(level);
+    let bracketed = |name: &&String| name.split(['[', '(']).skip(1).any(is_level);
     if let Some(name) = [Some(&meta.name), above].into_iter().flatten().find(bracketed) {
         return Some(name.clone());
     }
     // A number before the word makes it a setting, as in `level: -20 dB`.
     let states = |value: &str| {
         let words: Vec<&str> = value.split_whitespace().collect();
-        let at = words.iter().position(|word| level(word));
+        let at = words.iter().position(|word| is_level(word));
         at.is_some_and(|at| at == 0 || words[at - 1].parse::<f64>().is_err())
     };
     let about = |key: &str| {

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Fact, Finding, Meta, Record, Result, Values};
 
-/// More columns than this are as a rule the samples of a matrix that lies on its side.
-pub const MOST_COLUMNS: u64 = 1000;
+/// A matrix of more rows than this and than columns stands upright, whatever length the abscissa beside it has.
+const MOST_ROWS: u64 = 1000;
 /// Longest text that is kept.
 pub const MOST_TEXT: usize = 4096;
 /// Notes that a record takes at most: many scalars beside many vectors would fill the memory.
@@ -147,7 +147,7 @@ fn split(
     let has = |n: u64| axes.has(name, n);
     let wide = columns > rows.max(dialect.wide);
     let pair = options.complex && rows == 2 && columns > 2;
-    let lying = !has(rows) && (wide || pair || (has(columns) && rows <= columns.max(MOST_COLUMNS)));
+    let lying = !has(rows) && (wide || pair || (has(columns) && rows <= columns.max(MOST_ROWS)));
     if lying && !pair && !has(columns) {
         let found = Finding::caution("matrix-by-rows").name("variable", name);
         findings.push(found.number("rows", rows as f64).number("columns", columns as f64));

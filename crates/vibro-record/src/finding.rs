@@ -119,15 +119,21 @@ impl Finding {
 
     /// Findings of records, given as name and findings: one that all share once, any other about its record.
     pub fn gathered(records: &[(&str, &[Finding])]) -> Vec<Finding> {
+        let (first, others) =
+            records.split_first().map_or((&[][..], records), |(first, others)| (first.1, others));
+        let shared: Vec<&Finding> = first
+            .iter()
+            .filter(|found| others.iter().all(|(_, findings)| findings.contains(found)))
+            .collect();
         let mut all: Vec<Finding> = Vec::new();
-        for (name, findings) in records {
+        for (i, (name, findings)) in records.iter().enumerate() {
             for finding in *findings {
-                let shared = records.iter().all(|(_, others)| others.contains(finding));
+                let alone = !shared.contains(&finding);
                 let mut finding = finding.clone();
-                if !shared && !name.is_empty() {
+                if alone && !name.is_empty() {
                     finding.subject = Some((*name).to_owned());
                 }
-                if !shared || !all.contains(&finding) {
+                if alone || i == 0 && !all.contains(&finding) {
                     all.push(finding);
                 }
             }

@@ -104,7 +104,8 @@ impl Meta {
     pub fn adopt_unit(&mut self, text: &str) -> f64 {
         let unit = Unit::parse_or_opaque(text);
         if !unit.is_known() {
-            self.found(Finding::caution("unit-unknown").name("unit", text.trim()));
+            let code = if unit.is_level() { "levels-in-decibels" } else { "unit-unknown" };
+            self.found(Finding::caution(code).name("unit", text.trim()));
         }
         self.unit = unit.si();
         self.quantity = self.unit.quantity();

@@ -53,6 +53,12 @@ pub struct Unit {
     factor: f64,
 }
 
+/// Whether a word is decibels.
+pub fn is_level(word: &str) -> bool {
+    let word = word.trim().to_lowercase();
+    word.starts_with("db") || word.starts_with("decibel")
+}
+
 impl Unit {
     /// Dimensionless one.
     pub fn none() -> Unit {
@@ -104,6 +110,11 @@ impl Unit {
     /// Whether the unit was understood.
     pub fn is_known(&self) -> bool {
         self.dimension.is_some()
+    }
+
+    /// Whether it is one of levels, such as `dB re 1 m/s²`: values in it are no amplitudes.
+    pub fn is_level(&self) -> bool {
+        !self.is_known() && is_level(self.symbol())
     }
 
     /// Dimension; `None` for an opaque unit.

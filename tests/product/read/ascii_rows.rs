@@ -191,7 +191,7 @@ fn a_large_file_read_in_pieces_is_the_same() {
     assert!(values(&recording) == numbers);
     let (format, headers, _) = Reader::new().survey(&path).unwrap();
     assert_eq!((format, headers[0].n), (Format::Ascii, numbers.len()));
-    assert_eq!(headers[0].max_abs, recording.records[0].max_abs().map(|m| m.1));
+    assert_eq!(headers[0].max_abs, recording.records[0].extremes().largest().map(|m| m.1));
     // A word far inside is still found with its line.
     std::fs::write(&path, text.replacen("-49999.94", "oops", 0) + "x\n").unwrap();
     let error = Reader::new().from_path(&path).unwrap_err().to_string();

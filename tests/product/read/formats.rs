@@ -83,7 +83,7 @@ fn mat_what_is_passed_over_is_named() {
 #[test]
 fn mat_zeros_and_the_older_level() {
     let zeros = read("mat/zeros.mat");
-    assert_eq!((zeros.records[0].len(), zeros.records[0].max_abs()), (131_072, Some((0, 0.0))));
+    assert_eq!((zeros.records[0].len(), zeros.records[0].extremes().largest()), (131_072, Some((0, 0.0))));
     let level4 = read("mat/level4.mat");
     assert_eq!((level4.format, values(&level4, "x")), (Format::Mat, vec![1.0, 2.0]));
 }
@@ -182,7 +182,7 @@ fn csv_faults_are_named_with_their_lines() {
     assert!(cut.contains("line 4, column 3: 1 field(s)") && cut.contains("cut off"), "{cut}");
     let kept = Reader::new().allow_missing(true).from_path(fixture("csv/missing_values.csv")).unwrap();
     assert_eq!(values(&kept, "a").iter().filter(|v| v.is_nan()).count(), 2);
-    assert_eq!(kept.records[1].max_abs(), Some((4, 6.0 * 9.806_65)));
+    assert_eq!(kept.records[1].extremes().largest(), Some((4, 6.0 * 9.806_65)));
 }
 
 #[test]

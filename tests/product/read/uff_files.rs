@@ -73,7 +73,7 @@ fn printed(value: f64, expected: f64, digits: i32) -> bool {
 }
 
 fn peak(record: &Record) -> (f64, f64) {
-    let (i, value) = record.max_abs().expect("values");
+    let (i, value) = record.extremes().largest().expect("values");
     (record.axis().at(i), value)
 }
 

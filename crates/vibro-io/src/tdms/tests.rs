@@ -588,9 +588,7 @@ fn many_segments_scales_and_channels_cost_what_is_there() {
     let n = writer.bytes.len() as u64;
     let found = segment::all(&mut BufReader::new(std::io::Cursor::new(&writer.bytes)), n).unwrap();
     assert_eq!(found.layouts.len(), 4);
-    assert!(
-        found.layouts.iter().all(|layout| std::sync::Arc::ptr_eq(&layout.parts, &found.layouts[0].parts))
-    );
+    assert!(found.layouts.iter().all(|layout| Arc::ptr_eq(&layout.parts, &found.layouts[0].parts)));
     assert_eq!(traces(&writer.bytes)[1].values, [2.0; 4]);
 }
 

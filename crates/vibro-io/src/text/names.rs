@@ -46,8 +46,11 @@ impl Name {
             let unit = long(name, unit).unwrap_or(unit);
             // `X (100g)` is a sensor of that range.
             let multiple = unit.starts_with(|c: char| c.is_ascii_digit()) && !unit.starts_with("1/");
-            (!name.is_empty() && !multiple && (Unit::parse(unit).is_some() || matches!(unit, HOUR | DAY)))
-                .then(|| Name { name: name.to_owned(), unit: Some(unit.to_owned()) })
+            let known = || Unit::parse_or_opaque(unit);
+            (!name.is_empty()
+                && !multiple
+                && (known().is_known() || known().is_level() || matches!(unit, HOUR | DAY)))
+            .then(|| Name { name: name.to_owned(), unit: Some(unit.to_owned()) })
         };
         text.split_once(" / ")
             .and_then(|(name, unit)| known(name, unit))
@@ -256,6 +259,7 @@ fn symbol(text: &str) -> &str {
         "hour" => HOUR,
         "hertz" => "Hz",
         "kilohertz" => "kHz",
+        "vdc" => "V",
         _ => text,
     }
 }

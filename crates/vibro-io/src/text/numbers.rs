@@ -15,7 +15,9 @@ use crate::{Format, Options, number};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-const REMARKS: &[&str] = &["#", "%", "!", "*", "'", "\"", "//"];
+/// Marks of remarks above the rows, those between rows first: there a quoted cell begins a row.
+const REMARKS: [&str; 7] = ["#", "%", "!", "*", "//", "'", "\""];
+const BETWEEN: &[&str] = REMARKS.split_at(5).0;
 
 /// Rows that tell the dialect where no comma makes it doubtful.
 const ENOUGH: usize = 24;
@@ -28,7 +30,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let mut above: Vec<Line> = Vec::new();
     let mut rows: Vec<Line> = Vec::new();
     let mut comma = false;
-    for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
+    for line in Lines::new(&text.head, 0, 1, &REMARKS).filter(|l| !l.is_blank()) {
         if rows.len() >= ENOUGH && !comma {
             break;
         }
@@ -52,8 +54,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
             None => "no row of numbers".to_owned(),
         };
         return Err(Error::usage(found, "one or more numbers a line")
-            .hint("name the format if it is another; give a list of files to `vibro response`")
-            .setting("format"));
+            .hint("export the table with commas or tabs between its columns; give a list of files to `vibro response`"));
     };
     let (separator, decimal) = marks(&rows, options)?;
     let mut cells = fields(first.text, separator).unwrap_or_default();
@@ -91,7 +92,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
         skipped: 0,
         clock,
         names: named(columns).or_else(|| unnumbered().map(behind)),
-        remarks: REMARKS,
+        remarks: BETWEEN,
         columns_from: first.number,
         first_line: first.number,
         header,

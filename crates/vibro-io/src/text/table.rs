@@ -19,7 +19,7 @@ use super::{Text, in_line, shorten};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
 use std::ops::Range;
-use vibro_record::{Error, Result};
+use vibro_record::{AxisKind, Error, Result};
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
@@ -66,8 +66,13 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
             }
             // One column last: `1,5` under `a,b` is no decimal comma.
             let alone = |(separator, _): &(Separator, _)| fit(&above, line, *separator, 1, &text.head);
+            let mut below = Lines::new(&text.head, line.at, line.number, REMARKS).filter(|l| !l.is_blank());
+            let column = below
+                .nth(1)
+                .is_none_or(|l| SEPARATORS.iter().any(|mark| row(l.text, *mark, options) == Some(1)));
             if text.called_csv()
                 && misfit.is_none()
+                && column
                 && let Some((found, true)) = of(1).find_map(alone)
             {
                 return Some(decided(found, text, options));
@@ -187,8 +192,16 @@ fn fit(
         names.splice(cells, [Name { name: "time".to_owned(), unit: Some("s".to_owned()) }]);
     }
     let begin = || rows.iter().map(|row| number::parse(row.get(skipped)?.1.as_bytes()));
-    if used.is_empty() && columns > 1 && begin().zip(begin().skip(1)).all(|(a, b)| a < b) {
+    let rises = || begin().zip(begin().skip(1)).all(|(a, b)| a < b);
+    if used.is_empty() && columns > 1 && rises() {
         names[0].unit = preamble.axis_unit();
+    }
+    // `min,CH1`: some head the column of times with its unit.
+    if let Some(first) = names.first_mut().filter(|first| first.unit.is_none() && columns > 1) {
+        let timed = Name::with_unit_row("", &first.name);
+        if timed.axis(true) == Some(AxisKind::Time) && rises() {
+            *first = Name { name: "time".to_owned(), ..timed };
+        }
     }
     let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
     let keyed = preamble.name(&mut names, rows.iter().flatten().all(whole));
@@ -244,7 +257,7 @@ fn names_in(
 
 /// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.
 fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
-    let alone = line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
+    let alone = !line[0].1.is_empty() && line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
     let keyed = line.len() > width && Preamble::is_of_columns(&line[0].1);
     keyed || alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
 }
@@ -320,7 +333,7 @@ mod tests {
     fn a_second_row_of_units() {
         let expected = names(&["Time|ms", "Channel A|V"]);
         assert_eq!(layout("Time,Channel A\n(ms),(V)\n\n0,1\n"), Some((',', expected, 1, 4)));
-        assert_eq!(layout("note\ns,V\n0,1\n"), Some((',', names(&["s|", "V|"]), 2, 3)));
+        assert_eq!(layout("note\ns,V\n0,1\n"), Some((',', names(&["time|s", "V|"]), 2, 3)));
     }
 
     #[test]

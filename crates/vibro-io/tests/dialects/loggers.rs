@@ -340,4 +340,52 @@ pub const ALL: &[Dialect] = &[
             &["unit-unsaid"],
         ),
     },
+    Dialect {
+        of: "Keysight BenchLink 34970A",
+        oddity: "`9.9E+37` where the range ends, units in brackets with `DC`",
+        file: "benchlink.csv",
+        text: || {
+            table("Name:,Rig 7\nScan,Time,101 <Tip> (VDC)\n", |i| {
+                let tip = if i == 50 { "9.90000000E+37".to_owned() } else { sci(value(0, i), 8, 2) };
+                format!("{},01/24/2020 {},{tip}", i + 1, clock(12, 0.0, i, 4))
+            })
+        },
+        outcome: super::Outcome::Refused(super::Refusal {
+            words: &["line 53", "1 missing value(s)"],
+            option: "`--allow-missing`",
+            state: |reader| reader.allow_missing(true),
+            edit: |text| text,
+            right: super::Right {
+                channels: &[ch("101 <Tip>", "V", 0, 1.0, 5e-9)],
+                x: X::Even(0.0),
+                findings: &["missing-kept", "axis-clock"],
+            },
+        }),
+    },
+    Dialect {
+        of: "Fluke NetDAQ",
+        oddity: "a number alone above the names, quoted instants, no name for them",
+        file: "netdaq.csv",
+        text: || {
+            table("\"C:\\RIG7.CSV\"\n\"tap test, load 3 kg\"\n2\n\"\",\"Tip [V]\"\n", |i| {
+                format!("\"01/24/20 {}\",{}", clock(12, 0.0, i, 4), sci(value(0, i), 6, 2))
+            })
+        },
+        outcome: read(&[ch("Tip", "V", 0, 1.0, 5e-7)], X::Even(0.0), &["axis-clock"]),
+    },
+    Dialect {
+        of: "Biopac AcqKnowledge, text",
+        oddity: "the column of times is headed `sec`, every row ends with a comma",
+        file: "acq.txt",
+        text: || {
+            table("C:\\Data\\rig7.acq\n0.5 msec/sample\n2 channels\nsec,CH1,CH2,\n", |i| {
+                format!("{},{},{},", fixed(at(0.0, i), 6), fixed(value(0, i), 6), fixed(value(1, i), 6))
+            })
+        },
+        outcome: read(
+            &[ch("CH1", "", 0, 1.0, 5e-7), ch("CH2", "", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &["unit-unsaid"],
+        ),
+    },
 ];

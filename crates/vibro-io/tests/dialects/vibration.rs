@@ -228,4 +228,19 @@ pub const ALL: &[Dialect] = &[
         },
         outcome: read(&[ch("", "m/s²", 0, 1.0, 5e-7)], X::Even(0.0), &[]),
     },
+    Dialect {
+        of: "REW, measurement as text",
+        oddity: "levels in `SPL(dB)`: named as such, for they are no amplitudes",
+        file: "rew.txt",
+        text: || {
+            table("* Measurement data measured by REW V5.20\n*\n* Freq(Hz) SPL(dB)\n", |i| {
+                format!("{} {}", fixed(2.0 * i as f64, 3), fixed(value(0, i), 6))
+            })
+        },
+        outcome: read(
+            &[ch("SPL", "dB", 0, 1.0, 5e-7)],
+            X::Lines(2.0),
+            &["levels-in-decibels", "scaling-unsaid"],
+        ),
+    },
 ];
