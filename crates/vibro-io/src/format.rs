@@ -47,9 +47,21 @@ pub(super) struct Entry {
 pub(super) const TABLE: &[Entry] = &[
     Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: Some(wav::survey) },
     #[cfg(feature = "hdf5")]
-    Entry { format: Format::Hdf5, name: "hdf5", sniff: hdf5::sniff, read: hdf5::read, survey: None },
+    Entry {
+        format: Format::Hdf5,
+        name: "hdf5",
+        sniff: hdf5::sniff,
+        read: hdf5::read,
+        survey: Some(hdf5::survey),
+    },
     Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: None },
-    Entry { format: Format::Tdms, name: "tdms", sniff: tdms::sniff, read: tdms::read, survey: None },
+    Entry {
+        format: Format::Tdms,
+        name: "tdms",
+        sniff: tdms::sniff,
+        read: tdms::read,
+        survey: Some(tdms::survey),
+    },
     Entry { format: Format::Lvm, name: "lvm", sniff: lvm::sniff, read: lvm::read, survey: None },
     Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: None },
     Entry { format: Format::Csv, name: "csv", sniff: text::is_table, read: text::read_table, survey: None },

@@ -15,7 +15,8 @@ mod matlab;
 
 use super::Source;
 use super::format::Format;
-use super::reader::{Options, Recording};
+use super::reader::{Header, Options, Recording};
+use crate::held::{Contents, Held};
 use crate::mat;
 use crate::variables::names::Dialect;
 use crate::variables::{self, Array, Content, MOST_TEXT};
@@ -58,22 +59,33 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+    Ok(contents(source, options, false)?.recording(source, Format::Hdf5))
+}
+
+pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
+    let contents = contents(source, options, true)?;
+    Ok((contents.headers(), contents.findings))
+}
+
+/// All records, or, for a `survey`, the ends of their values where these are enough.
+fn contents(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let mut file = File::open(source)?;
     let root = file.root()?;
     let members = file.members(&root, "")?;
     let (dialect, variables) = if matlab::is(&members) {
-        (&mat::DIALECT, matlab::variables(&mut file, members)?)
+        (&mat::DIALECT, matlab::variables(&mut file, members, survey)?)
     } else {
-        let mut walk = Walk { file: &mut file, variables: Vec::new() };
+        let mut walk = Walk { file: &mut file, survey, variables: Vec::new() };
         let scale = walk.stated("", &root.attributes().unwrap_or_default(), AS_STORED);
         walk.group("", members, scale)?;
         (&DIALECT, walk.variables)
     };
-    variables::recording(source, dialect, variables, file.close(), options)
+    variables::contents(source, dialect, variables, file.close(), options)
 }
 
 struct Walk<'a> {
     file: &'a mut File,
+    survey: bool,
     variables: Vec<(String, Content)>,
 }
 
@@ -97,17 +109,19 @@ impl Walk<'_> {
 
     /// Adds a dataset or its fields, and the attributes of vectors and matrices.
     fn dataset(&mut self, name: &str, dataset: &Dataset, mut scale: Scale) {
-        let Some(mut data) = self.file.data(name, dataset) else { return };
         let long = dataset.shape().iter().filter(|n| **n > 1).count();
         let attributes = dataset.attributes();
-        if matches!(data, Data::Table(_)) || (1..=2).contains(&long) {
+        if matches!(dataset.dtype(), Datatype::Compound { .. }) || (1..=2).contains(&long) {
             scale = self.stated(&format!("{name}/"), &attributes, scale);
         }
-        if let Data::Numbers(Values::Real(values)) = &mut data {
+        let as_stored = scale[..5] == AS_STORED[..5] && scale[5].is_nan();
+        let ends = self.survey && as_stored && long == 1;
+        let Some(mut data) = self.file.data(name, dataset, ends) else { return };
+        if let Data::Numbers(values) = &mut data {
             let counts = matches!(dataset.dtype(), Datatype::FixedPoint { .. });
             let doubtful = |of: &&Attribute| {
                 FACTORS.contains(&DIALECT.word(&of.name).as_str())
-                    && matches!(file::attribute(of), Some(Data::Numbers(Values::Real(by))) if by != [1.0])
+                    && matches!(file::attribute(of), Some(Data::Numbers(by)) if by != Values::Real(vec![1.0]).into())
             };
             if counts
                 && long > 0
@@ -116,13 +130,12 @@ impl Walk<'_> {
                 let found = Finding::caution("scale-unknown").name("variable", name);
                 return self.file.findings.push(found.name("scale", of.name.as_str()));
             }
-            let as_stored = scale[..5] == AS_STORED[..5] && scale[5].is_nan();
             let [factor, offset, reference, scale, add, missing] = scale;
             let measured = |stored: f64| {
                 let raw = if counts { (stored - reference) * factor + offset } else { stored };
                 if stored == missing { f64::NAN } else { raw * scale + add }
             };
-            if !as_stored {
+            if let (Some(Values::Real(values)), false) = (values.values_mut(), as_stored) {
                 for value in values {
                     *value = measured(*value);
                 }
@@ -137,7 +150,7 @@ impl Walk<'_> {
             Data::Numbers(values) if dataset.ndim() == 1 => array(vec![values.len() as u64], values),
             Data::Numbers(values) => array(dataset.shape().to_vec(), values),
             Data::Table(fields) => {
-                let vector = |values: Vec<f64>| array(vec![values.len() as u64], Values::Real(values));
+                let vector = |values: Vec<f64>| array(vec![values.len() as u64], Values::Real(values).into());
                 return self.variables.extend(fields.into_iter().map(|(field, values)| {
                     let content = values.map_or(Content::Other("field that is no number"), vector);
                     (format!("{name}/{field}"), content)
@@ -155,7 +168,7 @@ impl Walk<'_> {
             let text = match file::attribute(attribute) {
                 _ if INTERNAL.contains(&word.as_str()) => continue,
                 Some(Data::Texts(texts)) => texts.join(", "),
-                Some(Data::Numbers(Values::Real(values))) if values.len() == 1 => {
+                Some(Data::Numbers(Held::Values(Values::Real(values)))) if values.len() == 1 => {
                     for (names, scale) in SCALE.iter().zip(&mut scale) {
                         *scale = if names.contains(&word.as_str()) { values[0] } else { *scale };
                     }

@@ -46,6 +46,7 @@ mod foreign;
 mod format;
 #[cfg(feature = "hdf5")]
 mod hdf5;
+mod held;
 mod lvm;
 mod mat;
 mod missing;
@@ -74,7 +75,18 @@ pub(crate) use source::Source;
 
 #[cfg(test)]
 mod tests {
-    use vibro_record::{Fact, Finding};
+    use crate::{Header, Recording};
+    use vibro_record::{Fact, Finding, Result};
+
+    /// Whether a survey says of a file what reading it says.
+    pub fn surveyed(read: &Result<Recording>, survey: Result<(Vec<Header>, Vec<Finding>)>) -> bool {
+        match (read, survey) {
+            (Ok(read), Ok(survey)) => {
+                survey == (read.records.iter().map(Header::of).collect(), read.findings.clone())
+            }
+            (read, survey) => read.is_err() && survey.is_err(),
+        }
+    }
 
     /// Findings as text, numbers with six digits: `axis-uneven column=column "t" smallest=0.1`.
     pub fn texts(findings: &[Finding]) -> Vec<String> {

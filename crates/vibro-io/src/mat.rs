@@ -60,7 +60,8 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         Error::usage(found, "a MAT-file of level 4 or 5")
             .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
     })?;
-    variables::recording(source, &DIALECT, parse(&source.all()?)?, Vec::new(), options)
+    let contents = variables::contents(source, &DIALECT, parse(&source.all()?)?, Vec::new(), options)?;
+    Ok(contents.recording(source, Format::Mat))
 }
 
 #[cfg(test)]

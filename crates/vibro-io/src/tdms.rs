@@ -18,8 +18,8 @@ mod segment;
 use super::Source;
 use super::format::Format;
 use super::missing;
-use super::reader::{Options, Recording};
-use crate::assemble::{self, Spectral, to_si};
+use super::reader::{Header, Options, Recording};
+use crate::held::{Contents, Held, rises};
 use axes::Clock;
 use description::Value;
 use layout::Layout;
@@ -29,8 +29,9 @@ use segment::{Object, Segments};
 use std::cmp::Reverse;
 use std::io::{BufReader, Read, Seek};
 use std::sync::Arc;
+use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
-use vibro_record::{Error, Finding, Meta, Record, Result, Values};
+use vibro_record::{Error, Finding, Meta, Result, Values};
 
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 20;
@@ -40,37 +41,48 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
 }
 
 pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+    Ok(contents(source, options, false)?.recording(source, Format::Tdms))
+}
+
+pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
+    let contents = contents(source, options, true)?;
+    Ok((contents.headers(), contents.findings))
+}
+
+/// All records, or, for a `survey`, the ends of their values where these are enough.
+fn contents(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     if source.head().starts_with(b"TDSh") {
         return Err(Error::usage("the index of a TDMS file", "the file with the values")
             .hint("name the file without `_index` that lies beside it"));
     }
     let mut file = BufReader::with_capacity(BLOCK, source.open()?);
     let Segments { objects, layouts, mut findings } = segment::all(&mut file, source.len())?;
-    let mut raw: Vec<Columns> = objects.iter().map(|_| Columns::new()).collect();
+    let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
+    above.sort_by_key(|object| Reverse(object.path.len()));
+    let mut raw: Vec<Raw> = objects.iter().map(|object| Raw::of(object, &above, survey)).collect();
     // Channels that lie one after the other are read side by side.
     let apart = layouts.iter().flat_map(|layout| layout.parts.iter()).all(|part| part.fields.len() <= 1);
     let each = raw.len().div_ceil(if apart { rayon::current_num_threads() } else { 1 }).max(1);
-    let read = |(i, raw): (usize, &mut [Columns])| {
+    let read = |(i, raw): (usize, &mut [Raw])| {
         let mut file = BufReader::with_capacity(BLOCK, source.open()?);
         let mut all = layouts.iter();
         all.try_for_each(|layout| values(&mut file, layout, i * each, raw))
             .map_err(|e| Error::io("read", source.path(), e))
     };
     raw.par_chunks_mut(each).enumerate().try_for_each(read)?;
-    let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
-    above.sort_by_key(|object| Reverse(object.path.len()));
+    if raw.iter().any(|raw| matches!(raw.kept, Kept::Ends(ends) if !ends.finite())) {
+        return contents(source, options, false);
+    }
     let (mut channels, mut left) = (Vec::new(), None);
-    for (object, columns) in objects.iter().zip(raw) {
+    for (object, raw) in objects.iter().zip(raw) {
         let [group, name] = &object.path[..] else { continue };
         let named = |found: Finding| found.name("variable", name.as_str());
         if let Some(class) = object.unreadable {
             findings.push(named(Finding::note("variable-passed-over")).name("class", class));
-        } else if columns.iter().all(Vec::is_empty) {
+        } else if raw.is_empty() {
             findings.push(named(Finding::note("variable-empty")));
         } else {
-            let values =
-                changed(object).map_or_else(|| Scales::of(&above, object).apply(&object.slots, columns), Err);
-            match values {
+            match changed(object).map_or_else(|| raw.measured(), Err) {
                 Ok(values) => channels.push(Channel { object, group, name, values, clock: None }),
                 Err(scale) => {
                     findings.push(named(Finding::caution("scale-unknown")).name("scale", scale.as_str()));
@@ -81,7 +93,8 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
             }
         }
     }
-    let all = channels.par_iter_mut().map(|channel| (channel.name, &mut channel.values));
+    let all = channels.par_iter_mut();
+    let all = all.filter_map(|channel| Some((channel.name, channel.values.values_mut()?)));
     findings.extend(missing::checked(all, options.allow_missing)?);
     let several = channels.iter().any(|channel| channel.group != channels[0].group);
     axes::assign(&mut channels, &mut findings)?;
@@ -93,7 +106,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         meta.step("read", &[("file", &source.name()), ("format", &"tdms")]);
         let said = UNITS.iter().find_map(|key| object.text(key).filter(|text| !text.is_empty()));
         let factor = options.adopt(&mut meta, said);
-        to_si(&mut channel.values, factor)?;
+        channel.values.scale(factor)?;
         let n = channel.values.len();
         if object.declared > n as u64 {
             meta.declared_n = usize::try_from(object.declared).ok();
@@ -102,15 +115,15 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
             );
         }
         let axis = axes::of(&channel, options, &mut meta);
-        assemble::record(meta, axis, channel.values, Spectral::default())
+        channel.values.record(meta, axis)
     };
-    let records = channels.into_iter().map(record).collect::<Result<Vec<Record>>>()?;
+    let records = channels.into_iter().map(record).collect::<Result<Vec<_>>>()?;
     if records.is_empty() {
         let found = left.unwrap_or_else(|| "no channel with numbers".to_owned());
         return Err(Error::usage(found, "at least one to make a record of")
             .hint("export scaled values as text or UFF-58 from the program that recorded them"));
     }
-    Ok(Recording { path: source.path().to_owned(), format: Format::Tdms, records, findings })
+    Ok(Contents { records, findings })
 }
 
 /// Properties that name the unit of a channel.
@@ -121,7 +134,7 @@ struct Channel<'a> {
     object: &'a Object,
     group: &'a str,
     name: &'a str,
-    values: Values,
+    values: Held,
     /// The channel of its group that is its abscissa.
     clock: Option<Arc<Clock>>,
 }
@@ -139,12 +152,71 @@ fn changed(object: &Object) -> Option<String> {
 /// Raw values of an object, one column a slot.
 type Columns = Vec<Vec<f64>>;
 
+/// What is kept of the values of an object.
+#[derive(Clone, Copy)]
+enum Kept {
+    /// All of them.
+    Values,
+    /// Both ends are enough, unless the first values rise.
+    Undecided,
+    Ends(Extremes),
+}
+
+/// What was read of an object so far.
+struct Raw<'a> {
+    object: &'a Object,
+    scales: Scales<'a>,
+    columns: Columns,
+    kept: Kept,
+}
+
+impl<'a> Raw<'a> {
+    fn of(object: &'a Object, above: &[&'a Object], survey: bool) -> Raw<'a> {
+        // The slots of one value need not lie side by side.
+        let kept = if survey && object.slots.len() == 1 { Kept::Undecided } else { Kept::Values };
+        Raw { object, scales: Scales::of(above, object), columns: Columns::new(), kept }
+    }
+
+    /// Keeps what is needed of the values so far.
+    fn look(&mut self) {
+        let new = matches!(self.kept, Kept::Undecided);
+        let (mut ends, columns) = match self.kept {
+            Kept::Undecided if self.columns.iter().any(|column| column.len() > 1) => {
+                (Extremes::NONE, self.columns.clone())
+            }
+            Kept::Ends(ends) => (ends, std::mem::take(&mut self.columns)),
+            _ => return,
+        };
+        self.kept = match self.scales.apply(&self.object.slots, columns) {
+            Ok(Values::Real(mut values)) if !(new && rises(&values)) => {
+                ends.take(&values);
+                values.clear();
+                self.columns = vec![values];
+                Kept::Ends(ends)
+            }
+            _ => Kept::Values,
+        };
+    }
+
+    fn is_empty(&self) -> bool {
+        !matches!(self.kept, Kept::Ends(_)) && self.columns.iter().all(Vec::is_empty)
+    }
+
+    /// Measured values, or the scale that is not known.
+    fn measured(self) -> std::result::Result<Held, String> {
+        match self.kept {
+            Kept::Ends(ends) => Ok(Held::Ends(ends)),
+            _ => self.scales.apply(&self.object.slots, self.columns).map(Held::Values),
+        }
+    }
+}
+
 /// Reads what a segment has of the objects from `first` on behind what `raw` holds of them.
 fn values(
     file: &mut BufReader<impl Read + Seek>,
     layout: &Layout,
     first: usize,
-    raw: &mut [Columns],
+    raw: &mut [Raw],
 ) -> std::io::Result<()> {
     let wanted = first..first + raw.len();
     segment::go(file, layout.at)?;
@@ -165,12 +237,15 @@ fn values(
                 block.resize((now * part.width) as usize, 0);
                 file.read_exact(&mut block)?;
                 for field in &part.fields {
-                    let columns = &mut raw[field.object - first];
+                    let columns = &mut raw[field.object - first].columns;
                     if columns.len() <= field.slot {
                         columns.resize(field.slot + 1, Vec::new());
                     }
                     let (width, column) = (part.width as usize, &mut columns[field.slot]);
                     field.kind.take(&block, field.offset, width, layout.big_endian, column);
+                }
+                for field in &part.fields {
+                    raw[field.object - first].look();
                 }
             }
         }

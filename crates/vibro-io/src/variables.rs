@@ -8,14 +8,14 @@ pub mod names;
 
 use super::Source;
 use super::missing;
-use super::reader::{Options, Recording};
-use crate::assemble::{self, Spectral, to_si};
+use super::reader::Options;
+use crate::held::{Contents, Held};
 use axes::Axes;
 use names::{Dialect, Scoped};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use vibro_record::units::Unit;
-use vibro_record::{Error, Fact, Finding, Meta, Record, Result, Values};
+use vibro_record::{Error, Fact, Finding, Meta, Result, Values};
 
 /// A matrix of more rows than this and than columns stands upright, whatever length the abscissa beside it has.
 const MOST_ROWS: u64 = 1000;
@@ -40,19 +40,19 @@ pub enum Content {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
     pub dimensions: Vec<u64>,
-    pub values: Values,
+    pub values: Held,
     /// Whether values have the precision of 32-bit floats only.
     pub single: bool,
 }
 
 /// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are those of the file.
-pub fn recording(
+pub fn contents(
     source: &Source,
     dialect: &'static Dialect,
     variables: Vec<(String, Content)>,
     mut findings: Vec<Finding>,
     options: &Options,
-) -> Result<Recording> {
+) -> Result<Contents> {
     let (mut arrays, mut notes) = (Vec::new(), Vec::new());
     for (name, content) in variables {
         match content {
@@ -65,10 +65,12 @@ pub fn recording(
             // MATLAB keeps the inside of objects and functions in a nameless array.
             Content::Array(_) if name.is_empty() => {}
             Content::Array(array) => match &array.values {
-                values if values.is_empty() => {
+                values if values.len() == 0 => {
                     findings.push(Finding::note("variable-empty").name("variable", name));
                 }
-                Values::Real(values) if values.len() == 1 => notes.push((name, values[0].to_string())),
+                Held::Values(Values::Real(values)) if values.len() == 1 => {
+                    notes.push((name, values[0].to_string()));
+                }
                 _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
                     let found = Finding::note("variable-many-dimensions").name("variable", name);
                     findings.push(found.count("dimensions", array.dimensions.len()));
@@ -96,18 +98,19 @@ pub fn recording(
             _ => error,
         });
     }
-    if options.complex && records.iter().all(|(.., values, _)| matches!(values, Values::Real(_))) {
+    if options.complex && !records.iter().any(|(.., values, _)| values.is_complex()) {
         return Err(Error::usage("no matrix of two columns", "one, for complex values were stated")
             .hint("leave out that values are complex")
             .setting("complex"));
     }
-    let all = records.par_iter_mut().map(|(_, name, values, _)| (name.as_str(), values));
+    let all = records.par_iter_mut();
+    let all = all.filter_map(|(_, name, values, _)| Some((name.as_str(), values.values_mut()?)));
     findings.extend(missing::checked(all, options.allow_missing)?);
     if !dialect.attributes && options.unit.is_none() && records.iter().any(|(.., unit)| unit.is_none()) {
         findings.push(Finding::caution("format-without-units"));
     }
     axes.offer(records.iter().map(|(_, name, values, _)| (name, values)));
-    let record = |(of, name, mut values, unit): (String, String, Values, Option<&str>)| {
+    let record = |(of, name, mut values, unit): (String, String, Held, Option<&str>)| {
         let mut meta = Meta::new(name, Unit::opaque(""));
         let axis = axes.of(&of, &values, &mut meta, &mut findings)?;
         for (scope, (name, text)) in beside.over(&of) {
@@ -123,11 +126,11 @@ pub fn recording(
         meta.step("read", &[("file", &source.name()), ("format", &dialect.format.name())]);
         let stated = dialect.attributes || options.unit.is_some() || unit.is_some();
         let factor = if stated { options.adopt(&mut meta, unit) } else { 1.0 };
-        to_si(&mut values, factor)?;
-        assemble::record(meta, axis, values, Spectral::default())
+        values.scale(factor)?;
+        values.record(meta, axis)
     };
-    let records = records.into_iter().map(record).collect::<Result<Vec<Record>>>()?;
-    Ok(Recording { path: source.path().to_owned(), format: dialect.format, records, findings })
+    let records = records.into_iter().map(record).collect::<Result<_>>()?;
+    Ok(Contents { records, findings })
 }
 
 /// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the abscissa. Where complex values
@@ -138,9 +141,9 @@ fn split(
     axes: &Axes,
     options: &Options,
     findings: &mut Vec<Finding>,
-) -> Vec<(String, Values)> {
+) -> Vec<(String, Held)> {
     let mut long = dimensions.into_iter().filter(|d| *d > 1);
-    let (Some(rows), Some(columns)) = (long.next(), long.next()) else {
+    let (Some(rows), Some(columns), Held::Values(values)) = (long.next(), long.next(), &values) else {
         return vec![(name.to_owned(), values)];
     };
     let dialect = axes.dialect;
@@ -155,7 +158,7 @@ fn split(
     let (rows, columns) = (rows as usize, columns as usize);
     let (n, count) = if lying { (columns, rows) } else { (rows, columns) };
     let (first, step) = if lying == dialect.by_rows { (n, 1) } else { (1, count) };
-    let part = |k: usize| match &values {
+    let part = |k: usize| match values {
         Values::Real(all) => Values::Real(every(all, k * first, step, n)),
         Values::Complex(all) => Values::Complex(every(all, k * first, step, n)),
     };
@@ -164,11 +167,11 @@ fn split(
         && let (Values::Real(re), Values::Real(im)) = (part(0), part(1))
     {
         let pairs = re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im));
-        return vec![(name.to_owned(), Values::Complex(pairs.collect()))];
+        return vec![(name.to_owned(), Values::Complex(pairs.collect()).into())];
     }
     let [open, close] = dialect.brackets;
     let index = |k: usize| if lying { format!("{open}{k},:{close}") } else { format!("{open}:,{k}{close}") };
-    (0..count).map(|k| (format!("{name}{}", index(dialect.first + k)), part(k))).collect()
+    (0..count).map(|k| (format!("{name}{}", index(dialect.first + k)), part(k).into())).collect()
 }
 
 fn every<T: Copy>(all: &[T], from: usize, step: usize, n: usize) -> Vec<T> {

@@ -57,11 +57,13 @@ pub struct Extremes {
     /// Values so far.
     n: usize,
     at: usize,
+    finite: bool,
 }
 
 impl Extremes {
     /// Of no values.
-    pub const NONE: Extremes = Extremes { low: f64::INFINITY, high: f64::NEG_INFINITY, n: 0, at: 0 };
+    pub const NONE: Extremes =
+        Extremes { low: f64::INFINITY, high: f64::NEG_INFINITY, n: 0, at: 0, finite: true };
 
     /// Of these values.
     pub fn of(values: &[f64]) -> Extremes {
@@ -73,18 +75,43 @@ impl Extremes {
     /// Adds the next values.
     pub fn take(&mut self, values: &[f64]) {
         for near in values.chunks(NEAR) {
-            let seen = survey(near);
-            let most = seen.high.max(-seen.low);
-            if most > self.high.max(-self.low) {
-                self.at = self.n + near.iter().position(|v| v.abs() == most).unwrap_or_default();
-            }
-            *self = Extremes {
-                low: self.low.min(seen.low),
-                high: self.high.max(seen.high),
-                n: self.n + near.len(),
-                ..*self
-            };
+            let Survey { low, high, finite } = survey(near);
+            let most = high.max(-low);
+            let at = if most > self.size() { near.iter().position(|v| v.abs() == most) } else { None };
+            self.join(Extremes { low, high, n: near.len(), at: at.unwrap_or_default(), finite });
         }
+    }
+
+    /// Adds the ends of the next values.
+    pub fn join(&mut self, next: Extremes) {
+        if next.size() > self.size() {
+            self.at = self.n + next.at;
+        }
+        self.low = self.low.min(next.low);
+        self.high = self.high.max(next.high);
+        self.n += next.n;
+        self.finite &= next.finite;
+    }
+
+    /// Largest magnitude; −∞ where there is none.
+    fn size(&self) -> f64 {
+        self.high.max(-self.low)
+    }
+
+    /// Number of values, missing ones too.
+    #[allow(clippy::len_without_is_empty)] // nobody asks
+    pub fn len(&self) -> usize {
+        self.n
+    }
+
+    /// Whether every value is a number: neither missing nor infinite.
+    pub fn finite(&self) -> bool {
+        self.finite
+    }
+
+    /// The ends, to be multiplied by a factor above 0.
+    pub fn ends_mut(&mut self) -> [&mut f64; 2] {
+        [&mut self.low, &mut self.high]
     }
 
     /// Least and largest value; `None` where there is none.
@@ -94,7 +121,7 @@ impl Extremes {
 
     /// The first index of the largest magnitude, and this; `None` where there is none.
     pub fn largest(&self) -> Option<(usize, f64)> {
-        self.range().map(|(low, high)| (self.at, high.max(-low)))
+        self.range().map(|_| (self.at, self.size()))
     }
 }
 
@@ -125,6 +152,11 @@ mod tests {
         let mut parts = Extremes::NONE;
         values.chunks(1000).for_each(|part| parts.take(part));
         assert_eq!(parts, Extremes::of(&values));
+        let (mut joined, behind) = (Extremes::of(&values[..700]), Extremes::of(&values[700..]));
+        joined.join(behind);
+        assert_eq!((joined, joined.len(), joined.finite()), (parts, values.len(), true));
+        joined.take(&[f64::NAN]);
+        assert!(!joined.finite());
         let first = values.iter().position(|v| *v == -600.0).unwrap();
         assert_eq!((parts.range(), parts.largest()), (Some((-600.0, 408.0)), Some((first, 600.0))));
         assert_eq!([Extremes::of(&[f64::NAN]).range(), Extremes::NONE.range()], [None; 2]);

@@ -5,6 +5,7 @@
 use super::lzf;
 use crate::Source;
 use crate::binary::Kind;
+use crate::held::{Held, rises};
 use crate::variables::EXPORT;
 use hdf5_reader::attribute_api::Attribute;
 use hdf5_reader::dataset::{Dataset, SliceInfo, SliceInfoElem};
@@ -14,12 +15,13 @@ use hdf5_reader::messages::HdfMessage;
 use hdf5_reader::messages::datatype::{ReferenceType, VarLenKind};
 use hdf5_reader::storage::FileStorage;
 use hdf5_reader::{
-    ByteOrder, CompoundField, Datatype, ExternalLinkResolver, FilterRegistry, Hdf5File, OpenOptions,
+    ByteOrder, CompoundField, Datatype, ExternalLinkResolver, FilterRegistry, H5Type, Hdf5File, OpenOptions,
 };
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashSet};
 use std::sync::{Arc, Mutex};
+use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Finding, Result, Values};
 
 /// No filter makes more of a byte: deflate gives 258 for two bits.
@@ -29,8 +31,8 @@ const MANY: u64 = 16;
 /// Groups within each other are read to this depth, and paths to this length.
 const MOST_DEPTH: usize = 32;
 pub const MOST_PATH: usize = 512;
-/// Values that are read at a time.
-const BLOCK: usize = 1 << 13;
+/// Values that are read at a time; fewer where the files of the tests are to have several.
+const BLOCK: usize = if cfg!(test) { 8 } else { 1 << 15 };
 
 /// Fields of complex numbers.
 const COMPLEX: &[(&str, &str)] = &[("r", "i"), ("real", "imag"), ("re", "im")];
@@ -38,7 +40,7 @@ const COMPLEX: &[(&str, &str)] = &[("r", "i"), ("real", "imag"), ("re", "im")];
 /// What a dataset or an attribute holds.
 #[derive(Debug)]
 pub enum Data {
-    Numbers(Values),
+    Numbers(Held),
     /// The fields of rows; `None` for one that is no number.
     Table(Vec<(String, Option<Vec<f64>>)>),
     Texts(Vec<String>),
@@ -157,9 +159,9 @@ impl File {
         self.findings
     }
 
-    /// What a dataset holds; where it cannot be read, a finding says why.
-    pub fn data(&mut self, name: &str, dataset: &Dataset) -> Option<Data> {
-        match self.held(dataset) {
+    /// What a dataset holds, of numbers only their `ends` where these are enough; where it cannot be read, a finding says why.
+    pub fn data(&mut self, name: &str, dataset: &Dataset, ends: bool) -> Option<Data> {
+        match self.held(dataset, ends) {
             Ok(Data::Other(class)) => self.pass(name, class),
             Ok(data) => {
                 let declared = dataset.num_elements().unwrap_or_default() as usize;
@@ -176,7 +178,7 @@ impl File {
         None
     }
 
-    fn held(&self, dataset: &Dataset) -> std::result::Result<Data, Fault> {
+    fn held(&self, dataset: &Dataset, ends: bool) -> std::result::Result<Data, Fault> {
         let header = self.open.get_or_parse_header(dataset.address())?;
         let packed = header.messages.iter().any(|message| matches!(message, HdfMessage::FilterPipeline(_)));
         let (declared, most) = (dataset.raw_byte_len()? as u64, if packed { MOST_UNPACKED } else { 1 });
@@ -192,20 +194,14 @@ impl File {
             return Err(Fault::InvalidData(found));
         }
         match dataset.dtype() {
-            _ if dataset.num_elements()? == 0 => Ok(Data::Numbers(Values::Real(Vec::new()))),
+            _ if dataset.num_elements()? == 0 => Ok(Data::Numbers(Values::Real(Vec::new()).into())),
             Datatype::String { .. } | Datatype::VarLen { kind: VarLenKind::String, .. } => {
                 Ok(Data::Texts(dataset.read_strings()?))
             }
-            kind => {
-                if matches!(kind, Datatype::FloatingPoint { size: 8, .. }) && described(&layout, &[kind])[0] {
-                    let values = match dataset.chunks() {
-                        None if dataset.ndim() > 0 => by_rows(dataset)?,
-                        _ => dataset.read_array_parallel()?.into_raw_vec_and_offset().0,
-                    };
-                    return Ok(Data::Numbers(Values::Real(values)));
-                }
-                decoded(kind, &layout, dataset.raw_element_size()?, || dataset.read_raw_bytes())
+            kind if number(kind).is_some() && described(&layout, &[kind])[0] && dataset.ndim() > 0 => {
+                Ok(Data::Numbers(by_rows(dataset, ends)?))
             }
+            kind => decoded(kind, &layout, dataset.raw_element_size()?, || dataset.read_raw_bytes()),
         }
     }
 }
@@ -229,18 +225,63 @@ fn written(dataset: &Dataset) -> std::result::Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
-/// The values of a dataset in one piece, rows after rows: what is read needs no room of its size beside them.
-fn by_rows(dataset: &Dataset) -> std::result::Result<Vec<f64>, Fault> {
-    let row = dataset.shape()[1..].iter().product::<u64>() as usize;
-    let rows = (BLOCK / row).max(1);
-    let mut values = vec![0.0; dataset.num_elements()? as usize];
-    values.par_chunks_mut(rows * row).enumerate().try_for_each(|(k, part)| {
+/// A number of any kind.
+#[derive(Clone)]
+struct Number(f64);
+
+impl H5Type for Number {
+    fn hdf5_type() -> Datatype {
+        f64::hdf5_type()
+    }
+
+    fn from_bytes(bytes: &[u8], kind: &Datatype) -> std::result::Result<Number, Fault> {
+        let number = column(bytes, 0, bytes.len(), kind).and_then(|values| values.first().copied());
+        number.map(Number).ok_or_else(|| Fault::InvalidData(format!("{kind:?} in place of a number")))
+    }
+
+    fn element_size(kind: &Datatype) -> usize {
+        number(kind).map_or(0, |(kind, _)| kind.size() as usize)
+    }
+
+    fn decode_vec(
+        bytes: &[u8],
+        kind: &Datatype,
+        n: usize,
+    ) -> Option<std::result::Result<Vec<Number>, Fault>> {
+        let size = Number::element_size(kind);
+        let values = column(bytes.get(..n.checked_mul(size)?)?, 0, size, kind)?;
+        Some(Ok(values.into_iter().map(Number).collect()))
+    }
+}
+
+/// The numbers of a dataset, some rows at a time: what is read needs no room of its size beside them, and of the `ends` alone none.
+fn by_rows(dataset: &Dataset, ends: bool) -> std::result::Result<Held, Fault> {
+    let (n, all) = (dataset.num_elements()? as usize, dataset.shape()[0]);
+    let row = n / all as usize;
+    let chunk = dataset.chunks().and_then(|chunk| chunk.first().copied()).unwrap_or(1).max(1) as usize;
+    let rows = (BLOCK / row).max(1).next_multiple_of(chunk);
+    let block = |k: usize| {
         let (start, mut slice) = ((k * rows) as u64, SliceInfo::all(dataset.ndim()));
-        slice.selections[0] = SliceInfoElem::Slice { start, end: start + (part.len() / row) as u64, step: 1 };
-        part.copy_from_slice(&dataset.read_slice(&slice)?.into_raw_vec_and_offset().0);
+        let end = all.min(start + rows as u64);
+        slice.selections[0] = SliceInfoElem::Slice { start, end, step: 1 };
+        let numbers = dataset.read_slice::<Number>(&slice)?.into_raw_vec_and_offset().0;
+        Ok(numbers.into_iter().map(|Number(value)| value).collect::<Vec<f64>>())
+    };
+    let blocks = n.div_ceil(rows * row);
+    if ends && blocks > 1 && !rises(&block(0)?) {
+        let parts = (0..blocks).into_par_iter().map(|k| block(k).map(|values| Extremes::of(&values)));
+        let mut whole = Extremes::NONE;
+        parts.collect::<std::result::Result<Vec<_>, Fault>>()?.into_iter().for_each(|part| whole.join(part));
+        if whole.finite() {
+            return Ok(Held::Ends(whole));
+        }
+    }
+    let mut values = vec![0.0; n];
+    values.par_chunks_mut(rows * row).enumerate().try_for_each(|(k, part)| {
+        part.copy_from_slice(&block(k)?);
         Ok::<(), Fault>(())
     })?;
-    Ok(values)
+    Ok(Values::Real(values).into())
 }
 
 /// What an attribute holds.
@@ -263,7 +304,7 @@ fn decoded(
 ) -> std::result::Result<Data, Fault> {
     Ok(match kind {
         Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } if described(layout, &[kind])[0] => {
-            Data::Numbers(Values::Real(column(&read()?, 0, size, kind).unwrap_or_default()))
+            Data::Numbers(Values::Real(column(&read()?, 0, size, kind).unwrap_or_default()).into())
         }
         Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } => {
             Data::Other("number of an unusual layout")
@@ -279,7 +320,7 @@ fn decoded(
             match &columns[..] {
                 [(r, Some(re)), (i, Some(im))] if COMPLEX.contains(&(r.as_str(), i.as_str())) => {
                     let pairs = re.iter().zip(im).map(|(re, im)| Complex64::new(*re, *im));
-                    Data::Numbers(Values::Complex(pairs.collect()))
+                    Data::Numbers(Values::Complex(pairs.collect()).into())
                 }
                 _ => Data::Table(columns),
             }

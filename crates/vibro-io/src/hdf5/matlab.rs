@@ -2,6 +2,7 @@
 //! arrays of structs are references into the group `#refs#`.
 
 use super::file::{Data, File, MOST_PATH, Member};
+use crate::held::Held;
 use crate::variables::{Array, Content};
 use hdf5_reader::dataset::Dataset;
 use hdf5_reader::{Attribute, Datatype};
@@ -28,7 +29,7 @@ fn has(attributes: &[Attribute], name: &str) -> bool {
 }
 
 /// All variables, named as MATLAB writes them.
-pub fn variables(file: &mut File, mut members: Vec<(String, Member)>) -> Result<Variables> {
+pub fn variables(file: &mut File, mut members: Vec<(String, Member)>, survey: bool) -> Result<Variables> {
     let mut referred = HashMap::new();
     if let Some(at) = members.iter().position(|(name, _)| name == REFERENCES)
         && let Member::Group(group) = members.remove(at).1
@@ -36,7 +37,7 @@ pub fn variables(file: &mut File, mut members: Vec<(String, Member)>) -> Result<
         let found = file.members(&group, "")?.into_iter();
         referred = found.map(|(_, member)| (member.address(), member)).collect();
     }
-    let mut walk = Walk { file, referred, variables: Vec::new() };
+    let mut walk = Walk { file, survey, referred, variables: Vec::new() };
     for (name, member) in members {
         if name == OBJECTS { walk.file.pass(&name, "object") } else { walk.member(&name, member)? }
     }
@@ -45,6 +46,8 @@ pub fn variables(file: &mut File, mut members: Vec<(String, Member)>) -> Result<
 
 struct Walk<'a> {
     file: &'a mut File,
+    /// Whether the ends of values are enough.
+    survey: bool,
     /// By address; each is taken once.
     referred: HashMap<u64, Member>,
     variables: Variables,
@@ -81,15 +84,15 @@ impl Walk<'_> {
             return self.references(dataset, name, &|i| format!("{name}{{{i}}}"));
         }
         let data = match class.as_str() {
-            _ if empty => Some(Data::Numbers(Values::Real(Vec::new()))),
-            "char" if dimensions.first() == Some(&1) => self.file.data(name, dataset),
-            class if NUMBERS.contains(&class) => self.file.data(name, dataset),
+            _ if empty => Some(Data::Numbers(Values::Real(Vec::new()).into())),
+            "char" if dimensions.first() == Some(&1) => self.file.data(name, dataset, false),
+            class if NUMBERS.contains(&class) => self.file.data(name, dataset, self.survey),
             "char" => Some(Data::Other("char array of several rows")),
             "logical" => Some(Data::Other("logical array")),
             _ => Some(Data::Other("object")),
         };
         let content = match data {
-            Some(Data::Numbers(Values::Real(values))) if class == "char" => {
+            Some(Data::Numbers(Held::Values(Values::Real(values)))) if class == "char" => {
                 let units: Vec<u16> = values.iter().map(|unit| *unit as u16).collect();
                 Content::Text(String::from_utf16_lossy(&units))
             }
@@ -108,7 +111,7 @@ impl Walk<'_> {
             self.file.pass(name, "cell array too deep in others");
             return Ok(());
         }
-        let Some(Data::References(addresses)) = self.file.data(name, dataset) else {
+        let Some(Data::References(addresses)) = self.file.data(name, dataset, false) else {
             return Ok(());
         };
         for (i, address) in addresses.iter().enumerate() {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::Reader;
-use crate::tests::{has_finding, texts};
+use crate::tests::{has_finding, surveyed, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use vibro_record::units::Unit;
@@ -14,7 +14,10 @@ fn v() -> impl Iterator<Item = f64> {
 /// Reads a fixture from its folder, where files that links lead to are, too.
 fn fixture(name: &str) -> Recording {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/hdf5/");
-    Reader::new().from_path(format!("{folder}{name}")).unwrap()
+    let source = Source::file(format!("{folder}{name}")).unwrap();
+    let read = Reader::new().read(&source);
+    assert!(surveyed(&read, survey(&source, &Options::default())), "{name}");
+    read.unwrap()
 }
 
 fn names(recording: &Recording) -> Vec<&str> {

@@ -58,7 +58,7 @@ pub fn all(bytes: &[u8]) -> Result<Vec<(String, Content)>> {
                     let dimensions = vec![rows.into(), columns.into()];
                     Content::Array(Array {
                         dimensions,
-                        values: complex(values, imaginary),
+                        values: complex(values, imaginary).into(),
                         single: kind == 7,
                     })
                 }

@@ -218,7 +218,7 @@ fn variable(
             let real = elements.numbers(count)?;
             let imaginary = if has_two { Some(elements.numbers(count)?) } else { None };
             let values = complex(real, imaginary);
-            Content::Array(Array { dimensions, values, single: class == 7 })
+            Content::Array(Array { dimensions, values: values.into(), single: class == 7 })
         }
         3 => Content::Other("object"),
         5 => Content::Other("sparse matrix"),

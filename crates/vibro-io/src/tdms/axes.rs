@@ -9,7 +9,7 @@ use crate::text::names::Name;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result, Values};
+use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result};
 
 /// A channel that is the abscissa of others.
 pub struct Clock {
@@ -32,13 +32,12 @@ impl Clock {
         let first = whole.split(['_', ' ']).next().filter(|word| word.len() > 1);
         let first = || named(first?).filter(|kind| *kind == AxisKind::Time);
         let (kind, sure) = named(whole).map(|kind| (kind, true)).or_else(|| Some((first()?, false)))?;
-        let Values::Real(values) = &channel.values else { return None };
-        if values.len() < 2 || !values.is_sorted_by(|a, b| a < b) {
-            if sure && values.len() > 1 {
+        let Some(values) = channel.values.rising() else {
+            if sure && channel.values.len() > 1 && !channel.values.is_complex() {
                 findings.push(Finding::caution("abscissa-not-rising").name("variable", channel.name));
             }
             return None;
-        }
+        };
         let label = format!("channel {:?}", channel.name);
         let instants = channel.object.slots == [Slot::Instant];
         let epoch = epoch(values[0]).filter(|_| unit.is_none() && !instants && kind == AxisKind::Time);

@@ -1,7 +1,7 @@
 use super::*;
-use crate::tests::has_finding;
+use crate::tests::{has_finding, surveyed};
 use proptest::prelude::*;
-use vibro_record::{AxisKind, Trace};
+use vibro_record::{AxisKind, Record, Trace};
 
 /// Writes TDMS segments, in either order of bytes.
 #[derive(Default)]
@@ -126,7 +126,10 @@ impl Writer {
 }
 
 fn recording(bytes: &[u8]) -> Result<Recording> {
-    crate::Reader::new().from_reader("x.tdms", bytes)
+    let read = crate::Reader::new().from_reader("x.tdms", bytes);
+    let source = Source::memory("x.tdms", bytes).unwrap();
+    assert!(surveyed(&read, survey(&source, &Options::default())));
+    read
 }
 
 fn traces(bytes: &[u8]) -> Vec<Trace> {

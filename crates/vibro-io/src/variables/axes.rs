@@ -5,13 +5,14 @@ use super::names::Meaning::{Increment, Rate, Start};
 use super::names::Trust::{Likely, Offered, Sure, Vague};
 use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
 use crate::assemble::{drift, epoch, from_values, kind_of, short};
+use crate::held::Held;
 use crate::number;
 use crate::reader::{Options, POSSIBLE};
 use crate::text::names::Name;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Result, Values};
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Result};
 
 /// A shaft turns slower than this, in Hz.
 const SHAFT: f64 = 1000.0;
@@ -28,7 +29,7 @@ fn kind(
     dialect: &Dialect,
     name: &str,
     unit: Option<&str>,
-    values: &Values,
+    values: &Held,
 ) -> Option<(AxisKind, [f64; 2], Option<Finding>)> {
     // Recorders of control systems write `X.Data` and `Y.Data`.
     let key = dialect.key(name);
@@ -40,7 +41,7 @@ fn kind(
     let by_name = Name { unit: None, ..said.clone() }.axis(true).is_some();
     let kind = said.axis(true).filter(|_| !said.is_vague() && (by_name || !by_unit))?;
     let (factor, assumed) = said.to_axis(&kind).ok()?;
-    match rises(values) {
+    match values.rising() {
         Some(values) if said.unit.is_none() && kind == AxisKind::Time => {
             let (first, last) = (values[0], values[values.len() - 1]);
             let step = (last - first) / (values.len() - 1) as f64;
@@ -54,13 +55,6 @@ fn kind(
             (step < TICKS).then_some((kind, [0.0, 1.0], assumed.filter(|_| !seconds && dialect.attributes)))
         }
         _ => Some((kind, [0.0, factor], assumed)),
-    }
-}
-
-fn rises(values: &Values) -> Option<&[f64]> {
-    match values {
-        Values::Real(values) if values.len() > 1 && values.is_sorted_by(|a, b| a < b) => Some(values),
-        _ => None,
     }
 }
 
@@ -161,7 +155,7 @@ impl<'a> Axes<'a> {
         let kinds: Vec<_> =
             arrays.iter().map(|(name, array)| kind(dialect, name, unit(name), &array.values)).collect();
         let values = arrays.iter().zip(&kinds);
-        let values = values.filter(|((_, array), kind)| kind.is_none() || rises(&array.values).is_none());
+        let values = values.filter(|((_, array), kind)| kind.is_none() || array.values.rising().is_none());
         let mut values: Vec<&str> = values.map(|((name, _), _)| name.as_str()).collect();
         values.sort_unstable();
         let scalar = |note: &'n (String, String)| {
@@ -188,8 +182,8 @@ impl<'a> Axes<'a> {
             let others = arrays.iter().enumerate().filter(|(i, _)| *i != at && !taken[*i]);
             let mut others = others.filter(|(_, (of, _))| of.starts_with(scope));
             let fits = dimensions.contains(&n) && others.any(|(_, (_, other))| other.dimensions.contains(&n));
-            let Some(vector) = rises(vector).filter(|_| fits) else {
-                let rises = rises(vector).is_some();
+            let Some(vector) = vector.rising().filter(|_| fits) else {
+                let rises = vector.rising().is_some();
                 let code = if rises { "abscissa-of-other-length" } else { "abscissa-not-rising" };
                 findings.push(Finding::caution(code).name("variable", name.as_str()));
                 continue;
@@ -227,9 +221,9 @@ impl<'a> Axes<'a> {
     }
 
     /// Remembers what among the records may be an abscissa.
-    pub fn offer<'r>(&mut self, records: impl Iterator<Item = (&'r String, &'r Values)>) {
+    pub fn offer<'r>(&mut self, records: impl Iterator<Item = (&'r String, &'r Held)>) {
         let even = records.filter_map(|(name, values)| {
-            let rising = rises(values)?;
+            let rising = values.rising()?;
             let step = Axis::from_values(AxisKind::Index, rising.to_vec(), drift(rising, false)).step()?;
             // Numbers from 1 on only count.
             (step != 1.0).then(|| (name.clone(), values.len(), step))
@@ -256,11 +250,11 @@ impl<'a> Axes<'a> {
     pub fn of(
         &self,
         name: &str,
-        values: &Values,
+        values: &Held,
         meta: &mut Meta,
         findings: &mut Vec<Finding>,
     ) -> Result<Axis> {
-        let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
+        let (n, complex) = (values.len(), values.is_complex());
         let fits = |axis: &Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
         let mut fitting = self.vectors.over(name).filter(|(_, (_, axis))| fits(axis));
         let said = self.chosen(name, n, complex);
@@ -323,8 +317,8 @@ impl<'a> Axes<'a> {
     }
 
     /// What to say of values without an abscissa: which variables may hold it.
-    fn unsaid(&self, name: &str, values: &Values, record: &str) -> Finding {
-        let (n, complex) = (values.len(), matches!(values, Values::Complex(_)));
+    fn unsaid(&self, name: &str, values: &Held, record: &str) -> Finding {
+        let (n, complex) = (values.len(), values.is_complex());
         let mut found = Finding::caution("abscissa-unsaid");
         let offered = self
             .scalars

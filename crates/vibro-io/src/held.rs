@@ -1,0 +1,95 @@
+//! What a reader holds of values: all of them, or, where a survey asks for no more, their ends.
+
+use crate::assemble::{self, Spectral};
+use crate::{Format, Header, Recording, Source};
+use rayon::prelude::*;
+use vibro_record::lanes::Extremes;
+use vibro_record::{Axis, Finding, Meta, Record, Result, Values, units};
+
+/// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing is to be said of any of them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Held {
+    Values(Values),
+    Ends(Extremes),
+}
+
+impl From<Values> for Held {
+    fn from(values: Values) -> Held {
+        Held::Values(values)
+    }
+}
+
+impl Held {
+    pub fn len(&self) -> usize {
+        match self {
+            Held::Values(values) => values.len(),
+            Held::Ends(ends) => ends.len(),
+        }
+    }
+
+    pub fn is_complex(&self) -> bool {
+        matches!(self, Held::Values(Values::Complex(_)))
+    }
+
+    /// The values, where they rise.
+    pub fn rising(&self) -> Option<&[f64]> {
+        match self {
+            Held::Values(Values::Real(values)) if values.len() > 1 && rises(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// All values, where they may have gaps.
+    pub fn values_mut(&mut self) -> Option<&mut Values> {
+        if let Held::Values(values) = self { Some(values) } else { None }
+    }
+
+    /// Multiplies by the factor of a unit.
+    ///
+    /// # Errors
+    /// If a value becomes too large for a number.
+    pub fn scale(&mut self, factor: f64) -> Result<()> {
+        match self {
+            Held::Values(values) => assemble::to_si(values, factor),
+            Held::Ends(ends) => units::scale(ends.ends_mut(), factor),
+        }
+    }
+
+    /// The record of these values, see [`assemble::record`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn record(self, meta: Meta, axis: Axis) -> Result<(Record, Option<Extremes>)> {
+        let (values, ends) = match self {
+            Held::Values(values) => (values, None),
+            Held::Ends(ends) => (Values::Real(Vec::new()), Some(ends)),
+        };
+        Ok((assemble::record(meta, axis, values, Spectral::default())?, ends))
+    }
+}
+
+/// Whether each value lies above the one before it.
+pub fn rises(values: &[f64]) -> bool {
+    values.is_sorted_by(|a, b| a < b)
+}
+
+/// Records of a file, with the ends of those whose values were not kept.
+pub struct Contents {
+    pub records: Vec<(Record, Option<Extremes>)>,
+    pub findings: Vec<Finding>,
+}
+
+impl Contents {
+    /// Of a file of which all values were kept.
+    pub fn recording(self, source: &Source, format: Format) -> Recording {
+        let records = self.records.into_iter().map(|(record, _)| record).collect();
+        Recording { path: source.path().to_owned(), format, records, findings: self.findings }
+    }
+
+    pub fn headers(&self) -> Vec<Header> {
+        let header = |(record, ends): &(Record, Option<Extremes>)| {
+            Header::with(record, ends.unwrap_or_else(|| record.extremes()))
+        };
+        self.records.par_iter().map(header).collect()
+    }
+}
