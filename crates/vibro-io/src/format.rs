@@ -2,9 +2,10 @@
 
 #[cfg(feature = "hdf5")]
 use super::hdf5;
-use super::reader::{Options, Recording};
-use super::{Header, Source, lvm, mat, tdms, text, uff, wav};
-use vibro_record::{Finding, Result};
+use super::reader::Options;
+use super::{Source, lvm, mat, tdms, text, uff, wav};
+use crate::held::Contents;
+use vibro_record::Result;
 
 /// A readable format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,10 +28,8 @@ pub enum Format {
     Ascii,
 }
 
-/// Reads all records with their values.
-type Read = fn(&Source, &Options) -> Result<Recording>;
-/// Reads the records without their values in memory that does not grow with the file.
-type Survey = fn(&Source, &Options) -> Result<(Vec<Header>, Vec<Finding>)>;
+/// Reads the records of a source; for a `survey` the ends of their values are enough where the format can tell them in less memory.
+type Read = fn(&Source, &Options, survey: bool) -> Result<Contents>;
 
 /// How one format is told apart and read.
 pub(super) struct Entry {
@@ -39,39 +38,19 @@ pub(super) struct Entry {
     /// Whether the first bytes are of this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
     pub read: Read,
-    /// Where the format allows it; other files are read.
-    pub survey: Option<Survey>,
 }
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.
 pub(super) const TABLE: &[Entry] = &[
-    Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read, survey: Some(wav::survey) },
+    Entry { format: Format::Wav, name: "wav", sniff: wav::sniff, read: wav::read },
     #[cfg(feature = "hdf5")]
-    Entry {
-        format: Format::Hdf5,
-        name: "hdf5",
-        sniff: hdf5::sniff,
-        read: hdf5::read,
-        survey: Some(hdf5::survey),
-    },
-    Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read, survey: None },
-    Entry {
-        format: Format::Tdms,
-        name: "tdms",
-        sniff: tdms::sniff,
-        read: tdms::read,
-        survey: Some(tdms::survey),
-    },
-    Entry { format: Format::Lvm, name: "lvm", sniff: lvm::sniff, read: lvm::read, survey: None },
-    Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read, survey: None },
-    Entry { format: Format::Csv, name: "csv", sniff: text::is_table, read: text::read_table, survey: None },
-    Entry {
-        format: Format::Ascii,
-        name: "ascii",
-        sniff: text::is_text,
-        read: text::read_numbers,
-        survey: None,
-    },
+    Entry { format: Format::Hdf5, name: "hdf5", sniff: hdf5::sniff, read: hdf5::read },
+    Entry { format: Format::Mat, name: "mat", sniff: mat::sniff, read: mat::read },
+    Entry { format: Format::Tdms, name: "tdms", sniff: tdms::sniff, read: tdms::read },
+    Entry { format: Format::Lvm, name: "lvm", sniff: lvm::sniff, read: lvm::read },
+    Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read },
+    Entry { format: Format::Csv, name: "csv", sniff: text::is_table, read: text::read_table },
+    Entry { format: Format::Ascii, name: "ascii", sniff: text::is_text, read: text::read_numbers },
 ];
 
 impl Format {

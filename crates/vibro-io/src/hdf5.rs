@@ -15,7 +15,7 @@ mod matlab;
 
 use super::Source;
 use super::format::Format;
-use super::reader::{Header, Options, Recording};
+use super::reader::Options;
 use crate::held::{Contents, Held};
 use crate::mat;
 use crate::variables::names::Dialect;
@@ -58,17 +58,8 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     [0].into_iter().chain(places).any(|at| head[at..].starts_with(SIGNATURE))
 }
 
-pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
-    Ok(contents(source, options, false)?.recording(source, Format::Hdf5))
-}
-
-pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
-    let contents = contents(source, options, true)?;
-    Ok((contents.headers(), contents.findings))
-}
-
 /// All records, or, for a `survey`, the ends of their values where these are enough.
-fn contents(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
+pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let mut file = File::open(source)?;
     let root = file.root()?;
     let members = file.members(&root, "")?;

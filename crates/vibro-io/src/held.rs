@@ -1,8 +1,6 @@
 //! What a reader holds of values: all of them, or, where a survey asks for no more, their ends.
 
 use crate::assemble::{self, Spectral};
-use crate::{Format, Header, Recording, Source};
-use rayon::prelude::*;
 use vibro_record::lanes::Extremes;
 use vibro_record::{Axis, Finding, Meta, Record, Result, Values, units};
 
@@ -74,6 +72,7 @@ pub fn rises(values: &[f64]) -> bool {
 }
 
 /// Records of a file, with the ends of those whose values were not kept.
+#[derive(Debug)]
 pub struct Contents {
     pub records: Vec<(Record, Option<Extremes>)>,
     pub findings: Vec<Finding>,
@@ -81,15 +80,7 @@ pub struct Contents {
 
 impl Contents {
     /// Of a file of which all values were kept.
-    pub fn recording(self, source: &Source, format: Format) -> Recording {
-        let records = self.records.into_iter().map(|(record, _)| record).collect();
-        Recording { path: source.path().to_owned(), format, records, findings: self.findings }
-    }
-
-    pub fn headers(&self) -> Vec<Header> {
-        let header = |(record, ends): &(Record, Option<Extremes>)| {
-            Header::with(record, ends.unwrap_or_else(|| record.extremes()))
-        };
-        self.records.par_iter().map(header).collect()
+    pub fn of(records: impl IntoIterator<Item = Record>, findings: Vec<Finding>) -> Contents {
+        Contents { records: records.into_iter().map(|record| (record, None)).collect(), findings }
     }
 }

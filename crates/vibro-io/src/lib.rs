@@ -75,17 +75,20 @@ pub(crate) use source::Source;
 
 #[cfg(test)]
 mod tests {
-    use crate::{Header, Recording};
+    use crate::{Header, Reader, Recording, Source};
     use vibro_record::{Fact, Finding, Result};
 
-    /// Whether a survey says of a file what reading it says.
-    pub fn surveyed(read: &Result<Recording>, survey: Result<(Vec<Header>, Vec<Finding>)>) -> bool {
-        match (read, survey) {
+    /// Reads a source, and holds that a survey says of it what reading says.
+    pub fn read_both_ways(source: &Source) -> Result<Recording> {
+        let (read, survey) = (Reader::new().read(source), Reader::new().headers(source));
+        match (&read, survey) {
             (Ok(read), Ok(survey)) => {
-                survey == (read.records.iter().map(Header::of).collect(), read.findings.clone())
+                let headers = read.records.iter().map(Header::of).collect();
+                assert_eq!(survey, (read.format, headers, read.findings.clone()), "{:?}", source.path());
             }
-            (read, survey) => read.is_err() && survey.is_err(),
+            (read, survey) => assert!(read.is_err() && survey.is_err(), "{:?}", source.path()),
         }
+        read
     }
 
     /// Findings as text, numbers with six digits: `axis-uneven column=column "t" smallest=0.1`.

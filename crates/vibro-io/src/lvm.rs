@@ -16,13 +16,13 @@
 //! Source: National Instruments, "Specification for the LabVIEW Measurement File". A later segment begins with a head of its own behind a
 //! blank line; its channels are records of their own. What stands between `***Start_Special***` and `***End_Special***` is passed over.
 
-use super::format::Format;
 use super::missing::{self, Missing};
-use super::reader::{Options, Recording};
+use super::reader::Options;
 use super::text::encoding;
 use super::text::names::Name;
 use super::{Source, number};
 use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
+use crate::held::Contents;
 use std::collections::HashMap;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result, Values};
@@ -37,7 +37,7 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).starts_with(BEGIN.as_bytes())
 }
 
-pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     let bytes = source.all()?;
     let bytes = encoding::with_lf(bytes.into_owned());
     let text = encoding::decode(&bytes);
@@ -72,7 +72,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         return Err(Error::usage("a LabVIEW measurement without values", "at least one segment with values"));
     }
     findings.extend(missing::kept(missed.check("value(s) are missing:", options.allow_missing)?));
-    Ok(Recording { path: source.path().to_owned(), format: Format::Lvm, records, findings })
+    Ok(Contents::of(records, findings))
 }
 
 /// Lines with their numbers.

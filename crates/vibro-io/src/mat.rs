@@ -16,7 +16,8 @@ mod level5;
 
 use super::Source;
 use super::format::Format;
-use super::reader::{Options, Recording};
+use super::reader::Options;
+use crate::held::Contents;
 use crate::variables::names::Dialect;
 use crate::variables::{self, Content};
 use vibro_record::{Error, Result};
@@ -51,17 +52,16 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
     level(head, source.extension() == "mat").is_some()
 }
 
-pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     #[cfg(feature = "hdf5")]
     if super::hdf5::sniff(source.head(), source) {
-        return super::hdf5::read(source, options);
+        return super::hdf5::read(source, options, false);
     }
     let parse = level(source.head(), true).unwrap_or(Err("no MAT-file header")).map_err(|found| {
         Error::usage(found, "a MAT-file of level 4 or 5")
             .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
     })?;
-    let contents = variables::contents(source, &DIALECT, parse(&source.all()?)?, Vec::new(), options)?;
-    Ok(contents.recording(source, Format::Mat))
+    variables::contents(source, &DIALECT, parse(&source.all()?)?, Vec::new(), options)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The reader: options, then a path or bytes, then records.
 
 use super::format::{Entry, Format, TABLE};
+use super::held::Contents;
 use super::missing::LISTED;
 use super::{Source, SweepList, foreign};
 use rayon::prelude::*;
@@ -168,8 +169,9 @@ impl Reader {
     /// # Errors
     /// As [`Reader::from_path`].
     pub(crate) fn read(&self, source: &Source) -> Result<Recording> {
-        let entry = self.entry(source)?;
-        (entry.read)(source, &self.options).map_err(|e| no_list(source, e).in_file(source.path()))
+        let (format, Contents { records, findings }) = self.contents(source, false)?;
+        let records = records.into_iter().map(|(record, _)| record).collect();
+        Ok(Recording { path: source.path().to_owned(), format, records, findings })
     }
 
     /// The records of a file without their values; memory does not grow with the file where the format allows.
@@ -177,14 +179,22 @@ impl Reader {
     /// # Errors
     /// As [`Reader::from_path`].
     pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
-        let source = Source::file(path)?;
-        let entry = self.entry(&source)?;
-        if let Some(survey) = entry.survey {
-            let (headers, findings) = survey(&source, &self.options).map_err(|e| e.in_file(source.path()))?;
-            return Ok((entry.format, headers, findings));
-        }
-        let recording = self.read(&source)?;
-        Ok((recording.format, recording.records.par_iter().map(Header::of).collect(), recording.findings))
+        self.headers(&Source::file(path)?)
+    }
+
+    /// As [`Reader::survey`], of a source.
+    pub(crate) fn headers(&self, source: &Source) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
+        let (format, Contents { records, findings }) = self.contents(source, true)?;
+        let header = |(record, ends): &(Record, Option<Extremes>)| {
+            Header::with(record, ends.unwrap_or_else(|| record.extremes()))
+        };
+        Ok((format, records.par_iter().map(header).collect(), findings))
+    }
+
+    fn contents(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
+        let entry = self.entry(source)?;
+        let contents = (entry.read)(source, &self.options, survey);
+        Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
     }
 
     /// The format of a source.

@@ -16,9 +16,8 @@ mod scale;
 mod segment;
 
 use super::Source;
-use super::format::Format;
 use super::missing;
-use super::reader::{Header, Options, Recording};
+use super::reader::Options;
 use crate::held::{Contents, Held, rises};
 use axes::Clock;
 use description::Value;
@@ -40,17 +39,8 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
 }
 
-pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
-    Ok(contents(source, options, false)?.recording(source, Format::Tdms))
-}
-
-pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
-    let contents = contents(source, options, true)?;
-    Ok((contents.headers(), contents.findings))
-}
-
 /// All records, or, for a `survey`, the ends of their values where these are enough.
-fn contents(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
+pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     if source.head().starts_with(b"TDSh") {
         return Err(Error::usage("the index of a TDMS file", "the file with the values")
             .hint("name the file without `_index` that lies beside it"));
@@ -63,15 +53,15 @@ fn contents(source: &Source, options: &Options, survey: bool) -> Result<Contents
     // Channels that lie one after the other are read side by side.
     let apart = layouts.iter().flat_map(|layout| layout.parts.iter()).all(|part| part.fields.len() <= 1);
     let each = raw.len().div_ceil(if apart { rayon::current_num_threads() } else { 1 }).max(1);
-    let read = |(i, raw): (usize, &mut [Raw])| {
+    let fill = |(i, raw): (usize, &mut [Raw])| {
         let mut file = BufReader::with_capacity(BLOCK, source.open()?);
         let mut all = layouts.iter();
         all.try_for_each(|layout| values(&mut file, layout, i * each, raw))
             .map_err(|e| Error::io("read", source.path(), e))
     };
-    raw.par_chunks_mut(each).enumerate().try_for_each(read)?;
+    raw.par_chunks_mut(each).enumerate().try_for_each(fill)?;
     if raw.iter().any(|raw| matches!(raw.kept, Kept::Ends(ends) if !ends.finite())) {
-        return contents(source, options, false);
+        return read(source, options, false);
     }
     let (mut channels, mut left) = (Vec::new(), None);
     for (object, raw) in objects.iter().zip(raw) {

@@ -21,7 +21,8 @@ mod table;
 mod tail;
 mod wrapped;
 
-use crate::reader::{Options, Recording};
+use crate::held::Contents;
+use crate::reader::Options;
 use crate::{Format, Source, missing};
 use dialect::Dialect;
 use fast::Shape;
@@ -87,7 +88,7 @@ pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
     encoding::is_text(head)
 }
 
-pub(crate) fn read_table(source: &Source, options: &Options) -> Result<Recording> {
+pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     with_text(source, |text| match table::detect(text, options) {
         Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
         None => Err(Error::usage(
@@ -99,11 +100,11 @@ pub(crate) fn read_table(source: &Source, options: &Options) -> Result<Recording
     })
 }
 
-pub(crate) fn read_numbers(source: &Source, options: &Options) -> Result<Recording> {
+pub(crate) fn read_numbers(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     with_text(source, |text| read(text, &numbers::detect(text, options)?, options))
 }
 
-fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Recording> {
+fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Contents> {
     let tail = tail::of(text.source)?;
     let plain = dialect.columns > 1 && dialect.names.is_none() && !dialect.complex;
     let stated = Stated::of(dialect.header.iter().map(String::as_str));
@@ -143,7 +144,7 @@ fn records_of(
     dialect: &Dialect,
     rows: Rows,
     options: &Options,
-) -> Result<Recording> {
+) -> Result<Contents> {
     let mut findings: Vec<Finding> =
         tail::cut_off(tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
@@ -151,7 +152,7 @@ fn records_of(
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
     let records = records::build(text, tail, dialect, rows, options, &mut findings)?;
-    Ok(Recording { path: text.source.path().to_owned(), format: dialect.format, records, findings })
+    Ok(Contents::of(records, findings))
 }
 
 /// Row by row, each complaint with its place.

@@ -16,9 +16,9 @@
 pub mod stream;
 
 use super::Source;
-use super::format::Format;
-use super::reader::{Options, Recording};
+use super::reader::Options;
 use super::uff58::{self, System, codes};
+use crate::held::Contents;
 use stream::{Stream, is_delimiter, set_number};
 use vibro_record::{Finding, Place, Record, Result};
 
@@ -44,7 +44,7 @@ pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
     })
 }
 
-pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     let bytes = source.all()?;
     let mut stream = Stream::new(&bytes);
     let (mut records, mut findings): (Vec<Record>, Vec<Finding>) = (Vec::new(), Vec::new());
@@ -103,7 +103,7 @@ pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
         findings.push(Finding::caution("no-function"));
     }
     tell_apart(&mut records);
-    Ok(Recording { path: source.path().to_owned(), format: Format::Uff, records, findings })
+    Ok(Contents::of(records, findings))
 }
 
 /// Two channels of one name are told apart by number, so that each can be asked for.

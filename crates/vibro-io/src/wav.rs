@@ -15,11 +15,11 @@ mod scales;
 
 pub(crate) use scales::{Scale, Scales};
 
-use super::format::Format;
+use super::Source;
 use super::missing::Missing;
-use super::reader::{Options, Recording};
+use super::reader::Options;
 use super::source::ReadSeek;
-use super::{Header, Source};
+use crate::held::Contents;
 use layout::Layout;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
@@ -37,31 +37,24 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     [b"RIFF", b"RF64", b"BW64"].iter().any(|form| head.starts_with(*form)) && head.get(8..12) == Some(b"WAVE")
 }
 
-pub(super) fn read(source: &Source, options: &Options) -> Result<Recording> {
+/// Goes over the samples a block at a time; a survey keeps none of them.
+pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let mut wave = Wave::open(source, options)?;
-    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(wave.frames()); wave.channels.len()];
-    while wave.append(&mut values)? > 0 {}
-    wave.finished();
-    let traces = wave.channels.into_iter().zip(values);
-    let records = traces.map(|(trace, values)| Record::Trace(Trace { values, ..trace })).collect();
-    let path = source.path().to_owned();
-    Ok(Recording { path, format: Format::Wav, records, findings: wave.layout.findings })
-}
-
-/// Goes over the samples a block at a time.
-pub(super) fn survey(source: &Source, options: &Options) -> Result<(Vec<Header>, Vec<Finding>)> {
-    let mut wave = Wave::open(source, options)?;
-    let (mut block, mut seen) = (Vec::new(), vec![Extremes::NONE; wave.channels.len()]);
-    while wave.append(&mut block)? > 0 {
-        for (values, seen) in block.iter_mut().zip(&mut seen) {
-            seen.take(values);
+    let n = wave.channels.len();
+    let room = if survey { 0 } else { wave.frames() };
+    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(room); n];
+    let mut ends = vec![Extremes::NONE; n];
+    while wave.append(&mut values)? > 0 {
+        for (values, ends) in values.iter_mut().zip(&mut ends).filter(|_| survey) {
+            ends.take(values);
             values.clear();
         }
     }
     wave.finished();
-    let traces = wave.channels.into_iter().map(Record::Trace).zip(seen);
-    let headers = traces.map(|(trace, seen)| Header::with(&trace, seen));
-    Ok((headers.collect(), wave.layout.findings))
+    let traces = wave.channels.into_iter().zip(values).zip(ends);
+    let records = traces
+        .map(|((trace, values), ends)| (Record::Trace(Trace { values, ..trace }), survey.then_some(ends)));
+    Ok(Contents { records: records.collect(), findings: wave.layout.findings })
 }
 
 /// Some channels of a wave file, read block by block in their units, so that memory does not grow with its length.

@@ -1,6 +1,6 @@
 use super::*;
-use crate::Reader;
-use crate::tests::{has_finding, surveyed, texts};
+use crate::tests::{has_finding, read_both_ways, texts};
+use crate::{Reader, Recording};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use vibro_record::units::Unit;
@@ -14,10 +14,7 @@ fn v() -> impl Iterator<Item = f64> {
 /// Reads a fixture from its folder, where files that links lead to are, too.
 fn fixture(name: &str) -> Recording {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/hdf5/");
-    let source = Source::file(format!("{folder}{name}")).unwrap();
-    let read = Reader::new().read(&source);
-    assert!(surveyed(&read, survey(&source, &Options::default())), "{name}");
-    read.unwrap()
+    read_both_ways(&Source::file(format!("{folder}{name}")).unwrap()).unwrap()
 }
 
 fn names(recording: &Recording) -> Vec<&str> {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Recording;
 use crate::tests::{has_finding, texts};
 use proptest::prelude::*;
 use vibro_record::Trace;

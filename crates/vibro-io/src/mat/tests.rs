@@ -1,5 +1,6 @@
 use super::*;
 use crate::Reader;
+use crate::Recording;
 use crate::tests::{has_finding, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;

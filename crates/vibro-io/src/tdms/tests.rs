@@ -1,5 +1,6 @@
 use super::*;
-use crate::tests::{has_finding, surveyed};
+use crate::Recording;
+use crate::tests::{has_finding, read_both_ways};
 use proptest::prelude::*;
 use vibro_record::{AxisKind, Record, Trace};
 
@@ -126,10 +127,7 @@ impl Writer {
 }
 
 fn recording(bytes: &[u8]) -> Result<Recording> {
-    let read = crate::Reader::new().from_reader("x.tdms", bytes);
-    let source = Source::memory("x.tdms", bytes).unwrap();
-    assert!(surveyed(&read, survey(&source, &Options::default())));
-    read
+    read_both_ways(&Source::memory("x.tdms", bytes).unwrap())
 }
 
 fn traces(bytes: &[u8]) -> Vec<Trace> {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Recording;
 use crate::tests::has_finding;
 use crate::{Format, Reader};
 use num_complex::Complex64;
@@ -312,8 +313,9 @@ fn two_clocks_in_one_file_are_refused() {
         }
         text
     };
-    let read_text =
-        |text: String| read_table(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default());
+    let read_text = |text: String| {
+        read_table(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default(), false)
+    };
     let why = read_text(text(2e-4, 0.0)).unwrap_err().to_string();
     assert!(why.contains("\"Time A\" and \"Time B\" run over 0.0049 and 0.0098"), "{why}");
     // The same clock read elsewhere is no other.
@@ -328,7 +330,7 @@ fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
     }
     let source = Source::memory("x.csv", format!("Time (s),U (V)\n{rows}").into_bytes()).unwrap();
     let options = Options { rate: Some(10_000.0), ..Options::default() };
-    let why = read_table(&source, &options).unwrap_err().to_string();
+    let why = read_table(&source, &options, false).unwrap_err().to_string();
     assert!(why.contains("runs backwards: value 26 is 0.0015, behind 0.0024"), "{why}");
 }
 
@@ -361,7 +363,7 @@ proptest! {
             if !bytes.is_empty() {
                 let source = Source::memory("x.csv", bytes).unwrap();
                 let _ = is_table(source.head(), &source);
-                let _ = read_table(&source, &Options::default());
+                let _ = read_table(&source, &Options::default(), false);
             }
         }
     }
@@ -370,7 +372,7 @@ proptest! {
     fn never_panics_on_random_bytes(bytes in prop::collection::vec(any::<u8>(), 1..200)) {
         let source = Source::memory("x.csv", bytes).unwrap();
         let _ = is_table(source.head(), &source);
-        let _ = read_table(&source, &Options { allow_missing: true, ..Options::default() });
+        let _ = read_table(&source, &Options { allow_missing: true, ..Options::default() }, false);
     }
 }
 

@@ -1,6 +1,7 @@
 use super::*;
 use crate::Reader;
 use crate::tests::has_finding;
+use crate::{Format, Header, Recording};
 use proptest::prelude::*;
 use vibro_record::units::Quantity;
 
