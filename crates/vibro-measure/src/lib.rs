@@ -9,6 +9,7 @@
 //! ```
 
 pub mod crossing;
+pub mod decay;
 pub mod drill;
 pub mod excitation;
 pub mod exposure;

@@ -50,7 +50,7 @@ impl Whiteness {
 }
 
 /// P(χ² > x) for an even number of degrees of freedom, a finite sum (Abramowitz & Stegun 26.4.21).
-fn chi_squared_above(x: f64, even: usize) -> f64 {
+pub(crate) fn chi_squared_above(x: f64, even: usize) -> f64 {
     let half = x / 2.0;
     let (mut term, mut sum) = (1.0, 1.0);
     for j in 1..even / 2 {

@@ -1,0 +1,490 @@
+//! Free decays, behind a release or a blow: natural frequency and damping of each mode.
+//!
+//! The motion is a sum of damped sines. Each is fitted to the lines around it, with what the ends of the record do to these in the model
+//! (damped.rs); the strongest line of what is left gives the next sine, and all are fitted again (J. Li, P. Stoica, IEEE Trans.
+//! Signal Process. 44 (1996) 281, the method RELAX, for damped sines). Noise is that which is left of the lines beside a sine.
+
+mod damped;
+mod usable;
+
+use super::residuals::chi_squared_above;
+use super::{Estimate, noise};
+use damped::{Damped, Group, OWN};
+use num_complex::Complex64;
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::ops::Range;
+use usable::{Usable, usable};
+use vibro_record::{Error, Finding, Result, Trace};
+use vibro_signal::fft::Transform;
+
+/// What is known of a decay beside its record.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DecayOptions {
+    /// Band in Hz in which modes are looked for. Default: all lines.
+    pub band: Option<(f64, f64)>,
+    /// Number of modes. Default: all that stand out of the noise.
+    pub modes: Option<usize>,
+}
+
+/// A mode of a free decay, A e^(−ζω₀t) cos(ω₀√(1−ζ²) t + φ), with t from the start of the part.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DecayMode {
+    /// Undamped natural frequency ω₀/2π in Hz.
+    pub frequency: Estimate,
+    /// Damping ratio ζ.
+    pub zeta: Estimate,
+    /// Amplitude A at the start, in the unit of the record.
+    pub amplitude: Estimate,
+    /// Phase φ at the start in rad.
+    pub phase: Estimate,
+}
+
+/// The strongest mode in a stretch of the part.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Level {
+    /// Beginning of the stretch in s.
+    pub start: f64,
+    /// The mode as fitted to this stretch alone, its amplitude that at the beginning.
+    #[serde(flatten)]
+    pub mode: DecayMode,
+}
+
+/// Modes of a free decay.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DecayResult {
+    /// Beginning of the part that was used, in s.
+    pub start: f64,
+    /// Its end in s.
+    pub end: f64,
+    /// Modes by rising frequency.
+    pub modes: Vec<DecayMode>,
+    /// The strongest mode over falling amplitude, where the part is long enough.
+    pub levels: Vec<Level>,
+    /// Damping ratio of the strongest mode from the logarithmic decrement between the first and the last level.
+    pub decrement: Option<Estimate>,
+    /// What was left out, and what makes numbers doubtful.
+    pub findings: Vec<Finding>,
+    /// Time in s, record and modes together over the part, for a figure.
+    #[serde(skip)]
+    pub curves: [Vec<f64>; 3],
+}
+
+/// Most sines of one record, those that do not decay with them.
+const MOST: usize = 12;
+/// How often the largest line of pure noise may pass for a mode.
+const BY_CHANCE: f64 = 1e-4;
+/// Lines that are fitted on either side of a sine at least, and in parts of its width.
+const LINES: (f64, f64) = (8.0, 6.0);
+/// F of four more parameters to be worth them, at a chance of about 1e-4.
+const WORTH: f64 = 10.0;
+/// Two sines nearer than this part of the wider one are one that does not decay as a mode does.
+const PARTED: f64 = 0.5;
+/// Decay over the part, in natural logarithms: later there is nothing to be learnt.
+const ENOUGH: f64 = 6.0;
+/// Standard uncertainties by which a decay has to be above nothing.
+const SURE: f64 = 3.0;
+/// Largest number of stretches, and the decay of one.
+const STRETCHES: (usize, f64) = (5, 1.2);
+/// Rise of what is left from block to block where something new begins.
+const RISE: f64 = 6.0;
+/// How often the levels of a steady mode may seem to change.
+const CHANGED: f64 = 1e-3;
+
+/// Modes of the free decay that a record holds.
+///
+/// # Errors
+/// If the trace is not evenly sampled, its band is none, it holds too few periods, no mode stands out of the noise, or the strongest line does
+/// not decay: a motion that is driven, grows, or was not seen for long enough.
+pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
+    let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
+        return Err(Error::refused("a decay needs evenly spaced samples over time")
+            .hint("state the sampling rate in Hz")
+            .setting("rate"));
+    };
+    if let Some((low, high)) = options.band.filter(|(low, high)| !(*low >= 0.0 && low < high)) {
+        return Err(
+            Error::usage(format!("a band of {low}:{high} Hz"), "LO:HI with LO below HI").setting("band")
+        );
+    }
+    if let Some(count) = options.modes.filter(|n| !(1..=MOST).contains(n)) {
+        return Err(Error::usage(format!("{count} modes"), format!("1 to {MOST}")).setting("modes"));
+    }
+    let Usable { mut part, block, mut findings } = usable(trace, rate, options.band)?;
+    let (mut limit, mut lengths) = (trace.values.len(), 2);
+    let found = loop {
+        let found = Sines::of(&trace.values[part.clone()], rate, options)?;
+        let (group, m) = found.strongest().ok_or_else(|| {
+            Error::refused("no mode stands out of the noise").hint("choose a band around it").setting("band")
+        })?;
+        let loss = group.sines[m].decay;
+        // As long as the strongest mode is seen, and no longer.
+        let wanted = (part.start + (part.len() as f64 * ENOUGH / loss.max(0.1)) as usize).min(limit);
+        let change = wanted.max(part.start + 3 * block) as f64 - part.end as f64;
+        if loss > 0.0 && lengths > 0 && change.abs() > 0.1 * part.len() as f64 {
+            part.end = (part.end as f64 + change) as usize;
+            lengths -= 1;
+            continue;
+        }
+        match found.new(&trace.values[part.clone()], block) {
+            Some(behind) if behind <= 4 * block && part.len() > behind + 5 * block => part.start += behind,
+            Some(behind) if behind > 5 * block => {
+                limit = part.start + behind;
+                part.end = limit;
+                findings.push(Finding::caution("decay-cut").number("end", trace.axis.at(limit)));
+            }
+            _ => break found,
+        }
+    };
+    found.result(trace, part, options, findings)
+}
+
+/// Sines of a part.
+struct Sines {
+    n: usize,
+    rate: f64,
+    groups: Vec<Group>,
+    /// Lines that stand out and are no mode beside those that are known.
+    odd: Vec<usize>,
+}
+
+impl Sines {
+    /// Finds the sines of a part, the strongest first.
+    fn of(part: &[f64], rate: f64, options: &DecayOptions) -> Result<Sines> {
+        let n = part.len();
+        let mean = part.iter().sum::<f64>() / n as f64;
+        let level: Vec<f64> = part.iter().map(|v| v - mean).collect();
+        let spectrum: Vec<Complex64> =
+            Transform::new(n).forward(&level).iter().map(|line| line * (2.0 / n as f64)).collect();
+        let line = |f: f64| (f * n as f64 / rate) as usize;
+        let all = 1..spectrum.len() - 1;
+        let band =
+            options.band.map_or(all.clone(), |(low, high)| line(low).max(1)..(line(high) + 1).min(all.end));
+        let mut sines = Sines { n, rate, groups: Vec::new(), odd: Vec::new() };
+        let mut all_lines = 0;
+        while all_lines < MOST + 8 && !options.modes.is_some_and(|count| sines.decaying() >= count) {
+            all_lines += 1;
+            let rest = sines.rest(&spectrum, None);
+            let Some(top) = sines.next(&rest, band.clone()) else { break };
+            sines.add(&spectrum, top)?;
+            if sines.count() == MOST {
+                break;
+            }
+        }
+        for at in (0..sines.groups.len()).cycle().take(2 * sines.groups.len()) {
+            let rest = sines.rest(&spectrum, Some(at));
+            let old = &sines.groups[at];
+            let starts: Vec<(f64, f64)> = old.sines.iter().map(|s| (s.periods, s.decay)).collect();
+            if let Ok(better) = Group::fit(&rest, old.lines.clone(), n, &starts) {
+                sines.groups[at] = better;
+            }
+        }
+        // What still stands out beside a sine was not asked for, or is none.
+        let rest = sines.rest(&spectrum, None);
+        let beside = |k: &usize| sines.groups.iter().any(|group| group.lines.contains(k));
+        let left: Vec<usize> = sines.next(&rest, band).into_iter().filter(beside).collect();
+        sines.odd.extend(left);
+        Ok(sines)
+    }
+
+    fn count(&self) -> usize {
+        self.groups.iter().map(|group| group.sines.len()).sum()
+    }
+
+    fn all(&self) -> impl Iterator<Item = (&Group, usize)> {
+        self.groups.iter().flat_map(|group| (0..group.sines.len()).map(move |m| (group, m)))
+    }
+
+    fn decaying(&self) -> usize {
+        self.all().filter(|(group, m)| decays(group, *m)).count()
+    }
+
+    fn strongest(&self) -> Option<(&Group, usize)> {
+        let size = |(group, m): &(&Group, usize)| group.sines[*m].amplitude.norm();
+        self.all().max_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    /// What is left of the lines without the sines of all groups but one.
+    fn rest(&self, spectrum: &[Complex64], but: Option<usize>) -> Vec<Complex64> {
+        let others = self.groups.iter().enumerate().filter(|(i, _)| Some(*i) != but);
+        let sines: Vec<&Damped> = others.flat_map(|(_, group)| &group.sines).collect();
+        let left = |(k, line): (usize, &Complex64)| {
+            line - sines.iter().map(|s| s.line(k, self.n)).sum::<Complex64>()
+        };
+        spectrum.iter().enumerate().map(left).collect()
+    }
+
+    /// The largest line that stands out of those around it.
+    fn next(&self, rest: &[Complex64], band: Range<usize>) -> Option<usize> {
+        let sizes: Vec<f64> = rest.iter().map(|line| line.norm()).collect();
+        let mut tops: Vec<usize> =
+            band.clone().filter(|k| sizes[*k] >= sizes[k - 1] && sizes[*k] >= sizes[k + 1]).collect();
+        tops.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
+        // Rayleigh: one of so many lines of noise passes t standard deviations with a chance of n e^(−t²/2).
+        let visible = (2.0 * (band.len().max(1) as f64 / BY_CHANCE).ln()).sqrt();
+        let seen = |k: &usize| {
+            noise::around(&sizes, *k, noise::REACH, None).is_none_or(|floor| sizes[*k] > visible * floor)
+        };
+        let known = |k: &usize| self.odd.iter().any(|odd| odd.abs_diff(*k) < 2);
+        tops.into_iter().filter(|k| !known(k)).take(MOST).find(seen)
+    }
+
+    /// Adds the sine of a line, fitted together with those near it.
+    fn add(&mut self, spectrum: &[Complex64], top: usize) -> Result<()> {
+        let rest = self.rest(spectrum, None);
+        let power = |k: usize| rest[k].norm_sqr();
+        let half = |k: &usize| power(*k) > 0.5 * power(top);
+        let wide = (top..rest.len() - 1).take_while(half).count() + (1..top).rev().take_while(half).count();
+        let decay = std::f64::consts::PI * wide as f64;
+        let reach = |s: &Damped| LINES.0.max(LINES.1 * s.width());
+        let new = Damped { periods: top as f64, decay, amplitude: Complex64::ZERO };
+        let near = |group: &Group| {
+            group.sines.iter().any(|s| (s.periods - new.periods).abs() < 0.5 * (reach(s) + reach(&new)))
+        };
+        let (near, others): (Vec<Group>, Vec<Group>) = self.groups.drain(..).partition(near);
+        self.groups = others;
+        let old: Vec<Damped> = near.iter().flat_map(|group| group.sines.iter().copied()).collect();
+        let rest = self.rest(spectrum, None);
+        let fit = |sines: &[Damped], lines: Range<usize>| {
+            let starts: Vec<(f64, f64)> = sines.iter().map(|s| (s.periods, s.decay)).collect();
+            Group::fit(&rest, lines, self.n, &starts)
+        };
+        let mut best: Option<Group> = None;
+        for decay in [0.3 * decay, decay, 0.2] {
+            let sines: Vec<Damped> = old.iter().copied().chain([Damped { decay, ..new }]).collect();
+            let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * reach(s));
+            let low = ends(-1.0).fold(f64::INFINITY, f64::min).max(1.0) as usize;
+            let high = ends(1.0).fold(0.0, f64::max) as usize + 1;
+            let lines = low..high.max(low + 2 * OWN * (sines.len() + 1)).min(rest.len() - 1);
+            let Ok(group) = fit(&sines, lines) else { continue };
+            if best.as_ref().is_none_or(|best| group.noise() < best.noise()) {
+                best = Some(group);
+            }
+        }
+        let good = best.filter(|group| {
+            let added = group.sines[old.len()];
+            let alone =
+                |s: &Damped| (s.periods - added.periods).abs() >= PARTED * s.width().max(added.width());
+            let inside = group.lines.contains(&(added.periods.max(0.0) as usize));
+            let without = if old.is_empty() { None } else { fit(&old, group.lines.clone()).ok() };
+            let (left, free) = group.left();
+            let worth = without.is_none_or(|w| (w.left().0 - left) / OWN as f64 > WORTH * left / free as f64);
+            inside && worth && group.sines[..old.len()].iter().all(alone)
+        });
+        match good {
+            Some(group) => self.groups.push(group),
+            None => {
+                self.odd.push(top);
+                self.groups.extend(near);
+            }
+        }
+        Ok(())
+    }
+
+    /// Where in a part something begins that the sines do not hold: behind how many samples what is left rises or falls at once.
+    fn new(&self, part: &[f64], block: usize) -> Option<usize> {
+        let left = self.left(part);
+        let level = |block: &[f64]| {
+            let mean = block.iter().sum::<f64>() / block.len() as f64;
+            (block.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / block.len() as f64).sqrt()
+        };
+        let levels: Vec<f64> = left.chunks_exact(block).map(level).collect();
+        let largest = levels.iter().copied().fold(0.0, f64::max);
+        let first = self.strongest().map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
+        let clear = |level: f64| level > 5e-3 * first && level > 0.3 * largest;
+        let contact = |b: &usize| clear(levels[*b]) && levels[*b] > RISE * levels[b + 1];
+        let blow = |b: &usize| clear(levels[b + 1]) && levels[b + 1] > RISE * levels[*b];
+        let blocks = levels.len().saturating_sub(1);
+        let contact = (0..blocks.min(3)).find(contact).map(|b| (b + 1) * block);
+        contact.or_else(|| (4..blocks).find(blow).map(|b| (b + 1) * block))
+    }
+
+    /// What the sines leave of a part.
+    fn left(&self, part: &[f64]) -> Vec<f64> {
+        let sum = |i: usize| self.all().map(|(group, m)| group.sines[m].sample(i, self.n)).sum::<f64>();
+        part.iter().enumerate().map(|(i, v)| v - sum(i)).collect()
+    }
+
+    fn result(
+        &self,
+        trace: &Trace,
+        part: Range<usize>,
+        options: &DecayOptions,
+        mut findings: Vec<Finding>,
+    ) -> Result<DecayResult> {
+        let unit = trace.meta.unit.quantity().symbol();
+        let (mut modes, mut decaying) = (Vec::new(), Vec::new());
+        for (group, m) in self.all() {
+            let mode = mode(group, m, self.n, self.rate, unit);
+            if decays(group, m) {
+                let doubted = self.odd.iter().any(|k| near(&group.sines[m], *k));
+                modes.push(if doubted { mode.without_uncertainty() } else { mode });
+                decaying.push((group, m));
+                if doubted {
+                    findings.push(
+                        Finding::doubt("decay-unexplained")
+                            .number("frequency", modes[modes.len() - 1].frequency.value),
+                    );
+                }
+            } else if self.strongest().is_some_and(|(strongest, s)| std::ptr::eq(strongest, group) && s == m)
+            {
+                let Damped { periods, decay, .. } = group.sines[m];
+                let lost = -(-decay).exp_m1();
+                let why = format!(
+                    "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s",
+                    periods * self.rate / self.n as f64,
+                    100.0 * lost,
+                    100.0 * group.std(m, [0.0, 1.0, 0.0, 0.0]) * (-decay).exp(),
+                    self.n as f64 / self.rate
+                );
+                return Err(Error::refused(why)
+                    .hint("cut the record to what follows the release or the blow, or choose the band of the mode")
+                    .setting("band"));
+            } else {
+                let steady = Finding::note("decay-steady-line").number("frequency", mode.frequency.value);
+                findings.push(steady.number("amplitude", mode.amplitude.value).name("unit", unit));
+            }
+        }
+        if let Some(count) = options.modes.filter(|count| *count > modes.len()) {
+            findings.push(Finding::caution("decay-fewer").count("n", modes.len()).count("count", count));
+        }
+        let at = |i: usize| trace.axis.at(i);
+        let (levels, decrement) = self.levels(&trace.values[part.clone()], at(part.start), unit);
+        if let Some((group, m)) = self.strongest()
+            && let Some(strongest) = decaying.iter().position(|(g, k)| std::ptr::eq(*g, group) && *k == m)
+            && let Some(found) = changed(&levels)
+        {
+            modes[strongest] = modes[strongest].clone().without_uncertainty();
+            findings.push(found.number("frequency", modes[strongest].frequency.value));
+        }
+        modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
+        let left = self.left(&trace.values[part.clone()]);
+        let record = trace.values[part.clone()].to_vec();
+        let curve = record.iter().zip(&left).map(|(v, left)| v - left).collect();
+        let curves = [part.clone().map(at).collect(), record, curve];
+        Ok(DecayResult {
+            start: at(part.start),
+            end: at(part.end - 1),
+            modes,
+            levels,
+            decrement,
+            findings,
+            curves,
+        })
+    }
+
+    /// The strongest mode in stretches of equal length, and what their amplitudes say of its damping.
+    fn levels(&self, part: &[f64], start: f64, unit: &'static str) -> (Vec<Level>, Option<Estimate>) {
+        let Some((group, m)) = self.strongest() else { return (Vec::new(), None) };
+        let own = group.sines[m];
+        let stretches =
+            ((own.decay / STRETCHES.1) as usize).min(STRETCHES.0).min((own.periods / 4.0) as usize);
+        if stretches < 2 {
+            return (Vec::new(), None);
+        }
+        let left = self.left(part);
+        let alone: Vec<f64> = left.iter().enumerate().map(|(i, v)| v + own.sample(i, self.n)).collect();
+        let n = self.n / stretches;
+        let starts = [(own.periods / stretches as f64, own.decay / stretches as f64)];
+        let levels = alone.chunks_exact(n).enumerate().filter_map(|(i, stretch)| {
+            let lines = Transform::new(n).forward(stretch);
+            let spectrum: Vec<Complex64> = lines.iter().map(|line| line * (2.0 / n as f64)).collect();
+            let centre = starts[0].0 as usize;
+            let range = centre.saturating_sub(LINES.0 as usize).max(1)
+                ..(centre + LINES.0 as usize + 2).min(spectrum.len() - 1);
+            let group = Group::fit(&spectrum, range, n, &starts).ok()?;
+            let mode = mode(&group, 0, n, self.rate, unit);
+            let known = mode.zeta.std.is_some_and(|std| std < 0.3 * mode.zeta.value);
+            known.then(|| Level { start: start + (i * n) as f64 / self.rate, mode })
+        });
+        let levels: Vec<Level> = levels.collect();
+        let decrement =
+            levels.first().zip(levels.last()).filter(|_| levels.len() > 1).map(|(first, last)| {
+                let (a, b) = (&first.mode.amplitude, &last.mode.amplitude);
+                let rate = (a.value / b.value).ln() / (last.start - first.start);
+                let angular = TAU * first.mode.frequency.value;
+                let std = a.std.zip(b.std).map(|(sa, sb)| (sa / a.value).hypot(sb / b.value));
+                let std = std.map(|std| std / (last.start - first.start) / angular);
+                Estimate::new(rate / angular, std, "1", levels.len(), "logarithmic decrement")
+            });
+        (levels, decrement)
+    }
+}
+
+/// Whether a line lies where a sine has most of its power.
+fn near(sine: &Damped, k: usize) -> bool {
+    (sine.periods - k as f64).abs() < LINES.0.max(LINES.1 * sine.width())
+}
+
+/// Whether a sine surely decays.
+fn decays(group: &Group, m: usize) -> bool {
+    group.sines[m].decay > SURE * group.std(m, [0.0, 1.0, 0.0, 0.0])
+}
+
+/// A sine of a part of `n` samples as a mode.
+fn mode(group: &Group, m: usize, n: usize, rate: f64, unit: &'static str) -> DecayMode {
+    let sine = group.sines[m];
+    let duration = n as f64 / rate;
+    let (sigma, damped) = (sine.decay / duration, TAU * sine.periods / duration);
+    let natural = sigma.hypot(damped);
+    let (c, size) = (sine.amplitude, sine.amplitude.norm());
+    let estimate = |value: f64, gradient: [f64; OWN], unit| {
+        Estimate::new(
+            value,
+            Some(group.std(m, gradient)),
+            unit,
+            group.lines.len(),
+            "damped sine, fitted to its lines",
+        )
+    };
+    let (by_periods, by_decay) = (TAU / duration, 1.0 / duration);
+    let cube = natural.powi(3);
+    DecayMode {
+        frequency: estimate(
+            natural / TAU,
+            [damped / natural * by_periods / TAU, sigma / natural * by_decay / TAU, 0.0, 0.0],
+            "Hz",
+        ),
+        zeta: estimate(
+            sigma / natural,
+            [-sigma * damped / cube * by_periods, damped * damped / cube * by_decay, 0.0, 0.0],
+            "1",
+        ),
+        amplitude: estimate(size, [0.0, 0.0, c.re / size, c.im / size], unit),
+        phase: estimate(c.arg(), [0.0, 0.0, -c.im / (size * size), c.re / (size * size)], "rad"),
+    }
+}
+
+impl DecayMode {
+    fn without_uncertainty(mut self) -> DecayMode {
+        for estimate in [&mut self.frequency, &mut self.zeta, &mut self.amplitude, &mut self.phase] {
+            estimate.std = None;
+        }
+        self
+    }
+}
+
+/// Whether frequency and damping depend on the amplitude: χ² of both about their weighted means.
+fn changed(levels: &[Level]) -> Option<Finding> {
+    let spread = |of: &dyn Fn(&DecayMode) -> &Estimate| {
+        let known =
+            levels.iter().map(|level| of(&level.mode)).filter_map(|e| Some((e.value, e.std?.powi(-2))));
+        let known: Vec<(f64, f64)> = known.collect();
+        let weights: f64 = known.iter().map(|(_, w)| w).sum();
+        let mean = known.iter().map(|(v, w)| v * w).sum::<f64>() / weights;
+        known.iter().map(|(v, w)| w * (v - mean).powi(2)).sum::<f64>()
+    };
+    let (first, last) = levels.first().zip(levels.last())?;
+    let sum = spread(&|mode| &mode.zeta) + spread(&|mode| &mode.frequency);
+    let free = 2 * levels.len().checked_sub(1).filter(|free| *free > 0)?;
+    (chi_squared_above(sum, free) < CHANGED).then(|| {
+        let found = Finding::doubt("decay-changes").number("from", first.mode.zeta.value);
+        found
+            .number("to", last.mode.zeta.value)
+            .number("high", first.mode.amplitude.value)
+            .number("low", last.mode.amplitude.value)
+    })
+}
+
+#[cfg(test)]
+mod tests;

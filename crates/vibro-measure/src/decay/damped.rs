@@ -1,0 +1,214 @@
+//! Lines of damped sines, and their fit.
+//!
+//! The transform of a damped sine over a finite part is a geometric sum: no window is needed, and what the ends of the part do to the lines
+//! is in the model. A fit reads the lines around a few sines only, where noise is white enough, whatever colour it has elsewhere.
+
+use crate::residuals::{Whiteness, student};
+use nalgebra::{DMatrix, DVector, SVD};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use std::ops::Range;
+use vibro_math::{Fit, least_squares};
+use vibro_record::{Error, Result};
+
+/// One sine Re(c e^((−d + 2πiκ) t/T)) over a part of duration T.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damped {
+    /// Periods κ in the part: its place between the lines.
+    pub periods: f64,
+    /// What it loses over the part: it ends at e^(−d).
+    pub decay: f64,
+    /// Its amplitude c at the beginning.
+    pub amplitude: Complex64,
+}
+
+impl Damped {
+    /// Line `k` of a part of `n` samples, (2/N) Σ xⱼ e^(−2πijk/N).
+    pub fn line(&self, k: usize, n: usize) -> Complex64 {
+        let [own, image] = lines(self.periods, self.decay, k, n);
+        self.amplitude * own + self.amplitude.conj() * image
+    }
+
+    /// Sample `i` of a part of `n` samples.
+    pub fn sample(&self, i: usize, n: usize) -> f64 {
+        let t = i as f64 / n as f64;
+        (self.amplitude * (Complex64::new(-self.decay, TAU * self.periods) * t).exp()).re
+    }
+
+    /// Half of the lines between which half of its power lies, at least one line.
+    pub fn width(&self) -> f64 {
+        (self.decay.abs() / TAU).max(1.0)
+    }
+}
+
+/// Line `k` of e^((−d ± 2πiκ) j/N), divided by N.
+fn lines(periods: f64, decay: f64, k: usize, n: usize) -> [Complex64; 2] {
+    let all = n as f64;
+    [periods, -periods].map(|at| {
+        let step = Complex64::new(-decay, TAU * (at - k as f64)) / all;
+        if step.norm() == 0.0 {
+            Complex64::new(1.0, 0.0)
+        } else {
+            less_one(step * all) / less_one(step) / all
+        }
+    })
+}
+
+/// eᶻ − 1 without cancellation.
+fn less_one(z: Complex64) -> Complex64 {
+    let (sin, cos) = z.im.sin_cos();
+    let half = (0.5 * z.im).sin();
+    Complex64::new(z.re.exp_m1() * cos - 2.0 * half * half, z.re.exp() * sin)
+}
+
+/// Parameters of a sine: periods, decay, real and imaginary part of the amplitude.
+pub const OWN: usize = 4;
+/// Those of what else is there, a straight line over frequency.
+const REST: usize = 4;
+
+/// Sines that were fitted together to some lines.
+#[derive(Debug, Clone)]
+pub struct Group {
+    /// The lines.
+    pub lines: Range<usize>,
+    /// The sines, in the order of their starts.
+    pub sines: Vec<Damped>,
+    fit: Fit,
+    widening: f64,
+}
+
+impl Group {
+    /// Fits sines to `lines` of a spectrum of `n` samples, from their periods and decays.
+    ///
+    /// # Errors
+    /// If the lines do not determine the sines.
+    pub fn fit(
+        spectrum: &[Complex64],
+        lines: Range<usize>,
+        n: usize,
+        starts: &[(f64, f64)],
+    ) -> Result<Group> {
+        let start = start(spectrum, &lines, n, starts)?;
+        let mut scale = Vec::new();
+        for (at, (_, decay)) in starts.iter().enumerate() {
+            let size = start[OWN * at + 2].hypot(start[OWN * at + 3]).max(f64::MIN_POSITIVE);
+            scale.extend([1.0, decay.abs().max(1.0), size, size]);
+        }
+        let largest = scale.iter().skip(2).copied().fold(f64::MIN_POSITIVE, f64::max);
+        scale.extend([largest; REST]);
+        let residuals = |p: &[f64], out: &mut [f64]| {
+            let rest = &p[p.len() - REST..];
+            for ((i, k), out) in lines.clone().enumerate().zip(out.chunks_exact_mut(2)) {
+                let sines = p.chunks_exact(OWN).take(starts.len()).map(|p| sine(p).line(k, n));
+                let left = spectrum[k] - sines.sum::<Complex64>() - beside(rest, place(i, lines.len()));
+                out.copy_from_slice(&[left.re, left.im]);
+            }
+        };
+        let fit = least_squares(residuals, 2 * lines.len(), &start, &scale)?;
+        if !fit.converged {
+            return Err(Error::refused("the fit of damped sines does not settle"));
+        }
+        let sines: Vec<Damped> = fit.parameters.chunks_exact(OWN).take(starts.len()).map(sine).collect();
+        let part = |odd: usize| fit.residuals.iter().skip(odd).step_by(2).copied().collect::<Vec<f64>>();
+        let white = Whiteness::of(&[&part(0), &part(1)]);
+        let widening = student(fit.degrees_of_freedom()).unwrap_or(f64::NAN) * white.inflation;
+        Ok(Group { lines, sines, fit, widening })
+    }
+
+    /// Standard deviation of a component of what is left of a line.
+    pub fn noise(&self) -> f64 {
+        self.fit.variance().sqrt()
+    }
+
+    /// Sum of squares of what is left, and how many of them are free.
+    pub fn left(&self) -> (f64, usize) {
+        (self.fit.sum_of_squares(), self.fit.degrees_of_freedom())
+    }
+
+    /// Standard uncertainty of what depends on the parameters of sine `m` with this gradient.
+    pub fn std(&self, m: usize, gradient: [f64; OWN]) -> f64 {
+        let at =
+            |i: usize, j: usize| gradient[i] * gradient[j] * self.fit.covariance(OWN * m + i, OWN * m + j);
+        let sum: f64 = (0..OWN).flat_map(|i| (0..OWN).map(move |j| (i, j))).map(|(i, j)| at(i, j)).sum();
+        self.widening * sum.max(0.0).sqrt()
+    }
+}
+
+fn sine(p: &[f64]) -> Damped {
+    Damped { periods: p[0], decay: p[1], amplitude: Complex64::new(p[2], p[3]) }
+}
+
+/// Place of line `i` of `n`, from −1 to 1.
+fn place(i: usize, n: usize) -> f64 {
+    2.0 * i as f64 / (n - 1) as f64 - 1.0
+}
+
+fn beside(rest: &[f64], place: f64) -> Complex64 {
+    Complex64::new(rest[0] + place * rest[2], rest[1] + place * rest[3])
+}
+
+/// All parameters, the linear ones by least squares at the periods and decays given.
+fn start(spectrum: &[Complex64], range: &Range<usize>, n: usize, starts: &[(f64, f64)]) -> Result<Vec<f64>> {
+    let (rows, columns) = (2 * range.len(), 2 * starts.len() + REST);
+    if rows <= OWN * starts.len() + REST {
+        return Err(Error::refused(format!("{} lines do not determine {} sines", range.len(), starts.len())));
+    }
+    let (mut matrix, mut right) = (DMatrix::zeros(rows, columns), DVector::zeros(rows));
+    for (i, k) in range.clone().enumerate() {
+        let mut put = |column: usize, value: Complex64| {
+            (matrix[(2 * i, column)], matrix[(2 * i + 1, column)]) = (value.re, value.im);
+        };
+        for (m, (periods, decay)) in starts.iter().enumerate() {
+            let [own, image] = lines(*periods, *decay, k, n);
+            put(2 * m, own + image);
+            put(2 * m + 1, Complex64::i() * (own - image));
+        }
+        for c in 0..REST {
+            let mut unit = [0.0; REST];
+            unit[c] = 1.0;
+            put(2 * starts.len() + c, beside(&unit, place(i, range.len())));
+        }
+        (right[2 * i], right[2 * i + 1]) = (spectrum[k].re, spectrum[k].im);
+    }
+    let svd = SVD::try_new(matrix, true, true, f64::EPSILON, 10_000);
+    let solved = svd.and_then(|svd| svd.solve(&right, 1e-12 * svd.singular_values.max()).ok());
+    let linear = solved.ok_or_else(|| Error::refused("the lines do not determine the sines"))?;
+    let own = starts.iter().enumerate().flat_map(|(m, s)| [s.0, s.1, linear[2 * m], linear[2 * m + 1]]);
+    Ok(own.chain(linear.iter().skip(2 * starts.len()).copied()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vibro_signal::fft::Transform;
+
+    /// Against the transform of the samples; the geometric sum of N terms rounds to N ε.
+    #[test]
+    fn lines_are_those_of_the_samples() {
+        for (n, periods, decay) in [(64, 5.3, 2.0), (101, 0.7, 0.0), (500, 249.1, 9.0), (64, 7.0, -1.5)] {
+            let sine = Damped { periods, decay, amplitude: Complex64::from_polar(1.3, 0.4) };
+            let samples: Vec<f64> = (0..n).map(|i| sine.sample(i, n)).collect();
+            for (k, line) in Transform::new(n).forward(&samples).iter().enumerate() {
+                let error = (sine.line(k, n) - line * (2.0 / n as f64)).norm();
+                assert!(error < 1e-14 * (1.0 + (-decay).exp()) * n as f64, "{n} {k}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_sines_a_line_apart_are_found_without_noise() {
+        let n = 2000;
+        let truth = [(40.2, 3.0, 1.0), (41.3, 4.0, 0.5)].map(|(periods, decay, a)| Damped {
+            periods,
+            decay,
+            amplitude: Complex64::from_polar(a, a),
+        });
+        let spectrum: Vec<Complex64> = (0..100).map(|k| truth.iter().map(|s| s.line(k, n)).sum()).collect();
+        let group = Group::fit(&spectrum, 30..52, n, &[(40.0, 2.0), (41.5, 2.0)]).unwrap();
+        for (found, truth) in group.sines.iter().zip(&truth) {
+            // The Jacobian is one of central differences, and steps end below 1e-8 of a line.
+            assert!((found.periods - truth.periods).abs() < 1e-6 && (found.decay - truth.decay).abs() < 1e-5);
+        }
+        assert!(Group::fit(&spectrum, 38..42, n, &[(40.0, 2.0), (41.5, 2.0)]).is_err());
+    }
+}

@@ -1,0 +1,131 @@
+//! The part of a record in which motion decays freely.
+
+use crate::noise::{REACH, around};
+use std::ops::Range;
+use vibro_record::{Error, Finding, Result, Scaling, Trace, Window};
+use vibro_signal::fft::Transform;
+use vibro_signal::spectrum;
+
+/// Samples that a block has at least.
+const SHORTEST: usize = 8;
+/// Periods of the strongest line in a block.
+const PERIODS: f64 = 2.0;
+/// At its end the motion has fallen to this part of its largest, or into the noise.
+const LEFT: f64 = 2.5e-3;
+/// Level of the noise, in parts of its own, at which motion is lost in it.
+const LOST: f64 = 1.3;
+/// Lines below the first of these hold the mean and its drift.
+const LOWEST: usize = 3;
+
+/// Where motion decays, and how long it stays in view.
+pub struct Usable {
+    /// First sample behind the onset, and one behind the last that holds motion.
+    pub part: Range<usize>,
+    /// Samples of a few periods of the strongest line.
+    pub block: usize,
+    pub findings: Vec<Finding>,
+}
+
+/// Finds the onset as the largest sample of the block that moves most, and the end where its motion is lost.
+///
+/// # Errors
+/// If the trace has no spectrum, no line of the band, or too few periods.
+pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usable> {
+    let lines = spectrum::plain(trace, Window::Hann, Scaling::Peak, true)?.values.magnitudes();
+    let n = trace.values.len();
+    let line = |f: f64| (f * n as f64 / rate) as usize;
+    let (low, high) = band.map_or((LOWEST, lines.len()), |(low, high)| {
+        (line(low).max(LOWEST), (line(high) + 1).min(lines.len()))
+    });
+    // Drift is high where all lines are: a mode stands out of those around it.
+    let over = |k: &usize| {
+        lines[*k] / around(&lines, *k, REACH, None).unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE)
+    };
+    let tops = (low.max(1)..high.min(lines.len().saturating_sub(1)))
+        .filter(|k| lines[*k] >= lines[k - 1] && lines[*k] >= lines[k + 1]);
+    let mut tops: Vec<usize> = tops.collect();
+    tops.sort_by(|a, b| lines[*b].total_cmp(&lines[*a]));
+    tops.truncate(2 * REACH);
+    let strongest = tops.into_iter().max_by(|a, b| over(a).total_cmp(&over(b)));
+    let strongest = strongest.ok_or_else(|| {
+        Error::refused("no line of the spectrum lies there").hint("choose another band").setting("band")
+    })?;
+    let period = n as f64 / strongest as f64;
+    let block = ((PERIODS * period) as usize).max(SHORTEST);
+    if n < 5 * block {
+        let why = format!("the record holds {strongest} periods of its strongest line");
+        return Err(Error::refused(why)
+            .hint("record longer, or choose a band above the drift")
+            .setting("band"));
+    }
+    let values = match band {
+        Some(_) => within(&trace.values, low..high),
+        None => trace.values.clone(),
+    };
+    let level = |block: &[f64]| {
+        let mean = block.iter().sum::<f64>() / block.len() as f64;
+        (block.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / block.len() as f64).sqrt()
+    };
+    let levels: Vec<f64> = values.chunks_exact(block).map(level).collect();
+    let top = (0..levels.len()).max_by(|a, b| levels[*a].total_cmp(&levels[*b])).unwrap_or(0);
+    let mut sorted = levels.clone();
+    sorted.sort_by(f64::total_cmp);
+    let gone = (LOST * sorted[sorted.len() / 10]).max(LEFT * levels[top]);
+    let last = (top + 1..levels.len()).find(|b| levels[*b] < gone).unwrap_or(levels.len());
+    let around_top = top * block..((top + 2) * block).min(n);
+    let mean = values[around_top.clone()].iter().sum::<f64>() / around_top.len() as f64;
+    let size = |i: &usize| (values[*i] - mean).abs();
+    let mut start = around_top.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
+    let mut findings = Vec::new();
+    let clipped = clipped(&trace.values, period);
+    if let Some(behind) = clipped.last().map(|i| i + 1).filter(|behind| *behind > start) {
+        findings.push(
+            Finding::caution("decay-clipped")
+                .count("n", clipped.len())
+                .number("start", trace.axis.at(behind.min(n - 1))),
+        );
+        start = behind;
+    }
+    // What is a third longer than what is seen lets the noise be known.
+    let end = (start + (last * block).saturating_sub(start) * 4 / 3).min(n);
+    if end < start + 3 * block {
+        let why = format!(
+            "only {:.1} periods of motion lie behind its largest value",
+            (end.saturating_sub(start)) as f64 / period
+        );
+        return Err(Error::refused(why)
+            .hint("record longer behind the release or the blow, or choose a band")
+            .setting("band"));
+    }
+    Ok(Usable { part: start..end, block, findings })
+}
+
+/// The record with the lines of a band only.
+fn within(values: &[f64], band: Range<usize>) -> Vec<f64> {
+    let transform = Transform::new(values.len());
+    let mut lines = transform.forward(values);
+    for (_, line) in lines.iter_mut().enumerate().filter(|(k, _)| !band.contains(k)) {
+        *line *= 0.0;
+    }
+    transform.inverse(&lines)
+}
+
+/// Samples at either end of the range in runs longer than any crest of this period stays within a step of the converter.
+fn clipped(values: &[f64], period: f64) -> Vec<usize> {
+    let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
+    let step = steps.fold(f64::INFINITY, f64::min);
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let crest = |run: usize| {
+        0.5 * (high - low) * (1.0 - (std::f64::consts::PI * (run as f64 / period).min(0.5)).cos())
+    };
+    let mut all = Vec::new();
+    let mut at = 0;
+    for run in values.chunk_by(|a, b| a == b) {
+        if (run[0] == low || run[0] == high) && run.len() > 1 && crest(run.len() - 1) > 3.0 * step {
+            all.extend(at..at + run.len());
+        }
+        at += run.len();
+    }
+    all
+}
