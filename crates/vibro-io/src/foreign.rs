@@ -32,6 +32,12 @@ const TABLE: &[Foreign] = &[
         &["dxd", "d7d", "dxz"],
         "choose Export > UNV/UFF, MAT or CSV in Dewesoft",
     ),
+    by_bytes(
+        "a text file of Octave",
+        0,
+        b"# Created by Octave",
+        "save it with `save -v7 name.mat` and its names",
+    ),
     by_ending("a Siemens Testlab file", &["ldsf", "lms"], UFF),
     by_bytes("an imc FAMOS file", 0, b"|CF,", "choose Export > ASCII or TDMS in FAMOS"),
     by_bytes("an ASAM MDF 4 file", 0, b"MDF     4", "export it as CSV or MAT, e.g. with asammdf"),

@@ -96,7 +96,8 @@ impl Name {
         }
         let unit = Unit::parse(text).ok_or_else(|| {
             let found = format!("the unit {text:?} of the abscissa {:?}", self.name);
-            Error::usage(found, "s, ms, Hz, kHz, …").hint("name another unit in its header, e.g. time [s]")
+            Error::usage(found, "s, ms, Hz, kHz, …")
+                .hint("name another unit in its header, e.g. time [s], or [d] for days")
         })?;
         let angular = is_angular(text).then(|| Finding::note("axis-angular"));
         Ok((unit.hertz().unwrap_or(unit.factor()), angular))
@@ -144,6 +145,8 @@ impl Name {
                 | "sample"
                 | "samples"
                 | "sample no"
+                | "frame"
+                | "store no"
                 | "point"
         );
         self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
@@ -237,7 +240,7 @@ const DAY: &str = "day";
 fn long(name: &str, unit: &str) -> Option<&'static str> {
     let found = match unit.trim().to_lowercase().as_str() {
         "h" | "hr" | "hrs" | "std" => HOUR,
-        "d" | "day" | "days" => DAY,
+        "d" | "day" | "days" | "ole" => DAY,
         "min" => "min",
         "s" => "s",
         "ms" => "ms",
