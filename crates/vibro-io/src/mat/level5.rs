@@ -101,19 +101,7 @@ pub fn complex(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
 
 /// Numbers of a kind; `None` for one that is not of numbers.
 pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
-    let kind = match kind {
-        1 => Kind::I8,
-        2 => Kind::U8,
-        3 => Kind::I16,
-        4 => Kind::U16,
-        5 => Kind::I32,
-        6 => Kind::U32,
-        7 => Kind::F32,
-        9 => Kind::F64,
-        12 => Kind::I64,
-        13 => Kind::U64,
-        _ => return None,
-    };
+    let kind = Kind::coded(kind, [1, 3, 5, 12, 2, 4, 6, 13, 7, 9])?;
     let (width, mut values) = (kind.size() as usize, Vec::new());
     kind.take(bytes, 0, width, big, &mut values);
     Some(values)
