@@ -251,6 +251,11 @@ pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
     [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].into_iter().find(since_1970)
 }
 
+/// What to say where a file declares another number of values than it holds.
+pub fn fewer(declared: usize, n: usize) -> Finding {
+    Finding::caution("fewer-values").count("declared", declared).count("n", n)
+}
+
 /// Six digits are enough for a sentence.
 pub fn short(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)

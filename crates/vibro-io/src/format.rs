@@ -50,7 +50,12 @@ pub(super) const TABLE: &[Entry] = &[
     Entry { format: Format::Lvm, name: "lvm", sniff: lvm::sniff, read: lvm::read },
     Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read },
     Entry { format: Format::Csv, name: "csv", sniff: text::is_table, read: text::read_table },
-    Entry { format: Format::Ascii, name: "ascii", sniff: text::is_text, read: text::read_numbers },
+    Entry {
+        format: Format::Ascii,
+        name: "ascii",
+        sniff: |head, _| text::encoding::is_text(head),
+        read: text::read_numbers,
+    },
 ];
 
 impl Format {

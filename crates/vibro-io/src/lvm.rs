@@ -269,11 +269,7 @@ impl<'h, 'a> Segment<'h, 'a> {
             let n = values.len();
             let declared = said("samples").and_then(|text| text.parse::<usize>().ok()).filter(|d| *d > n);
             meta.declared_n = declared;
-            meta.findings.extend(
-                declared.map(|declared| {
-                    Finding::caution("fewer-values").count("declared", declared).count("n", n)
-                }),
-            );
+            meta.findings.extend(declared.map(|declared| assemble::fewer(declared, n)));
             let factor = options.adopt(&mut meta, said("y_unit_label").or(unit.as_deref()));
             to_si(&mut values, factor)?;
             let axis =

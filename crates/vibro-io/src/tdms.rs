@@ -18,6 +18,7 @@ mod segment;
 use super::Source;
 use super::missing;
 use super::reader::Options;
+use crate::assemble;
 use crate::held::{Contents, Held, rises};
 use axes::Clock;
 use description::Value;
@@ -100,9 +101,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
         let n = channel.values.len();
         if object.declared > n as u64 {
             meta.declared_n = usize::try_from(object.declared).ok();
-            meta.found(
-                Finding::caution("fewer-values").number("declared", object.declared as f64).count("n", n),
-            );
+            meta.found(assemble::fewer(object.declared as usize, n));
         }
         let axis = axes::of(&channel, options, &mut meta);
         channel.values.record(meta, axis)

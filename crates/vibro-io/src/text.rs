@@ -83,11 +83,6 @@ pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
     words && encoding::is_text(head) && found().is_ok_and(|found| found.is_some())
 }
 
-/// Text of any kind: this is the last format tried.
-pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
-    encoding::is_text(head)
-}
-
 pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     with_text(source, |text| match table::detect(text, options) {
         Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),

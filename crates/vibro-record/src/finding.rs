@@ -111,10 +111,7 @@ impl Finding {
 
     /// A number by its name.
     pub fn get(&self, name: &str) -> Option<f64> {
-        match self.fact(name)? {
-            Fact::Number(value) => Some(*value),
-            Fact::Numbers(_) | Fact::Name(_) => None,
-        }
+        if let Fact::Number(value) = self.fact(name)? { Some(*value) } else { None }
     }
 
     /// Findings of records, given as name and findings: one that all share once, any other about its record.

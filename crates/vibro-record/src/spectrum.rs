@@ -15,6 +15,18 @@ pub enum Values {
 }
 
 impl Values {
+    /// Values of their real and, where they are complex, imaginary parts.
+    pub fn of(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
+        let Some(imaginary) = imaginary else { return Values::Real(real) };
+        let pairs = real.into_iter().zip(imaginary);
+        Values::Complex(pairs.map(|(re, im)| Complex64::new(re, im)).collect())
+    }
+
+    /// Real values; `None` of complex ones.
+    pub fn reals(&self) -> Option<&[f64]> {
+        if let Values::Real(values) = self { Some(values) } else { None }
+    }
+
     /// Number of lines.
     pub fn len(&self) -> usize {
         match self {

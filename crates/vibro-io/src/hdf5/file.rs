@@ -4,6 +4,7 @@
 
 use super::lzf;
 use crate::Source;
+use crate::assemble::fewer;
 use crate::binary::Kind;
 use crate::held::{Held, rises};
 use crate::variables::EXPORT;
@@ -168,8 +169,7 @@ impl File {
                 if let Data::Numbers(values) = &data
                     && values.len() < declared
                 {
-                    let found = Finding::caution("fewer-values").about(name);
-                    self.findings.push(found.count("declared", declared).count("n", values.len()));
+                    self.findings.push(fewer(declared, values.len()).about(name));
                 }
                 return Some(data);
             }

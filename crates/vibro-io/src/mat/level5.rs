@@ -5,7 +5,6 @@
 use crate::binary::Kind;
 use crate::variables::{Array, Content, MOST_TEXT};
 use flate2::read::ZlibDecoder;
-use num_complex::Complex64;
 use std::io::Read;
 use vibro_record::{Error, Place, Result, Values};
 
@@ -86,16 +85,6 @@ impl<'a> Elements<'a> {
             return Err(self.fault(found, "as many values as its dimensions say"));
         }
         Ok(values)
-    }
-}
-
-/// Values of their real and, where they are complex, imaginary part.
-pub fn complex(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
-    match imaginary {
-        Some(im) => {
-            Values::Complex(real.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im)).collect())
-        }
-        None => Values::Real(real),
     }
 }
 
@@ -205,8 +194,8 @@ fn variable(
         6..=15 => {
             let real = elements.numbers(count)?;
             let imaginary = if has_two { Some(elements.numbers(count)?) } else { None };
-            let values = complex(real, imaginary);
-            Content::Array(Array { dimensions, values: values.into(), single: class == 7 })
+            let values = Values::of(real, imaginary).into();
+            Content::Array(Array { dimensions, values, single: class == 7 })
         }
         3 => Content::Other("object"),
         5 => Content::Other("sparse matrix"),

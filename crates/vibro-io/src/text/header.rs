@@ -34,6 +34,12 @@ pub struct Stated {
     pub notes: Vec<(String, String)>,
 }
 
+/// Keys of a sampling rate, and of the step of time.
+const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|fs|rate|abtastrate|\
+                    abtastfrequenz|fréquence d'échantillonnage";
+const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
+                    interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval";
+
 /// `mHz`, apart from megahertz in lower case.
 const MILLIHERTZ: &str = "millihertz";
 
@@ -122,35 +128,10 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
             stated.base_band = hertz();
         }
-        "sampling rate"
-        | "sample rate"
-        | "sampling frequency"
-        | "sample frequency"
-        | "samplerate"
-        | "fs"
-        | "rate"
-        | "abtastrate"
-        | "abtastfrequenz"
-        | "fréquence d'échantillonnage" => {
+        key if RATE.split('|').any(|known| known == key) => {
             stated.rate = hertz().or(stated.rate);
         }
-        "dt"
-        | "delta t"
-        | "sampling interval"
-        | "sample interval"
-        | "sampling period"
-        | "time step"
-        | "delta time"
-        | "increment"
-        | "clock"
-        | "interval"
-        | "time interval"
-        | "tinc"
-        | "x increment"
-        | "xinc"
-        | "x axis delta"
-        | "hresolution"
-        | "horizontal interval" => {
+        key if STEP.split('|').any(|known| known == key) => {
             let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
             stated.of_one_series |= rate.is_some();
             stated.rate = rate.or(stated.rate);

@@ -68,7 +68,7 @@ pub fn build(
     if let Some(declared) =
         made.stated.values.filter(|declared| *declared != n && axis.kind != AxisKind::Frequency)
     {
-        of_axis.push(Finding::caution("fewer-values").count("declared", declared).count("n", n));
+        of_axis.push(assemble::fewer(declared, n));
     }
     if table.len() == 2 && !has_axis && dialect.names.is_none() && !options.complex {
         of_axis.push(Finding::caution("two-channels"));

@@ -46,7 +46,7 @@ pub fn build(
     }
     let n = values.len();
     if n < heading.n {
-        meta.found(Finding::caution("fewer-values").count("declared", heading.n).count("n", n));
+        meta.found(assemble::fewer(heading.n, n));
     } else if n == 0 {
         meta.found(Finding::caution("no-values-declared"));
     }

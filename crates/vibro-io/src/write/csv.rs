@@ -128,7 +128,7 @@ fn number(value: f64, text: &mut String) {
 
 /// One line without blanks at its ends.
 fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>().trim().to_owned()
+    text.replace(char::is_control, " ").trim().to_owned()
 }
 
 /// Quoted after RFC 4180 where it must be; a comment sign would hide the line.
