@@ -53,12 +53,6 @@ pub fn complex_over_time() -> Error {
         .setting("base_band")
 }
 
-/// A scaling by its name.
-pub fn scaling(name: &str) -> Option<Scaling> {
-    use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
-    [Peak, Rms, Power, Psd, Energy, Coherence, Unknown].into_iter().find(|s| s.name() == name)
-}
-
 /// Multiplies values by the factor of their unit.
 ///
 /// # Errors

@@ -28,16 +28,14 @@ pub enum Format {
     Ascii,
 }
 
-/// Reads the records of a source; for a `survey` the ends of their values are enough where the format can tell them in less memory.
-type Read = fn(&Source, &Options, survey: bool) -> Result<Contents>;
-
 /// How one format is told apart and read.
 pub(super) struct Entry {
     pub format: Format,
     pub name: &'static str,
     /// Whether the first bytes are of this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
-    pub read: Read,
+    /// Reads the records of a source; for a `survey` the ends of their values are enough where the format can tell them in less memory.
+    pub read: fn(&Source, &Options, survey: bool) -> Result<Contents>,
 }
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.

@@ -18,8 +18,8 @@
 
 use super::missing::{self, Missing};
 use super::reader::Options;
-use super::text::encoding;
 use super::text::names::Name;
+use super::text::{encoding, in_line};
 use super::{Source, number};
 use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
 use crate::held::Contents;
@@ -56,7 +56,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
         let more = behind.next().is_some();
         let head = Head::of(&mut lines);
         if !head.ended && more && segments > 0 {
-            let place = Place { line: Some(behind.number), ..Place::default() };
+            let place = in_line(behind.number);
             return Err(Error::input(place, "a line behind a segment that begins no head", END_OF_HEADER)
                 .hint("take out the blank line above it, or this line and all behind it"));
         }
@@ -188,12 +188,8 @@ impl<'h, 'a> Segment<'h, 'a> {
             _ => (1..comment).filter(there).map(|c| (c, None)).collect(),
         };
         if channels.is_empty() {
-            let place = Place { line: Some(lines.number), ..Place::default() };
-            return Err(Error::input(
-                place,
-                "no names of channels",
-                "a line X_Value, then one name a channel",
-            ));
+            let expected = "a line X_Value, then one name a channel";
+            return Err(Error::input(in_line(lines.number), "no names of channels", expected));
         }
         let column = |name: &&str| Column { name: (*name).to_owned(), ..Column::default() };
         let mut columns: Vec<Column> = names[..comment].iter().map(column).collect();
@@ -224,9 +220,8 @@ impl<'h, 'a> Segment<'h, 'a> {
                     None if field.is_empty() => continue,
                     None if number::is_missing(field.as_bytes()) => f64::NAN,
                     None => {
-                        let place = Place { line: Some(lines.number), ..Place::default() };
                         let found = format!("{field:?} in the column {:?}", column.name);
-                        return Err(Error::input(place, found, "a number"));
+                        return Err(Error::input(in_line(lines.number), found, "a number"));
                     }
                 };
                 // A blank between values is one that is missing, one behind them is none.

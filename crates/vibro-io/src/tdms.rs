@@ -25,7 +25,7 @@ use description::Value;
 use layout::Layout;
 use rayon::prelude::*;
 use scale::Scales;
-use segment::{Object, Segments};
+use segment::Object;
 use std::cmp::Reverse;
 use std::io::{BufReader, Read, Seek};
 use std::sync::Arc;
@@ -47,7 +47,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             .hint("name the file without `_index` that lies beside it"));
     }
     let mut file = BufReader::with_capacity(BLOCK, source.open()?);
-    let Segments { objects, layouts, mut findings } = segment::all(&mut file, source.len())?;
+    let (objects, layouts, mut findings) = segment::all(&mut file, source.len())?;
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
     let mut raw: Vec<Raw> = objects.iter().map(|object| Raw::of(object, &above, survey)).collect();

@@ -160,7 +160,7 @@ fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> 
 }
 
 /// The place of a complaint; the reader adds the file.
-fn in_line(line: u64) -> Place {
+pub(crate) fn in_line(line: u64) -> Place {
     Place { line: Some(line), ..Place::default() }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Axis, Meta, Window};
 use crate::units::Quantity;
+use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -80,18 +81,19 @@ pub enum Scaling {
     Unknown,
 }
 
+/// In the order of the variants.
+const NAMES: [&str; 7] = ["peak", "rms", "power", "psd", "energy", "coherence", "unknown"];
+
 impl Scaling {
     /// Name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            Scaling::Peak => "peak",
-            Scaling::Rms => "rms",
-            Scaling::Power => "power",
-            Scaling::Psd => "psd",
-            Scaling::Energy => "energy",
-            Scaling::Coherence => "coherence",
-            Scaling::Unknown => "unknown",
-        }
+        NAMES[self as usize]
+    }
+
+    /// The scaling with this name.
+    pub fn from_name(name: &str) -> Option<Scaling> {
+        let all = [Peak, Rms, Power, Psd, Energy, Coherence, Unknown];
+        all.into_iter().find(|scaling| scaling.name() == name)
     }
 }
 

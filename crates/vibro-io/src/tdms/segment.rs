@@ -46,18 +46,14 @@ impl Object {
     }
 }
 
-/// Objects in their order, and the raw data of each segment.
-pub struct Segments {
-    pub objects: Vec<Object>,
-    pub layouts: Vec<Layout>,
-    pub findings: Vec<Finding>,
-}
-
-/// Goes from segment to segment of a file of `len` bytes.
+/// Goes from segment to segment of a file of `len` bytes: objects in their order, and the raw data of each segment.
 ///
 /// # Errors
 /// If the file cannot be read, or a segment is not what the format says.
-pub fn all(file: &mut BufReader<impl Read + Seek>, len: u64) -> Result<Segments> {
+pub fn all(
+    file: &mut BufReader<impl Read + Seek>,
+    len: u64,
+) -> Result<(Vec<Object>, Vec<Layout>, Vec<Finding>)> {
     let mut known = Known::default();
     let (mut layouts, mut findings, mut at) = (Vec::new(), Vec::new(), 0);
     while at < len {
@@ -100,7 +96,7 @@ pub fn all(file: &mut BufReader<impl Read + Seek>, len: u64) -> Result<Segments>
         }
         at = declared;
     }
-    Ok(Segments { objects: known.objects, layouts, findings })
+    Ok((known.objects, layouts, findings))
 }
 
 /// Goes to a byte without losing what was read ahead.

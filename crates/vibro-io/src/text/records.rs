@@ -317,7 +317,7 @@ impl Made<'_> {
         let density = unit.is_some_and(is_density).then_some(Scaling::Psd);
         let own = self.said("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
-            scaling: self.said("scaling", name).and_then(|s| assemble::scaling(&s)).or(density),
+            scaling: self.said("scaling", name).and_then(|s| Scaling::from_name(&s)).or(density),
             // A remark about another column says nothing of this one.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),

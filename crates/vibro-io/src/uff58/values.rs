@@ -1,6 +1,7 @@
 //! Record 12 of data set 58: values in fixed columns, between blanks, or in binary.
 
 use super::heading::Heading;
+use crate::binary::Kind;
 use crate::uff::stream::{Stream, closes, is_delimiter};
 use crate::{missing, number};
 use vibro_record::{Error, Finding, Result};
@@ -242,11 +243,10 @@ fn decode(bytes: &[u8], layout: Layout, big_endian: bool, wide: bool) -> Vec<f64
     let single =
         |b: &[u8; 4]| f64::from(if big_endian { f32::from_be_bytes(*b) } else { f32::from_le_bytes(*b) });
     let double = |b: &[u8; 8]| if big_endian { f64::from_be_bytes(*b) } else { f64::from_le_bytes(*b) };
-    if !layout.double {
-        return bytes.as_chunks().0.iter().map(single).collect();
-    }
-    if layout.even || wide {
-        return bytes.as_chunks().0.iter().map(double).collect();
+    if !layout.double || layout.even || wide {
+        let (kind, mut numbers) = (if layout.double { Kind::F64 } else { Kind::F32 }, Vec::new());
+        kind.take(bytes, 0, kind.size() as usize, big_endian, &mut numbers);
+        return numbers;
     }
     let points = bytes.chunks_exact(layout.point_size(false)).filter_map(|point| point.split_first_chunk());
     points.flat_map(|(x, y)| std::iter::once(single(x)).chain(y.as_chunks().0.iter().map(double))).collect()
