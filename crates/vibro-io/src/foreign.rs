@@ -13,6 +13,8 @@ enum By {
 use By::{Bytes, Ending};
 
 const UFF: &str = "choose File > Export > Universal File (UFF-58)";
+const DEWESOFT: &str = "choose Export > UNV/UFF, MAT or CSV in Dewesoft";
+const UNFINISHED: &str = "finish it in the program that wrote it, and export CSV or MAT";
 const TEXT: &str = "choose the export as CSV or text";
 const SHEET: &str = "choose File > Save As > CSV, one sheet a file";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
@@ -20,20 +22,12 @@ const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is 
 /// Name of a format, what tells it, and the export to choose.
 const TABLE: &[(&str, By, &str)] = &[
     ("a Polytec vibrometer file", Ending(&["svd", "pvd"]), UFF),
-    (
-        "a Dewesoft recording",
-        Ending(&["dxd", "d7d", "dxz"]),
-        "choose Export > UNV/UFF, MAT or CSV in Dewesoft",
-    ),
+    ("a Dewesoft recording", Ending(&["dxd", "d7d", "dxz"]), DEWESOFT),
     ("a Siemens Testlab file", Ending(&["ldsf", "lms"]), UFF),
     ("an imc FAMOS file", Bytes(0, b"|CF,"), "choose Export > ASCII or TDMS in FAMOS"),
     ("an ASAM MDF 4 file", Bytes(0, b"MDF     4"), "export it as CSV or MAT, e.g. with asammdf"),
     ("an ASAM MDF 3 file", Bytes(0, b"MDF     "), "export it as CSV or MAT, e.g. with asammdf"),
-    (
-        "an unfinished ASAM MDF file",
-        Bytes(0, b"UnFinMF "),
-        "finish it in the program that wrote it, and export CSV or MAT",
-    ),
+    ("an unfinished ASAM MDF file", Bytes(0, b"UnFinMF "), UNFINISHED),
     ("a LeCroy waveform", Bytes(11, b"WAVEDESC"), TEXT),
     ("a LeCroy waveform", Bytes(0, b"WAVEDESC"), TEXT),
     ("a Tektronix waveform", Bytes(2, b":WFM#"), TEXT),

@@ -103,8 +103,7 @@ impl<'a> Iterator for Lines<'a> {
 /// Whether the first cell of a line that is not blank holds a number.
 fn is_row(line: &str, separator: char) -> bool {
     let cell = line.split(separator).map(str::trim).find(|cell| !cell.is_empty()).unwrap_or_default();
-    let number = |decimal| number::parse_with(cell.as_bytes(), decimal).is_some();
-    number(b'.') || number(b',') || number::is_missing(cell.as_bytes())
+    number::either(cell.as_bytes()).is_some() || number::is_missing(cell.as_bytes())
 }
 
 /// Tags in lower case, each with its values; those of a channel stand above its column.
@@ -279,10 +278,7 @@ impl<'h, 'a> Segment<'h, 'a> {
         let frequency =
             self.head.above("x_dimension", channel).is_some_and(|d| d.eq_ignore_ascii_case("frequency"));
         let kind = if frequency { AxisKind::Frequency } else { AxisKind::Time };
-        let number = |tag: &str| {
-            let text = self.head.above(tag, channel)?.as_bytes();
-            number::parse(text).or_else(|| number::parse_with(text, b','))
-        };
+        let number = |tag: &str| number::either(self.head.above(tag, channel)?.as_bytes());
         let (start, step) = (number("x0").unwrap_or(0.0), number("delta_x"));
         let stated = step.map(|step| (start, step));
         let x = x.filter(|x| n > 1 && x.values.len() >= n && x.values.iter().all(|v| v.is_finite()));

@@ -25,6 +25,11 @@ pub fn parse(text: &[u8]) -> Option<f64> {
     parse_with(text, b'.')
 }
 
+/// Parses one number with a decimal point or else a decimal comma.
+pub(crate) fn either(text: &[u8]) -> Option<f64> {
+    parse(text).or_else(|| parse_with(text, b','))
+}
+
 /// Parses one number with `decimal` as its decimal mark.
 pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     let text = text.trim_ascii();

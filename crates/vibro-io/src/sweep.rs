@@ -96,7 +96,11 @@ impl SweepReader {
         findings: &mut Vec<Finding>,
     ) -> Result<(Meta, Vec<f64>, Option<Window>)> {
         let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
-            return Err(no_spectrum(&recording.records));
+            let found = match recording.records.as_slice() {
+                [record] => format!("a {}", record.kind()),
+                records => format!("{} records in the file", records.len()),
+            };
+            return Err(Error::usage(found, "one spectrum a file").hint(SPECTRA));
         };
         let mut found = |finding: Finding| {
             if !findings.contains(&finding) {
@@ -192,6 +196,9 @@ impl SweepReader {
     }
 }
 
+/// What to try where a file holds other records.
+const SPECTRA: &str = "list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign";
+
 /// What to try where values are levels.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
@@ -227,15 +234,6 @@ fn decibels(meta: &Meta) -> Option<String> {
 fn taken(meta: &Meta) -> f64 {
     let steps = meta.history.iter().filter(|step| step.name == "to_si").flat_map(|step| &step.arguments);
     steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
-}
-
-fn no_spectrum(records: &[Record]) -> Error {
-    let found = match records {
-        [record] => format!("a {}", record.kind()),
-        records => format!("{} records in the file", records.len()),
-    };
-    Error::usage(found, "one spectrum a file")
-        .hint("list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign")
 }
 
 /// Peak magnitudes of a spectrum, which must have the lines of `axis`.

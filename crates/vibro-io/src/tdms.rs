@@ -50,7 +50,12 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let (objects, layouts, mut findings) = segment::all(&mut file, source.len())?;
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
-    let mut raw: Vec<Raw> = objects.iter().map(|object| Raw::of(object, &above, survey)).collect();
+    let raw = objects.iter().map(|object| {
+        // The slots of one value need not lie side by side.
+        let kept = if survey && object.slots.len() == 1 { Kept::Undecided } else { Kept::Values };
+        Raw { object, scales: Scales::of(&above, object), columns: Vec::new(), kept }
+    });
+    let mut raw: Vec<Raw> = raw.collect();
     // Channels that lie one after the other are read side by side.
     let apart = layouts.iter().flat_map(|layout| layout.parts.iter()).all(|part| part.fields.len() <= 1);
     let each = raw.len().div_ceil(if apart { rayon::current_num_threads() } else { 1 }).max(1);
@@ -138,9 +143,6 @@ fn changed(object: &Object) -> Option<String> {
     Some(format!("{key} changes from {} to {now} behind value {at}", text(before)))
 }
 
-/// Raw values of an object, one column a slot.
-type Columns = Vec<Vec<f64>>;
-
 /// What is kept of the values of an object.
 #[derive(Clone, Copy)]
 enum Kept {
@@ -155,17 +157,12 @@ enum Kept {
 struct Raw<'a> {
     object: &'a Object,
     scales: Scales<'a>,
-    columns: Columns,
+    /// Raw values, one column a slot.
+    columns: Vec<Vec<f64>>,
     kept: Kept,
 }
 
-impl<'a> Raw<'a> {
-    fn of(object: &'a Object, above: &[&'a Object], survey: bool) -> Raw<'a> {
-        // The slots of one value need not lie side by side.
-        let kept = if survey && object.slots.len() == 1 { Kept::Undecided } else { Kept::Values };
-        Raw { object, scales: Scales::of(above, object), columns: Columns::new(), kept }
-    }
-
+impl Raw<'_> {
     /// Keeps what is needed of the values so far.
     fn look(&mut self) {
         let new = matches!(self.kept, Kept::Undecided);

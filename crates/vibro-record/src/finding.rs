@@ -116,12 +116,9 @@ impl Finding {
 
     /// Findings of records, given as name and findings: one that all share once, any other about its record.
     pub fn gathered(records: &[(&str, &[Finding])]) -> Vec<Finding> {
-        let (first, others) =
-            records.split_first().map_or((&[][..], records), |(first, others)| (first.1, others));
-        let shared: Vec<&Finding> = first
-            .iter()
-            .filter(|found| others.iter().all(|(_, findings)| findings.contains(found)))
-            .collect();
+        let everywhere = |found: &&Finding| records.iter().all(|(_, findings)| findings.contains(found));
+        let first = records.first().map_or(&[][..], |(_, findings)| findings);
+        let shared: Vec<&Finding> = first.iter().filter(everywhere).collect();
         let mut all: Vec<Finding> = Vec::new();
         for (i, (name, findings)) in records.iter().enumerate() {
             for finding in *findings {

@@ -39,11 +39,15 @@ pub enum Slot {
 
 /// How the raw data of an object lie in the chunks of a segment.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Index {
-    /// Rows of numbers; of other things, one row of all their bytes.
-    Plain { rows: u64, width: u64, fields: Vec<(Slot, usize, Kind)> },
-    /// Rows that all channels of a DAQmx buffer share, the widths of the buffers, and the scalers with their buffers.
-    Shared { rows: u64, widths: Vec<u64>, fields: Vec<(usize, Slot, usize, Kind)> },
+pub struct Index {
+    /// Rows of numbers; of other things one, of all their bytes.
+    pub rows: u64,
+    /// Bytes of a row, or of one in each buffer of DAQmx.
+    pub widths: Vec<u64>,
+    /// Whether all channels share the rows, as those of DAQmx do.
+    pub shared: bool,
+    /// What each number of a row is, its buffer, its byte and its kind; none of other things.
+    pub fields: Vec<(Slot, usize, usize, Kind)>,
 }
 
 /// Words of a description.
@@ -120,17 +124,18 @@ impl<'a> Words<'a> {
         self.one_dimension()?;
         let rows = self.u64()?;
         if code == 0x20 {
-            return Ok(Index::Plain { rows: 1, width: self.u64()?, fields: Vec::new() });
+            return Ok(Index { rows: 1, widths: vec![self.u64()?], shared: false, fields: Vec::new() });
         }
-        let complex = |kind: Kind| vec![(Slot::Real, 0, kind), (Slot::Imaginary, kind.size() as usize, kind)];
+        let complex =
+            |kind: Kind| vec![(Slot::Real, 0, 0, kind), (Slot::Imaginary, 0, kind.size() as usize, kind)];
         let fields = match code {
             0x0008_000c => complex(Kind::F32),
             0x0010_000d => complex(Kind::F64),
-            0x44 => vec![(Slot::Instant, 0, Kind::Time)],
-            _ => vec![(Slot::Real, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
+            0x44 => vec![(Slot::Instant, 0, 0, Kind::Time)],
+            _ => vec![(Slot::Real, 0, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
         };
-        let width = fields.iter().map(|(_, _, kind)| kind.size()).sum();
-        Ok(Index::Plain { rows, width, fields })
+        let widths = vec![fields.iter().map(|(.., kind)| kind.size()).sum()];
+        Ok(Index { rows, widths, shared: false, fields })
     }
 
     /// The layout of DAQmx data: scalers, then the widths of the buffers.
@@ -149,11 +154,11 @@ impl<'a> Words<'a> {
                 self.bytes(4)?;
                 (offset, Kind::coded(code, DAQMX).ok_or_else(|| self.type_unknown(code))?)
             };
-            fields.push((buffer, Slot::Scaler(self.u32()?), offset, kind));
+            fields.push((Slot::Scaler(self.u32()?), buffer, offset, kind));
         }
         let n = self.u32()?;
         let widths = (0..n).map(|_| self.u32().map(u64::from)).collect::<Result<_>>()?;
-        Ok(Index::Shared { rows, widths, fields })
+        Ok(Index { rows, widths, shared: true, fields })
     }
 
     fn one_dimension(&mut self) -> Result<()> {

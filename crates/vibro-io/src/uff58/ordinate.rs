@@ -29,21 +29,9 @@ impl System {
     }
 }
 
-/// Characters that a superscript or µ becomes when it is read in another code page than it was written in.
-const MANGLED: &[(&str, &str)] = &[
-    // UTF-8 taken as code page 437 and as Latin-1
-    ("┬▓", "²"),
-    ("┬│", "³"),
-    ("┬╡", "µ"),
-    ("Â²", "²"),
-    ("Â³", "³"),
-    ("Âµ", "µ"),
-    // Latin-1 taken as Mac Roman and as code page 437
-    ("≤", "²"),
-    ("≥", "³"),
-    ("▓", "²"),
-    ("│", "³"),
-];
+/// Superscripts and µ, with what they become when they are read in another code page than they were written in: UTF-8 taken as code page 437
+/// and as Latin-1, then Latin-1 taken as Mac Roman and as code page 437.
+const MANGLED: [(&str, &str); 3] = [("²", "┬▓ Â² ≤ ▓"), ("³", "┬│ Â³ ≥ │"), ("µ", "┬╡ Âµ")];
 
 /// Numerator or denominator of an ordinate.
 #[derive(Debug, Clone)]
@@ -80,7 +68,8 @@ impl Part {
 
 /// A unit whose superscript was mangled on its way through a wrong code page.
 fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
-    let mended = MANGLED.iter().fold(text.to_owned(), |t, (wrong, right)| t.replace(wrong, right));
+    let all = MANGLED.iter().flat_map(|(right, wrong)| wrong.split(' ').map(move |wrong| (wrong, right)));
+    let mended = all.fold(text.to_owned(), |t, (wrong, right)| t.replace(wrong, right));
     let unit = Unit::parse(&mended)?;
     findings.push(Finding::note("unit-mended").name("unit", text).name("taken", mended));
     Some(unit)
