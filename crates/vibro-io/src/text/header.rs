@@ -36,21 +36,18 @@ pub struct Stated {
     pub notes: Vec<(String, String)>,
 }
 
+/// Keys of a sampling rate, and of the step of time.
+const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|fs|rate|abtastrate|\
+                    abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
+                    messfrequenz";
+const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
+                    interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|\
+                    x delta|xdelta|sample time|sampling time|abtastintervall";
+/// Keys of what the abscissa is, or of its unit.
+const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
+
 /// `mHz`, apart from megahertz in lower case.
 const MILLIHERTZ: &str = "millihertz";
-
-/// Keys of what the abscissa is, or of its unit.
-const AXIS: [&str; 9] = [
-    "x-axis",
-    "x axis",
-    "x-axis unit",
-    "x axis unit",
-    "xunit",
-    "xunits",
-    "x unit",
-    "hunit",
-    "horizontal units",
-];
 
 /// More lines than any analyser has.
 const MOST_LINES: f64 = 1e9;
@@ -68,8 +65,8 @@ impl Stated {
                 stated.notes.push((key.to_owned(), value.to_owned()));
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
                 let hertz = value.to_lowercase();
-                let hertz = ["hz", "hertz", "frequency"].iter().any(|word| hertz.contains(word));
-                lines_apart |= AXIS.contains(&key.as_str()) && hertz;
+                let hertz = hertz.contains("hz") || hertz.contains("hertz") || hertz.contains("frequency");
+                lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
                 if key.is_empty() {
                     free_text(line, &mut stated);
                 } else {
@@ -138,47 +135,10 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
             stated.base_band = hertz();
         }
-        "sampling rate"
-        | "sample rate"
-        | "sampling frequency"
-        | "samples per second"
-        | "scan rate"
-        | "update rate"
-        | "messrate"
-        | "messfrequenz"
-        | "sample frequency"
-        | "samplerate"
-        | "fs"
-        | "rate"
-        | "abtastrate"
-        | "abtastfrequenz"
-        | "fréquence d'échantillonnage" => {
+        key if RATE.split('|').any(|known| known == key) => {
             stated.rate = hertz().or(stated.rate);
         }
-        "dt"
-        | "delta"
-        | "delta t"
-        | "dx"
-        | "x delta"
-        | "xdelta"
-        | "sample time"
-        | "sampling time"
-        | "abtastintervall"
-        | "sampling interval"
-        | "sample interval"
-        | "sampling period"
-        | "time step"
-        | "delta time"
-        | "increment"
-        | "clock"
-        | "interval"
-        | "time interval"
-        | "tinc"
-        | "x increment"
-        | "xinc"
-        | "x axis delta"
-        | "hresolution"
-        | "horizontal interval" => {
+        key if STEP.split('|').any(|known| known == key) => {
             let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
             stated.of_one_series |= rate.is_some();
             stated.rate = rate.or(stated.rate);

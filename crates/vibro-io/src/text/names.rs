@@ -130,25 +130,7 @@ impl Name {
     pub fn counts(&self) -> bool {
         let key = self.name.to_lowercase();
         let key = key.trim_end_matches('.');
-        let named = matches!(
-            key,
-            "" | "#"
-                | "index"
-                | "i"
-                | "n"
-                | "no"
-                | "nr"
-                | "number"
-                | "record"
-                | "row"
-                | "scan"
-                | "sample"
-                | "samples"
-                | "sample no"
-                | "frame"
-                | "store no"
-                | "point"
-        );
+        let named = COUNTS.split('|').any(|known| known == key);
         self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
     }
 
@@ -227,6 +209,10 @@ const ABSCISSAE: [&str; 3] = ["x", "x-axis", "x axis"];
 /// Names of a time that are its unit.
 const WHOLE: [(&str, &str); 5] =
     [("in s", "s"), ("millis", "ms"), ("millis()", "ms"), ("micros", "µs"), ("micros()", "µs")];
+
+/// Names of a column that only counts, none among them.
+const COUNTS: &str =
+    "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
 
 /// What stands in place of a unit over numbered samples.
 const COUNTERS: [&str; 5] = ["sequence", "samples", "points", "no.", "rn"];

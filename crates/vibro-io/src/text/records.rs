@@ -69,7 +69,7 @@ pub fn build(
     if let Some(declared) =
         made.stated.values.filter(|declared| *declared != n && axis.kind != AxisKind::Frequency)
     {
-        of_axis.push(Finding::caution("fewer-values").count("declared", declared).count("n", n));
+        of_axis.push(assemble::fewer(declared, n));
     }
     if table.len() == 2 && !has_axis && dialect.names.is_none() && !options.complex {
         of_axis.push(Finding::caution("two-channels"));
@@ -333,7 +333,7 @@ impl Made<'_> {
         let density = unit.is_some_and(is_density).then_some(Scaling::Psd);
         let own = self.said("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
-            scaling: self.said("scaling", name).and_then(|s| assemble::scaling(&s)).or(density),
+            scaling: self.said("scaling", name).and_then(|s| Scaling::from_name(&s)).or(density),
             // A remark about another column says nothing of this one.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),

@@ -318,7 +318,7 @@ fn named(fields: &Fields) -> bool {
         fields.first().is_some_and(|(_, f)| f.contains(": ") || f.ends_with(':') || f.contains('='));
     let is_name = |field: &str| {
         let bytes = field.as_bytes();
-        let number = number::parse(bytes).is_some() || number::parse_with(bytes, b',').is_some();
+        let number = number::either(bytes).is_some();
         field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
     };
     !statement && fields.iter().any(|(_, f)| is_name(f))
