@@ -7,7 +7,7 @@ use super::header::Stated;
 use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
-use crate::assemble::{self, Spectral, domain, from_values, short, to_si};
+use crate::assemble::{self, Spectral, domain, from_values, kind_of, short, to_si};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -123,12 +123,14 @@ impl Column {
         self.reals().windows(2).all(|w| w[1] > w[0])
     }
 
-    /// Whether it rises as a clock or a counter does.
+    /// Whether it rises as a clock or a counter does, and has no unit of anything else.
     fn rises_evenly(&self) -> bool {
         let values = self.reals();
         let steps = || values.windows(2).map(|w| w[1] - w[0]);
         let (low, high) = steps().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), s| (l.min(s), h.max(s)));
-        values.len() > 10 && low > 0.0 && high - low <= 1e-3 * high
+        let unit = self.name.unit.as_deref();
+        let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
+        !other && values.len() > 10 && low > 0.0 && high - low <= 1e-3 * high
     }
 
     fn counts(&self) -> bool {
