@@ -52,7 +52,7 @@ pub struct Job<'a> {
     pub(super) constants: Vec<(String, String)>,
     /// Steps by the name of their record.
     pub(super) histories: Vec<(String, Vec<Step>)>,
-    answers: usize,
+    pub(super) answers: usize,
 }
 
 impl<'a> Job<'a> {
@@ -91,11 +91,6 @@ impl<'a> Job<'a> {
     pub fn put(&mut self, key: &str, value: &impl Serialize) -> Result<()> {
         self.all.result.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
         Ok(())
-    }
-
-    /// That so many records were answered.
-    pub(super) fn answered(&mut self, records: usize) {
-        self.answers += records;
     }
 
     /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record behind their name.

@@ -52,14 +52,13 @@ impl SceneKeys {
             draft.set(assignment)?;
         }
         if self.impulse.is_some() {
-            draft.drive("impulse");
+            draft.put("excitation.kind", "impulse");
         } else if self.width.is_some() {
-            draft.drive("pulse");
+            draft.put("excitation.kind", "pulse");
         }
-        for (key, value) in [("force", self.force), ("impulse", self.impulse), ("width", self.width)] {
-            if let Some(value) = value {
-                draft.put(&format!("excitation.{key}"), value);
-            }
+        let given = [("force", self.force), ("impulse", self.impulse), ("width", self.width)];
+        for (key, value) in given.into_iter().filter_map(|(key, value)| Some((key, value?))) {
+            draft.put(&format!("excitation.{key}"), value);
         }
         let driven = ["force", "impulse", "width", "parts", "kind"];
         if let Some(frequency) = frequency

@@ -9,21 +9,14 @@ use std::fmt::Write as _;
 
 /// Lays out all that is shown, with the drawings of its figures.
 pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing]) -> Page {
-    let mut page = Page::new(job.title.as_str());
-    for sentence in sentences(&all.findings, Voice::Campaign, true) {
-        page = page.warning(sentence);
-    }
-    for table in &all.tables {
-        page = page.table(table);
-    }
+    let warnings = sentences(&all.findings, Voice::Campaign, true);
+    let page = warnings.into_iter().fold(Page::new(job.title.as_str()), Page::warning);
+    let mut page = all.tables.iter().fold(page, Page::table);
     for ((name, figure), drawing) in all.figures.iter().zip(drawings) {
         let files = [format!("{name}.svg"), format!("{name}.png")];
         page = page.figure(drawing, &figure.caption, &files.each_ref().map(String::as_str));
     }
-    for table in &all.details {
-        page = page.table(table);
-    }
-
+    page = all.details.iter().fold(page, Page::table);
     if !job.constants.is_empty() {
         let values = job.constants.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         page = page.details("Rig of the comparison", values);

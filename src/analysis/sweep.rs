@@ -231,7 +231,7 @@ impl Analysis for Keys {
         };
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
-        job.answered(responses.len());
+        job.answers += responses.len();
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
         job.put("crossings", &pairing::all_crossings(&responses))?;
         let mut all = Answer { findings: pairing::twice(&responses), ..Answer::default() };

@@ -53,13 +53,13 @@ impl Page {
     /// the same picture.
     pub fn figure(self, drawing: &Drawing, caption: &str, files: &[&str]) -> Page {
         let mut below =
-            format!("<b>{}.</b> {}", escaped(drawing.name().trim_end_matches('.')), escaped(caption));
+            format!("<b>{}.</b> {}", escaped(drawing.name.trim_end_matches('.')), escaped(caption));
         for file in files {
             let _ = write!(below, " <a href=\"./{0}\">{0}</a>", escaped(file));
         }
         self.element(&format!(
             "<figure style=\"--width:{}\">\n{}<figcaption>{}</figcaption>\n</figure>",
-            drawing.size().0.round(),
+            drawing.size.0.round(),
             drawing.svg(),
             below.trim_end()
         ))
@@ -91,8 +91,7 @@ impl Page {
             for sentence in &self.warnings {
                 let _ = writeln!(out, "<li>{}</li>", escaped(sentence));
             }
-            out.push_str("</ul>\n");
-            out.push_str("</section>\n");
+            out.push_str("</ul>\n</section>\n");
         }
         out.push_str(&self.body);
         out.push_str("</main>\n</body>\n</html>\n");

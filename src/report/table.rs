@@ -62,40 +62,23 @@ pub enum Cell {
     Missing,
 }
 
-impl From<&str> for Cell {
-    fn from(text: &str) -> Cell {
-        Cell::Text(text.to_owned())
-    }
+macro_rules! cells {
+    ($($of:ty, $from:ident => $cell:expr;)*) => {
+        $(impl From<$of> for Cell {
+            fn from($from: $of) -> Cell {
+                $cell
+            }
+        })*
+    };
 }
 
-impl From<String> for Cell {
-    fn from(text: String) -> Cell {
-        Cell::Text(text)
-    }
-}
-
-impl From<f64> for Cell {
-    fn from(value: f64) -> Cell {
-        Cell::Number(value)
-    }
-}
-
-impl From<usize> for Cell {
-    fn from(count: usize) -> Cell {
-        Cell::Number(count as f64)
-    }
-}
-
-impl From<&Estimate> for Cell {
-    fn from(estimate: &Estimate) -> Cell {
-        Cell::Estimate { value: estimate.value, std: estimate.std }
-    }
-}
-
-impl From<bool> for Cell {
-    fn from(yes: bool) -> Cell {
-        Cell::from(if yes { "yes" } else { "no" })
-    }
+cells! {
+    &str, text => Cell::Text(text.to_owned());
+    String, text => Cell::Text(text);
+    f64, value => Cell::Number(value);
+    usize, count => Cell::Number(count as f64);
+    &Estimate, estimate => Cell::Estimate { value: estimate.value, std: estimate.std };
+    bool, yes => Cell::from(if yes { "yes" } else { "no" });
 }
 
 impl<T: Into<Cell>> From<Option<T>> for Cell {

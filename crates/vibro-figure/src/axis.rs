@@ -63,22 +63,19 @@ impl AxisSpec {
     }
 
     /// Logarithmic.
-    pub fn log(mut self) -> AxisSpec {
-        self.scale = Scale::Log;
-        self
+    pub fn log(self) -> AxisSpec {
+        AxisSpec { scale: Scale::Log, ..self }
     }
 
     /// Level in dB against an amplitude in the unit of the data.
-    pub fn db(mut self, reference: f64) -> AxisSpec {
-        self.scale = Scale::Db { reference };
-        self
+    pub fn db(self, reference: f64) -> AxisSpec {
+        AxisSpec { scale: Scale::Db { reference }, ..self }
     }
 
     /// Limits in the unit of the data (in dB on a level axis); an end that is not finite is found from the
     /// data.
-    pub fn limits(mut self, low: f64, high: f64) -> AxisSpec {
-        self.limits = Some((low, high));
-        self
+    pub fn limits(self, low: f64, high: f64) -> AxisSpec {
+        AxisSpec { limits: Some((low, high)), ..self }
     }
 }
 

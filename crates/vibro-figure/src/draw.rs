@@ -12,22 +12,14 @@ use vibro_record::Result;
 /// A drawn figure, at its size in print.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
-    pub(super) name: String,
-    pub(super) size: (f64, f64),
+    /// The figure's title.
+    pub name: String,
+    /// Width and height in mm.
+    pub size: (f64, f64),
     pub(super) canvas: Canvas,
 }
 
 impl Drawing {
-    /// The figure's title.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Width and height in mm.
-    pub fn size(&self) -> (f64, f64) {
-        self.size
-    }
-
     /// The picture as an SVG document with real text; it refers to nothing outside and has no ids, so that
     /// several can stand in one page.
     pub fn svg(&self) -> String {

@@ -105,27 +105,23 @@ impl Figure {
     }
 
     /// Sets the caption.
-    pub fn caption(mut self, caption: impl Into<String>) -> Figure {
-        self.caption = caption.into();
-        self
+    pub fn caption(self, caption: impl Into<String>) -> Figure {
+        Figure { caption: caption.into(), ..self }
     }
 
     /// Sets the height in mm.
-    pub fn height(mut self, millimetres: f64) -> Figure {
-        self.height = millimetres;
-        self
+    pub fn height(self, millimetres: f64) -> Figure {
+        Figure { height: millimetres, ..self }
     }
 
     /// Sets how many panels stand beside each other.
-    pub fn columns(mut self, columns: usize) -> Figure {
-        self.columns = columns;
-        self
+    pub fn columns(self, columns: usize) -> Figure {
+        Figure { columns, ..self }
     }
 
     /// Gives the panels of a column one abscissa, named under the lowest.
-    pub fn shared_x(mut self) -> Figure {
-        self.shared_x = true;
-        self
+    pub fn shared_x(self) -> Figure {
+        Figure { shared_x: true, ..self }
     }
 
     /// Adds a panel.
@@ -147,9 +143,8 @@ impl Plot {
     }
 
     /// Sets the title over the frame.
-    pub fn title(mut self, title: impl Into<String>) -> Plot {
-        self.title = title.into();
-        self
+    pub fn title(self, title: impl Into<String>) -> Plot {
+        Plot { title: title.into(), ..self }
     }
 
     /// Adds a series over those before it.
@@ -165,32 +160,24 @@ impl Plot {
     }
 
     /// Puts a map under the series.
-    pub fn heatmap(mut self, heatmap: Heatmap) -> Plot {
-        self.heatmap = Some(heatmap);
-        self
+    pub fn heatmap(self, heatmap: Heatmap) -> Plot {
+        Plot { heatmap: Some(heatmap), ..self }
     }
 
     /// Sets where the names of the series stand.
-    pub fn legend(mut self, legend: Legend) -> Plot {
-        self.legend = legend;
-        self
+    pub fn legend(self, legend: Legend) -> Plot {
+        Plot { legend, ..self }
     }
 }
 
-impl From<Plot> for Panel {
-    fn from(plot: Plot) -> Panel {
-        Panel::Plot(plot)
-    }
+macro_rules! panels {
+    ($($kind:ident),*) => {$(
+        impl From<$kind> for Panel {
+            fn from(panel: $kind) -> Panel {
+                Panel::$kind(panel)
+            }
+        }
+    )*};
 }
 
-impl From<Waterfall> for Panel {
-    fn from(waterfall: Waterfall) -> Panel {
-        Panel::Waterfall(waterfall)
-    }
-}
-
-impl From<Grid> for Panel {
-    fn from(grid: Grid) -> Panel {
-        Panel::Grid(grid)
-    }
-}
+panels!(Plot, Waterfall, Grid);

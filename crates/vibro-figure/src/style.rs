@@ -41,16 +41,9 @@ pub(super) struct Look {
 
 /// Chooses what was left to choose: series after series takes the next colour, dashes and marker.
 pub(super) fn looks(series: &[Series]) -> Vec<Look> {
+    use Marker::{Circle, Cross, Diamond, FilledSquare, OpenCircle, Square, Triangle};
     const STROKES: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];
-    const MARKERS: [Marker; 7] = [
-        Marker::Circle,
-        Marker::Square,
-        Marker::Triangle,
-        Marker::Diamond,
-        Marker::OpenCircle,
-        Marker::FilledSquare,
-        Marker::Cross,
-    ];
+    const MARKERS: [Marker; 7] = [Circle, Square, Triangle, Diamond, OpenCircle, FilledSquare, Cross];
     let mut next = 0;
     let look = |series: &Series| {
         let nth = |n: usize| (n, colour::SERIES[n % colour::SERIES.len()]);

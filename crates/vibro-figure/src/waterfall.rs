@@ -64,9 +64,8 @@ impl Waterfall {
     }
 
     /// Shows this range of frequencies (Hz) only.
-    pub fn frequencies(mut self, low: f64, high: f64) -> Waterfall {
-        self.x = self.x.limits(low, high);
-        self
+    pub fn frequencies(self, low: f64, high: f64) -> Waterfall {
+        Waterfall { x: self.x.limits(low, high), ..self }
     }
 
     /// Settles the axes and brings everything to their scale; `None` where there is nothing to show.

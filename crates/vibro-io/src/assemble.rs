@@ -53,12 +53,6 @@ pub fn complex_over_time() -> Error {
         .setting("base_band")
 }
 
-/// A scaling by its name.
-pub fn scaling(name: &str) -> Option<Scaling> {
-    use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
-    [Peak, Rms, Power, Psd, Energy, Coherence, Unknown].into_iter().find(|s| s.name() == name)
-}
-
 /// Multiplies values by the factor of their unit.
 ///
 /// # Errors
@@ -249,6 +243,11 @@ pub fn kind_of(unit: &Unit) -> Option<AxisKind> {
 pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
     let since_1970 = |(_, factor): &(&str, f64)| (1e9..4e9).contains(&(first * factor));
     [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].into_iter().find(since_1970)
+}
+
+/// What to say where a file declares another number of values than it holds.
+pub fn fewer(declared: usize, n: usize) -> Finding {
+    Finding::caution("fewer-values").count("declared", declared).count("n", n)
 }
 
 /// Six digits are enough for a sentence.

@@ -1,5 +1,7 @@
 //! Binary numbers of the kinds that files hold, in rows of any width and either byte order.
 
+use Kind::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
+
 /// What a number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -19,14 +21,22 @@ pub enum Kind {
     Bit(u8),
 }
 
+/// Numbers of every size: with a sign, without one, floats.
+const NUMBERS: [Kind; 10] = [I8, I16, I32, I64, U8, U16, U32, U64, F32, F64];
+
 impl Kind {
+    /// The number of this code; `codes` are those of signed integers of 1, 2, 4 and 8 bytes, of unsigned ones, and of floats of 4 and 8.
+    pub fn coded(code: u32, codes: [u32; 10]) -> Option<Kind> {
+        codes.iter().position(|known| *known == code).map(|at| NUMBERS[at])
+    }
+
     /// Bytes.
     pub fn size(self) -> u64 {
         match self {
-            Kind::I8 | Kind::U8 | Kind::Bit(_) => 1,
-            Kind::I16 | Kind::U16 => 2,
-            Kind::I32 | Kind::U32 | Kind::F32 => 4,
-            Kind::I64 | Kind::U64 | Kind::F64 => 8,
+            I8 | U8 | Kind::Bit(_) => 1,
+            I16 | U16 => 2,
+            I32 | U32 | F32 => 4,
+            I64 | U64 | F64 => 8,
             Kind::Time => 16,
         }
     }
@@ -35,16 +45,16 @@ impl Kind {
     pub fn take(self, rows: &[u8], offset: usize, width: usize, big_endian: bool, out: &mut Vec<f64>) {
         let at = (rows, offset, width, big_endian);
         match self {
-            Kind::I8 => column(at, out, |b| f64::from(i8::from_le_bytes(b))),
-            Kind::U8 => column(at, out, |b| f64::from(u8::from_le_bytes(b))),
-            Kind::I16 => column(at, out, |b| f64::from(i16::from_le_bytes(b))),
-            Kind::U16 => column(at, out, |b| f64::from(u16::from_le_bytes(b))),
-            Kind::I32 => column(at, out, |b| f64::from(i32::from_le_bytes(b))),
-            Kind::U32 => column(at, out, |b| f64::from(u32::from_le_bytes(b))),
-            Kind::I64 => column(at, out, |b| i64::from_le_bytes(b) as f64),
-            Kind::U64 => column(at, out, |b| u64::from_le_bytes(b) as f64),
-            Kind::F32 => column(at, out, |b| f64::from(f32::from_le_bytes(b))),
-            Kind::F64 => column(at, out, f64::from_le_bytes),
+            I8 => column(at, out, |b| f64::from(i8::from_le_bytes(b))),
+            U8 => column(at, out, |b| f64::from(u8::from_le_bytes(b))),
+            I16 => column(at, out, |b| f64::from(i16::from_le_bytes(b))),
+            U16 => column(at, out, |b| f64::from(u16::from_le_bytes(b))),
+            I32 => column(at, out, |b| f64::from(i32::from_le_bytes(b))),
+            U32 => column(at, out, |b| f64::from(u32::from_le_bytes(b))),
+            I64 => column(at, out, |b| i64::from_le_bytes(b) as f64),
+            U64 => column(at, out, |b| u64::from_le_bytes(b) as f64),
+            F32 => column(at, out, |b| f64::from(f32::from_le_bytes(b))),
+            F64 => column(at, out, f64::from_le_bytes),
             Kind::Time => column(at, out, time),
             Kind::Bit(bit) => column(at, out, |[byte]| f64::from(byte >> bit & 1)),
         }
@@ -52,7 +62,7 @@ impl Kind {
 }
 
 /// Seconds since 1904.
-pub fn time(bytes: [u8; 16]) -> f64 {
+fn time(bytes: [u8; 16]) -> f64 {
     let both = i128::from_le_bytes(bytes);
     (both >> 64) as f64 + (both as u64) as f64 / 2f64.powi(64)
 }

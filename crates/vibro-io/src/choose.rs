@@ -32,11 +32,8 @@ impl Reader {
         }
         let recording = self.read(&source)?;
         let nothing = recording.no_trace();
-        let traces = recording.records.into_iter().filter_map(|record| match record {
-            Record::Trace(trace) => Some(Some(trace)),
-            _ => None,
-        });
-        let mut all: Vec<Option<Trace>> = traces.collect();
+        let trace = |record| if let Record::Trace(trace) = record { Some(Some(trace)) } else { None };
+        let mut all: Vec<Option<Trace>> = recording.records.into_iter().filter_map(trace).collect();
         if all.is_empty() {
             return Err(nothing);
         }
@@ -115,11 +112,8 @@ impl Recording {
     /// If there is no such trace, or several and none was named; if a calibration is not a number other than 0, or is given
     /// for fractions of full scale without a unit.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
-        let traces = self.records.iter().filter_map(|record| match record {
-            Record::Trace(trace) => Some(trace),
-            _ => None,
-        });
-        let traces: Vec<&Trace> = traces.collect();
+        let trace = |i: usize| if let Record::Trace(trace) = &self.records[i] { Some(trace) } else { None };
+        let traces: Vec<&Trace> = (0..self.records.len()).filter_map(trace).collect();
         let chosen = match (channel, traces.len()) {
             (_, 0) => return Err(self.no_trace()),
             (None, 1) => Ok(0),

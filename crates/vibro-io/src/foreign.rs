@@ -4,73 +4,60 @@ use super::Source;
 use super::text::encoding;
 use vibro_record::{Error, Place};
 
-/// A format with the bytes that it begins with at an offset, endings of its files where it has no such bytes, and the export to choose.
-struct Foreign {
-    name: &'static str,
-    begins: (usize, &'static [u8]),
-    endings: &'static [&'static str],
-    export: &'static str,
+/// How a format is told: by bytes at an offset, or by the ending of a file that is no text.
+enum By {
+    Bytes(usize, &'static [u8]),
+    Ending(&'static [&'static str]),
 }
 
-const fn by_bytes(name: &'static str, at: usize, begins: &'static [u8], export: &'static str) -> Foreign {
-    Foreign { name, begins: (at, begins), endings: &[], export }
-}
-
-const fn by_ending(name: &'static str, endings: &'static [&'static str], export: &'static str) -> Foreign {
-    Foreign { name, begins: (0, b""), endings, export }
-}
+use By::{Bytes, Ending};
 
 const UFF: &str = "choose File > Export > Universal File (UFF-58)";
+const DEWESOFT: &str = "choose Export > UNV/UFF, MAT or CSV in Dewesoft";
+const UNFINISHED: &str = "finish it in the program that wrote it, and export CSV or MAT";
 const TEXT: &str = "choose the export as CSV or text";
 const SHEET: &str = "choose File > Save As > CSV, one sheet a file";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
 
-const TABLE: &[Foreign] = &[
-    by_ending("a Polytec vibrometer file", &["svd", "pvd"], UFF),
-    by_ending(
-        "a Dewesoft recording",
-        &["dxd", "d7d", "dxz"],
-        "choose Export > UNV/UFF, MAT or CSV in Dewesoft",
-    ),
-    by_ending("a Siemens Testlab file", &["ldsf", "lms"], UFF),
-    by_bytes("an imc FAMOS file", 0, b"|CF,", "choose Export > ASCII or TDMS in FAMOS"),
-    by_bytes("an ASAM MDF 4 file", 0, b"MDF     4", "export it as CSV or MAT, e.g. with asammdf"),
-    by_bytes("an ASAM MDF 3 file", 0, b"MDF     ", "export it as CSV or MAT, e.g. with asammdf"),
-    by_bytes(
-        "an unfinished ASAM MDF file",
-        0,
-        b"UnFinMF ",
-        "finish it in the program that wrote it, and export CSV or MAT",
-    ),
-    by_bytes("a LeCroy waveform", 11, b"WAVEDESC", TEXT),
-    by_bytes("a LeCroy waveform", 0, b"WAVEDESC", TEXT),
-    by_bytes("a Tektronix waveform", 2, b":WFM#", TEXT),
-    by_bytes("a Tektronix waveform", 0, b":WFMP", TEXT),
-    by_bytes("a Keysight waveform", 0, b"AG10", TEXT),
-    by_bytes("a Keysight waveform", 0, b"AG01", TEXT),
-    by_bytes("a Parquet table", 0, b"PAR1", TEXT),
-    by_bytes("a NumPy array", 0, b"\x93NUMPY", "write it as CSV or MAT, with its rate"),
+/// Name of a format, what tells it, and the export to choose.
+const TABLE: &[(&str, By, &str)] = &[
+    ("a Polytec vibrometer file", Ending(&["svd", "pvd"]), UFF),
+    ("a Dewesoft recording", Ending(&["dxd", "d7d", "dxz"]), DEWESOFT),
+    ("a text file of Octave", Bytes(0, b"# Created by Octave"), "save it with `save -v7 name.mat`"),
+    ("a Siemens Testlab file", Ending(&["ldsf", "lms"]), UFF),
+    ("an imc FAMOS file", Bytes(0, b"|CF,"), "choose Export > ASCII or TDMS in FAMOS"),
+    ("an ASAM MDF 4 file", Bytes(0, b"MDF     4"), "export it as CSV or MAT, e.g. with asammdf"),
+    ("an ASAM MDF 3 file", Bytes(0, b"MDF     "), "export it as CSV or MAT, e.g. with asammdf"),
+    ("an unfinished ASAM MDF file", Bytes(0, b"UnFinMF "), UNFINISHED),
+    ("a LeCroy waveform", Bytes(11, b"WAVEDESC"), TEXT),
+    ("a LeCroy waveform", Bytes(0, b"WAVEDESC"), TEXT),
+    ("a Tektronix waveform", Bytes(2, b":WFM#"), TEXT),
+    ("a Tektronix waveform", Bytes(0, b":WFMP"), TEXT),
+    ("a Keysight waveform", Bytes(0, b"AG10"), TEXT),
+    ("a Keysight waveform", Bytes(0, b"AG01"), TEXT),
+    ("a Parquet table", Bytes(0, b"PAR1"), TEXT),
+    ("a NumPy array", Bytes(0, b"\x93NUMPY"), "write it as CSV or MAT, with its rate"),
     #[cfg(not(feature = "hdf5"))]
-    by_bytes("an HDF5 file", 0, b"\x89HDF\r\n\x1a\n", crate::variables::EXPORT),
-    by_bytes("an Excel sheet", 0, b"PK\x03\x04", SHEET),
-    by_bytes("an Excel sheet, or another Office file", 0, b"\xd0\xcf\x11\xe0", SHEET),
-    by_bytes("a FLAC recording", 0, b"fLaC", "turn it into WAV, e.g. with `flac -d`"),
-    by_bytes("an Ogg recording", 0, b"OggS", AUDIO),
-    by_bytes("an MP3 recording", 0, b"ID3", AUDIO),
-    by_bytes("a packed file", 0, b"\x1f\x8b", "unpack it first"),
+    ("an HDF5 file", Bytes(0, b"\x89HDF\r\n\x1a\n"), crate::variables::EXPORT),
+    ("an Excel sheet", Bytes(0, b"PK\x03\x04"), SHEET),
+    ("an Excel sheet, or another Office file", Bytes(0, b"\xd0\xcf\x11\xe0"), SHEET),
+    ("a FLAC recording", Bytes(0, b"fLaC"), "turn it into WAV, e.g. with `flac -d`"),
+    ("an Ogg recording", Bytes(0, b"OggS"), AUDIO),
+    ("an MP3 recording", Bytes(0, b"ID3"), AUDIO),
+    ("a packed file", Bytes(0, b"\x1f\x8b"), "unpack it first"),
 ];
 
 /// What to say of a source of a format that is known and not read.
 pub fn complaint(source: &Source) -> Option<Error> {
     let (head, ending) = (source.head(), source.extension());
-    let is = |known: &&Foreign| match known.begins {
-        (_, []) => known.endings.contains(&ending.as_str()) && !encoding::is_text(head),
-        (at, begins) => head.get(at..).is_some_and(|head| head.starts_with(begins)),
+    let is = |(_, by, _): &&(&str, By, &str)| match by {
+        Ending(endings) => endings.contains(&ending.as_str()) && !encoding::is_text(head),
+        Bytes(at, begins) => head.get(*at..).is_some_and(|head| head.starts_with(begins)),
     };
     // MAT-files of version 7.3 are HDF5 and have a complaint of their own.
-    let known = TABLE.iter().find(is).filter(|_| ending != "mat")?;
+    let (name, _, export) = TABLE.iter().find(is).filter(|_| ending != "mat")?;
     let expected = format!("one of {}", super::Format::names().join(", "));
-    Some(Error::input(Place::file(source.path()), known.name, expected).hint(known.export))
+    Some(Error::input(Place::file(source.path()), *name, expected).hint(*export))
 }
 
 #[cfg(test)]

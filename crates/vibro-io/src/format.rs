@@ -28,16 +28,14 @@ pub enum Format {
     Ascii,
 }
 
-/// Reads the records of a source; for a `survey` the ends of their values are enough where the format can tell them in less memory.
-type Read = fn(&Source, &Options, survey: bool) -> Result<Contents>;
-
 /// How one format is told apart and read.
 pub(super) struct Entry {
     pub format: Format,
     pub name: &'static str,
     /// Whether the first bytes are of this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
-    pub read: Read,
+    /// Reads the records of a source; for a `survey` the ends of their values are enough where the format can tell them in less memory.
+    pub read: fn(&Source, &Options, survey: bool) -> Result<Contents>,
 }
 
 /// Binary formats with a signature first, then text formats from the strictest to the loosest.
@@ -50,7 +48,12 @@ pub(super) const TABLE: &[Entry] = &[
     Entry { format: Format::Lvm, name: "lvm", sniff: lvm::sniff, read: lvm::read },
     Entry { format: Format::Uff, name: "uff", sniff: uff::sniff, read: uff::read },
     Entry { format: Format::Csv, name: "csv", sniff: text::is_table, read: text::read_table },
-    Entry { format: Format::Ascii, name: "ascii", sniff: text::is_text, read: text::read_numbers },
+    Entry {
+        format: Format::Ascii,
+        name: "ascii",
+        sniff: |head, _| text::encoding::is_text(head),
+        read: text::read_numbers,
+    },
 ];
 
 impl Format {

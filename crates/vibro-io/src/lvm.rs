@@ -18,8 +18,8 @@
 
 use super::missing::{self, Missing};
 use super::reader::Options;
-use super::text::encoding;
 use super::text::names::Name;
+use super::text::{encoding, in_line};
 use super::{Source, number};
 use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
 use crate::held::Contents;
@@ -56,7 +56,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
         let more = behind.next().is_some();
         let head = Head::of(&mut lines);
         if !head.ended && more && segments > 0 {
-            let place = Place { line: Some(behind.number), ..Place::default() };
+            let place = in_line(behind.number);
             return Err(Error::input(place, "a line behind a segment that begins no head", END_OF_HEADER)
                 .hint("take out the blank line above it, or this line and all behind it"));
         }
@@ -103,8 +103,7 @@ impl<'a> Iterator for Lines<'a> {
 /// Whether the first cell of a line that is not blank holds a number.
 fn is_row(line: &str, separator: char) -> bool {
     let cell = line.split(separator).map(str::trim).find(|cell| !cell.is_empty()).unwrap_or_default();
-    let number = |decimal| number::parse_with(cell.as_bytes(), decimal).is_some();
-    number(b'.') || number(b',') || number::is_missing(cell.as_bytes())
+    number::either(cell.as_bytes()).is_some() || number::is_missing(cell.as_bytes())
 }
 
 /// Tags in lower case, each with its values; those of a channel stand above its column.
@@ -188,12 +187,8 @@ impl<'h, 'a> Segment<'h, 'a> {
             _ => (1..comment).filter(there).map(|c| (c, None)).collect(),
         };
         if channels.is_empty() {
-            let place = Place { line: Some(lines.number), ..Place::default() };
-            return Err(Error::input(
-                place,
-                "no names of channels",
-                "a line X_Value, then one name a channel",
-            ));
+            let expected = "a line X_Value, then one name a channel";
+            return Err(Error::input(in_line(lines.number), "no names of channels", expected));
         }
         let column = |name: &&str| Column { name: (*name).to_owned(), ..Column::default() };
         let mut columns: Vec<Column> = names[..comment].iter().map(column).collect();
@@ -224,9 +219,8 @@ impl<'h, 'a> Segment<'h, 'a> {
                     None if field.is_empty() => continue,
                     None if number::is_missing(field.as_bytes()) => f64::NAN,
                     None => {
-                        let place = Place { line: Some(lines.number), ..Place::default() };
                         let found = format!("{field:?} in the column {:?}", column.name);
-                        return Err(Error::input(place, found, "a number"));
+                        return Err(Error::input(in_line(lines.number), found, "a number"));
                     }
                 };
                 // A blank between values is one that is missing, one behind them is none.
@@ -269,11 +263,7 @@ impl<'h, 'a> Segment<'h, 'a> {
             let n = values.len();
             let declared = said("samples").and_then(|text| text.parse::<usize>().ok()).filter(|d| *d > n);
             meta.declared_n = declared;
-            meta.findings.extend(
-                declared.map(|declared| {
-                    Finding::caution("fewer-values").count("declared", declared).count("n", n)
-                }),
-            );
+            meta.findings.extend(declared.map(|declared| assemble::fewer(declared, n)));
             let factor = options.adopt(&mut meta, said("y_unit_label").or(unit.as_deref()));
             to_si(&mut values, factor)?;
             let axis =
@@ -288,10 +278,7 @@ impl<'h, 'a> Segment<'h, 'a> {
         let frequency =
             self.head.above("x_dimension", channel).is_some_and(|d| d.eq_ignore_ascii_case("frequency"));
         let kind = if frequency { AxisKind::Frequency } else { AxisKind::Time };
-        let number = |tag: &str| {
-            let text = self.head.above(tag, channel)?.as_bytes();
-            number::parse(text).or_else(|| number::parse_with(text, b','))
-        };
+        let number = |tag: &str| number::either(self.head.above(tag, channel)?.as_bytes());
         let (start, step) = (number("x0").unwrap_or(0.0), number("delta_x"));
         let stated = step.map(|step| (start, step));
         let x = x.filter(|x| n > 1 && x.values.len() >= n && x.values.iter().all(|v| v.is_finite()));

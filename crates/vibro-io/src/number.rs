@@ -14,23 +14,8 @@ const POWERS: [f64; 23] = [
 ];
 
 /// What instruments print in place of a value that is missing or over-range, in lower case.
-const MISSING: [&str; 15] = [
-    "nan",
-    "inf",
-    "infinity",
-    "∞",
-    "na",
-    "n/a",
-    "null",
-    "none",
-    "ol",
-    "over",
-    "overload",
-    "overrange",
-    "over range",
-    "ovld",
-    "burnout",
-];
+const MISSING: &str =
+    "nan|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout";
 
 /// What instruments print for infinity and for no number (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
@@ -38,6 +23,11 @@ const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
 /// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives `None`.
 pub fn parse(text: &[u8]) -> Option<f64> {
     parse_with(text, b'.')
+}
+
+/// Parses one number with a decimal point or else a decimal comma.
+pub(crate) fn either(text: &[u8]) -> Option<f64> {
+    parse(text).or_else(|| parse_with(text, b','))
 }
 
 /// Parses one number with `decimal` as its decimal mark.
@@ -95,7 +85,7 @@ pub(crate) fn is_missing(text: &[u8]) -> bool {
     let overload = || {
         String::from_utf8_lossy(&lower).replace(',', ".").parse().is_ok_and(|v: f64| OVERLOAD.contains(&v))
     };
-    MISSING.iter().any(|word| word.as_bytes() == lower)
+    MISSING.split('|').any(|word| word.as_bytes() == lower)
         || lower.starts_with(b"9") && overload()
         || lower.starts_with(b"nan(")
         || lower.starts_with(b"1.#")

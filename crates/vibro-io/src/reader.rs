@@ -301,12 +301,10 @@ impl Header {
 
 /// Header lines, then the arguments of the step `read` that say how text was read.
 fn notes(meta: &Meta) -> Vec<String> {
-    let lines = meta.notes.iter().map(
-        |(key, value)| {
-            if key.is_empty() { value.clone() } else { format!("{key}: {value}") }
-        },
-    );
     let how = meta.history.iter().filter(|step| step.name == "read").flat_map(|step| &step.arguments);
     let how = how.filter(|(key, _)| matches!(key.as_str(), "encoding" | "decimal mark"));
-    lines.chain(how.map(|(key, value)| format!("{key}: {value}"))).collect()
+    let line = |(key, value): &(String, String)| {
+        if key.is_empty() { value.clone() } else { format!("{key}: {value}") }
+    };
+    meta.notes.iter().chain(how).map(line).collect()
 }

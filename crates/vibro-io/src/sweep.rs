@@ -36,14 +36,6 @@ pub struct SweepReader {
     pub format: Option<Format>,
 }
 
-/// What is stated of one kind of files: forces or responses.
-struct Said<'a> {
-    force: bool,
-    unit: Option<&'a Unit>,
-    quantity: Option<Quantity>,
-    calibration: Option<f64>,
-}
-
 impl SweepReader {
     /// Reads all spectra of a list.
     ///
@@ -56,19 +48,16 @@ impl SweepReader {
         let mut recordings = reader.from_paths(&paths).map_err(|e| list.missing().unwrap_or(e))?;
         let mut forces = recordings.split_off(list.response.len()).into_iter();
         let axis = Axis::frequency(0.0, list.base_band / list.lines as f64, list.lines + 1);
-        let newton = Unit::of(Quantity::Force);
-        let (unit, quantity, calibration) = (self.unit.as_ref(), self.quantity, self.calibration);
-        let of_response = Said { force: false, unit, quantity, calibration };
-        let calibration = self.force_calibration;
-        let of_force = Said { force: true, unit: Some(&newton), quantity: None, calibration };
+        let (unit, calibration) = (Some(Unit::of(Quantity::Force)), self.force_calibration);
+        let of_force = SweepReader { unit, quantity: None, calibration, ..self.clone() };
         let mut findings = Vec::new();
-        let mut peaks = |recording: &Recording, said: &Said| {
-            self.peaks(recording, said, &axis, &mut findings).map_err(|e| e.in_file(&recording.path))
+        let mut peaks = |recording: &Recording, said: &SweepReader, force: bool| {
+            said.peaks(recording, force, &axis, &mut findings).map_err(|e| e.in_file(&recording.path))
         };
         let mut points: Vec<SweepPoint> = Vec::with_capacity(list.len());
         for (i, response) in recordings.iter().enumerate() {
-            let force = forces.next().map(|force| peaks(&force, &of_force)).transpose()?;
-            let (meta, values, window) = peaks(response, &of_response)?;
+            let force = forces.next().map(|force| peaks(&force, &of_force, true)).transpose()?;
+            let (meta, values, window) = peaks(response, self, false)?;
             if let Some(first) = points.first().map(|p| &p.response.meta.unit).filter(|u| **u != meta.unit) {
                 let found = format!("the values of this file are in {}", meta.unit);
                 let expected = format!("{first}, as in the files before");
@@ -98,16 +87,20 @@ impl SweepReader {
         })
     }
 
-    /// Peak amplitudes in SI units, with what is known of them: by what the file states and what was stated for it.
+    /// Peak amplitudes of responses or of a `force` in SI units, with what is known of them: by what the file states and what was stated for it.
     fn peaks(
         &self,
         recording: &Recording,
-        said: &Said,
+        force: bool,
         axis: &Axis,
         findings: &mut Vec<Finding>,
     ) -> Result<(Meta, Vec<f64>, Option<Window>)> {
         let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
-            return Err(no_spectrum(&recording.records));
+            let found = match recording.records.as_slice() {
+                [record] => format!("a {}", record.kind()),
+                records => format!("{} records in the file", records.len()),
+            };
+            return Err(Error::usage(found, "one spectrum a file").hint(SPECTRA));
         };
         let mut found = |finding: Finding| {
             if !findings.contains(&finding) {
@@ -115,7 +108,7 @@ impl SweepReader {
             }
         };
         if let Some(words) = decibels(&spectrum.meta) {
-            let Some(unit) = said.unit.filter(|unit| !said.force && unit.is_known()) else {
+            let Some(unit) = self.unit.as_ref().filter(|unit| !force && unit.is_known()) else {
                 let words = format!("the file says that its values are decibels: {words:?}");
                 return Err(Error::usage(words, "linear amplitudes").hint(LINEAR));
             };
@@ -143,33 +136,33 @@ impl SweepReader {
         });
         // The reader has taken a unit that the file states to SI already.
         let (written, taken) = (&spectrum.meta.unit, taken(&spectrum.meta));
-        let meant = said.unit.map(Unit::quantity).or(said.quantity);
+        let meant = self.meant();
         let raw = matches!(written.quantity(), Quantity::Voltage | Quantity::Ratio);
-        let (factor, unit) = match said.unit {
+        let (factor, unit) = match &self.unit {
             Some(stated) if !written.is_known() => (stated.factor(), stated.si()),
             None if !written.is_known() => {
-                let unit = Unit::of(said.quantity.unwrap_or(Quantity::Displacement));
+                let unit = Unit::of(self.quantity.unwrap_or(Quantity::Displacement));
                 found(Finding::caution("response-unit-assumed").name("unit", unit.symbol()));
                 (1.0, unit)
             }
             // What one stored number stands for is stated in full.
-            Some(stated) if meant != Some(written.quantity()) && raw && said.calibration.is_some() => {
+            Some(stated) if meant != Some(written.quantity()) && raw && self.calibration.is_some() => {
                 (stated.factor() / taken, stated.si())
             }
             _ if meant.is_some_and(|meant| meant != written.quantity()) => {
-                return Err(other_quantity(written, raw, said));
+                return Err(self.other_quantity(written, raw, force));
             }
             // A factor that a person states holds for what is stored.
-            Some(stated) if !said.force && stated.factor() != taken => {
+            Some(stated) if !force && stated.factor() != taken => {
                 let differs = Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
                 found(differs.name("file", written.symbol()).number("factor", taken));
                 (stated.factor() / taken, written.clone())
             }
             _ => (1.0, written.clone()),
         };
-        let factor = factor * said.calibration.unwrap_or(1.0) * peak;
+        let factor = factor * self.calibration.unwrap_or(1.0) * peak;
         let values = magnitudes(spectrum, axis, factor)?;
-        if !said.force {
+        if !force {
             gather(recording, findings);
         }
         let mut meta = spectrum.meta.clone();
@@ -179,7 +172,32 @@ impl SweepReader {
         meta.unit = unit;
         Ok((meta, values, window))
     }
+
+    /// The quantity that is stated.
+    fn meant(&self) -> Option<Quantity> {
+        self.unit.as_ref().map(Unit::quantity).or(self.quantity)
+    }
+
+    fn other_quantity(&self, written: &Unit, raw: bool, force: bool) -> Error {
+        let hint = match (raw, force) {
+            (true, _) => "state unit and calibration: what one stored number stands for",
+            (false, true) => "check that these are the force files, and not the response files",
+            (false, false) => {
+                "leave quantity and unit out to believe the file; or check that this is the channel you mean"
+            }
+        };
+        let expected = match self.meant() {
+            Some(meant) if !force => format!("{meant}, as was stated"),
+            _ => "a force, in N".to_owned(),
+        };
+        Error::usage(format!("the file says its values are in {written}, {}", written.quantity()), expected)
+            .hint(hint)
+            .setting(if force { "force_calibration" } else { "calibration" })
+    }
 }
+
+/// What to try where a file holds other records.
+const SPECTRA: &str = "list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign";
 
 /// What to try where values are levels.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
@@ -216,32 +234,6 @@ fn decibels(meta: &Meta) -> Option<String> {
 fn taken(meta: &Meta) -> f64 {
     let steps = meta.history.iter().filter(|step| step.name == "to_si").flat_map(|step| &step.arguments);
     steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
-}
-
-fn other_quantity(written: &Unit, raw: bool, said: &Said) -> Error {
-    let hint = match (raw, said.force) {
-        (true, _) => "state unit and calibration: what one stored number stands for",
-        (false, true) => "check that these are the force files, and not the response files",
-        (false, false) => {
-            "leave quantity and unit out to believe the file; or check that this is the channel you mean"
-        }
-    };
-    let expected = match said.unit.map(Unit::quantity).or(said.quantity) {
-        Some(meant) if !said.force => format!("{meant}, as was stated"),
-        _ => "a force, in N".to_owned(),
-    };
-    Error::usage(format!("the file says its values are in {written}, {}", written.quantity()), expected)
-        .hint(hint)
-        .setting(if said.force { "force_calibration" } else { "calibration" })
-}
-
-fn no_spectrum(records: &[Record]) -> Error {
-    let found = match records {
-        [record] => format!("a {}", record.kind()),
-        records => format!("{} records in the file", records.len()),
-    };
-    Error::usage(found, "one spectrum a file")
-        .hint("list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign")
 }
 
 /// Peak magnitudes of a spectrum, which must have the lines of `axis`.

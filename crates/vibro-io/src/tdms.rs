@@ -18,13 +18,14 @@ mod segment;
 use super::Source;
 use super::missing;
 use super::reader::Options;
+use crate::assemble;
 use crate::held::{Contents, Held, rises};
 use axes::Clock;
 use description::Value;
 use layout::Layout;
 use rayon::prelude::*;
 use scale::Scales;
-use segment::{Object, Segments};
+use segment::Object;
 use std::cmp::Reverse;
 use std::io::{BufReader, Read, Seek};
 use std::sync::Arc;
@@ -46,10 +47,15 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             .hint("name the file without `_index` that lies beside it"));
     }
     let mut file = BufReader::with_capacity(BLOCK, source.open()?);
-    let Segments { objects, layouts, mut findings } = segment::all(&mut file, source.len())?;
+    let (objects, layouts, mut findings) = segment::all(&mut file, source.len())?;
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
-    let mut raw: Vec<Raw> = objects.iter().map(|object| Raw::of(object, &above, survey)).collect();
+    let raw = objects.iter().map(|object| {
+        // The slots of one value need not lie side by side.
+        let kept = if survey && object.slots.len() == 1 { Kept::Undecided } else { Kept::Values };
+        Raw { object, scales: Scales::of(&above, object), columns: Vec::new(), kept }
+    });
+    let mut raw: Vec<Raw> = raw.collect();
     // Channels that lie one after the other are read side by side.
     let apart = layouts.iter().flat_map(|layout| layout.parts.iter()).all(|part| part.fields.len() <= 1);
     let each = raw.len().div_ceil(if apart { rayon::current_num_threads() } else { 1 }).max(1);
@@ -100,9 +106,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
         let n = channel.values.len();
         if object.declared > n as u64 {
             meta.declared_n = usize::try_from(object.declared).ok();
-            meta.found(
-                Finding::caution("fewer-values").number("declared", object.declared as f64).count("n", n),
-            );
+            meta.found(assemble::fewer(object.declared as usize, n));
         }
         let axis = axes::of(&channel, options, &mut meta);
         channel.values.record(meta, axis)
@@ -139,9 +143,6 @@ fn changed(object: &Object) -> Option<String> {
     Some(format!("{key} changes from {} to {now} behind value {at}", text(before)))
 }
 
-/// Raw values of an object, one column a slot.
-type Columns = Vec<Vec<f64>>;
-
 /// What is kept of the values of an object.
 #[derive(Clone, Copy)]
 enum Kept {
@@ -156,17 +157,12 @@ enum Kept {
 struct Raw<'a> {
     object: &'a Object,
     scales: Scales<'a>,
-    columns: Columns,
+    /// Raw values, one column a slot.
+    columns: Vec<Vec<f64>>,
     kept: Kept,
 }
 
-impl<'a> Raw<'a> {
-    fn of(object: &'a Object, above: &[&'a Object], survey: bool) -> Raw<'a> {
-        // The slots of one value need not lie side by side.
-        let kept = if survey && object.slots.len() == 1 { Kept::Undecided } else { Kept::Values };
-        Raw { object, scales: Scales::of(above, object), columns: Columns::new(), kept }
-    }
-
+impl Raw<'_> {
     /// Keeps what is needed of the values so far.
     fn look(&mut self) {
         let new = matches!(self.kept, Kept::Undecided);

@@ -83,11 +83,6 @@ pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
     words && encoding::is_text(head) && found().is_ok_and(|found| found.is_some())
 }
 
-/// Text of any kind: this is the last format tried.
-pub(crate) fn is_text(head: &[u8], _: &Source) -> bool {
-    encoding::is_text(head)
-}
-
 pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     with_text(source, |text| match table::detect(text, options) {
         Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
@@ -165,7 +160,7 @@ fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> 
 }
 
 /// The place of a complaint; the reader adds the file.
-fn in_line(line: u64) -> Place {
+pub(crate) fn in_line(line: u64) -> Place {
     Place { line: Some(line), ..Place::default() }
 }
 

@@ -47,7 +47,7 @@ pub fn read(
     file: &str,
 ) -> Result<std::result::Result<Record, (usize, Error)>> {
     let place = stream.place();
-    let storage = if binary { Some(values::Storage::of(line, stream)?) } else { None };
+    let storage = if binary { Some(values::storage(line, stream)?) } else { None };
     let start = place.line;
     let heading = match Heading::read(stream)? {
         Ok(heading) => heading,
@@ -59,7 +59,7 @@ pub fn read(
         }
     };
     let (numbers, mut findings) = match storage {
-        Some(storage) => values::binary(stream, &heading, &storage, options.allow_missing)?,
+        Some(storage) => values::binary(stream, &heading, storage, options.allow_missing)?,
         None => (values::text(stream, &heading, options.allow_missing)?, Vec::new()),
     };
     let (lines, closed) = stream.pass_set();

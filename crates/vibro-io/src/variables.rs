@@ -12,7 +12,6 @@ use super::reader::Options;
 use crate::held::{Contents, Held};
 use axes::Axes;
 use names::{Dialect, Scoped};
-use num_complex::Complex64;
 use rayon::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Fact, Finding, Meta, Result, Values};
@@ -166,8 +165,7 @@ fn split(
         && count == 2
         && let (Values::Real(re), Values::Real(im)) = (part(0), part(1))
     {
-        let pairs = re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im));
-        return vec![(name.to_owned(), Values::Complex(pairs.collect()).into())];
+        return vec![(name.to_owned(), Values::of(re, Some(im)).into())];
     }
     let [open, close] = dialect.brackets;
     let index = |k: usize| if lying { format!("{open}{k},:{close}") } else { format!("{open}:,{k}{close}") };

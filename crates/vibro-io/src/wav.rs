@@ -50,10 +50,11 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             values.clear();
         }
     }
-    wave.finished();
-    let traces = wave.channels.into_iter().zip(values).zip(ends);
-    let records = traces
-        .map(|((trace, values), ends)| (Record::Trace(Trace { values, ..trace }), survey.then_some(ends)));
+    let mut metas: Vec<Meta> = wave.channels.iter().map(|t| t.meta.clone()).collect();
+    wave.finish(&mut metas);
+    let traces = wave.channels.into_iter().zip(metas).zip(values);
+    let traces = traces.map(|((trace, meta), values)| Record::Trace(Trace { meta, values, ..trace }));
+    let records = traces.zip(ends.into_iter().map(|ends| survey.then_some(ends)));
     Ok(Contents { records: records.collect(), findings: wave.layout.findings })
 }
 
@@ -148,13 +149,6 @@ impl Wave {
     /// Number of frames (samples a channel) that the file holds, whatever it declares.
     pub fn frames(&self) -> usize {
         self.layout.frames as usize
-    }
-
-    /// Adds to all channels what only their samples tell.
-    fn finished(&mut self) {
-        let mut metas: Vec<Meta> = self.channels.iter().map(|t| t.meta.clone()).collect();
-        self.finish(&mut metas);
-        self.channels.iter_mut().zip(metas).for_each(|(trace, meta)| trace.meta = meta);
     }
 }
 

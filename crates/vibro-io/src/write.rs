@@ -18,11 +18,10 @@ pub mod npy;
 pub mod uff58;
 pub mod wav;
 
-use num_complex::Complex64;
 use std::io::Write;
 use std::path::Path;
 pub use uff58::{Precision, Storage};
-use vibro_record::{Error, Record, Result, Values};
+use vibro_record::{Error, Record, Result};
 
 /// A format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -94,16 +93,11 @@ impl Target {
 
 /// Value `i` of a record, or its real and imaginary part; NaN where there is none.
 fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
-    let real = |values: &[f64]| (values.get(i).copied().unwrap_or(f64::NAN), None);
-    let complex =
-        |values: &[Complex64]| values.get(i).map_or((f64::NAN, Some(f64::NAN)), |v| (v.re, Some(v.im)));
-    let (re, im) = match record {
-        Record::Trace(trace) => real(&trace.values),
-        Record::Frf(frf) => complex(&frf.values),
-        Record::Spectrum(spectrum) => match &spectrum.values {
-            Values::Real(values) => real(values),
-            Values::Complex(values) => complex(values),
-        },
+    let (real, complex) = record.numbers();
+    let (re, im) = if record.is_complex() {
+        complex.get(i).map_or((f64::NAN, Some(f64::NAN)), |v| (v.re, Some(v.im)))
+    } else {
+        (real.get(i).copied().unwrap_or(f64::NAN), None)
     };
     std::iter::once(re).chain(im)
 }

@@ -156,9 +156,7 @@ fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
     // Forming JᵀJ would square the condition number. An iteration limit, since the algorithm has no bound of its own.
     let svd = nalgebra::SVD::try_new(jacobian, false, true, f64::EPSILON, 10_000)
         .ok_or_else(|| Error::refused("the singular values of a fit were not found"))?;
-    let Some(v_t) = svd.v_t else {
-        return Err(Error::refused("the singular vectors of a fit were not found"));
-    };
+    let v_t = svd.v_t.ok_or_else(|| Error::refused("the singular vectors of a fit were not found"))?;
     let largest = svd.singular_values.max();
     // Central differences are good to about ε^(2/3); below that a singular value is noise.
     let least = largest * f64::EPSILON.powf(2.0 / 3.0) * rows.sqrt().max(1.0);
@@ -212,10 +210,8 @@ impl<F: Fn(&[f64], &mut [f64])> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'
 
     fn residuals(&self) -> Option<DVector<f64>> {
         // The algorithm gives up on `None`; a large residual makes it shorten its step instead.
-        Some(
-            self.at(&self.parameters)
-                .unwrap_or_else(|| DVector::from_element(self.n, f64::MAX.sqrt().sqrt())),
-        )
+        let far = || DVector::from_element(self.n, f64::MAX.sqrt().sqrt());
+        Some(self.at(&self.parameters).unwrap_or_else(far))
     }
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {

@@ -174,9 +174,8 @@ pub fn drill_each(
         findings: Vec::new(),
     };
     result.findings = result::findings(&result, options, &edges, &survey, still.is_some());
-    if !slow.is_empty() {
-        result.findings.push(Finding::caution("drill-slow-changes").name("quantities", slow.join(", ")));
-    }
+    let changes = Finding::caution("drill-slow-changes").name("quantities", slow.join(", "));
+    result.findings.extend((!slow.is_empty()).then_some(changes));
     Ok(result)
 }
 

@@ -24,17 +24,18 @@ const SETTLED: f64 = 0.5;
 /// The weighting at a frequency in Hz, by the formula of the standard.
 pub fn weighting(frequency: f64) -> Complex64 {
     let s = Complex64::new(0.0, TAU * frequency);
-    analogue().iter().map(|(b, a)| (b[0] + s * (b[1] + s * b[2])) / (a[0] + s * (a[1] + s * a[2]))).product()
+    let polynomial = |p: &[f64; 3]| p[0] + s * (p[1] + s * p[2]);
+    analogue().iter().map(|section| polynomial(&section.b) / polynomial(&section.a)).product()
 }
 
 /// Numerators and denominators in rising powers of s: high-pass, low-pass, transition.
-fn analogue() -> [([f64; 3], [f64; 3]); 3] {
+fn analogue() -> [Analogue; 3] {
     let [w1, w2] = BAND.map(|f| TAU * f);
     let w3 = TAU * TRANSITION;
     [
-        ([0.0, 0.0, 1.0], [w1 * w1, w1 / BAND_Q, 1.0]),
-        ([w2 * w2, 0.0, 0.0], [w2 * w2, w2 / BAND_Q, 1.0]),
-        ([w3 * w3, w3, 0.0], [w3 * w3, w3 / TRANSITION_Q, 1.0]),
+        Analogue { b: [0.0, 0.0, 1.0], a: [w1 * w1, w1 / BAND_Q, 1.0], exact: BAND[0] },
+        Analogue { b: [w2 * w2, 0.0, 0.0], a: [w2 * w2, w2 / BAND_Q, 1.0], exact: BAND[1] },
+        Analogue { b: [w3 * w3, w3, 0.0], a: [w3 * w3, w3 / TRANSITION_Q, 1.0], exact: TRANSITION },
     ]
 }
 
@@ -61,9 +62,7 @@ fn weighted(values: &[f64], rate: f64) -> Result<Vec<f64>> {
         let why = format!("a rate of {rate} Hz is too low for the weighting W_h, which reaches to 1259 Hz");
         return Err(Error::refused(why).hint(format!("sample the handle at {LOWEST_RATE:.0} Hz or more")));
     }
-    let corners = [BAND[0], BAND[1], TRANSITION];
-    let sections = analogue().into_iter().zip(corners).map(|((b, a), exact)| Analogue { b, a, exact });
-    let filter = Filter::analogue(&sections.collect::<Vec<Analogue>>(), rate)?;
+    let filter = Filter::analogue(&analogue(), rate)?;
     let mut out = values.to_vec();
     filter.causal(&mut out, values.first().copied().unwrap_or(0.0));
     Ok(out)

@@ -90,9 +90,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let even = pattern.map_or_else(|| kept.clone(), |length| evened(&kept, length));
     let fitted = interval(&even, &counted.index)
         .ok_or_else(|| Error::refused("one impact alone counts: an interval needs two"))?;
-    if fitted.wanders {
-        findings.push(Finding::caution("intervals-drift"));
-    }
+    findings.extend(fitted.wanders.then(|| Finding::caution("intervals-drift")));
     // First and last onset lie each anywhere within a sample. Where the interval is near a whole number of samples all lie alike between theirs:
     // the scatter of the intervals does not show it, and no number of impacts averages it.
     let intervals = counted.index.last().copied().unwrap_or(0) as f64;

@@ -36,17 +36,11 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     if !(0.0..1.0).contains(&least) {
         return Err(Error::usage(format!("a least coherence of {least}"), "a number from 0 to below 1"));
     }
-    let mut findings = Vec::new();
-    if let Some(decay) = options.decay {
-        findings.push(Finding::note("modal-window-decay").number("decay", decay));
-    }
+    let decayed = |decay| Finding::note("modal-window-decay").number("decay", decay);
+    let mut findings: Vec<Finding> = options.decay.map(decayed).into_iter().collect();
     let lines = measured.clone().usable(least, &mut findings)?;
-    if lines.kind == FrfKind::Other {
-        findings.push(Finding::caution("modal-unit-unknown"));
-    }
-    if lines.magnitude_only {
-        findings.push(Finding::doubt("modal-magnitudes-only"));
-    }
+    findings.extend((lines.kind == FrfKind::Other).then(|| Finding::caution("modal-unit-unknown")));
+    findings.extend(lines.magnitude_only.then(|| Finding::doubt("modal-magnitudes-only")));
     let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
     for mut group in groups(&lines, options.band)? {
         match chosen(&lines, &mut group, &mut unsupported) {

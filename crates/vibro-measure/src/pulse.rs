@@ -50,24 +50,19 @@ impl Instrument {
     /// # Errors
     /// If corner and order do not come together; as [`LowPass::new`].
     pub fn stated(low_pass: Option<Option<f64>>, order: Option<usize>) -> Result<Instrument> {
-        let (found, key, expected) = match (low_pass, order) {
-            (None, None) => return Ok(Instrument::Unknown),
-            (Some(None), None) => return Ok(Instrument::Flat),
-            (Some(Some(corner)), Some(order)) => {
-                return Ok(Instrument::LowPass(LowPass::new(corner, order)?));
+        match (low_pass, order) {
+            (None, None) => Ok(Instrument::Unknown),
+            (Some(None), None) => Ok(Instrument::Flat),
+            (Some(Some(corner)), Some(order)) => LowPass::new(corner, order).map(Instrument::LowPass),
+            (Some(Some(corner)), None) => {
+                let found = format!("a low-pass of {corner} Hz without its order");
+                Err(Error::usage(found, "the order of the low-pass, 1 to 10").setting("order"))
             }
-            (Some(Some(corner)), None) => (
-                format!("a low-pass of {corner} Hz without its order"),
-                "order",
-                "the order of the low-pass, 1 to 10",
-            ),
-            (_, Some(order)) => (
-                format!("a low-pass of order {order} without its corner"),
-                "low_pass",
-                "the corner of the low-pass in Hz",
-            ),
-        };
-        Err(Error::usage(found, expected).setting(key))
+            (_, Some(order)) => {
+                let found = format!("a low-pass of order {order} without its corner");
+                Err(Error::usage(found, "the corner of the low-pass in Hz").setting("low_pass"))
+            }
+        }
     }
 
     /// The low-pass, if there is one.

@@ -130,7 +130,7 @@ impl Curve<'_> {
     }
 
     fn maximum(&self, i: usize) -> Resonance {
-        let here = self.point(i, [i - 1, i + 1], ResonanceKind::Resonance, None);
+        let here = self.point(i, [i - 1, i + 1], ResonanceKind::Resonance);
         match self.jump_at(i) {
             Some(jump) => Resonance { at_jump: true, amplitude_std: self.std_at_jump(i, jump), ..here },
             None => self.interpolated(self.points, i).map_or(here.clone(), |top| here.moved(top)),
@@ -138,17 +138,11 @@ impl Curve<'_> {
     }
 
     /// The maximum or minimum at point `i`, which lies anywhere between those on its two `sides`.
-    fn point(
-        &self,
-        i: usize,
-        sides: [usize; 2],
-        kind: ResonanceKind,
-        amplitude_std: Option<f64>,
-    ) -> Resonance {
+    fn point(&self, i: usize, sides: [usize; 2], kind: ResonanceKind) -> Resonance {
         let (frequency, amplitude, _) = self.points[i];
         let [a, b] = sides.map(|k| (self.points[k].0 - frequency).abs());
         let frequency_std = Some(a.max(b) / f64::sqrt(3.0));
-        Resonance { frequency, frequency_std, amplitude, amplitude_std, kind, at_jump: false }
+        Resonance { frequency, frequency_std, amplitude, amplitude_std: None, kind, at_jump: false }
     }
 
     /// `None` at the foot of a jump.
@@ -158,13 +152,13 @@ impl Curve<'_> {
             // In the noise its place is not known: between the points that stand out on both sides.
             let out = |k: &usize| differ(&self.points[i], &self.points[*k]);
             let sides = [(0..i).rev().find(out)?, (i + 1..self.points.len()).find(out)?];
-            let here = self.point(i, sides, kind, known(std));
+            let here = Resonance { amplitude_std: known(std), ..self.point(i, sides, kind) };
             return (!self.jump_between(sides[0], sides[1])).then_some(here);
         }
         if self.jump_at(i).is_some() {
             return None;
         }
-        let here = self.point(i, [i - 1, i + 1], kind, None);
+        let here = self.point(i, [i - 1, i + 1], kind);
         let Some(top) = self.interpolated(self.inverse, i) else { return Some(here) };
         let (height, height_std) = (1.0 / top.height, top.height_std / (top.height * top.height));
         Some(here.moved(Vertex { height, height_std, ..top }))

@@ -99,19 +99,48 @@ impl Plan {
         scales::check_work(cycles)
     }
 
-    /// Sweeps the frequency of `motion` (driven with `force`) from one end to the other.
+    /// Sweeps the frequency of `motion` (driven with `force`) from one end to the other; with a rate, each cycle in several
+    /// steps of constant frequency.
     ///
     /// # Errors
     /// As [`Plan::check`] and [`Motion::advance`].
     pub fn frequency(&self, motion: &mut dyn Motion, force: f64, direction: Direction) -> Result<Vec<Point>> {
         self.check()?;
-        match self.pace {
-            Pace::Steps { .. } => self.steps(motion, direction, |motion, value| {
+        let Pace::Rate { rate, points } = self.pace else {
+            return self.steps(motion, direction, |motion, value| {
                 motion.set_frequency(value)?;
                 Ok((value, force))
-            }),
-            Pace::Rate { rate, points } => self.rate(motion, force, direction, rate, points),
+            });
+        };
+        let (start, end, rate) = match direction {
+            Direction::Up => (self.from, self.to, rate),
+            Direction::Down => (self.to, self.from, -rate),
+        };
+        // Phase in cycles after t: f₀t + rt²/2, so a frequency f is reached after (f² − f₀²)/2r cycles.
+        let all = ((end * end - start * start) / (2.0 * rate)).floor().max(1.0) as u64;
+        let group = all.div_ceil(points as u64);
+        let at = |cycle: f64| (start * start + 2.0 * rate * cycle).max(0.0).sqrt();
+        let mut gauge = Gauge::new(self.observable, motion.rig());
+        let mut found = Vec::with_capacity((all / group) as usize + 1);
+        let mut cycle = 0;
+        while cycle < all {
+            let until = (cycle + group).min(all);
+            gauge.clear();
+            for c in cycle..until {
+                for step in 0..STEPS {
+                    let begun = c as f64 + f64::from(step) / f64::from(STEPS);
+                    // The step's mean frequency: its ends are 1/STEPS cycles apart in phase.
+                    let ends = [at(begun), at(begun + 1.0 / f64::from(STEPS))];
+                    motion.set_frequency(f64::midpoint(ends[0], ends[1]))?;
+                    pass(motion, 1.0 / f64::from(STEPS), &mut gauge)?;
+                }
+                gauge.close_cycle();
+            }
+            let (first, last) = (at(cycle as f64), at(until as f64));
+            found.push(point(&gauge, f64::midpoint(first, last), force));
+            cycle = until;
         }
+        Ok(found)
     }
 
     /// Sweeps anything in steps: `set` changes it and says the frequency (Hz) and the force (N) that then hold.
@@ -151,46 +180,6 @@ impl Plan {
                 Ok(point(&gauge, frequency, force))
             })
             .collect()
-    }
-
-    /// A continuous sweep: each cycle in [`STEPS`] steps of constant frequency.
-    fn rate(
-        &self,
-        motion: &mut dyn Motion,
-        force: f64,
-        direction: Direction,
-        rate: f64,
-        points: usize,
-    ) -> Result<Vec<Point>> {
-        let (start, end, rate) = match direction {
-            Direction::Up => (self.from, self.to, rate),
-            Direction::Down => (self.to, self.from, -rate),
-        };
-        // Phase in cycles after t: f₀t + rt²/2, so a frequency f is reached after (f² − f₀²)/2r cycles.
-        let all = ((end * end - start * start) / (2.0 * rate)).floor().max(1.0) as u64;
-        let group = all.div_ceil(points as u64);
-        let at = |cycle: f64| (start * start + 2.0 * rate * cycle).max(0.0).sqrt();
-        let mut gauge = Gauge::new(self.observable, motion.rig());
-        let mut found = Vec::with_capacity((all / group) as usize + 1);
-        let mut cycle = 0;
-        while cycle < all {
-            let until = (cycle + group).min(all);
-            gauge.clear();
-            for c in cycle..until {
-                for step in 0..STEPS {
-                    let begun = c as f64 + f64::from(step) / f64::from(STEPS);
-                    // The step's mean frequency: its ends are 1/STEPS cycles apart in phase.
-                    let ends = [at(begun), at(begun + 1.0 / f64::from(STEPS))];
-                    motion.set_frequency(f64::midpoint(ends[0], ends[1]))?;
-                    pass(motion, 1.0 / f64::from(STEPS), &mut gauge)?;
-                }
-                gauge.close_cycle();
-            }
-            let (first, last) = (at(cycle as f64), at(until as f64));
-            found.push(point(&gauge, f64::midpoint(first, last), force));
-            cycle = until;
-        }
-        Ok(found)
     }
 }
 

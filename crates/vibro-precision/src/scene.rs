@@ -17,10 +17,7 @@ pub enum Family {
 impl Family {
     /// Its name.
     pub fn name(self) -> &'static str {
-        match self {
-            Family::Models => "models",
-            Family::Estimators => "estimators",
-        }
+        ["models", "estimators"][self as usize]
     }
 }
 

@@ -66,13 +66,8 @@ impl Axis {
             let scale = start.abs().max(values[n - 1].abs());
             let tolerance = resolution * 1.000_001 + 4.0 * f64::EPSILON * scale;
             // Both end points carry their own rounding, hence twice the resolution.
-            let even = step.is_finite()
-                && step > 0.0
-                && values
-                    .iter()
-                    .enumerate()
-                    .all(|(i, v)| (v - (start + i as f64 * step)).abs() <= 2.0 * tolerance);
-            if even {
+            let near = |(i, v): (usize, &f64)| (v - (start + i as f64 * step)).abs() <= 2.0 * tolerance;
+            if step.is_finite() && step > 0.0 && values.iter().enumerate().all(near) {
                 return Axis { kind, grid: Grid::Even { start, step, n } };
             }
         }

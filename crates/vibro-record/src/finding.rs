@@ -111,20 +111,14 @@ impl Finding {
 
     /// A number by its name.
     pub fn get(&self, name: &str) -> Option<f64> {
-        match self.fact(name)? {
-            Fact::Number(value) => Some(*value),
-            Fact::Numbers(_) | Fact::Name(_) => None,
-        }
+        if let Fact::Number(value) = self.fact(name)? { Some(*value) } else { None }
     }
 
     /// Findings of records, given as name and findings: one that all share once, any other about its record.
     pub fn gathered(records: &[(&str, &[Finding])]) -> Vec<Finding> {
-        let (first, others) =
-            records.split_first().map_or((&[][..], records), |(first, others)| (first.1, others));
-        let shared: Vec<&Finding> = first
-            .iter()
-            .filter(|found| others.iter().all(|(_, findings)| findings.contains(found)))
-            .collect();
+        let everywhere = |found: &&Finding| records.iter().all(|(_, findings)| findings.contains(found));
+        let first = records.first().map_or(&[][..], |(_, findings)| findings);
+        let shared: Vec<&Finding> = first.iter().filter(everywhere).collect();
         let mut all: Vec<Finding> = Vec::new();
         for (i, (name, findings)) in records.iter().enumerate() {
             for finding in *findings {

@@ -98,13 +98,19 @@ impl Record {
 
     /// Both ends of the values, or of the magnitudes of complex ones.
     pub fn extremes(&self) -> Extremes {
-        let complex = |values: &[Complex64]| values.iter().map(|v| v.norm()).collect();
-        let sizes: Vec<f64> = match self {
+        match self.numbers() {
+            (real, []) => Extremes::of(real),
+            (_, complex) => Extremes::of(&complex.iter().map(|v| v.norm()).collect::<Vec<f64>>()),
+        }
+    }
+
+    /// Real values, or complex ones: one of both is empty.
+    pub fn numbers(&self) -> (&[f64], &[Complex64]) {
+        match self {
             Record::Trace(Trace { values, .. })
-            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => return Extremes::of(values),
-            Record::Spectrum(Spectrum { values: Values::Complex(values), .. }) => complex(values),
-            Record::Frf(r) => complex(&r.values),
-        };
-        Extremes::of(&sizes)
+            | Record::Spectrum(Spectrum { values: Values::Real(values), .. }) => (values, &[]),
+            Record::Frf(Frf { values, .. })
+            | Record::Spectrum(Spectrum { values: Values::Complex(values), .. }) => (&[], values),
+        }
     }
 }

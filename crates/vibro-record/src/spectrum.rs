@@ -2,6 +2,7 @@
 
 use super::{Axis, Meta, Window};
 use crate::units::Quantity;
+use Scaling::{Coherence, Energy, Peak, Power, Psd, Rms, Unknown};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,18 @@ pub enum Values {
 }
 
 impl Values {
+    /// Values of their real and, where they are complex, imaginary parts.
+    pub fn of(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
+        let Some(imaginary) = imaginary else { return Values::Real(real) };
+        let pairs = real.into_iter().zip(imaginary);
+        Values::Complex(pairs.map(|(re, im)| Complex64::new(re, im)).collect())
+    }
+
+    /// Real values; `None` of complex ones.
+    pub fn reals(&self) -> Option<&[f64]> {
+        if let Values::Real(values) = self { Some(values) } else { None }
+    }
+
     /// Number of lines.
     pub fn len(&self) -> usize {
         match self {
@@ -68,18 +81,19 @@ pub enum Scaling {
     Unknown,
 }
 
+/// In the order of the variants.
+const NAMES: [&str; 7] = ["peak", "rms", "power", "psd", "energy", "coherence", "unknown"];
+
 impl Scaling {
     /// Name, as in JSON.
     pub fn name(self) -> &'static str {
-        match self {
-            Scaling::Peak => "peak",
-            Scaling::Rms => "rms",
-            Scaling::Power => "power",
-            Scaling::Psd => "psd",
-            Scaling::Energy => "energy",
-            Scaling::Coherence => "coherence",
-            Scaling::Unknown => "unknown",
-        }
+        NAMES[self as usize]
+    }
+
+    /// The scaling with this name.
+    pub fn from_name(name: &str) -> Option<Scaling> {
+        let all = [Peak, Rms, Power, Psd, Energy, Coherence, Unknown];
+        all.into_iter().find(|scaling| scaling.name() == name)
     }
 }
 

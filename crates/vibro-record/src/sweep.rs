@@ -18,10 +18,7 @@ pub enum Direction {
 impl Direction {
     /// `up` or `down`.
     pub fn name(self) -> &'static str {
-        match self {
-            Direction::Up => "up",
-            Direction::Down => "down",
-        }
+        if self == Direction::Up { "up" } else { "down" }
     }
 }
 

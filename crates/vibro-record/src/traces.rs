@@ -95,7 +95,11 @@ impl Traces {
     /// # Errors
     /// As [`Traces::from_memory`].
     pub fn of_file(path: PathBuf, findings: Vec<Finding>, mut traces: Vec<Trace>) -> Result<Traces> {
-        check_lengths(&path, &traces)?;
+        let length = |trace: &Trace| trace.values.len();
+        if let Some(other) = traces.iter().find(|other| length(other) != length(&traces[0])) {
+            let (n, first) = (format!("{} samples", length(&traces[0])), &traces[0]);
+            return Err(apart(&path, [first, other], &n, &length(other).to_string()));
+        }
         let values: Vec<Vec<f64>> = traces.iter_mut().map(|t| std::mem::take(&mut t.values)).collect();
         let frames = values.first().map_or(0, Vec::len);
         Traces::of_stream(path, findings, &traces, frames, Box::new(Memory { values, at: 0 }))
@@ -246,13 +250,6 @@ pub fn find_channel<'a>(
 /// The file, where there is one.
 fn place(path: &Path) -> Place {
     if path.as_os_str().is_empty() { Place::default() } else { Place::file(path) }
-}
-
-fn check_lengths(path: &Path, traces: &[Trace]) -> Result<()> {
-    let pairs = traces.first().into_iter().flat_map(|first| traces.iter().map(move |other| [first, other]));
-    pairs.filter(|[a, b]| a.values.len() != b.values.len()).try_for_each(|[a, b]| {
-        Err(apart(path, [a, b], &format!("{} samples", a.values.len()), &b.values.len().to_string()))
-    })
 }
 
 fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {

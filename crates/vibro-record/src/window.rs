@@ -3,6 +3,7 @@
 //! Coefficients: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier transform",
 //! Proc. IEEE 66 (1978), table I; flat top: the five-term window of ISO 18431-2, as in scipy's `flattop`.
 
+use Window::{Blackman, BlackmanHarris, FlatTop, Hamming, Hann, Rectangular};
 use serde::{Deserialize, Serialize};
 
 /// Windows by name; their samples and line shapes are in the crate `vibro-signal`.
@@ -38,14 +39,7 @@ const TABLE: [(&str, &[f64]); 6] = [
 
 impl Window {
     /// Every window.
-    pub const ALL: [Window; 6] = [
-        Window::Rectangular,
-        Window::Hann,
-        Window::Hamming,
-        Window::Blackman,
-        Window::BlackmanHarris,
-        Window::FlatTop,
-    ];
+    pub const ALL: [Window; 6] = [Rectangular, Hann, Hamming, Blackman, BlackmanHarris, FlatTop];
 
     /// Name, as in JSON and in `campaign.toml`.
     pub fn name(self) -> &'static str {

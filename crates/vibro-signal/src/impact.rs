@@ -204,15 +204,9 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
             clipped |= rail.is_some();
             rails.extend(rail);
         }
-        let rejected = if trigger < how.before || end - trigger < how.length - how.before {
-            Some(CUT_OFF)
-        } else if second {
-            Some(DOUBLE)
-        } else if clipped {
-            Some(OVERLOAD)
-        } else {
-            None
-        };
+        let cut_off = trigger < how.before || end - trigger < how.length - how.before;
+        let faults = [(cut_off, CUT_OFF), (second, DOUBLE), (clipped, OVERLOAD)];
+        let rejected = faults.into_iter().find(|fault| fault.0).map(|fault| fault.1);
         let time = force.axis.start() + trigger as f64 / rate;
         found.push(Blow { time, peak: sign * peak, rejected, start });
         i = end.max(trigger + 1);

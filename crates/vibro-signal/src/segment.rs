@@ -51,8 +51,10 @@ impl Segments {
 pub(crate) struct Batches<'a> {
     traces: &'a mut Traces,
     segments: Segments,
-    frames: usize,
-    ranges: Vec<Survey>,
+    /// Samples of each channel read so far.
+    pub frames: usize,
+    /// Smallest and largest value of each channel so far.
+    pub ranges: Vec<Survey>,
 }
 
 impl<'a> Batches<'a> {
@@ -98,16 +100,6 @@ impl<'a> Batches<'a> {
             column.extend_from_slice(values.get(count * self.segments.hop..).unwrap_or_default());
         }
     }
-
-    /// Samples of each channel read so far.
-    pub fn frames(&self) -> usize {
-        self.frames
-    }
-
-    /// Smallest and largest value of each channel so far.
-    pub fn ranges(&self) -> &[Survey] {
-        &self.ranges
-    }
 }
 
 #[cfg(test)]
@@ -142,7 +134,7 @@ mod tests {
                 std::mem::swap(&mut batch, &mut next);
             }
             assert_eq!(seen, segments.count(n), "{length} {overlap}");
-            assert_eq!((batches.frames(), batches.ranges()[0].high), (n, (n - 1) as f64));
+            assert_eq!((batches.frames, batches.ranges[0].high), (n, (n - 1) as f64));
         }
     }
 

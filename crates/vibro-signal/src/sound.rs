@@ -14,14 +14,11 @@ pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
 /// Refuses missing samples of a channel, the first of them `before` samples behind its start: they would spread over all of the
 /// result.
 pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()> {
-    match values.iter().position(|v| !v.is_finite()) {
-        Some(i) => Err(Error::refused(format!(
-            "sample {} of channel {channel:?} is missing: it would spread over all of the result",
-            before + i
-        ))
-        .hint("cut the record before the gap, or bridge it")),
-        None => Ok(()),
-    }
+    let Some(place) = values.iter().position(|v| !v.is_finite()) else { return Ok(()) };
+    let at = before + place;
+    let why =
+        format!("sample {at} of channel {channel:?} is missing: it would spread over all of the result");
+    Err(Error::refused(why).hint("cut the record before the gap, or bridge it"))
 }
 
 /// A channel of one value has no spectrum.

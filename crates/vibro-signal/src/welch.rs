@@ -89,11 +89,11 @@ impl Welch {
             let (read, sums) =
                 rayon::join(|| batches.fill(&mut next), || kernel.batch(&batch, count, products));
             total.add_all(&sums);
-            progress(batches.frames());
+            progress(batches.frames);
             std::mem::swap(&mut batch, &mut next);
             count = read?;
         }
-        for (name, range) in names.iter().zip(batches.ranges()) {
+        for (name, range) in names.iter().zip(&batches.ranges) {
             if range.low == range.high {
                 return Err(constant(name, range.low));
             }

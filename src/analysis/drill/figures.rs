@@ -39,17 +39,10 @@ fn average(name: &str, drill: &Drill) -> Figure {
     let x = || AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
     let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
-        .with(
-            Series::line("mean", degrees.clone(), closed(a.mean.clone()))
-                .ink(Ink::Nth(0))
-                .stroke(Stroke::Solid),
-        );
+        .with(Series::line("mean", degrees.clone(), closed(a.mean.clone())).ink(Ink::Nth(0)));
     let (above, marked) = marks(above, drill, |i| 360.0 * i.phase, |_| true);
-    let below = Plot::new(x(), AxisSpec::new("Displacement", "m")).with(
-        Series::line("", degrees, closed(drill.displacement.value.clone()))
-            .ink(Ink::Nth(0))
-            .stroke(Stroke::Solid),
-    );
+    let below = Plot::new(x(), AxisSpec::new("Displacement", "m"))
+        .with(Series::line("", degrees, closed(drill.displacement.value.clone())).ink(Ink::Nth(0)));
     let smoothed = match drill.smoothing {
         Some(Corner::ZeroPhaseLowPass(f) | Corner::Exponential(f)) => {
             format!("low-pass with a corner at {f:.0} Hz")

@@ -6,14 +6,10 @@ use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke}
 use crate::units::notation::typeset;
 
 /// Markers in turn.
-const MARKERS: [Marker; 6] = [
-    Marker::Circle,
-    Marker::Square,
-    Marker::Triangle,
-    Marker::Diamond,
-    Marker::FilledSquare,
-    Marker::OpenCircle,
-];
+const MARKERS: [Marker; 6] = {
+    use Marker::{Circle, Diamond, FilledSquare, OpenCircle, Square, Triangle};
+    [Circle, Square, Triangle, Diamond, FilledSquare, OpenCircle]
+};
 
 /// Crosses of what failed, in turn.
 const CROSSES: [Marker; 3] = [Marker::Cross, Marker::Saltire, Marker::Star];

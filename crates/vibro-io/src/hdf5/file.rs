@@ -4,6 +4,7 @@
 
 use super::lzf;
 use crate::Source;
+use crate::assemble::fewer;
 use crate::binary::Kind;
 use crate::held::{Held, rises};
 use crate::variables::EXPORT;
@@ -168,8 +169,7 @@ impl File {
                 if let Data::Numbers(values) = &data
                     && values.len() < declared
                 {
-                    let found = Finding::caution("fewer-values").about(name);
-                    self.findings.push(found.count("declared", declared).count("n", values.len()));
+                    self.findings.push(fewer(declared, values.len()).about(name));
                 }
                 return Some(data);
             }
@@ -337,25 +337,17 @@ fn decoded(
 
 /// Which numbers those of a datatype are, and whether big-endian.
 fn number(kind: &Datatype) -> Option<(Kind, bool)> {
-    let (kind, order) = match kind {
+    /// Beside the bytes of an integer without a sign, and of a float.
+    const UNSIGNED: u32 = 0x100;
+    const FLOAT: u32 = 0x200;
+    let (code, order) = match kind {
         Datatype::FixedPoint { size, signed, byte_order } => {
-            let kind = match (size, signed) {
-                (1, true) => Kind::I8,
-                (1, false) => Kind::U8,
-                (2, true) => Kind::I16,
-                (2, false) => Kind::U16,
-                (4, true) => Kind::I32,
-                (4, false) => Kind::U32,
-                (8, true) => Kind::I64,
-                (8, false) => Kind::U64,
-                _ => return None,
-            };
-            (kind, byte_order)
+            (u32::from(*size) | if *signed { 0 } else { UNSIGNED }, byte_order)
         }
-        Datatype::FloatingPoint { size: 4, byte_order } => (Kind::F32, byte_order),
-        Datatype::FloatingPoint { size: 8, byte_order } => (Kind::F64, byte_order),
+        Datatype::FloatingPoint { size, byte_order } => (u32::from(*size) | FLOAT, byte_order),
         _ => return None,
     };
+    let kind = Kind::coded(code, [1, 2, 4, 8, 0x101, 0x102, 0x104, 0x108, 0x204, 0x208])?;
     Some((kind, *order == ByteOrder::BigEndian))
 }
 

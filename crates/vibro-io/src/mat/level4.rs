@@ -2,9 +2,9 @@
 //!
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 4 MAT-File Format".
 
-use super::level5::{complex, numbers, string};
+use super::level5::{numbers, string};
 use crate::variables::{Array, Content, MOST_TEXT};
-use vibro_record::{Error, Place, Result};
+use vibro_record::{Error, Place, Result, Values};
 
 /// Kinds of numbers as level 5 counts them, and their bytes: double, single, int32, int16, uint16, uint8.
 const KINDS: [(u32, usize); 6] = [(9, 8), (7, 4), (5, 4), (3, 2), (4, 2), (2, 1)];
@@ -56,11 +56,8 @@ pub fn all(bytes: &[u8]) -> Result<Vec<(String, Content)>> {
                 } else {
                     let imaginary = (parts == 1).then(|| values.split_off(values.len() / 2));
                     let dimensions = vec![rows.into(), columns.into()];
-                    Content::Array(Array {
-                        dimensions,
-                        values: complex(values, imaginary).into(),
-                        single: kind == 7,
-                    })
+                    let values = Values::of(values, imaginary).into();
+                    Content::Array(Array { dimensions, values, single: kind == 7 })
                 }
             }
         };

@@ -5,7 +5,6 @@
 use crate::binary::Kind;
 use crate::variables::{Array, Content, MOST_TEXT};
 use flate2::read::ZlibDecoder;
-use num_complex::Complex64;
 use std::io::Read;
 use vibro_record::{Error, Place, Result, Values};
 
@@ -89,31 +88,9 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// Values of their real and, where they are complex, imaginary part.
-pub fn complex(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {
-    match imaginary {
-        Some(im) => {
-            Values::Complex(real.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im)).collect())
-        }
-        None => Values::Real(real),
-    }
-}
-
 /// Numbers of a kind; `None` for one that is not of numbers.
 pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
-    let kind = match kind {
-        1 => Kind::I8,
-        2 => Kind::U8,
-        3 => Kind::I16,
-        4 => Kind::U16,
-        5 => Kind::I32,
-        6 => Kind::U32,
-        7 => Kind::F32,
-        9 => Kind::F64,
-        12 => Kind::I64,
-        13 => Kind::U64,
-        _ => return None,
-    };
+    let kind = Kind::coded(kind, [1, 3, 5, 12, 2, 4, 6, 13, 7, 9])?;
     let (width, mut values) = (kind.size() as usize, Vec::new());
     kind.take(bytes, 0, width, big, &mut values);
     Some(values)
@@ -217,8 +194,8 @@ fn variable(
         6..=15 => {
             let real = elements.numbers(count)?;
             let imaginary = if has_two { Some(elements.numbers(count)?) } else { None };
-            let values = complex(real, imaginary);
-            Content::Array(Array { dimensions, values: values.into(), single: class == 7 })
+            let values = Values::of(real, imaginary).into();
+            Content::Array(Array { dimensions, values, single: class == 7 })
         }
         3 => Content::Other("object"),
         5 => Content::Other("sparse matrix"),

@@ -126,12 +126,8 @@ fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
     let said = said.map(|unit| if unit.eq_ignore_ascii_case("hz") { "Hz" } else { unit });
     let (kind, factor, found) = match (said, said.and_then(Unit::parse)) {
         (Some(said), Some(unit)) => {
-            let other = || {
-                (
-                    AxisKind::Other(format!("{} [{said}]", if name.is_empty() { "abscissa" } else { name })),
-                    1.0,
-                )
-            };
+            let name = if name.is_empty() { "abscissa" } else { name };
+            let other = || (AxisKind::Other(format!("{name} [{said}]")), 1.0);
             let (kind, factor) = kind_of(&unit).map_or_else(other, |kind| (kind, unit.factor()));
             (kind, factor, None)
         }

@@ -1,21 +1,11 @@
 //! The description of a segment, word by word: properties, and how the raw data of an object lie.
 
-use crate::binary::{Kind, time};
+use crate::binary::Kind;
 use vibro_record::{Error, Place, Result};
 
-/// Types of DAQmx scalers, in the order of their numbers.
-const DAQMX: [Kind; 10] = [
-    Kind::U8,
-    Kind::I8,
-    Kind::U16,
-    Kind::I16,
-    Kind::U32,
-    Kind::I32,
-    Kind::U64,
-    Kind::I64,
-    Kind::F32,
-    Kind::F64,
-];
+/// Codes of numbers as raw data and properties, and as DAQmx scalers, see [`Kind::coded`].
+const NUMBERS: [u32; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
+const DAQMX: [u32; 10] = [1, 3, 5, 7, 0, 2, 4, 6, 8, 9];
 
 /// The value of a property.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,11 +39,15 @@ pub enum Slot {
 
 /// How the raw data of an object lie in the chunks of a segment.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Index {
-    /// Rows of numbers; of other things, one row of all their bytes.
-    Plain { rows: u64, width: u64, fields: Vec<(Slot, usize, Kind)> },
-    /// Rows that all channels of a DAQmx buffer share, the widths of the buffers, and the scalers with their buffers.
-    Shared { rows: u64, widths: Vec<u64>, fields: Vec<(usize, Slot, usize, Kind)> },
+pub struct Index {
+    /// Rows of numbers; of other things one, of all their bytes.
+    pub rows: u64,
+    /// Bytes of a row, or of one in each buffer of DAQmx.
+    pub widths: Vec<u64>,
+    /// Whether all channels share the rows, as those of DAQmx do.
+    pub shared: bool,
+    /// What each number of a row is, its buffer, its byte and its kind; none of other things.
+    pub fields: Vec<(Slot, usize, usize, Kind)>,
 }
 
 /// Words of a description.
@@ -104,26 +98,20 @@ impl<'a> Words<'a> {
 
     /// The value of a property of a type.
     pub fn value(&mut self, code: u32) -> Result<Value> {
-        Ok(Value::Number(match code {
+        let kind = match code {
             0x20 => return self.text().map(Value::Text),
             0x21 => return Ok(Value::Text((self.word::<1>()? != [0]).to_string())),
             0 => return Ok(Value::Other),
-            0x44 => time(self.word()?),
-            1 => f64::from(i8::from_le_bytes(self.word()?)),
-            2 => f64::from(i16::from_le_bytes(self.word()?)),
-            3 => f64::from(i32::from_le_bytes(self.word()?)),
-            4 => i64::from_le_bytes(self.word()?) as f64,
-            5 => f64::from(u8::from_le_bytes(self.word()?)),
-            6 => f64::from(u16::from_le_bytes(self.word()?)),
-            7 => f64::from(self.u32()?),
-            8 => self.u64()? as f64,
-            9 | 0x19 => f64::from(f32::from_le_bytes(self.word()?)),
-            10 | 0x1a => f64::from_le_bytes(self.word()?),
+            0x44 => Kind::Time,
             0x0008_000c => return self.bytes(8).map(|_| Value::Other),
             // Extended precision, and complex numbers.
             0x0b | 0x1b | 0x0010_000d => return self.bytes(16).map(|_| Value::Other),
-            other => return Err(self.fault(format!("a property of type {other:#x}"), "a type of TDMS 2.0")),
-        }))
+            other => number(other)
+                .ok_or_else(|| self.fault(format!("a property of type {other:#x}"), "a type of TDMS 2.0"))?,
+        };
+        let (size, mut one) = (kind.size() as usize, Vec::new());
+        kind.take(self.bytes(size)?, 0, size, self.big_endian, &mut one);
+        Ok(Value::Number(one[0]))
     }
 
     /// The layout of raw data that begins with this word.
@@ -136,17 +124,18 @@ impl<'a> Words<'a> {
         self.one_dimension()?;
         let rows = self.u64()?;
         if code == 0x20 {
-            return Ok(Index::Plain { rows: 1, width: self.u64()?, fields: Vec::new() });
+            return Ok(Index { rows: 1, widths: vec![self.u64()?], shared: false, fields: Vec::new() });
         }
-        let complex = |kind: Kind| vec![(Slot::Real, 0, kind), (Slot::Imaginary, kind.size() as usize, kind)];
+        let complex =
+            |kind: Kind| vec![(Slot::Real, 0, 0, kind), (Slot::Imaginary, 0, kind.size() as usize, kind)];
         let fields = match code {
             0x0008_000c => complex(Kind::F32),
             0x0010_000d => complex(Kind::F64),
-            0x44 => vec![(Slot::Instant, 0, Kind::Time)],
-            _ => vec![(Slot::Real, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
+            0x44 => vec![(Slot::Instant, 0, 0, Kind::Time)],
+            _ => vec![(Slot::Real, 0, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
         };
-        let width = fields.iter().map(|(_, _, kind)| kind.size()).sum();
-        Ok(Index::Plain { rows, width, fields })
+        let widths = vec![fields.iter().map(|(.., kind)| kind.size()).sum()];
+        Ok(Index { rows, widths, shared: false, fields })
     }
 
     /// The layout of DAQmx data: scalers, then the widths of the buffers.
@@ -163,13 +152,13 @@ impl<'a> Words<'a> {
                 (offset / 8, Kind::Bit((offset % 8) as u8))
             } else {
                 self.bytes(4)?;
-                (offset, *DAQMX.get(code as usize).ok_or_else(|| self.type_unknown(code))?)
+                (offset, Kind::coded(code, DAQMX).ok_or_else(|| self.type_unknown(code))?)
             };
-            fields.push((buffer, Slot::Scaler(self.u32()?), offset, kind));
+            fields.push((Slot::Scaler(self.u32()?), buffer, offset, kind));
         }
         let n = self.u32()?;
         let widths = (0..n).map(|_| self.u32().map(u64::from)).collect::<Result<_>>()?;
-        Ok(Index::Shared { rows, widths, fields })
+        Ok(Index { rows, widths, shared: true, fields })
     }
 
     fn one_dimension(&mut self) -> Result<()> {
@@ -184,21 +173,14 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The number that a type of raw data is.
+/// The number that a type is; one byte is a truth, too, and floats may have a unit.
 fn number(code: u32) -> Option<Kind> {
-    Some(match code {
-        1 => Kind::I8,
-        2 => Kind::I16,
-        3 => Kind::I32,
-        4 => Kind::I64,
-        5 | 0x21 => Kind::U8,
-        6 => Kind::U16,
-        7 => Kind::U32,
-        8 => Kind::U64,
-        9 | 0x19 => Kind::F32,
-        10 | 0x1a => Kind::F64,
-        _ => return None,
-    })
+    let code = match code {
+        0x21 => 5,
+        0x19 | 0x1a => code - 0x10,
+        code => code,
+    };
+    Kind::coded(code, NUMBERS)
 }
 
 /// The place of a complaint; the reader adds the file.

@@ -2,7 +2,6 @@
 
 use super::description::Slot;
 use super::segment::Object;
-use num_complex::Complex64;
 use std::collections::BTreeSet;
 use vibro_record::Values;
 
@@ -51,8 +50,7 @@ impl<'a> Scales<'a> {
     pub fn apply(&self, slots: &[Slot], mut columns: Vec<Vec<f64>>) -> Result<Values, String> {
         if let ([Slot::Real, Slot::Imaginary], 0) = (slots, self.n) {
             let (imaginary, real) = (columns.pop().unwrap_or_default(), columns.pop().unwrap_or_default());
-            let pairs = real.into_iter().zip(imaginary);
-            return Ok(Values::Complex(pairs.map(|(re, im)| Complex64::new(re, im)).collect()));
+            return Ok(Values::of(real, Some(imaginary)));
         }
         if self.n == 0 {
             return Ok(Values::Real(columns.swap_remove(0)));

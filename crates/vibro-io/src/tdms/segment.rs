@@ -46,18 +46,14 @@ impl Object {
     }
 }
 
-/// Objects in their order, and the raw data of each segment.
-pub struct Segments {
-    pub objects: Vec<Object>,
-    pub layouts: Vec<Layout>,
-    pub findings: Vec<Finding>,
-}
-
-/// Goes from segment to segment of a file of `len` bytes.
+/// Goes from segment to segment of a file of `len` bytes: objects in their order, and the raw data of each segment.
 ///
 /// # Errors
 /// If the file cannot be read, or a segment is not what the format says.
-pub fn all(file: &mut BufReader<impl Read + Seek>, len: u64) -> Result<Segments> {
+pub fn all(
+    file: &mut BufReader<impl Read + Seek>,
+    len: u64,
+) -> Result<(Vec<Object>, Vec<Layout>, Vec<Finding>)> {
     let mut known = Known::default();
     let (mut layouts, mut findings, mut at) = (Vec::new(), Vec::new(), 0);
     while at < len {
@@ -100,7 +96,7 @@ pub fn all(file: &mut BufReader<impl Read + Seek>, len: u64) -> Result<Segments>
         }
         at = declared;
     }
-    Ok(Segments { objects: known.objects, layouts, findings })
+    Ok((known.objects, layouts, findings))
 }
 
 /// Goes to a byte without losing what was read ahead.
@@ -145,12 +141,8 @@ impl Known {
                 kind => Some(words.index(kind)?),
             };
             if let Some(index) = &index {
-                let (slots, unreadable): (Vec<Slot>, _) = match index {
-                    Index::Plain { fields, .. } => {
-                        (fields.iter().map(|f| f.0).collect(), fields.is_empty().then_some("text"))
-                    }
-                    Index::Shared { fields, .. } => (fields.iter().map(|f| f.1).collect(), None),
-                };
+                let slots: Vec<Slot> = index.fields.iter().map(|field| field.0).collect();
+                let unreadable = (slots.is_empty() && !index.shared).then_some("text");
                 let found = &mut self.objects[object];
                 if !found.slots.is_empty() && found.slots != slots {
                     return Err(words
@@ -187,47 +179,41 @@ impl Known {
 
     /// The parts of a chunk of the segment that begins at byte `at`.
     fn parts(&self, interleaved: bool, at: u64) -> Result<Vec<Part>> {
-        let mut parts: Vec<Part> = Vec::new();
-        let mut buffers: Vec<Part> = Vec::new();
+        let (mut parts, mut buffers): (Vec<Part>, Vec<Part>) = (Vec::new(), Vec::new());
         for (object, index) in &self.active {
-            match index {
-                None => {}
-                Some(Index::Plain { rows, width, fields }) => {
-                    let part = match parts.last_mut().filter(|_| interleaved) {
-                        Some(part) if part.rows != *rows => {
-                            let found = format!("{rows} and {} interleaved values", part.rows);
-                            return Err(Error::input(in_byte(at), found, "as many of each channel"));
-                        }
-                        Some(part) => part,
-                        None => {
-                            parts.push(Part { rows: *rows, width: 0, fields: Vec::new() });
-                            let last = parts.len() - 1;
-                            &mut parts[last]
-                        }
-                    };
-                    let base = part.width as usize;
-                    part.width += width;
-                    part.fields.extend(fields.iter().enumerate().map(|(slot, (_, offset, kind))| Field {
-                        object: *object,
-                        slot,
-                        offset: base + offset,
-                        kind: *kind,
-                    }));
+            let Some(Index { rows, widths, shared, fields }) = index else { continue };
+            if !shared {
+                if !interleaved || parts.is_empty() {
+                    parts.push(Part { rows: *rows, width: 0, fields: Vec::new() });
                 }
-                Some(Index::Shared { rows, widths, fields }) => {
-                    for width in widths.iter().skip(buffers.len()) {
-                        buffers.push(Part { rows: 0, width: *width, fields: Vec::new() });
-                    }
-                    for (slot, (buffer, _, offset, kind)) in fields.iter().enumerate() {
-                        let fits = |part: &&mut Part| *offset as u64 + kind.size() <= part.width;
-                        let Some(part) = buffers.get_mut(*buffer).filter(fits) else {
-                            let found = format!("a DAQmx scaler at byte {offset} of buffer {buffer}");
-                            return Err(Error::input(in_byte(at), found, "one inside its buffer"));
-                        };
-                        part.rows = part.rows.max(*rows);
-                        part.fields.push(Field { object: *object, slot, offset: *offset, kind: *kind });
-                    }
+                let last = parts.len() - 1;
+                let part = &mut parts[last];
+                if part.rows != *rows {
+                    let found = format!("{rows} and {} interleaved values", part.rows);
+                    return Err(Error::input(in_byte(at), found, "as many of each channel"));
                 }
+                let base = part.width as usize;
+                part.width += widths[0];
+                let fields = fields.iter().enumerate();
+                part.fields.extend(fields.map(|(slot, (_, _, offset, kind))| Field {
+                    object: *object,
+                    slot,
+                    offset: base + offset,
+                    kind: *kind,
+                }));
+                continue;
+            }
+            for width in widths.iter().skip(buffers.len()) {
+                buffers.push(Part { rows: 0, width: *width, fields: Vec::new() });
+            }
+            for (slot, (_, buffer, offset, kind)) in fields.iter().enumerate() {
+                let fits = |part: &&mut Part| *offset as u64 + kind.size() <= part.width;
+                let Some(part) = buffers.get_mut(*buffer).filter(fits) else {
+                    let found = format!("a DAQmx scaler at byte {offset} of buffer {buffer}");
+                    return Err(Error::input(in_byte(at), found, "one inside its buffer"));
+                };
+                part.rows = part.rows.max(*rows);
+                part.fields.push(Field { object: *object, slot, offset: *offset, kind: *kind });
             }
         }
         Ok(if buffers.is_empty() { parts } else { buffers })
@@ -236,7 +222,7 @@ impl Known {
     /// Counts the values of so many chunks.
     fn declare(&mut self, chunks: u64) {
         for (object, index) in &self.active {
-            if let Some(Index::Plain { rows, .. } | Index::Shared { rows, .. }) = index {
+            if let Some(Index { rows, .. }) = index {
                 let declared = &mut self.objects[*object].declared;
                 *declared = declared.saturating_add(rows.saturating_mul(chunks));
             }

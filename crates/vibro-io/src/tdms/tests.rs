@@ -587,9 +587,9 @@ fn many_segments_scales_and_channels_cost_what_is_there() {
         writer.segment(RAW, &[], &[]).segment(RAW, &[], &raw);
     }
     let n = writer.bytes.len() as u64;
-    let found = segment::all(&mut BufReader::new(std::io::Cursor::new(&writer.bytes)), n).unwrap();
-    assert_eq!(found.layouts.len(), 4);
-    assert!(found.layouts.iter().all(|layout| Arc::ptr_eq(&layout.parts, &found.layouts[0].parts)));
+    let (_, layouts, _) = segment::all(&mut BufReader::new(std::io::Cursor::new(&writer.bytes)), n).unwrap();
+    assert_eq!(layouts.len(), 4);
+    assert!(layouts.iter().all(|layout| Arc::ptr_eq(&layout.parts, &layouts[0].parts)));
     assert_eq!(traces(&writer.bytes)[1].values, [2.0; 4]);
 }
 

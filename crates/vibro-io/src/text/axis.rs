@@ -37,16 +37,16 @@ struct Statement {
 
 impl Statement {
     fn of(options: &Options, header: &Stated, printed: Option<&Printed>, n: usize) -> Option<Statement> {
-        if let Some(rate) = options.rate {
-            let axis = Axis::time(0.0, 1.0 / rate, n);
-            let (what, setting, header) = ("sampling rate", "rate", header.rate);
-            return Some(Statement { what, setting, hertz: rate, header, axis });
-        }
-        let band = options.base_band?;
-        let half_open = printed.is_some_and(|p| p.stops_before(band));
-        let axis = Axis::frequency(0.0, band / if half_open { n as f64 } else { header.lines_of(n) }, n);
-        let (what, setting, header) = ("base band", "base_band", header.base_band);
-        Some(Statement { what, setting, hertz: band, header, axis })
+        let (what, setting, hertz, header, axis) = match (options.rate, options.base_band) {
+            (Some(rate), _) => ("sampling rate", "rate", rate, header.rate, Axis::time(0.0, 1.0 / rate, n)),
+            (None, Some(band)) => {
+                let half_open = printed.is_some_and(|p| p.stops_before(band));
+                let steps = if half_open { n as f64 } else { header.lines_of(n) };
+                ("base band", "base_band", band, header.base_band, Axis::frequency(0.0, band / steps, n))
+            }
+            (None, None) => return None,
+        };
+        Some(Statement { what, setting, hertz, header, axis })
     }
 
     /// Says where it and the header differ.

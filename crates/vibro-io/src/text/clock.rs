@@ -127,7 +127,7 @@ fn part(word: &str) -> Option<Part<'_>> {
 }
 
 fn number(text: &str) -> Option<f64> {
-    number::parse_with(text.as_bytes(), b'.').or_else(|| number::parse_with(text.as_bytes(), b','))
+    number::either(text.as_bytes())
 }
 
 /// `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms` and, where the last has decimals, `m:s`; a zone behind them says nothing within one file.

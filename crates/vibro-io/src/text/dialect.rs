@@ -73,11 +73,8 @@ impl Dialect {
 
     /// A real number as a cell holds it.
     pub(crate) fn number(&self, cell: &[u8]) -> Option<f64> {
-        if self.stated {
-            number::parse_stated(cell, self.decimal)
-        } else {
-            number::parse_with(cell, self.decimal)
-        }
+        let parse = if self.stated { number::parse_stated } else { number::parse_with };
+        parse(cell, self.decimal)
     }
 
     /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not count.

@@ -26,6 +26,8 @@ pub struct Stated {
     pub line_width: Option<f64>,
     /// Unit as written.
     pub unit: Option<String>,
+    /// Factors of the values, other than 1, as written.
+    pub scale: Option<String>,
     /// Window.
     pub window: Option<Window>,
     /// Channel name or title.
@@ -33,6 +35,16 @@ pub struct Stated {
     /// Header lines as key and value; the key is empty where a line has none.
     pub notes: Vec<(String, String)>,
 }
+
+/// Keys of a sampling rate, and of the step of time.
+const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|fs|rate|abtastrate|\
+                    abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
+                    messfrequenz";
+const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
+                    interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|\
+                    x delta|xdelta|sample time|sampling time|abtastintervall";
+/// Keys of what the abscissa is, or of its unit.
+const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
 
 /// `mHz`, apart from megahertz in lower case.
 const MILLIHERTZ: &str = "millihertz";
@@ -49,11 +61,12 @@ impl Stated {
             // `NPTS= 6000, DT= .01 SEC` are two statements.
             let several = line.split(',').all(|part| part.contains('='));
             for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
-                let (key, value) = split(line.trim());
+                let (key, value) = split(line.trim().trim_matches('"'));
                 stated.notes.push((key.to_owned(), value.to_owned()));
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
-                let of_axis = ["x-axis unit", "x axis unit", "xunits", "hunit", "horizontal units"];
-                lines_apart |= of_axis.contains(&key.as_str()) && matches!(value, "Hz" | "Hertz" | "hertz");
+                let hertz = value.to_lowercase();
+                let hertz = hertz.contains("hz") || hertz.contains("hertz") || hertz.contains("frequency");
+                lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
                 if key.is_empty() {
                     free_text(line, &mut stated);
                 } else {
@@ -114,7 +127,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         // Without a unit these may be anything, but for an increment beside a start.
-        "rate" | "clock" | "interval" | "time interval" if bare => {}
+        "rate" | "clock" | "delta" | "interval" | "time interval" if bare => {}
         "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
             stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)]).and_then(line_count);
@@ -122,35 +135,10 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
             stated.base_band = hertz();
         }
-        "sampling rate"
-        | "sample rate"
-        | "sampling frequency"
-        | "sample frequency"
-        | "samplerate"
-        | "fs"
-        | "rate"
-        | "abtastrate"
-        | "abtastfrequenz"
-        | "fréquence d'échantillonnage" => {
+        key if RATE.split('|').any(|known| known == key) => {
             stated.rate = hertz().or(stated.rate);
         }
-        "dt"
-        | "delta t"
-        | "sampling interval"
-        | "sample interval"
-        | "sampling period"
-        | "time step"
-        | "delta time"
-        | "increment"
-        | "clock"
-        | "interval"
-        | "time interval"
-        | "tinc"
-        | "x increment"
-        | "xinc"
-        | "x axis delta"
-        | "hresolution"
-        | "horizontal interval" => {
+        key if STEP.split('|').any(|known| known == key) => {
             let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
             stated.of_one_series |= rate.is_some();
             stated.rate = rate.or(stated.rate);
@@ -170,6 +158,11 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "engineering unit" => {
             let unit = Some(value.trim_matches(['[', ']']).to_owned());
             stated.unit = unit.filter(|v| !v.is_empty() && !v.contains(';'));
+        }
+        "slope" | "scale factor" | "scaling factor" => {
+            let other = |factor: &str| factor.parse::<f64>().is_ok_and(|factor| factor != 1.0);
+            stated.scale =
+                Some(value.to_owned()).filter(|all| all.split([';', ' ']).any(|f| other(f.trim())));
         }
         "window" | "weighting" | "window type" => {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
@@ -222,7 +215,9 @@ fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> 
     let comma =
         printed.contains(',') && !printed.contains('.') && !number::may_be_grouped(printed.as_bytes());
     let (number, used) = number::prefix(value.as_bytes(), if comma { b',' } else { b'.' })?;
-    let rest = value.get(used..)?.trim().trim_matches(['[', ']']).to_lowercase();
+    // `44100 Hz.  Linear scale.`
+    let rest = value.get(used..)?.split_whitespace().next().unwrap_or_default();
+    let rest = rest.trim_end_matches(['.', ',', ';']).trim_matches(['[', ']']).to_lowercase();
     let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
     let factor = units.iter().find(|u| u.0 == unit)?.1;
     Some(number * factor)

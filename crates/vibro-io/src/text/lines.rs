@@ -142,8 +142,7 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
 pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
     let cells = fields(line, separator).unwrap_or_default();
     let cells: Vec<&str> = cells.iter().map(|(_, cell)| cell.as_ref()).collect();
-    let is = |cell: &str, mark| number::parse_with(cell.as_bytes(), mark).is_some();
-    let number = |cell: &&str| is(cell, b'.') || is(cell, b',');
+    let number = |cell: &&str| number::either(cell.as_bytes()).is_some();
     let word = |c: &&str| !number(c) && !number::is_missing(c.as_bytes()) && !clock::is_clock(c);
     let digit =
         |cell: &&str| cell.trim_start_matches(['-', '+', '<', '>']).starts_with(|c: char| c.is_ascii_digit());

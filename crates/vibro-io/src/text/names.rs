@@ -96,7 +96,8 @@ impl Name {
         }
         let unit = Unit::parse(text).ok_or_else(|| {
             let found = format!("the unit {text:?} of the abscissa {:?}", self.name);
-            Error::usage(found, "s, ms, Hz, kHz, …").hint("name another unit in its header, e.g. time [s]")
+            Error::usage(found, "s, ms, Hz, kHz, …")
+                .hint("name another unit in its header, e.g. time [s], or [d] for days")
         })?;
         let angular = is_angular(text).then(|| Finding::note("axis-angular"));
         Ok((unit.hertz().unwrap_or(unit.factor()), angular))
@@ -129,23 +130,7 @@ impl Name {
     pub fn counts(&self) -> bool {
         let key = self.name.to_lowercase();
         let key = key.trim_end_matches('.');
-        let named = matches!(
-            key,
-            "" | "#"
-                | "index"
-                | "i"
-                | "n"
-                | "no"
-                | "nr"
-                | "number"
-                | "record"
-                | "row"
-                | "scan"
-                | "sample"
-                | "samples"
-                | "sample no"
-                | "point"
-        );
+        let named = COUNTS.split('|').any(|known| known == key);
         self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
     }
 
@@ -225,6 +210,10 @@ const ABSCISSAE: [&str; 3] = ["x", "x-axis", "x axis"];
 const WHOLE: [(&str, &str); 5] =
     [("in s", "s"), ("millis", "ms"), ("millis()", "ms"), ("micros", "µs"), ("micros()", "µs")];
 
+/// Names of a column that only counts, none among them.
+const COUNTS: &str =
+    "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
+
 /// What stands in place of a unit over numbered samples.
 const COUNTERS: [&str; 5] = ["sequence", "samples", "points", "no.", "rn"];
 
@@ -237,7 +226,7 @@ const DAY: &str = "day";
 fn long(name: &str, unit: &str) -> Option<&'static str> {
     let found = match unit.trim().to_lowercase().as_str() {
         "h" | "hr" | "hrs" | "std" => HOUR,
-        "d" | "day" | "days" => DAY,
+        "d" | "day" | "days" | "ole" => DAY,
         "min" => "min",
         "s" => "s",
         "ms" => "ms",

@@ -10,6 +10,7 @@
 
 use super::dialect::{Dialect, Separator};
 use super::lines::{Line, Lines, fields, is_torn};
+use super::table::beginning;
 use super::{Text, clock, in_line, names, shorten};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
@@ -30,11 +31,12 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let mut above: Vec<Line> = Vec::new();
     let mut rows: Vec<Line> = Vec::new();
     let mut comma = false;
+    let begin = beginning(&text.head);
     for line in Lines::new(&text.head, 0, 1, &REMARKS).filter(|l| !l.is_blank()) {
         if rows.len() >= ENOUGH && !comma {
             break;
         }
-        if line.remark.is_none() && is_row(line.text.as_bytes()) {
+        if line.remark.is_none() && line.number > begin && is_row(line.text.as_bytes()) {
             comma |= line.text.contains(',');
             rows.push(line);
         } else if rows.is_empty() {
@@ -49,6 +51,9 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     rows.drain(..usize::from(stated.is_some()));
     header.extend(stated);
     let Some(mut first) = rows.first() else {
+        if let Some(error) = stray(&above) {
+            return Err(error);
+        }
         let found = match header.first() {
             Some(line) => format!("no row of numbers (the first line is {:?})", shorten(line)),
             None => "no row of numbers".to_owned(),
@@ -97,6 +102,28 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
         first_line: first.number,
         header,
     })
+}
+
+/// Names the cell that is no number in the first line of which most cells are.
+fn stray(lines: &[Line]) -> Option<Error> {
+    let begins = |cell: &str| number::prefix(cell.as_bytes(), b'.').is_some();
+    let is =
+        |cell: &str| [b'.', b','].iter().any(|mark| number::parse_with(cell.as_bytes(), *mark).is_some());
+    let odd = |line: &&Line| {
+        let cut = |separator| fields(line.text, separator).ok();
+        let marks = [b'\t', b';', b','].map(Separator::Char).into_iter();
+        let cells = marks.filter_map(cut).find(|cells| cells.len() > 1);
+        let cells = cells.or_else(|| cut(Separator::Blank))?;
+        let most = 2 * cells.iter().filter(|(_, cell)| begins(cell)).count() > cells.len();
+        let fine = |cell: &str| is(cell) || number::is_missing(cell.as_bytes()) || clock::is_clock(cell);
+        let (byte, cell) = cells.iter().find(|(_, cell)| most && !fine(cell))?;
+        Some((in_line(line.number).column(line.column(*byte)), shorten(cell)))
+    };
+    let (place, cell) = lines.iter().filter(|line| line.remark.is_none()).find_map(|line| odd(&line))?;
+    Some(
+        Error::input(place, format!("{cell:?}, and no row of numbers"), "numbers in all cells of a row")
+            .hint("take out the column, or what is no number in its cells, and read again"),
+    )
 }
 
 /// `300 0.005` above rows of three columns and more: number of values and step in s, as Fortran programs write them.

@@ -7,7 +7,7 @@ use super::header::Stated;
 use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
-use crate::assemble::{self, Spectral, domain, from_values, short, to_si};
+use crate::assemble::{self, Spectral, domain, from_values, kind_of, short, to_si};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -47,7 +47,8 @@ pub fn build(
     // Where every channel has the time beside it, once is enough.
     let again =
         |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
-    table.retain(|column| !printed.as_ref().is_some_and(|axis| is_table && again(column, axis)));
+    let plain = dialect.names.is_none();
+    table.retain(|column| !printed.as_ref().is_some_and(|axis| (is_table || plain) && again(column, axis)));
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();
     if numbered && !has_axis {
@@ -68,13 +69,20 @@ pub fn build(
     if let Some(declared) =
         made.stated.values.filter(|declared| *declared != n && axis.kind != AxisKind::Frequency)
     {
-        of_axis.push(Finding::caution("fewer-values").count("declared", declared).count("n", n));
+        of_axis.push(assemble::fewer(declared, n));
     }
     if table.len() == 2 && !has_axis && dialect.names.is_none() && !options.complex {
         of_axis.push(Finding::caution("two-channels"));
     }
     let mut records = Vec::new();
     let table = made.joined(table, &axis)?;
+    if let Some(scale) = &made.stated.scale {
+        of_axis.push(Finding::caution("scale-in-head").name("scale", scale.as_str()));
+    }
+    let even: Vec<String> = table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
+    if !even.is_empty() {
+        of_axis.push(Finding::caution("columns-rise-evenly").name("columns", even.join(", ")));
+    }
     let without = table.iter().filter(|column| column.name.unit.is_none()).count();
     if let Some(unit) = made.stated.unit.as_deref().filter(|_| is_table && without > 1) {
         of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
@@ -113,6 +121,16 @@ impl Column {
 
     fn rises(&self) -> bool {
         self.reals().windows(2).all(|w| w[1] > w[0])
+    }
+
+    /// Whether it rises as a clock or a counter does, and has no unit of anything else.
+    fn rises_evenly(&self) -> bool {
+        let values = self.reals();
+        let steps = || values.windows(2).map(|w| w[1] - w[0]);
+        let (low, high) = steps().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), s| (l.min(s), h.max(s)));
+        let unit = self.name.unit.as_deref();
+        let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
+        !other && values.len() > 10 && low > 0.0 && high - low <= 1e-3 * high
     }
 
     fn counts(&self) -> bool {
@@ -317,7 +335,7 @@ impl Made<'_> {
         let density = unit.is_some_and(is_density).then_some(Scaling::Psd);
         let own = self.said("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
-            scaling: self.said("scaling", name).and_then(|s| assemble::scaling(&s)).or(density),
+            scaling: self.said("scaling", name).and_then(|s| Scaling::from_name(&s)).or(density),
             // A remark about another column says nothing of this one.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),
@@ -347,13 +365,16 @@ fn one_clock(
     (factor, resolution): (f64, f64),
     others: &[Column],
 ) -> Result<()> {
-    let span = |column: &Column, factor: f64| {
-        let values = column.reals();
-        column.rises().then(|| factor * (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)))
+    let span = |column: &Column, factor: f64, n: usize| {
+        let values = &column.reals()[..n];
+        let rises = n > 1 && values.is_sorted_by(|a, b| a < b);
+        rises.then(|| factor * (values[n - 1] - values[0]))
     };
     for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
         if let Ok((theirs, _)) = other.name.to_axis(kind)
-            && let (Some(a), Some(b)) = (span(axis, factor), span(other, theirs))
+            // The columns of a channel with fewer values end in blanks.
+            && let n = other.reals().iter().take_while(|v| v.is_finite()).count()
+            && let (Some(a), Some(b)) = (span(axis, factor, n), span(other, theirs, n))
             && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
         {
             let (one, two) = (axis.label(), other.label());

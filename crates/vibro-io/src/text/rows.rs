@@ -85,14 +85,9 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     }
     rows.missing =
         missing.check("missing value(s) (NaN, Inf, over-range or blank) in line(s)", allow_missing)?;
-    let kind = |values: Vec<Complex64>| {
-        if dialect.complex {
-            Values::Complex(values)
-        } else {
-            Values::Real(values.iter().map(|v| v.re).collect())
-        }
-    };
-    rows.columns = columns.into_iter().map(kind).collect();
+    let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
+    let all = columns.into_iter();
+    rows.columns = if dialect.complex { all.map(Values::Complex).collect() } else { all.map(real).collect() };
     Ok(rows)
 }
 

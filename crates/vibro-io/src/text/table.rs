@@ -38,10 +38,11 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
         return Some(found);
     }
     let mut above: Vec<Line> = Vec::new();
+    let begin = beginning(&text.head);
     let mut misfit = None;
     let mut before = [None; SEPARATORS.len()];
     for line in Lines::new(&text.head, 0, 1, REMARKS).filter(|l| !l.is_blank()) {
-        if line.remark.is_none() {
+        if line.remark.is_none() && line.number > begin {
             let counts = SEPARATORS.map(|mark| row(line.text, mark, options));
             // The second of two rows that are alike begins nothing that the first did not.
             let new = (0..SEPARATORS.len()).filter(|i| counts[*i] != before[*i]);
@@ -163,7 +164,8 @@ fn fit(
     count: usize,
     head: &str,
 ) -> Option<(Dialect, bool)> {
-    let spoken: Vec<&Line> = above.iter().filter(|l| l.remark.is_none()).rev().collect();
+    let spoken: Vec<&Line> =
+        above.iter().filter(|l| l.remark.is_none() && !is_types(l, separator)).rev().collect();
     let rows =
         Lines::new(head, first.at, first.number, REMARKS).filter(|l| !l.is_blank() && l.remark.is_none());
     let rows: Vec<Fields> = rows.take(BESIDE).map_while(|l| fields(l.text, separator).ok()).collect();
@@ -191,7 +193,8 @@ fn fit(
     if let Some(cells) = clock.clone().filter(|cells| cells.end <= columns) {
         names.splice(cells, [Name { name: "time".to_owned(), unit: Some("s".to_owned()) }]);
     }
-    let begin = || rows.iter().map(|row| number::parse(row.get(skipped)?.1.as_bytes()));
+    let value = |cell: &[u8]| number::parse(cell).or_else(|| number::parse_with(cell, b','));
+    let begin = || rows.iter().map(|row| value(row.get(skipped)?.1.as_bytes()));
     let rises = || begin().zip(begin().skip(1)).all(|(a, b)| a < b);
     if used.is_empty() && columns > 1 && rises() {
         names[0].unit = preamble.axis_unit();
@@ -199,8 +202,9 @@ fn fit(
     // `min,CH1`: some head the column of times with its unit.
     if let Some(first) = names.first_mut().filter(|first| first.unit.is_none() && columns > 1) {
         let timed = Name::with_unit_row("", &first.name);
-        if timed.axis(true) == Some(AxisKind::Time) && rises() {
-            *first = Name { name: "time".to_owned(), ..timed };
+        if let Some(kind) = timed.axis(true).filter(|_| rises()) {
+            let name = if kind == AxisKind::Time { "time" } else { "frequency" };
+            *first = Name { name: name.to_owned(), ..timed };
         }
     }
     let whole = |(_, cell): &(usize, Cow<str>)| cell.bytes().all(|b| b.is_ascii_digit() || b == b'-');
@@ -243,16 +247,40 @@ fn names_in(
         let (units, upper) = (&block[*at], &block[*at + 1]);
         let outside = |i: &usize| !clock.is_some_and(|cells| cells.contains(i));
         let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
-        units.len() == upper.len() && named(upper) && (*at == 0 || fits(units.len())) && is_unit_row(cells)
+        let quantity = |cell: &str| {
+            let used = number::prefix(cell.as_bytes(), b'.').map_or(0, |(_, used)| used);
+            used > 0 && cell[used..].starts_with(char::is_alphabetic)
+        };
+        let upper_names = named(upper) && !upper.iter().any(|(_, cell)| quantity(cell));
+        units.len() == upper.len() && upper_names && (*at == 0 || fits(units.len())) && is_unit_row(cells)
     };
     if let Some(at) = (0..block.len() - 1).find(is_units) {
         let pairs = block[at + 1].iter().zip(&block[at]);
         return Some((at..at + 2, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect()));
     }
     let lower = block.first().filter(|lower| named(lower) && !title)?;
+    // `Values;64;` counts what follows; `x-axis,1,2` numbers its channels.
+    let counts = lower.iter().any(|(_, cell)| number::parse(cell.as_bytes()).is_some());
+    let first = Name::parse(&lower[0].1);
+    if counts && first.axis(true).is_none() && !first.counts() {
+        return None;
+    }
     // `Second,Volt` under a preamble: units, and no names.
     let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
     Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, n)| Name::parse(n)).collect())))
+}
+
+/// Number of the line that says where rows begin: `data:`. 0 where there is none.
+pub(super) fn beginning(head: &str) -> u64 {
+    let says = |line: &str| line.trim_end_matches([',', ';', '\t', ' ', '\r']).eq_ignore_ascii_case("data:");
+    head.lines().position(says).map_or(0, |at| at as u64 + 1)
+}
+
+/// Whether a line holds types of numbers only: `f8`, `float`.
+fn is_types(line: &Line, separator: Separator) -> bool {
+    const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
+    let known = |(_, cell): &(usize, Cow<str>)| TYPES.contains(&cell.to_lowercase().as_str());
+    fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
 }
 
 /// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.
@@ -271,6 +299,11 @@ fn headings<'a>(
 ) -> Option<Fields<'a>> {
     let mut fields = fields(line.text, separator).ok()?;
     fields.drain(..skipped.min(fields.len()));
+    // `;Headers, time,Ax,Ay,Az`
+    let keyed = |cell: &str| cell.trim_start_matches([';', '#']).eq_ignore_ascii_case("headers");
+    if fields.len() == values.len() + 1 && keyed(&fields[0].1) {
+        fields.remove(0);
+    }
     let last = fields.len().checked_sub(1)?;
     let unused = values.get(last).is_none_or(|(_, v)| v.is_empty());
     if last > 0 && fields[last].1.is_empty() && unused {
@@ -285,7 +318,7 @@ fn named(fields: &Fields) -> bool {
         fields.first().is_some_and(|(_, f)| f.contains(": ") || f.ends_with(':') || f.contains('='));
     let is_name = |field: &str| {
         let bytes = field.as_bytes();
-        let number = number::parse(bytes).is_some() || number::parse_with(bytes, b',').is_some();
+        let number = number::either(bytes).is_some();
         field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
     };
     !statement && fields.iter().any(|(_, f)| is_name(f))

@@ -35,12 +35,8 @@ pub fn flat(text: &Text, dialect: &Dialect) -> Result<Option<Vec<f64>>> {
 /// Whether columns look like one series, row after row: from one value to the next, also to the first of the next row, it goes less far than
 /// down a column.
 pub fn continues(columns: &[Values]) -> bool {
-    let mut reals: Vec<&[f64]> = Vec::new();
-    for values in columns {
-        let Values::Real(values) = values else { return false };
-        reals.push(values);
-    }
-    let columns = reals;
+    let reals: Option<Vec<&[f64]>> = columns.iter().map(Values::reals).collect();
+    let Some(columns) = reals else { return false };
     if columns.len() < 3 || columns[0].len() < FEWEST {
         // A file of one line is one series.
         return columns.len() > FEWEST && columns[0].len() == 1;
@@ -58,8 +54,8 @@ pub fn continues(columns: &[Values]) -> bool {
 
 /// Whether there are three columns or more and the first is no abscissa.
 pub fn no_abscissa(columns: &[Values]) -> bool {
-    let Some(Values::Real(first)) = columns.first().filter(|_| columns.len() > 2) else { return false };
-    first.windows(2).any(|w| w[1] <= w[0])
+    let first = columns.first().filter(|_| columns.len() > 2).and_then(Values::reals);
+    first.is_some_and(|first| first.windows(2).any(|w| w[1] <= w[0]))
 }
 
 fn mean(steps: impl Iterator<Item = f64>) -> f64 {

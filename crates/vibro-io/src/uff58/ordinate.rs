@@ -29,34 +29,9 @@ impl System {
     }
 }
 
-/// What one unit of the stored values is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Ordinate {
-    /// SI unit, or the file's own where it is not understood.
-    pub unit: Unit,
-    /// Factor to it.
-    pub factor: f64,
-    /// Unit as the file has it; empty where it has none.
-    pub written: String,
-    /// What is to be said of it.
-    pub findings: Vec<Finding>,
-}
-
-/// Characters that a superscript or µ becomes when it is read in another code page than it was written in.
-const MANGLED: &[(&str, &str)] = &[
-    // UTF-8 taken as code page 437 and as Latin-1
-    ("┬▓", "²"),
-    ("┬│", "³"),
-    ("┬╡", "µ"),
-    ("Â²", "²"),
-    ("Â³", "³"),
-    ("Âµ", "µ"),
-    // Latin-1 taken as Mac Roman and as code page 437
-    ("≤", "²"),
-    ("≥", "³"),
-    ("▓", "²"),
-    ("│", "³"),
-];
+/// Superscripts and µ, with what they become when they are read in another code page than they were written in: UTF-8 taken as code page 437
+/// and as Latin-1, then Latin-1 taken as Mac Roman and as code page 437.
+const MANGLED: [(&str, &str); 3] = [("²", "┬▓ Â² ≤ ▓"), ("³", "┬│ Â³ ≥ │"), ("µ", "┬╡ Âµ")];
 
 /// Numerator or denominator of an ordinate.
 #[derive(Debug, Clone)]
@@ -93,49 +68,49 @@ impl Part {
 
 /// A unit whose superscript was mangled on its way through a wrong code page.
 fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
-    let mended = MANGLED.iter().fold(text.to_owned(), |t, (wrong, right)| t.replace(wrong, right));
+    let all = MANGLED.iter().flat_map(|(right, wrong)| wrong.split(' ').map(move |wrong| (wrong, right)));
+    let mended = all.fold(text.to_owned(), |t, (wrong, right)| t.replace(wrong, right));
     let unit = Unit::parse(&mended)?;
     findings.push(Finding::note("unit-mended").name("unit", text).name("taken", mended));
     Some(unit)
 }
 
-impl Ordinate {
-    /// The unit of the values of a data set.
-    pub fn of(heading: &Heading, system: &System) -> Ordinate {
-        let mut findings = Vec::new();
-        let above = Part::of(&heading.ordinate, heading.response.direction, system, &mut findings);
-        let mut below = Part::of(&heading.denominator, heading.reference.direction, system, &mut findings);
-        let (numerator, denominator) = (&heading.ordinate.unit, &heading.denominator.unit);
-        let mut written = numerator.clone();
-        if is_whole(&above, &below) {
-            below = Part { text: false, data_type: None, dimension: Some(Dimension::NONE), factor: 1.0 };
-        } else if !denominator.is_empty() {
-            written = format!("({numerator})/({denominator})");
-        }
-        let (unit, factor) = match plain(heading, &above, &below) {
-            Ok((dimension, power, seconds)) => {
-                let typed = |part: &Part| !part.text && part.dimension != Some(Dimension::NONE);
-                if system.0.is_none() && (typed(&above) || typed(&below)) {
-                    let name = |part: &Part| part.data_type.map_or("a number", |(name, _)| name);
-                    let types = match below.data_type {
-                        Some((below, _)) => format!("{} over {below}", name(&above)),
-                        None => name(&above).to_owned(),
-                    };
-                    findings.push(Finding::caution("unit-by-data-type").name("type", types));
-                }
-                let squared = dimension.half_power(2 * power).unwrap_or(dimension);
-                let dimension = squared.times(Dimension([0, 0, 2 * seconds, 0, 0, 0]));
-                let factor = (above.factor / below.factor).powi(i32::from(power));
-                (spelled(dimension, factor, &written), factor)
-            }
-            Err(why) => {
-                findings.extend(why);
-                (Unit::opaque(&written), 1.0)
-            }
-        };
-        findings.extend(label_against_unit(heading, &unit, &written));
-        Ordinate { unit, factor, written, findings }
+/// SI unit of the values of a data set, or the file's own where it is not understood; the factor to it; the unit as the file has it, empty
+/// where it has none; and what is to be said of it.
+pub fn unit(heading: &Heading, system: &System) -> (Unit, f64, String, Vec<Finding>) {
+    let mut findings = Vec::new();
+    let above = Part::of(&heading.ordinate, heading.response.direction, system, &mut findings);
+    let mut below = Part::of(&heading.denominator, heading.reference.direction, system, &mut findings);
+    let (numerator, denominator) = (&heading.ordinate.unit, &heading.denominator.unit);
+    let mut written = numerator.clone();
+    if is_whole(&above, &below) {
+        below = Part { text: false, data_type: None, dimension: Some(Dimension::NONE), factor: 1.0 };
+    } else if !denominator.is_empty() {
+        written = format!("({numerator})/({denominator})");
     }
+    let (unit, factor) = match plain(heading, &above, &below) {
+        Ok((dimension, power, seconds)) => {
+            let typed = |part: &Part| !part.text && part.dimension != Some(Dimension::NONE);
+            if system.0.is_none() && (typed(&above) || typed(&below)) {
+                let name = |part: &Part| part.data_type.map_or("a number", |(name, _)| name);
+                let types = match below.data_type {
+                    Some((below, _)) => format!("{} over {below}", name(&above)),
+                    None => name(&above).to_owned(),
+                };
+                findings.push(Finding::caution("unit-by-data-type").name("type", types));
+            }
+            let squared = dimension.half_power(2 * power).unwrap_or(dimension);
+            let dimension = squared.times(Dimension([0, 0, 2 * seconds, 0, 0, 0]));
+            let factor = (above.factor / below.factor).powi(i32::from(power));
+            (spelled(dimension, factor, &written), factor)
+        }
+        Err(why) => {
+            findings.extend(why);
+            (Unit::opaque(&written), 1.0)
+        }
+    };
+    findings.extend(label_against_unit(heading, &unit, &written));
+    (unit, factor, written, findings)
 }
 
 /// The SI unit of a dimension; one without a name keeps the spelling of the file where that is SI already.

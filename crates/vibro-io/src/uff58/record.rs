@@ -2,7 +2,7 @@
 
 use super::codes::{self, Kind};
 use super::heading::Heading;
-use super::ordinate::{Ordinate, System};
+use super::ordinate::{self, System};
 use super::values::Layout;
 use crate::assemble::{self, Abscissa, Spectral, domain, to_si};
 use crate::{Options, missing};
@@ -46,7 +46,7 @@ pub fn build(
     }
     let n = values.len();
     if n < heading.n {
-        meta.found(Finding::caution("fewer-values").count("declared", heading.n).count("n", n));
+        meta.found(assemble::fewer(heading.n, n));
     } else if n == 0 {
         meta.found(Finding::caution("no-values-declared"));
     }
@@ -82,7 +82,7 @@ fn stated(line: &str) -> Spectral {
     let parts = line.split("; ").filter_map(|part| part.split_once(' '));
     for (key, value) in parts.filter(|_| line.starts_with("scaling ")) {
         match key {
-            "scaling" => stated.scaling = assemble::scaling(value).filter(|s| *s != Scaling::Unknown),
+            "scaling" => stated.scaling = Scaling::from_name(value).filter(|s| *s != Scaling::Unknown),
             "window" => stated.window = Window::from_name(value),
             "enbw" => stated.enbw = value.parse().ok(),
             _ => {}
@@ -158,13 +158,10 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
 fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
     let axis = &heading.abscissa;
     let label = axis.label.to_lowercase();
-    let named = |word: &str| axis.unit.is_empty() && label.contains(word);
-    if named("time") {
-        return AxisKind::Time;
-    } else if named("freq") {
-        return AxisKind::Frequency;
-    } else if named("index") {
-        return AxisKind::Index;
+    let words = [("time", AxisKind::Time), ("freq", AxisKind::Frequency), ("index", AxisKind::Index)];
+    let named = words.into_iter().find(|(word, _)| axis.unit.is_empty() && label.contains(word));
+    if let Some((_, kind)) = named {
+        return kind;
     } else if !label.is_empty() || !axis.unit.is_empty() {
         return AxisKind::Other(axis.described());
     }
@@ -184,7 +181,7 @@ fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
 
 /// Settles unit and quantity; gives the factor to SI.
 fn unit(heading: &Heading, system: &System, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
-    let Ordinate { unit, factor, written, findings } = Ordinate::of(heading, system);
+    let (unit, factor, written, findings) = ordinate::unit(heading, system);
     // A coherence has none, whatever that of the function beside it is.
     if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {
         if unit.is_known() && (unit.dimension() != said.dimension() || factor != said.factor()) {

@@ -1,6 +1,7 @@
 //! Record 12 of data set 58: values in fixed columns, between blanks, or in binary.
 
 use super::heading::Heading;
+use crate::binary::Kind;
 use crate::uff::stream::{Stream, closes, is_delimiter};
 use crate::{missing, number};
 use vibro_record::{Error, Finding, Result};
@@ -159,31 +160,24 @@ fn tokens(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     tokens.map(|token| (token.as_ptr() as usize - line.as_ptr() as usize + 1, token))
 }
 
-/// What the number line of a 58b says: `58b`, byte order, number format, header lines, bytes.
-pub struct Storage {
-    big_endian: bool,
-    /// Bytes of values, as the line has it: often wrong, so never more than a hint.
-    bytes: Option<usize>,
-}
-
-impl Storage {
-    pub fn of(line: &[u8], stream: &Stream) -> Result<Storage> {
-        let text = String::from_utf8_lossy(line);
-        let mut fields = text.split_whitespace().skip(1);
-        let (order, format) = (fields.next().unwrap_or(""), fields.next().unwrap_or(""));
-        let found = match (order, format) {
-            ("1" | "2", "2") => {
-                let bytes = fields.nth(1).and_then(|f| f.parse().ok()).filter(|n| *n > 0);
-                return Ok(Storage { big_endian: order == "2", bytes });
-            }
-            (_, "1") => "binary numbers of DEC VMS".to_owned(),
-            (_, "3") => "binary numbers of IBM 5/370".to_owned(),
-            _ => format!("58b with byte order {order:?} and number format {format:?}"),
-        };
-        let expected = "byte order 1 or 2 and number format 2 (IEEE 754)";
-        Err(Error::input(stream.place(), found, expected)
-            .hint("export the record as ASCII (data set 58), which has one spelling of numbers"))
-    }
+/// What the number line of a 58b says, which has byte order, number format, header lines and bytes: whether it is big-endian, and the bytes of
+/// values, which are often wrong, so never more than a hint.
+pub fn storage(line: &[u8], stream: &Stream) -> Result<(bool, Option<usize>)> {
+    let text = String::from_utf8_lossy(line);
+    let mut fields = text.split_whitespace().skip(1);
+    let (order, format) = (fields.next().unwrap_or(""), fields.next().unwrap_or(""));
+    let found = match (order, format) {
+        ("1" | "2", "2") => {
+            let bytes = fields.nth(1).and_then(|f| f.parse().ok()).filter(|n| *n > 0);
+            return Ok((order == "2", bytes));
+        }
+        (_, "1") => "binary numbers of DEC VMS".to_owned(),
+        (_, "3") => "binary numbers of IBM 5/370".to_owned(),
+        _ => format!("58b with byte order {order:?} and number format {format:?}"),
+    };
+    let expected = "byte order 1 or 2 and number format 2 (IEEE 754)";
+    Err(Error::input(stream.place(), found, expected)
+        .hint("export the record as ASCII (data set 58), which has one spelling of numbers"))
 }
 
 /// Reads at most as many binary numbers as the header declares, and says what is odd about their size.
@@ -193,13 +187,13 @@ impl Storage {
 pub fn binary(
     stream: &mut Stream,
     heading: &Heading,
-    storage: &Storage,
+    (big_endian, noted): (bool, Option<usize>),
     allow_missing: bool,
 ) -> Result<(Vec<f64>, Vec<Finding>)> {
     let (layout, n, rest) = (heading.layout, heading.n, stream.rest());
     let size = |wide| layout.point_size(wide).saturating_mul(n);
     let closed = |bytes: usize| rest.get(bytes..).is_some_and(closes);
-    let (declared, noted) = (size(false), storage.bytes);
+    let declared = size(false);
     let mixed = layout.double && !layout.even;
     let mut findings = Vec::new();
     let (mut wide, mut bytes) = (false, declared);
@@ -225,7 +219,7 @@ pub fn binary(
     }
     let point = layout.point_size(wide);
     let used = n.min(bytes / point) * point;
-    let mut numbers = decode(stream.take_block(used), layout, storage.big_endian, wide);
+    let mut numbers = decode(stream.take_block(used), layout, big_endian, wide);
     // No early end: this loop is vectorised, and nearly always finds nothing.
     if numbers.iter().fold(false, |any, v| any | !v.is_finite()) {
         let odd = numbers.iter().position(|v| !v.is_finite()).unwrap_or(0);
@@ -242,11 +236,10 @@ fn decode(bytes: &[u8], layout: Layout, big_endian: bool, wide: bool) -> Vec<f64
     let single =
         |b: &[u8; 4]| f64::from(if big_endian { f32::from_be_bytes(*b) } else { f32::from_le_bytes(*b) });
     let double = |b: &[u8; 8]| if big_endian { f64::from_be_bytes(*b) } else { f64::from_le_bytes(*b) };
-    if !layout.double {
-        return bytes.as_chunks().0.iter().map(single).collect();
-    }
-    if layout.even || wide {
-        return bytes.as_chunks().0.iter().map(double).collect();
+    if !layout.double || layout.even || wide {
+        let (kind, mut numbers) = (if layout.double { Kind::F64 } else { Kind::F32 }, Vec::new());
+        kind.take(bytes, 0, kind.size() as usize, big_endian, &mut numbers);
+        return numbers;
     }
     let points = bytes.chunks_exact(layout.point_size(false)).filter_map(|point| point.split_first_chunk());
     points.flat_map(|(x, y)| std::iter::once(single(x)).chain(y.as_chunks().0.iter().map(double))).collect()

@@ -92,11 +92,9 @@ impl Scalar {
         };
         let (inside, word) = (dialect.container(name), dialect.word(&own.name));
         let its_own = |label: &str| {
-            dialect.container(label) == inside
-                && dialect
-                    .word(label)
-                    .strip_prefix(&word)
-                    .is_some_and(|rest| matches!(rest, "unit" | "units"))
+            let own = dialect.word(label);
+            let unit = own.strip_prefix(&word).is_some_and(|rest| matches!(rest, "unit" | "units"));
+            unit && dialect.container(label) == inside
         };
         let labelled = notes.iter().find(|(label, _)| its_own(label)).map(|(_, text)| text.clone());
         if matches!(meaning, Increment | Start) {
@@ -174,8 +172,8 @@ impl<'a> Axes<'a> {
         }
         let mut taken = vec![false; arrays.len()];
         let kinds = kinds.into_iter().enumerate().filter_map(|(at, kind)| Some((at, kind?)));
-        let (mut kinds, lines): (Vec<_>, Vec<_>) = kinds.partition(|(_, (kind, ..))| *kind == AxisKind::Time);
-        kinds.extend(lines);
+        let mut kinds: Vec<_> = kinds.collect();
+        kinds.sort_by_key(|(_, (kind, ..))| *kind != AxisKind::Time);
         for (at, (kind, [from, factor], assumed)) in kinds {
             let (name, Array { dimensions, values: vector, single }) = &arrays[at];
             let (n, scope) = (vector.len() as u64, dialect.scope(name, &values));

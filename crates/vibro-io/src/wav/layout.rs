@@ -5,6 +5,7 @@
 
 use super::scales::Scales;
 use crate::Source;
+use crate::assemble::fewer;
 use crate::source::ReadSeek;
 use crate::text::encoding;
 use std::fmt;
@@ -150,10 +151,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
     let declared_frames = (size != UNSAID && size != u64::MAX).then_some(size / frame);
     match declared_frames {
         None => findings.push(Finding::caution("length-open").number("frames", frames as f64)),
-        Some(declared) if size > room => {
-            let fewer = Finding::caution("fewer-values").number("declared", declared as f64);
-            findings.push(fewer.number("n", frames as f64));
-        }
+        Some(declared) if size > room => findings.push(fewer(declared as usize, frames as usize)),
         Some(_) => {}
     }
     if present % frame != 0 {

@@ -61,15 +61,12 @@ impl fmt::Display for Scales {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{MARK}\nrate {} Hz\nstart {} s", self.rate, self.start)?;
         for Scale { factor, unit, name } in &self.channels {
-            write!(f, "\nfull scale {factor} {} of {}", line(unit), line(name))?;
+            // Control characters would end the line or the comment.
+            let [unit, name] = [unit, name].map(|text| text.replace(char::is_control, " "));
+            write!(f, "\nfull scale {factor} {unit} of {name}")?;
         }
         Ok(())
     }
-}
-
-/// Text without control characters, which would end the line or the comment.
-fn line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 #[cfg(test)]

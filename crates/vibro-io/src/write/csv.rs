@@ -23,16 +23,16 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
         return Err(Error::refused(format!("{} has no values to write", label(empty))));
     }
     let mut text = String::new();
-    let columns: Vec<Column> = records.iter().enumerate().map(|(i, r)| Column::of(i, r)).collect();
-    for column in &columns {
-        column.remarks(&mut text);
+    let columns: Vec<_> = records.iter().enumerate().map(|(i, r)| column(i, r)).collect();
+    for (record, name, _) in &columns {
+        remarks(record, name, &mut text);
     }
     text.push_str(&field(axis_name(first.axis()), separator));
-    for column in &columns {
-        let parts: &[&str] = if column.record.is_complex() { &["_re", "_im"] } else { &[""] };
+    for (record, name, unit) in &columns {
+        let parts: &[&str] = if record.is_complex() { &["_re", "_im"] } else { &[""] };
         for part in parts {
             text.push(separator);
-            text.push_str(&field(&format!("{}{part} [{}]", column.name, column.unit), separator));
+            text.push_str(&field(&format!("{name}{part} [{unit}]"), separator));
         }
     }
     text.push('\n');
@@ -44,8 +44,8 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
         } else {
             number(x, &mut text);
         }
-        for column in &columns {
-            for value in parts(column.record, i) {
+        for record in records {
+            for value in parts(record, i) {
                 text.push(separator);
                 number(value, &mut text);
             }
@@ -62,49 +62,42 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
 /// Bytes that are written at once.
 const BLOCK: usize = 64 * 1024;
 
-struct Column<'a> {
-    record: &'a Record,
-    name: String,
-    unit: String,
+/// Name and unit of the column of a record.
+fn column(index: usize, record: &Record) -> (&Record, String, String) {
+    let meta = record.meta();
+    let mut name = plain(&meta.name);
+    if name.is_empty() {
+        name = format!("record {}", index + 1);
+    }
+    // A spreadsheet takes what begins so for a formula.
+    if name.starts_with(['=', '+', '-', '@']) {
+        name.insert(0, '\'');
+    }
+    // Square brackets end where the unit ends.
+    let unit = plain(meta.unit.symbol()).replace('[', "(").replace(']', ")");
+    (record, name, unit)
 }
 
-impl Column<'_> {
-    fn of(index: usize, record: &Record) -> Column<'_> {
-        let meta = record.meta();
-        let mut name = plain(&meta.name);
-        if name.is_empty() {
-            name = format!("record {}", index + 1);
+fn remarks(record: &Record, name: &str, text: &mut String) {
+    let remarks = match record {
+        Record::Trace(_) => [None, None, None],
+        Record::Frf(Frf { meta, .. }) => [
+            Some(("kind", "frf".to_owned())),
+            meta.added_decay().map(|decay| ("added decay", decay.to_string())),
+            meta.from_blows().then(|| (FROM_BLOWS, "yes".to_owned())),
+        ],
+        Record::Spectrum(Spectrum { values, scaling, window, enbw, .. }) => {
+            // A complex one must say that it is no frequency response.
+            let scaled = matches!(values, Values::Complex(_)) || *scaling != Scaling::Unknown;
+            [
+                scaled.then(|| ("scaling", scaling.name().to_owned())),
+                window.map(|window| ("window", window.name().to_owned())),
+                enbw.map(|enbw| ("enbw", enbw.to_string())),
+            ]
         }
-        // A spreadsheet takes what begins so for a formula.
-        if name.starts_with(['=', '+', '-', '@']) {
-            name.insert(0, '\'');
-        }
-        // Square brackets end where the unit ends.
-        let unit = plain(meta.unit.symbol()).replace('[', "(").replace(']', ")");
-        Column { record, name, unit }
-    }
-
-    fn remarks(&self, text: &mut String) {
-        let remarks = match self.record {
-            Record::Trace(_) => [None, None, None],
-            Record::Frf(Frf { meta, .. }) => [
-                Some(("kind", "frf".to_owned())),
-                meta.added_decay().map(|decay| ("added decay", decay.to_string())),
-                meta.from_blows().then(|| (FROM_BLOWS, "yes".to_owned())),
-            ],
-            Record::Spectrum(Spectrum { values, scaling, window, enbw, .. }) => {
-                // A complex one must say that it is no frequency response.
-                let scaled = matches!(values, Values::Complex(_)) || *scaling != Scaling::Unknown;
-                [
-                    scaled.then(|| ("scaling", scaling.name().to_owned())),
-                    window.map(|window| ("window", window.name().to_owned())),
-                    enbw.map(|enbw| ("enbw", enbw.to_string())),
-                ]
-            }
-        };
-        for (key, value) in remarks.into_iter().flatten() {
-            let _ = writeln!(text, "# {key}: {value} of {}", self.name);
-        }
+    };
+    for (key, value) in remarks.into_iter().flatten() {
+        let _ = writeln!(text, "# {key}: {value} of {name}");
     }
 }
 
@@ -128,7 +121,7 @@ fn number(value: f64, text: &mut String) {
 
 /// One line without blanks at its ends.
 fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>().trim().to_owned()
+    text.replace(char::is_control, " ").trim().to_owned()
 }
 
 /// Quoted after RFC 4180 where it must be; a comment sign would hide the line.

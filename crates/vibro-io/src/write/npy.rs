@@ -19,12 +19,8 @@ pub fn write(records: &[Record], out: &mut impl Write) -> Result<()> {
     };
     let n = first.len();
     if let Some(other) = records.iter().find(|r| r.len() != n) {
-        let why = format!(
-            "{} has {n} values and {} has {}: one array cannot hold both",
-            label(first),
-            label(other),
-            other.len()
-        );
+        let (one, two, m) = (label(first), label(other), other.len());
+        let why = format!("{one} has {n} values and {two} has {m}: one array cannot hold both");
         return Err(Error::refused(why).hint("write them one by one, or cut them to one length"));
     }
     let complex = records.iter().any(Record::is_complex);

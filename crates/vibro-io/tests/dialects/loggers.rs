@@ -388,4 +388,53 @@ pub const ALL: &[Dialect] = &[
             &["unit-unsaid"],
         ),
     },
+    Dialect {
+        of: "GCDC X16, HAM",
+        oddity: "remarks behind `;`, the names behind `;Headers,`",
+        file: "DATA-001.CSV",
+        text: || {
+            let head = ";Title, http://www.gcdataconcepts.com, X16-1D\n;Start_time, 2020-01-24, 12:00:00.000\n;SampleRate, 2000,Hz\n\
+                        ;Headers, time,Ax,Ay\n";
+            table(head, |i| {
+                let counts = |signal: usize| format!("{:.0}", 1e3 * value(signal, i));
+                format!("{},{},{}", fixed(at(0.0, i), 4), counts(0), counts(1))
+            })
+        },
+        outcome: read(
+            &[ch("Ax", "", 0, 1e3, 0.5e-3), ch("Ay", "", 1, 1e3, 0.5e-3)],
+            X::Even(0.0),
+            &["axis-unit-assumed", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "ETAS INCA, ASCII",
+        oddity: "a row of types between the names and the units",
+        file: "measure.ascii",
+        text: || {
+            let head = "ETASAsciiItemFile\tmeasure\nrecordName\trec1\nsampleCount\t128\ntime\tacc_z\tdist\nf8\tf8\tf8\ns\tm/s^2\tmm\n";
+            table(head, |i| {
+                format!("{}\t{}\t{}", fixed(at(0.0, i), 6), fixed(value(0, i), 6), fixed(value(1, i), 6))
+            })
+        },
+        outcome: read(
+            &[ch("acc_z", "m/s²", 0, 1.0, 5e-7), ch("dist", "m", 1, 1e-3, 5e-7)],
+            X::Even(0.0),
+            &[],
+        ),
+    },
+    Dialect {
+        of: "LabVIEW SignalExpress",
+        oddity: "keys with a colon above their values: rows begin below `data:`",
+        file: "voltage.txt",
+        text: || {
+            let head = "channel names:\t\nDev1_ai0\tDev1_ai1\nstart times:\t\n1/24/2020 12:00:00.000\t1/24/2020 12:00:00.000\n\
+                        dt:\t\n0.000500\t0.000500\ndata:\t\n";
+            table(head, |i| format!("{}\t{}", sci(value(0, i), 6, 2), sci(value(1, i), 6, 2)))
+        },
+        outcome: read(
+            &[ch("column 1", "", 0, 1.0, 5e-7), ch("column 2", "", 1, 1.0, 5e-7)],
+            X::Numbered,
+            &["abscissa-unsaid", "two-channels", "unit-unsaid"],
+        ),
+    },
 ];

@@ -243,4 +243,14 @@ pub const ALL: &[Dialect] = &[
             &["levels-in-decibels", "scaling-unsaid"],
         ),
     },
+    Dialect {
+        of: "01dB dBFA, spectrum as text",
+        oddity: "the column of lines is headed `Hz`, its unit stands in the head",
+        file: "spectrum.txt",
+        text: || {
+            let head = "File\trun1.CMG\nLocation\tCh1\nWeighting\tLin\nData type\tSpectrum\nUnit\tm/s2\nPeriod\t1s\n\nHz\tCh1\n";
+            table(head, |i| comma(&format!("{}\t{}", fixed(1.25 * i as f64, 2), fixed(value(0, i), 5))))
+        },
+        outcome: read(&[ch("Ch1", "m/s²", 0, 1.0, 5e-6)], X::Lines(1.25), &["scaling-unsaid"]),
+    },
 ];

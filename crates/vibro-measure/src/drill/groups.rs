@@ -147,12 +147,9 @@ impl Group {
         let from = f64::atan2(sin, cos) / TAU - 0.5;
         let along = mean(&|i| (i.phase - from).rem_euclid(1.0));
         let undirected = along.n > 3 && sin * sin + cos * cos < DIRECTED * along.n as f64;
-        if undirected {
-            findings.push(Finding::doubt("drill-phase-undirected"));
-        }
+        findings.extend(undirected.then(|| Finding::doubt("drill-phase-undirected")));
         let phase = Mean { value: (from + along.value).rem_euclid(1.0), ..along };
-        let (restitution, doubt) = restitution(&own, front, options);
-        findings.extend(doubt);
+        let restitution = restitution(&own, front, options).map_err(|found| findings.push(found)).ok();
         Group {
             n: members.len(),
             clipped,
@@ -180,23 +177,18 @@ impl Group {
 ///
 /// There is none where the approach is consistent with 0, as that of a bit, which is struck; nor where it would be negative or above
 /// 1 by more than its uncertainty explains. Without an uncertainty nothing is explained, and a value above 1 stays.
-fn restitution(
-    impacts: &[&Impact],
-    front: bool,
-    options: &DrillOptions,
-) -> (Option<Estimate>, Option<Finding>) {
+fn restitution(impacts: &[&Impact], front: bool, options: &DrillOptions) -> Result<Estimate, Finding> {
     let n = impacts.len() as f64;
     let approach = impacts.iter().map(|i| i.before).sum::<f64>() / n;
     let unclear = impacts.iter().filter(|i| i.before.abs() < CLEAR * i.before_std).count();
     if 2 * unclear > impacts.len() {
-        return (None, Some(Finding::caution("drill-not-striking").number("speed", approach)));
+        return Err(Finding::caution("drill-not-striking").number("speed", approach));
     }
-    let (ratio, method) = match options.mass.zip(options.struck_mass).filter(|_| front) {
-        Some((mass, struck)) => (
-            mass / struck,
-            "balance of momentum, the struck mass at rest before; ratio of the sums over impacts",
-        ),
-        None => (0.0, "−after/before, what is struck does not move; ratio of the sums over impacts"),
+    let masses = options.mass.zip(options.struck_mass).filter(|_| front);
+    let ratio = masses.map_or(0.0, |(mass, struck)| mass / struck);
+    let method = match masses {
+        Some(_) => "balance of momentum, the struck mass at rest before; ratio of the sums over impacts",
+        None => "−after/before, what is struck does not move; ratio of the sums over impacts",
     };
     let separation = |i: &Impact| ratio * (i.before - i.after) - i.after;
     let value = impacts.iter().map(|i| separation(i)).sum::<f64>() / n / approach;
@@ -205,9 +197,9 @@ fn restitution(
     match estimate.std {
         Some(std) if value - BEYOND * std > 1.0 || value + BEYOND * std < 0.0 => {
             let found = Finding::doubt("drill-restitution-impossible");
-            (None, Some(found.number("value", value).number("std", std)))
+            Err(found.number("value", value).number("std", std))
         }
-        _ => (Some(estimate), None),
+        _ => Ok(estimate),
     }
 }
 

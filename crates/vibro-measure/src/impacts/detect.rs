@@ -65,18 +65,13 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     let mut high = all.iter().map(|h| *h > least);
     bursts.retain(|_| high.next() == Some(true));
     let low = all.len() - bursts.len();
-    if low > 0 {
-        findings.push(
-            Finding::note("low-bursts-ignored").count("n", low).number("level", least).name("unit", unit),
-        );
-    }
-    if let Some(factor) = stable.filter(|s| *s < STABLE && bursts.len() > 1) {
-        findings.push(Finding::caution("count-depends-on-ringing").number("factor", factor));
-    }
+    let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
+    findings.extend((low > 0).then(|| ignored.name("unit", unit)));
+    let ringing = stable.filter(|s| *s < STABLE && bursts.len() > 1);
+    findings.extend(ringing.map(|s| Finding::caution("count-depends-on-ringing").number("factor", s)));
     let above = (median(&heights(&values, &bursts, 1.0)) - quiet.reach) / quiet.sigma;
-    if above < LOST {
-        findings.push(Finding::doubt("impacts-lost-in-noise").number("sigmas", above));
-    }
+    let lost = Finding::doubt("impacts-lost-in-noise").number("sigmas", above);
+    findings.extend((above < LOST).then_some(lost));
     let shape = options.shape.as_ref().map(|pulse| recorded(pulse, rate)).transpose()?;
     let Onsets { each, method, sharp } = onsets(&values, &bursts, quiet.sigma, shape.as_ref());
     if each.len() < 2 {

@@ -257,18 +257,10 @@ fn spread(weight: &[f64], n: usize) -> f64 {
     2.0 * weight.iter().map(|w| w.ln()).sum::<f64>() * n as f64 / weight.len() as f64
 }
 
-/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
-const EXPLAINED: f64 = 0.1;
-
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.
 const KNOWN: f64 = 0.5;
 
 impl Rational {
-    /// Whether the modes explain the lines.
-    pub fn explains(&self) -> bool {
-        self.unexplained < EXPLAINED
-    }
-
     /// Which modes stand: damped, known, and where their peaks, in the same order, are.
     pub fn sound(&self, measured: &Measured, peaks: &[Peak]) -> Vec<bool> {
         let stands = |((mode, std), peak): ((&Pole, &[f64; 4]), &Peak)| {

@@ -15,6 +15,9 @@ const IN_STEP: f64 = 45.0;
 /// Bandwidths in lines below which the half-power method is tens of per cent off.
 const LINES_OF_HALF_POWER: f64 = 8.0;
 
+/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
+const EXPLAINED: f64 = 0.1;
+
 /// One mode of a group that was fitted.
 pub(super) struct Candidate<'a> {
     pub measured: &'a Measured,
@@ -35,16 +38,16 @@ impl Candidate<'_> {
         let Candidate { measured, group, fit, m, .. } = *self;
         let (pole, mut std) = (&fit.modes[m], fit.std[m]);
         let at = measured.frequency[group.peaks[m].at];
-        let mut find = |found: Finding| findings.push(found.number("frequency", at));
+        let mut find =
+            |holds: bool, found: Finding| findings.extend(holds.then(|| found.number("frequency", at)));
         let own = pole.without_decay(self.decay(), measured.power());
-        let Some(own) = own.filter(|_| sound && fit.explains()) else {
+        let Some(own) = own.filter(|_| sound && fit.unexplained < EXPLAINED) else {
             let found = Finding::caution("modal-peak-unsupported").number("zeta", pole.zeta);
-            find(found.number("std", std[1]).number("unexplained", fit.unexplained));
+            find(true, found.number("std", std[1]).number("unexplained", fit.unexplained));
             return None;
         };
-        if fit.whiteness.rejected() {
-            find(Finding::caution("modal-residuals-coloured").number("factor", fit.whiteness.inflation));
-        }
+        let coloured = Finding::caution("modal-residuals-coloured").number("factor", fit.whiteness.inflation);
+        find(fit.whiteness.rejected(), coloured);
         let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
         let spacing = span / (group.lines.len() - 1) as f64;
         // Averaging segments multiplies the impulse response by the window's autocorrelation, 1 − 2π²t²/3T² for a Hann window; the
@@ -53,29 +56,24 @@ impl Candidate<'_> {
         let leakage = 4.0 / 3.0 / bandwidth.powi(2);
         let blows = self.options.from_blows;
         let leaks = !blows && measured.coherence.is_some() && leakage * pole.zeta > std[1];
-        if leaks {
-            find(Finding::caution("modal-leakage").number("bandwidth", bandwidth).number("part", leakage));
-        }
+        find(leaks, Finding::caution("modal-leakage").number("bandwidth", bandwidth).number("part", leakage));
         if blows {
             // A record that ends T after the blow lacks e^(sT − iωT) of a mode's part: a factor on A.
             let left = (-TAU * pole.frequency * pole.zeta / spacing).exp();
-            if left * pole.constant.norm() > std[2] {
-                find(Finding::caution("modal-blow-cut-off").number("part", left));
-            }
+            let cut_off = Finding::caution("modal-blow-cut-off").number("part", left);
+            find(left * pole.constant.norm() > std[2], cut_off);
             (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
         }
         let phase = own.constant.arg().to_degrees();
-        if !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs()) {
-            find(Finding::caution("modal-constant-no-sign").number("phase", phase));
-        }
+        let no_sign = !measured.magnitude_only && (IN_STEP..180.0 - IN_STEP).contains(&phase.abs());
+        find(no_sign, Finding::caution("modal-constant-no-sign").number("phase", phase));
         // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
         // A peak that leakage widens has no longer the form of one mode.
         let two = if leaks { None } else { support_for_two(measured, (group, fit), m, others) };
-        if let Some(ahead) = two {
-            find(Finding::doubt("modal-two-modes").number("ahead", ahead));
-        }
+        let ahead = two.unwrap_or(f64::NAN);
+        find(two.is_some(), Finding::doubt("modal-two-modes").number("ahead", ahead));
         // What the phases of residual terms and other modes do to magnitudes is in no residual.
         let known = two.is_none() && !measured.magnitude_only;
         Some(self.estimates(&own, std.map(|s| known.then_some(s))))

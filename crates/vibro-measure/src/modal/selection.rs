@@ -14,9 +14,10 @@ const TOGETHER: usize = 6;
 /// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
 const NEEDED: f64 = 10.0;
 
-/// First guesses for `peaks`.
+/// First guesses of frequency and damping ratio for `peaks`.
 fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
-    peaks.iter().map(|p| p.start(lines)).collect()
+    let start = |p: &Peak| (lines.frequency[p.at], p.width / (2.0 * lines.frequency[p.at]));
+    peaks.iter().map(start).collect()
 }
 
 /// Finds the peaks of a group that the lines need. The group keeps those; the others are added to `unsupported`.
@@ -167,14 +168,6 @@ const ABOVE_NOISE: f64 = 4.0;
 /// Lines on either side of a peak that are at least fitted, and bandwidths on either side.
 const LINES: usize = 16;
 const BANDWIDTHS: f64 = 6.0;
-
-impl Peak {
-    /// First guess of frequency and damping ratio.
-    pub fn start(&self, measured: &Measured) -> (f64, f64) {
-        let f = measured.frequency[self.at];
-        (f, self.width / (2.0 * f))
-    }
-}
 
 /// The peaks, those too near each other in one group, each with the lines around it; only those of `band` where there is one.
 pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<Group>> {

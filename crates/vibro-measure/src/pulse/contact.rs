@@ -78,7 +78,8 @@ pub struct HuntCrossley {
     deceleration: Vec<f64>,
     /// In units of T.
     duration: f64,
-    restitution: f64,
+    /// Speed of separation over that of approach.
+    pub restitution: f64,
 }
 
 /// Step of the integration, about 1/400 of the contact. The last part of a step is flown freely, which leaves out a change of
@@ -122,11 +123,6 @@ impl HuntCrossley {
             deceleration.push(force(z, v));
         }
         None
-    }
-
-    /// Velocity after over velocity before.
-    pub fn restitution(&self) -> f64 {
-        self.restitution
     }
 
     /// Deceleration at each of the rising `times` in s, in m/s² for each m/s of approach, of a contact that lasts `duration`
@@ -233,7 +229,7 @@ mod curved {
         // 2.94328 = (4√π/5) Γ(2/5)/Γ(9/10), to six digits.
         assert!((hertz.duration / deepest - 2.943_28).abs() < 1e-5, "{}", hertz.duration / deepest);
         // Over the last part of a step, at most h, the force left out is below h^{3/2}: h^{5/2} = 5e-6.
-        assert!((hertz.restitution() - 1.0).abs() < 1e-5);
+        assert!((hertz.restitution - 1.0).abs() < 1e-5);
     }
 
     /// v dv/(1 + αv) = −z^{3/2} dz: v/α − ln(1 + αv)/α² is the same before (v = 1) and after (v = −R).
@@ -242,7 +238,7 @@ mod curved {
         for alpha in [0.1, 0.5, 1.0, 3.0, 20.0] {
             let contact = HuntCrossley::new(alpha).unwrap();
             let level = |v: f64| v / alpha - (alpha * v).ln_1p() / (alpha * alpha);
-            let (before, after) = (level(1.0), level(-contact.restitution()));
+            let (before, after) = (level(1.0), level(-contact.restitution));
             // As above.
             assert!((before - after).abs() < 1e-5 * before, "{alpha} {before} {after}");
         }
@@ -259,7 +255,7 @@ mod curved {
         for filter in [None, Some(&filter)] {
             let sum: f64 = contact.decelerations(20e-6, filter, &times).iter().sum::<f64>() * step;
             // Straight lines between the integration's steps miss h²/12 of the change of slope, and the end part of a step.
-            assert!((sum - 1.0 - contact.restitution()).abs() < 1e-4, "{sum} {}", contact.restitution());
+            assert!((sum - 1.0 - contact.restitution).abs() < 1e-4, "{sum} {}", contact.restitution);
         }
     }
 }

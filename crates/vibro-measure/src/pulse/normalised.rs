@@ -122,9 +122,7 @@ impl<'a> Normalised<'a> {
             findings.push(level.name("unit", trace.meta.unit.symbol()));
         }
         let missing = range.filter(|i| trace.values[*i].is_nan()).count();
-        if missing > 0 {
-            findings.push(Finding::caution("pulse-samples-missing").count("n", missing));
-        }
+        findings.extend((missing > 0).then(|| Finding::caution("pulse-samples-missing").count("n", missing)));
         let other = (0..trace.values.len())
             .filter(|i| !(-0.5..=2.0).contains(&self.time(*i)))
             .find(|i| (trace.values[*i] - found.baseline) / found.height > 0.5);
@@ -170,7 +168,7 @@ impl<'a> Normalised<'a> {
             ContactModel::HuntCrossley => {
                 put("duration", 3, self.length, 0.0, "s");
                 put("alpha", 4, 1.0, 0.0, "1");
-                let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution());
+                let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution);
                 let variance = |_, _| (fit.std(4) * widened).powi(2);
                 if let Some((r, std)) = propagated(&fit.parameters[4..], &[1e3], variance, restitution) {
                     parameters.insert("restitution", estimate(r, std, "1"));

@@ -4,7 +4,7 @@ use super::KelvinVoigt;
 use crate::Estimate;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use vibro_record::{Error, Finding, Result};
 
 /// A model of a contact.
@@ -144,7 +144,7 @@ pub(super) fn contact_estimates(
         let (value, std) = propagated(parameters, scale, &covariance, |p| contact(p).map(of))?;
         Some(Estimate::new(value, Some(std), unit, n, method))
     };
-    let omega = |c: KelvinVoigt| std::f64::consts::TAU * c.frequency();
+    let omega = |c: KelvinVoigt| TAU * c.frequency();
     Some(PulseResult {
         xi: estimate("1", &|c| c.xi())?,
         frequency: estimate("Hz", &|c| c.frequency())?,
@@ -212,9 +212,8 @@ pub fn two_times(
             let near = Finding::doubt("pulse-ratio-near-zero").number("rho", rho).number("std", spread);
             findings.push(near.number("xi", least));
         }
-        if rho + 2.0 * spread >= 0.5 {
-            findings.push(Finding::caution("pulse-no-damping").number("xi", damping(rho)));
-        }
+        let no_damping = Finding::caution("pulse-no-damping").number("xi", damping(rho));
+        findings.extend((rho + 2.0 * spread >= 0.5).then_some(no_damping));
     }
     let contact = |times: &[f64]| KelvinVoigt::lasting(times[1], damping(times[0] / times[1]));
     let covariance = |i: usize, j: usize| if i == j { variance } else { 0.0 };

@@ -61,9 +61,7 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
     let (mut logs, mut stds, mut n) = (Vec::new(), Vec::new(), 0);
     for (train, t) in trains.iter().enumerate().map(|(i, t)| (i + 1, t)) {
         not_negative("an uncertainty of the time of an impact", t.onset_std)?;
-        for interval in &t.intervals {
-            above_zero("a flight time", *interval)?;
-        }
+        t.intervals.iter().try_for_each(|interval| above_zero("a flight time", *interval))?;
         // A train of one flight has no ratio.
         if t.intervals.len() < 2 {
             continue;
@@ -87,9 +85,8 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
             let flight = flight.place + 1;
             let why =
                 format!("flight times grow, at flight {flight} of train {train}: R would not be below 1");
-            return Err(
-                Error::refused(why).hint("the intervals in the order of the bounces, all of one train")
-            );
+            let hint = "the intervals in the order of the bounces, all of one train";
+            return Err(Error::refused(why).hint(hint));
         }
         n += flights.len();
         logs.push(log);
@@ -101,9 +98,8 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
     // From four trains on their scatter shows all that is uncertain in each.
     let (log, std) = repeated(&logs, together(stds.into_iter()).filter(|_| logs.len() < 4));
     let value = log.exp();
-    if std.is_none() {
-        findings.push(Finding::caution("too-few-flights").count("n", n).count("trains", logs.len()));
-    }
+    let few = Finding::caution("too-few-flights").count("n", n).count("trains", logs.len());
+    findings.extend(std.is_none().then_some(few));
     findings.push(Finding::note("flight-times-assume"));
     let method = format!("log-linear fit of {n} flight times");
     let restitution = Estimate::new(value, std.map(|s| value * s), "1", n, method);

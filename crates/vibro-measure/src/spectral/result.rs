@@ -81,18 +81,30 @@ impl SpectralResult {
         fmin: f64,
         mut findings: Vec<Finding>,
     ) -> SpectralResult {
-        let (meta, axis, value, scaling, enbw) = match &found {
-            Lines::Spectrum(s) => (&s.meta, &s.axis, s.values.magnitudes(), s.scaling.name(), s.enbw),
-            Lines::Transfer(Transfer { frf, .. }) => {
+        let response = |found: &Transfer| Response {
+            estimator: options.estimator.map_or("", Estimator::name),
+            phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
+            phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
+            coherence: found.coherence.clone(),
+            blows: Vec::new(),
+        };
+        let (meta, axis, value, scaling, enbw, function) = match &found {
+            Lines::Spectrum(s) => (&s.meta, &s.axis, s.values.magnitudes(), s.scaling.name(), s.enbw, None),
+            Lines::Transfer(function) => {
+                let (frf, enbw) = (&function.frf, options.window().enbw());
                 let value = frf.values.iter().map(|v| v.norm()).collect();
-                (&frf.meta, &frf.axis, value, "frf", Some(options.window().enbw()))
+                (&frf.meta, &frf.axis, value, "frf", Some(enbw), Some(function))
             }
         };
-        let mut result = SpectralResult {
+        findings.extend(function.iter().flat_map(|found| found.findings.iter().cloned()));
+        // Integrated, lines below would be noise divided by the frequency.
+        let below = Finding::note("lines-below-cutoff").number("fmin", fmin);
+        findings.extend((options.integrate > 0).then_some(below));
+        SpectralResult {
             name: meta.name.clone(),
             frequency: axis.values(),
             value,
-            value_std: Vec::new(),
+            value_std: function.map_or_else(Vec::new, |found| found.magnitude_std.clone()),
             scaling,
             unit: meta.unit.symbol().to_owned(),
             quantity: meta.quantity.name(),
@@ -101,29 +113,12 @@ impl SpectralResult {
             window: options.window().name(),
             enbw: enbw.unwrap_or(f64::NAN),
             detrend: if options.detrended() { "mean" } else { "none" },
-            averages: 0,
-            response: None,
+            averages: function.map_or(0, |found| found.averages),
+            response: function.map(response),
             tones: Vec::new(),
-            findings: Vec::new(),
+            findings,
             found,
-        };
-        if let Lines::Transfer(found) = &result.found {
-            result.value_std.clone_from(&found.magnitude_std);
-            result.averages = found.averages;
-            result.response = Some(Response {
-                estimator: options.estimator.map_or("", Estimator::name),
-                phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
-                phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
-                coherence: found.coherence.clone(),
-                blows: Vec::new(),
-            });
-            findings.extend(found.findings.iter().cloned());
         }
-        if options.integrate > 0 {
-            // Integrated, lines below would be noise divided by the frequency.
-            findings.push(Finding::note("lines-below-cutoff").number("fmin", fmin));
-        }
-        SpectralResult { findings, ..result }
     }
 
     /// Adds levels over a reference: 20 lg of amplitudes in `unit`, 10 lg of powers over its square (ISO 1683).

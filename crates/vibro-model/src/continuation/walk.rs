@@ -148,8 +148,7 @@ impl Walk<'_> {
             }) else {
                 s /= 2.0;
                 if s < 1e-7 {
-                    way.end = End::Lost;
-                    return Ok(way);
+                    return Ok(Way { end: End::Lost, ..way });
                 }
                 continue;
             };
@@ -173,16 +172,14 @@ impl Walk<'_> {
                 return Ok(way);
             }
             if !ordered(&self.system(&next.z)?, &Self::inner(&next.z)) {
-                way.end = End::Lost;
-                return Ok(way);
+                return Ok(Way { end: End::Lost, ..way });
             }
             let orbit = self.orbit(&next.z)?;
             self.mark(&here, &next, s, &mut way, &orbit)?;
             way.points.push(orbit);
             let round = (&next.z - &origin.z).norm();
             if way.points.len() > 8 && round < s && next.tangent.dot(&origin.tangent) * sign > 0.9 {
-                way.end = End::Closed;
-                return Ok(way);
+                return Ok(Way { end: End::Closed, ..way });
             }
             here = next;
             s = match effort {

@@ -117,48 +117,43 @@ pub fn softened(
         ))
         .hint("simulate the motion with a contact of spring and damper"));
     }
-    found.orbits.iter().map(|orbit| soften(rig, excitation, orbit, compliance)).collect()
-}
-
-fn soften(
-    rig: &Rig,
-    excitation: &Excitation,
-    orbit: &Orbit,
-    compliance: &Compliance,
-) -> Result<Option<Softened>> {
-    if orbit.impulse <= 0.0 {
-        return Ok(None);
-    }
-    let (mut at, mut restitution) = (orbit.clone(), rig.restitution);
-    // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
-    let [first, second] = rig.bodies().map(|body| body.damping / (body.mass * body.mass));
-    let drag = rig.reduced_mass() * (first + second);
-    // Each round leaves about the share in contact of the change that is left: 0.025⁸ is nothing.
-    for _ in 0..8 {
-        // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by half of that.
-        let turned = rig.restitution * (1.0 + 0.5 * drag * compliance.duration);
-        let [_, steady] = pressing(&at, drag);
-        let changed = turned + compliance.pressed * steady / at.approach_velocity;
-        if !(0.0..=1.0).contains(&changed) {
+    let soften = |orbit: &Orbit| {
+        if orbit.impulse <= 0.0 {
             return Ok(None);
         }
-        restitution = changed;
-        let soft = super::solve(&Rig { restitution, ..*rig }, excitation, orbit.cycles, compliance.delay)?;
-        match orbit.continued(&soft.orbits) {
-            Some(next) if next.impulse > 0.0 => at = next.clone(),
-            _ => return Ok(None),
+        let (mut at, mut restitution) = (orbit.clone(), rig.restitution);
+        // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
+        let [first, second] = rig.bodies().map(|body| body.damping / (body.mass * body.mass));
+        let drag = rig.reduced_mass() * (first + second);
+        // Each round leaves about the share in contact of the change that is left: 0.025⁸ is nothing.
+        for _ in 0..8 {
+            // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by half of that.
+            let turned = rig.restitution * (1.0 + 0.5 * drag * compliance.duration);
+            let [_, steady] = pressing(&at, drag);
+            let changed = turned + compliance.pressed * steady / at.approach_velocity;
+            if !(0.0..=1.0).contains(&changed) {
+                return Ok(None);
+            }
+            restitution = changed;
+            let soft =
+                super::solve(&Rig { restitution, ..*rig }, excitation, orbit.cycles, compliance.delay)?;
+            match orbit.continued(&soft.orbits) {
+                Some(next) if next.impulse > 0.0 => at = next.clone(),
+                _ => return Ok(None),
+            }
         }
-    }
-    Ok(Some(Softened {
-        impulse: at.impulse,
-        timing: at.timing,
-        approach_velocity: at.approach_velocity - pressing(&at, drag)[0] * compliance.delay,
-        restitution,
-        peak_to_peak: at.peak_to_peak,
-        fundamental: at.fundamental.map(Complex64::norm),
-        change: at.impulse / orbit.impulse - 1.0,
-        share: compliance.duration / orbit.period(),
-    }))
+        Ok(Some(Softened {
+            impulse: at.impulse,
+            timing: at.timing,
+            approach_velocity: at.approach_velocity - pressing(&at, drag)[0] * compliance.delay,
+            restitution,
+            peak_to_peak: at.peak_to_peak,
+            fundamental: at.fundamental.map(Complex64::norm),
+            change: at.impulse / orbit.impulse - 1.0,
+            share: compliance.duration / orbit.period(),
+        }))
+    };
+    found.orbits.iter().map(soften).collect()
 }
 
 /// Accelerations in m/s² that would press the masses together if they did not meet: just before the impact, and that part of it

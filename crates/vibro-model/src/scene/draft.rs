@@ -107,25 +107,18 @@ impl Draft {
         for (name, value) in given {
             match value {
                 Value::Table(inner) => {
-                    inner.into_iter().for_each(|(key, value)| self.insert(&format!("{name}.{key}"), value));
+                    inner.into_iter().for_each(|(key, value)| self.put(&format!("{name}.{key}"), value));
                 }
-                value => self.insert(&name, value),
+                value => self.put(&name, value),
             }
         }
         Ok(())
     }
 
-    /// Sets a key to a number; a table's key with a dot.
-    pub fn put(&mut self, key: &str, value: f64) {
-        self.insert(key, Value::Float(value));
-    }
-
-    /// Sets the kind of the excitation; keys that do not belong to it are dropped.
-    pub fn drive(&mut self, kind: &str) {
-        self.insert("excitation.kind", Value::String(kind.to_owned()));
-    }
-
-    fn insert(&mut self, key: &str, value: Value) {
+    /// Sets a key to a number or a text; a table's key with a dot. Keys of an excitation that do not belong to a new kind of it are
+    /// dropped.
+    pub fn put(&mut self, key: &str, value: impl Into<Value>) {
+        let value = value.into();
         self.later.push(key.to_owned());
         let Some((section, inner)) = key.split_once('.') else {
             self.table.insert(key.to_owned(), value);

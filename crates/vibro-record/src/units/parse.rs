@@ -250,15 +250,9 @@ fn symbol(name: &str) -> Option<Parsed> {
 /// Spelling of a dimension without a name: base units with exponents, e.g. `m²·s⁻³`.
 pub(crate) fn spell(dimension: Dimension) -> String {
     let names = ["m", "kg", "s", "A", "K", "rad"];
-    let parts: Vec<String> = names
-        .iter()
-        .zip(dimension.0)
-        .filter(|(_, e)| *e != 0)
-        .map(|(name, e)| match e {
-            2 => (*name).to_owned(),
-            e => format!("{name}^{}", f64::from(e) / 2.0),
-        })
-        .collect();
+    let power = |e: i8| if e == 2 { String::new() } else { format!("^{}", f64::from(e) / 2.0) };
+    let parts = names.into_iter().zip(dimension.0).filter(|(_, e)| *e != 0);
+    let parts: Vec<String> = parts.map(|(name, e)| format!("{name}{}", power(e))).collect();
     if parts.is_empty() { "1".to_owned() } else { parts.join("·") }
 }
 

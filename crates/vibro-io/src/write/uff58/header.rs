@@ -151,8 +151,7 @@ fn unit_text(unit: &Unit) -> String {
 
 /// Text of at most `width` characters on one line; `NONE` for nothing, and never a line that would end the data set.
 fn plain(text: &str, width: usize) -> String {
-    let line: String =
-        text.trim().chars().map(|c| if c.is_control() { ' ' } else { c }).take(width).collect();
+    let line: String = text.trim().replace(char::is_control, " ").chars().take(width).collect();
     match line.trim() {
         "" => "NONE".to_owned(),
         "-1" => "(-1)".to_owned(),
