@@ -4,6 +4,7 @@
 //! run one function. A new kind of record is a folder here and a row in `KINDS`.
 
 pub(crate) mod answer;
+pub(crate) mod decay;
 pub(crate) mod drill;
 pub(crate) mod drop;
 pub(crate) mod frf;
@@ -28,6 +29,7 @@ pub(crate) use source::Source;
 
 /// Figures of results, as data.
 pub mod figures {
+    pub use super::decay::figures::decay;
     pub use super::drill::figures::drill;
     pub use super::frf::figures::frf;
     pub use super::impacts::figures::{drop, impacts};
@@ -93,6 +95,7 @@ pub(crate) const KINDS: &[Kind] = &[
     Kind::of::<drill::Keys>(),
     Kind::of::<impacts::Keys>(),
     Kind::of::<drop::Keys>(),
+    Kind::of::<decay::Keys>(),
     Kind::of::<pulse::Keys>(),
 ];
 

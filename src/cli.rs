@@ -10,7 +10,7 @@ mod print;
 mod record;
 mod sweep;
 
-use crate::analysis::{frf, spectrum};
+use crate::analysis::{decay, frf, spectrum};
 use crate::error::Result;
 use crate::report::words::Voice;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
@@ -46,6 +46,10 @@ const COMMANDS: &[Row] = &[
     Row::of::<record::Measured<frf::Keys>>(
         "modal",
         "Natural frequency, damping and modal constant of the modes of a frequency response function",
+    ),
+    Row::of::<record::Measured<decay::Keys>>(
+        "decay",
+        "Natural frequency and damping of each mode of a free decay",
     ),
     Row::of::<record::Pulse>("pulse", "Damping ratio, frequency and restitution of a contact from its pulse"),
     Row::of::<model::Model>(

@@ -78,16 +78,18 @@ const BY_CHANCE: f64 = 1e-4;
 const LINES: (f64, f64) = (8.0, 6.0);
 /// F of four more parameters to be worth them, at a chance of about 1e-4.
 const WORTH: f64 = 10.0;
-/// Two sines nearer than this part of the wider one are one that does not decay as a mode does.
-const PARTED: f64 = 0.5;
+/// Two sines nearer than so many half-widths of the wider one are one that does not decay as a mode does.
+const PARTED: f64 = 1.5;
 /// Decay over the part, in natural logarithms: later there is nothing to be learnt.
 const ENOUGH: f64 = 6.0;
 /// Standard uncertainties by which a decay has to be above nothing.
 const SURE: f64 = 3.0;
+/// Part of the strongest amplitude from which on a steady line is named.
+const SEEN: f64 = 0.01;
 /// Largest number of stretches, and the decay of one.
 const STRETCHES: (usize, f64) = (5, 1.2);
-/// Rise of what is left from block to block where something new begins.
-const RISE: f64 = 6.0;
+/// Fall of what is left from block to block where a contact ends.
+const FALL: f64 = 6.0;
 /// How often the levels of a steady mode may seem to change.
 const CHANGED: f64 = 1e-3;
 
@@ -110,8 +112,8 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
     if let Some(count) = options.modes.filter(|n| !(1..=MOST).contains(n)) {
         return Err(Error::usage(format!("{count} modes"), format!("1 to {MOST}")).setting("modes"));
     }
-    let Usable { mut part, block, mut findings } = usable(trace, rate, options.band)?;
-    let (mut limit, mut lengths) = (trace.values.len(), 2);
+    let Usable { mut part, block, limit, findings } = usable(trace, rate, options.band)?;
+    let mut lengths = 2;
     let found = loop {
         let found = Sines::of(&trace.values[part.clone()], rate, options)?;
         let (group, m) = found.strongest().ok_or_else(|| {
@@ -126,13 +128,8 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
             lengths -= 1;
             continue;
         }
-        match found.new(&trace.values[part.clone()], block) {
-            Some(behind) if behind <= 4 * block && part.len() > behind + 5 * block => part.start += behind,
-            Some(behind) if behind > 5 * block => {
-                limit = part.start + behind;
-                part.end = limit;
-                findings.push(Finding::caution("decay-cut").number("end", trace.axis.at(limit)));
-            }
+        match found.contact(&trace.values[part.clone()], block) {
+            Some(behind) if part.len() > behind + 5 * block => part.start += behind,
             _ => break found,
         }
     };
@@ -281,8 +278,8 @@ impl Sines {
         Ok(())
     }
 
-    /// Where in a part something begins that the sines do not hold: behind how many samples what is left rises or falls at once.
-    fn new(&self, part: &[f64], block: usize) -> Option<usize> {
+    /// Samples at the beginning of a part in which something else acts, as the contact of a blow: what is left falls at once behind it.
+    fn contact(&self, part: &[f64], block: usize) -> Option<usize> {
         let left = self.left(part);
         let level = |block: &[f64]| {
             let mean = block.iter().sum::<f64>() / block.len() as f64;
@@ -292,11 +289,8 @@ impl Sines {
         let largest = levels.iter().copied().fold(0.0, f64::max);
         let first = self.strongest().map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
         let clear = |level: f64| level > 5e-3 * first && level > 0.3 * largest;
-        let contact = |b: &usize| clear(levels[*b]) && levels[*b] > RISE * levels[b + 1];
-        let blow = |b: &usize| clear(levels[b + 1]) && levels[b + 1] > RISE * levels[*b];
-        let blocks = levels.len().saturating_sub(1);
-        let contact = (0..blocks.min(3)).find(contact).map(|b| (b + 1) * block);
-        contact.or_else(|| (4..blocks).find(blow).map(|b| (b + 1) * block))
+        let contact = |b: &usize| clear(levels[*b]) && levels[*b] > FALL * levels[b + 1];
+        (0..levels.len().saturating_sub(1).min(3)).find(contact).map(|b| (b + 1) * block)
     }
 
     /// What the sines leave of a part.
@@ -314,6 +308,7 @@ impl Sines {
     ) -> Result<DecayResult> {
         let unit = trace.meta.unit.quantity().symbol();
         let (mut modes, mut decaying) = (Vec::new(), Vec::new());
+        let size = self.strongest().map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
         for (group, m) in self.all() {
             let mode = mode(group, m, self.n, self.rate, unit);
             if decays(group, m) {
@@ -340,7 +335,7 @@ impl Sines {
                 return Err(Error::refused(why)
                     .hint("cut the record to what follows the release or the blow, or choose the band of the mode")
                     .setting("band"));
-            } else {
+            } else if mode.amplitude.value > SEEN * size && group.sines[m].periods > 3.0 {
                 let steady = Finding::note("decay-steady-line").number("frequency", mode.frequency.value);
                 findings.push(steady.number("amplitude", mode.amplitude.value).name("unit", unit));
             }
@@ -377,6 +372,10 @@ impl Sines {
     fn levels(&self, part: &[f64], start: f64, unit: &'static str) -> (Vec<Level>, Option<Estimate>) {
         let Some((group, m)) = self.strongest() else { return (Vec::new(), None) };
         let own = group.sines[m];
+        // Beside others it is not known so well as to be followed alone.
+        if group.sines.len() > 1 {
+            return (Vec::new(), None);
+        }
         let stretches =
             ((own.decay / STRETCHES.1) as usize).min(STRETCHES.0).min((own.periods / 4.0) as usize);
         if stretches < 2 {

@@ -1,11 +1,15 @@
 //! The part of a record in which motion decays freely.
 
-use crate::noise::{REACH, around};
 use std::ops::Range;
 use vibro_record::{Error, Finding, Result, Scaling, Trace, Window};
 use vibro_signal::fft::Transform;
 use vibro_signal::spectrum;
 
+/// Blocks that are looked at, if they are there; at least half of them.
+const FEWEST: usize = 6;
+/// Rise above the largest of so many blocks before it that makes a block the beginning of something new.
+const RISE: f64 = 2.0;
+const BEFORE: usize = 5;
 /// Samples that a block has at least.
 const SHORTEST: usize = 8;
 /// Periods of the strongest line in a block.
@@ -14,6 +18,10 @@ const PERIODS: f64 = 2.0;
 const LEFT: f64 = 2.5e-3;
 /// Level of the noise, in parts of its own, at which motion is lost in it.
 const LOST: f64 = 1.3;
+/// Lines on either side that a line has to stand out of, at least.
+const LEAST: usize = 8;
+/// Largest lines that are compared.
+const MOST: usize = 80;
 /// Lines below the first of these hold the mean and its drift.
 const LOWEST: usize = 3;
 
@@ -23,6 +31,8 @@ pub struct Usable {
     pub part: Range<usize>,
     /// Samples of a few periods of the strongest line.
     pub block: usize,
+    /// Sample up to which no other motion begins.
+    pub limit: usize,
     pub findings: Vec<Finding>,
 }
 
@@ -37,15 +47,18 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let (low, high) = band.map_or((LOWEST, lines.len()), |(low, high)| {
         (line(low).max(LOWEST), (line(high) + 1).min(lines.len()))
     });
-    // Drift is high where all lines are: a mode stands out of those around it.
+    // Drift is high where all lines are, however steep: a mode stands out of the lines from half to twice its frequency.
     let over = |k: &usize| {
-        lines[*k] / around(&lines, *k, REACH, None).unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE)
+        let (from, to) = ((k / 2).min(k.saturating_sub(LEAST)).max(1), (2 * k).max(k + LEAST));
+        let mut around = lines[from..to.min(lines.len())].to_vec();
+        let middle = around.len() / 2;
+        lines[*k] / around.select_nth_unstable_by(middle, f64::total_cmp).1.max(f64::MIN_POSITIVE)
     };
     let tops = (low.max(1)..high.min(lines.len().saturating_sub(1)))
         .filter(|k| lines[*k] >= lines[k - 1] && lines[*k] >= lines[k + 1]);
     let mut tops: Vec<usize> = tops.collect();
     tops.sort_by(|a, b| lines[*b].total_cmp(&lines[*a]));
-    tops.truncate(2 * REACH);
+    tops.truncate(MOST);
     let strongest = tops.into_iter().max_by(|a, b| over(a).total_cmp(&over(b)));
     let strongest = strongest.ok_or_else(|| {
         Error::refused("no line of the spectrum lies there").hint("choose another band").setting("band")
@@ -71,6 +84,13 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let mut sorted = levels.clone();
     sorted.sort_by(f64::total_cmp);
     let gone = (LOST * sorted[sorted.len() / 10]).max(LEFT * levels[top]);
+    // Two modes that beat come and go alike; what is new rises above all that was just before.
+    let new = |b: &usize| {
+        let before = &levels[b.saturating_sub(BEFORE).max(top + 1)..*b];
+        levels[*b] > gone.max(RISE * before.iter().copied().fold(0.0, f64::max))
+    };
+    let begins = (top + 2..levels.len()).find(new);
+    let limit = begins.map_or(n, |b| (b - 1) * block);
     let last = (top + 1..levels.len()).find(|b| levels[*b] < gone).unwrap_or(levels.len());
     let around_top = top * block..((top + 2) * block).min(n);
     let mean = values[around_top.clone()].iter().sum::<f64>() / around_top.len() as f64;
@@ -87,17 +107,19 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
         start = behind;
     }
     // What is a third longer than what is seen lets the noise be known.
-    let end = (start + (last * block).saturating_sub(start) * 4 / 3).min(n);
-    if end < start + 3 * block {
-        let why = format!(
-            "only {:.1} periods of motion lie behind its largest value",
-            (end.saturating_sub(start)) as f64 / period
-        );
+    let seen = (last * block).saturating_sub(start) * 4 / 3;
+    let end = (start + seen.max(FEWEST * block)).min(limit);
+    if end < start + FEWEST * block / 2 {
+        let periods = end.saturating_sub(start) as f64 / period;
+        let why = format!("only {periods:.1} periods of motion lie behind its largest value");
         return Err(Error::refused(why)
             .hint("record longer behind the release or the blow, or choose a band")
             .setting("band"));
     }
-    Ok(Usable { part: start..end, block, findings })
+    if begins.is_some() && end == limit {
+        findings.push(Finding::caution("decay-cut").number("end", trace.axis.at(limit)));
+    }
+    Ok(Usable { part: start..end, block, limit, findings })
 }
 
 /// The record with the lines of a band only.

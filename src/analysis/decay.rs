@@ -1,0 +1,94 @@
+//! Free decays: `[[decay]]`, `vibro decay`.
+
+pub mod figures;
+
+use super::job::Marks;
+use super::{Analysis, Answer, Job, OfFile, Source, no_file};
+use crate::campaign::Entry;
+use crate::error::Result;
+use crate::measure::decay::{DecayOptions, DecayResult, decay};
+use crate::report::layout::table;
+use crate::report::{Cell, Table};
+use serde::Deserialize;
+
+/// How modes of a decay are found.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// Band in Hz in which modes are looked for [default: all lines]
+    #[cfg_attr(feature = "cli", arg(value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
+    pub band: Option<(f64, f64)>,
+    /// Number of modes [default: all that stand out of the noise]
+    pub modes: Option<usize>,
+}
+
+impl OfFile for Keys {
+    fn measure(&self, source: &Source<'_>) -> Result<Answer> {
+        let recording = source.recording()?;
+        let trace = source.trace(&recording)?;
+        let found = decay(&trace, &DecayOptions { band: self.band, modes: self.modes })?;
+        let mut answer = Answer::of(&found)?;
+        answer.add("", &found.findings);
+        answer.add("", &recording.findings);
+        answer.add("", &trace.meta.findings);
+        answer.table("modes", modes(source.name, &found));
+        if !found.levels.is_empty() {
+            answer.table("levels", levels(&found));
+        }
+        answer.figure("decay", figures::decay(source.name, &trace.meta, &found));
+        Ok(answer)
+    }
+}
+
+fn modes(name: &str, found: &DecayResult) -> Table {
+    let title = if name.is_empty() { "Modes".to_owned() } else { format!("Modes, {name}") };
+    let table = table(
+        title,
+        &found.modes,
+        &[
+            ("frequency", "Hz", &|mode| Cell::from(&mode.frequency)),
+            ("damping ratio", "1", &|mode| Cell::from(&mode.zeta)),
+            ("amplitude", unit(found), &|mode| Cell::from(&mode.amplitude)),
+            ("phase", "rad", &|mode| Cell::from(&mode.phase)),
+        ],
+    );
+    let (start, end) = (found.start, found.end);
+    let note = format!("Amplitude and phase at {start:.6} s; used up to {end:.6} s.");
+    let decrement = found.decrement.as_ref().map(|ratio| {
+        let std = ratio.std.map_or_else(String::new, |std| format!(" ± {std:.2e}"));
+        format!(" Logarithmic decrement of the strongest: damping ratio {:.6}{std}.", ratio.value)
+    });
+    table.note(note + &decrement.unwrap_or_default())
+}
+
+/// That of the amplitudes.
+fn unit(found: &DecayResult) -> &'static str {
+    found.modes.first().map_or("", |mode| mode.amplitude.unit)
+}
+
+/// The strongest mode over its amplitude.
+fn levels(found: &DecayResult) -> Table {
+    table(
+        "Damping over amplitude",
+        &found.levels,
+        &[
+            ("from", "s", &|level| level.start.into()),
+            ("amplitude", unit(found), &|level| Cell::from(&level.mode.amplitude)),
+            ("frequency", "Hz", &|level| Cell::from(&level.mode.frequency)),
+            ("damping ratio", "1", &|level| Cell::from(&level.mode.zeta)),
+        ],
+    )
+}
+
+impl Analysis for Keys {
+    const SECTION: &'static str = "decay";
+
+    fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
+        entry.file.as_ref().ok_or_else(no_file).map(drop)
+    }
+
+    fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
+        job.each("decays", entries, Marks::Numbers, |entry, source| Ok(vec![entry.keys.measure(source)?]))
+    }
+}
