@@ -1,9 +1,10 @@
-//! Makes the records of the example bench: a mass on a spring, shaken at random, and one contact pulse.
+//! Makes the records of the example bench: a mass on a spring, shaken at random and let go, and one contact pulse.
 //!
 //! `cargo run --release --example bench [FOLDER]` writes into FOLDER, by default into this example's own. The same bytes come out every
 //! time: the noise has a fixed seed.
 //!
 //! - `BENCH.CSV`: force and velocity of 0.125 kg on a spring and a damper (60 Hz, ζ = 0.02), 4 s at 1024 Hz;
+//! - `DECAY.CSV`: displacement of the same mass, held 2 mm aside and let go at 0.25 s, 2 s at 512 Hz;
 //! - `PULSE.CSV`: deceleration in a contact of spring and damper (500 Hz, ζ = 0.2), 4 ms at 50 kHz;
 //! - `FILTERED.CSV`: the same behind a Butterworth low-pass of order 2 at 2 kHz;
 //! - `TRUTH.csv`: what a perfect instrument would have found.
@@ -51,6 +52,19 @@ fn bench(noise: &mut Noise) -> String {
             x += step * v;
         }
         force = next;
+    }
+    text
+}
+
+fn decay(noise: &mut Noise) -> String {
+    let mut text = String::from("time [s],displacement [mm]\n");
+    let w = TAU * FREQUENCY;
+    let damped = w * (1.0 - ZETA * ZETA).sqrt();
+    for i in 0..1024 {
+        let time = f64::from(i) / 512.0;
+        let t = (time - 0.25).max(0.0);
+        let x = 2.0 * (-ZETA * w * t).exp() * ((damped * t).cos() + ZETA * w / damped * (damped * t).sin());
+        let _ = writeln!(text, "{time:.9},{:.5}", x + 0.01 * noise.next());
     }
     text
 }
@@ -105,6 +119,7 @@ fn main() -> Result<()> {
         ("BENCH.CSV", bench(&mut noise)),
         ("PULSE.CSV", pulse(&mut noise)),
         ("FILTERED.CSV", filtered(&mut noise)),
+        ("DECAY.CSV", decay(&mut noise)),
         ("TRUTH.csv", truth),
     ];
     for (name, text) in files {

@@ -224,6 +224,25 @@ pub(super) struct Located {
     pub clipped: Vec<usize>,
 }
 
+/// Parts of a pulse that a structure swings back and forth behind it at least, of damping ratios up to a fifth.
+const RINGS: [f64; 2] = [0.5, 0.25];
+
+impl Located {
+    /// How far the record swings back behind the pulse and forth again, in parts of its height, where it rings.
+    pub fn ringing(&self, values: &[f64]) -> Option<[f64; 2]> {
+        let part = |v: &f64| (v - self.baseline) / self.height;
+        // Half the height of half a sine lasts two thirds of it.
+        let half = 1.5 * (self.flanks.1 - self.flanks.0);
+        let behind = |swings: f64| (self.flanks.1 + swings * half) as usize;
+        let largest = |from: usize, to: usize, sign: f64| {
+            let swing = values.get(from..to.min(values.len()))?.iter().map(|v| sign * part(v));
+            Some(swing.fold(0.0, f64::max))
+        };
+        let swings = [largest(behind(0.0), behind(1.5), -1.0)?, largest(behind(1.0), behind(2.5), 1.0)?];
+        (swings[0] > RINGS[0] && swings[1] > RINGS[1]).then_some(swings)
+    }
+}
+
 /// Fewest samples of a flat top.
 const FLAT: f64 = 3.0;
 

@@ -217,3 +217,17 @@ fn what_is_no_pulse_is_refused() {
     let options = PulseOptions { mass: Some(0.0), ..PulseOptions::default() };
     assert_eq!(pulse(&trace(record(), "m/s²"), &options).unwrap_err().exit_code(), 2);
 }
+
+/// The first half swing of a free decay looks like a contact that loses nothing.
+#[test]
+fn a_structure_that_rings_is_no_contact() {
+    for zeta in [0.012, 0.05, 0.15] {
+        let decay = |i: usize| {
+            let t = (i as f64 - 60.0) / 20.0 * std::f64::consts::TAU;
+            if t < 0.0 { 0.0 } else { (-zeta * t).exp() * t.sin() }
+        };
+        let values = (0..400).map(decay).collect();
+        let said = pulse(&trace(values, "m/s²"), &PulseOptions::default()).unwrap_err().to_string();
+        assert!(said.contains("the record rings") && said.contains("vibro decay"), "{zeta}: {said}");
+    }
+}
