@@ -72,6 +72,8 @@ pub struct DecayResult {
 
 /// Most sines of one record, those that do not decay with them.
 const MOST: usize = 12;
+/// Most lines that stand out and are no mode.
+const ODD: usize = 8;
 /// How often the largest line of pure noise may pass for a mode.
 const BY_CHANCE: f64 = 1e-4;
 /// Lines that are fitted on either side of a sine at least, and in parts of its width.
@@ -115,7 +117,7 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
     let Usable { mut part, block, limit, findings } = usable(trace, rate, options.band)?;
     let mut lengths = 2;
     let found = loop {
-        let found = Sines::of(&trace.values[part.clone()], rate, options)?;
+        let found = Sines::of(&trace.values[part.clone()], rate, options);
         let (group, m) = found.strongest().ok_or_else(|| {
             Error::refused("no mode stands out of the noise").hint("choose a band around it").setting("band")
         })?;
@@ -147,7 +149,7 @@ struct Sines {
 
 impl Sines {
     /// Finds the sines of a part, the strongest first.
-    fn of(part: &[f64], rate: f64, options: &DecayOptions) -> Result<Sines> {
+    fn of(part: &[f64], rate: f64, options: &DecayOptions) -> Sines {
         let n = part.len();
         let mean = part.iter().sum::<f64>() / n as f64;
         let level: Vec<f64> = part.iter().map(|v| v - mean).collect();
@@ -158,15 +160,13 @@ impl Sines {
         let band =
             options.band.map_or(all.clone(), |(low, high)| line(low).max(1)..(line(high) + 1).min(all.end));
         let mut sines = Sines { n, rate, groups: Vec::new(), odd: Vec::new() };
-        let mut all_lines = 0;
-        while all_lines < MOST + 8 && !options.modes.is_some_and(|count| sines.decaying() >= count) {
-            all_lines += 1;
+        while sines.count() < MOST
+            && sines.odd.len() < ODD
+            && options.modes.is_none_or(|count| sines.decaying() < count)
+        {
             let rest = sines.rest(&spectrum, None);
             let Some(top) = sines.next(&rest, band.clone()) else { break };
-            sines.add(&spectrum, top)?;
-            if sines.count() == MOST {
-                break;
-            }
+            sines.add(&spectrum, top);
         }
         for at in (0..sines.groups.len()).cycle().take(2 * sines.groups.len()) {
             let rest = sines.rest(&spectrum, Some(at));
@@ -181,7 +181,7 @@ impl Sines {
         let beside = |k: &usize| sines.groups.iter().any(|group| group.lines.contains(k));
         let left: Vec<usize> = sines.next(&rest, band).into_iter().filter(beside).collect();
         sines.odd.extend(left);
-        Ok(sines)
+        sines
     }
 
     fn count(&self) -> usize {
@@ -227,7 +227,7 @@ impl Sines {
     }
 
     /// Adds the sine of a line, fitted together with those near it.
-    fn add(&mut self, spectrum: &[Complex64], top: usize) -> Result<()> {
+    fn add(&mut self, spectrum: &[Complex64], top: usize) {
         let rest = self.rest(spectrum, None);
         let power = |k: usize| rest[k].norm_sqr();
         let half = |k: &usize| power(*k) > 0.5 * power(top);
@@ -268,14 +268,12 @@ impl Sines {
             let worth = without.is_none_or(|w| (w.left().0 - left) / OWN as f64 > WORTH * left / free as f64);
             inside && worth && group.sines[..old.len()].iter().all(alone)
         });
-        match good {
-            Some(group) => self.groups.push(group),
-            None => {
-                self.odd.push(top);
-                self.groups.extend(near);
-            }
+        if let Some(group) = good {
+            self.groups.push(group);
+        } else {
+            self.odd.push(top);
+            self.groups.extend(near);
         }
-        Ok(())
     }
 
     /// Samples at the beginning of a part in which something else acts, as the contact of a blow: what is left falls at once behind it.

@@ -107,14 +107,6 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         );
         return Err(Error::refused(why).hint("sample faster"));
     }
-    if let Some([back, forth]) = located.ringing(&trace.values) {
-        let (back, forth) = (100.0 * back, 100.0 * forth);
-        let why = format!(
-            "the record rings: behind its largest swing it swings back to −{back:.0} % of it and forth to {forth:.0} %, and a contact pushes once"
-        );
-        return Err(Error::refused(why)
-            .hint("`vibro decay` measures a ringing; for the contact record its force, or closer to it"));
-    }
     let filter = options.instrument.low_pass();
     let (mut found, mut known) = (Vec::new(), true);
     if options.instrument == Instrument::Unknown {

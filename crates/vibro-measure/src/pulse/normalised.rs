@@ -229,7 +229,7 @@ const RINGS: [f64; 2] = [0.5, 0.25];
 
 impl Located {
     /// How far the record swings back behind the pulse and forth again, in parts of its height, where it rings.
-    pub fn ringing(&self, values: &[f64]) -> Option<[f64; 2]> {
+    fn ringing(&self, values: &[f64]) -> Option<[f64; 2]> {
         let part = |v: &f64| (v - self.baseline) / self.height;
         // Half the height of half a sine lasts two thirds of it.
         let half = 1.5 * (self.flanks.1 - self.flanks.0);
@@ -301,7 +301,16 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let run = (to + 1 - from) as f64;
     let is_flat = flat(run, flanks.1 - flanks.0, depth / height.abs());
     let clipped = if is_flat { (from..=to).collect() } else { Vec::new() };
-    Ok(Located { baseline, height, flanks, low, clipped })
+    let located = Located { baseline, height, flanks, low, clipped };
+    if let Some([back, forth]) = located.ringing(values) {
+        let (back, forth) = (100.0 * back, 100.0 * forth);
+        let why = format!(
+            "the record rings: behind its largest swing it swings back to −{back:.0} % of it and forth to {forth:.0} %, and a contact pushes once"
+        );
+        let hint = "`vibro decay` measures a ringing; for the contact record its force, or closer to it";
+        return Err(Error::refused(why).hint(hint));
+    }
+    Ok(located)
 }
 
 /// Whether `run` samples within `depth` (a part of the height) of the largest are a flat top of a pulse `width` samples wide at half
