@@ -376,6 +376,7 @@ fn every_option_of_a_command_is_a_key_of_its_section() {
         ("impacts", "impacts"),
         ("restitution", "drop"),
         ("modal", "frf"),
+        ("decay", "decay"),
         ("pulse", "pulse"),
     ];
     // A sweep lies in several files, and several commands show it.

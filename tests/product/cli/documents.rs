@@ -91,6 +91,11 @@ fn the_example_bench_gives_back_the_truth() {
     assert_eq!(results["spectra"][0]["level_unit"], "dB re 1 nm/s");
     assert_eq!(results["drops"][0]["name"], "striker on piston");
     assert_eq!(results["pulses"][2]["name"], "screen");
+    let mode = &results["decays"][0]["modes"][0];
+    for (key, truth) in [("frequency", 60.0), ("zeta", 0.02)] {
+        let (value, std) = (mode[key]["value"].as_f64().unwrap(), mode[key]["std"].as_f64().unwrap());
+        assert!((value - truth).abs() < 4.0 * std && std < 0.01 * truth, "{key}: {value} ± {std}");
+    }
 }
 
 #[test]
