@@ -17,13 +17,14 @@ const DEWESOFT: &str = "choose Export > UNV/UFF, MAT or CSV in Dewesoft";
 const UNFINISHED: &str = "finish it in the program that wrote it, and export CSV or MAT";
 const TEXT: &str = "choose the export as CSV or text";
 const SHEET: &str = "choose File > Save As > CSV, one sheet a file";
+const OCTAVE: &[u8] = b"# Created by Octave";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
 
 /// Name of a format, what tells it, and the export to choose.
 const TABLE: &[(&str, By, &str)] = &[
     ("a Polytec vibrometer file", Ending(&["svd", "pvd"]), UFF),
     ("a Dewesoft recording", Ending(&["dxd", "d7d", "dxz"]), DEWESOFT),
-    ("a text file of Octave", Bytes(0, b"# Created by Octave"), "save it with `save -v7 name.mat`"),
+    ("a text file of Octave", Bytes(0, OCTAVE), "save it with `save -v7 name.mat`"),
     ("a Siemens Testlab file", Ending(&["ldsf", "lms"]), UFF),
     ("an imc FAMOS file", Bytes(0, b"|CF,"), "choose Export > ASCII or TDMS in FAMOS"),
     ("an ASAM MDF 4 file", Bytes(0, b"MDF     4"), "export it as CSV or MAT, e.g. with asammdf"),
@@ -54,8 +55,12 @@ pub fn complaint(source: &Source) -> Option<Error> {
         Ending(endings) => endings.contains(&ending.as_str()) && !encoding::is_text(head),
         Bytes(at, begins) => head.get(*at..).is_some_and(|head| head.starts_with(begins)),
     };
-    // MAT-files of version 7.3 are HDF5 and have a complaint of their own.
-    let (name, _, export) = TABLE.iter().find(is).filter(|_| ending != "mat")?;
+    // MAT-files of version 7.3 are HDF5 and have a complaint of their own; one matrix of Octave reads as text.
+    let fine = |by: &By| match by {
+        Bytes(_, OCTAVE) => encoding::decode(head).matches("# name:").count() < 2,
+        _ => ending == "mat",
+    };
+    let (name, _, export) = TABLE.iter().find(is).filter(|(_, by, _)| !fine(by))?;
     let expected = format!("one of {}", super::Format::names().join(", "));
     Some(Error::input(Place::file(source.path()), *name, expected).hint(*export))
 }
@@ -74,6 +79,11 @@ mod tests {
             #[cfg(not(feature = "hdf5"))]
             ("x.h5", b"\x89HDF\r\n\x1a\n\0", ["HDF5", "MAT"]),
             ("x.dat", b"|CF,2,1,1;|CK,1,3,1,1;", ["FAMOS", "ASCII"]),
+            (
+                "x.mat",
+                b"# Created by Octave 8\n# name: t\n# type: scalar\n1\n\n\n# name: a\n# type: scalar\n2\n",
+                ["Octave", "save -v7"],
+            ),
         ] {
             let said = Reader::new().from_reader(name, head).unwrap_err();
             let said = said.to_string();

@@ -34,7 +34,9 @@ use vibro_record::units::Unit;
 use vibro_record::{Error, Finding, Meta, Result, Values};
 
 /// Bytes that are read at a time.
-const BLOCK: usize = 1 << 20;
+const BLOCK: usize = if cfg!(test) { 64 } else { 1 << 20 };
+/// Values of a channel that are looked at together: taking a few at a time through its scales would take long.
+const LOOK: usize = if cfg!(test) { 4 } else { 1 << 16 };
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
     head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
@@ -66,6 +68,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             .map_err(|e| Error::io("read", source.path(), e))
     };
     raw.par_chunks_mut(each).enumerate().try_for_each(fill)?;
+    raw.par_iter_mut().filter(|raw| matches!(raw.kept, Kept::Ends(_))).for_each(|raw| raw.look(0));
     if raw.iter().any(|raw| matches!(raw.kept, Kept::Ends(ends) if !ends.finite())) {
         return read(source, options, false);
     }
@@ -163,13 +166,14 @@ struct Raw<'a> {
 }
 
 impl Raw<'_> {
-    /// Keeps what is needed of the values so far.
-    fn look(&mut self) {
+    /// Keeps what is needed of the values so far, where there are more than so many.
+    fn look(&mut self, many: usize) {
+        if self.columns.iter().all(|column| column.len() <= many) {
+            return;
+        }
         let new = matches!(self.kept, Kept::Undecided);
         let (mut ends, columns) = match self.kept {
-            Kept::Undecided if self.columns.iter().any(|column| column.len() > 1) => {
-                (Extremes::NONE, self.columns.clone())
-            }
+            Kept::Undecided => (Extremes::NONE, self.columns.clone()),
             Kept::Ends(ends) => (ends, std::mem::take(&mut self.columns)),
             _ => return,
         };
@@ -231,7 +235,7 @@ fn values(
                     field.kind.take(&block, field.offset, width, layout.big_endian, column);
                 }
                 for field in &part.fields {
-                    raw[field.object - first].look();
+                    raw[field.object - first].look(LOOK);
                 }
             }
         }

@@ -86,7 +86,11 @@ impl Walk<'_> {
         let data = match class.as_str() {
             _ if empty => Some(Data::Numbers(Values::Real(Vec::new()).into())),
             "char" if dimensions.first() == Some(&1) => self.file.data(name, dataset, false),
-            class if NUMBERS.contains(&class) => self.file.data(name, dataset, self.survey),
+            // Matrices are taken apart.
+            class if NUMBERS.contains(&class) => {
+                let vector = dimensions.iter().filter(|n| **n > 1).count() == 1;
+                self.file.data(name, dataset, self.survey && vector)
+            }
             "char" => Some(Data::Other("char array of several rows")),
             "logical" => Some(Data::Other("logical array")),
             _ => Some(Data::Other("object")),

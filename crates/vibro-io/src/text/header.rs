@@ -42,7 +42,7 @@ const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequenc
                     messfrequenz";
 const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
                     interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|\
-                    x delta|xdelta|sample time|sampling time|abtastintervall";
+                    x delta|xdelta|abtastintervall";
 /// Keys of what the abscissa is, or of its unit.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
 
@@ -65,7 +65,7 @@ impl Stated {
                 stated.notes.push((key.to_owned(), value.to_owned()));
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
                 let hertz = value.to_lowercase();
-                let hertz = hertz.contains("hz") || hertz.contains("hertz") || hertz.contains("frequency");
+                let hertz = matches!(hertz.as_str(), "hz" | "hertz") || hertz.starts_with("frequency");
                 lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
                 if key.is_empty() {
                     free_text(line, &mut stated);
@@ -74,10 +74,10 @@ impl Stated {
                 }
             }
         }
-        if lines_apart {
+        if lines_apart && stated.of_one_series {
             let step = stated.rate.take().map(|rate| 1.0 / rate);
-            stated.line_width =
-                step.filter(|_| stated.start.is_none_or(|start| start == 0.0)).or(stated.line_width);
+            let step = step.filter(|_| stated.start.is_none_or(|start| start == 0.0));
+            stated.line_width = stated.line_width.or(step);
         }
         stated
     }
@@ -127,7 +127,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         // Without a unit these may be anything, but for an increment beside a start.
-        "rate" | "clock" | "delta" | "interval" | "time interval" if bare => {}
+        "rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval" | "time interval" if bare => {}
         "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
             stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)]).and_then(line_count);
@@ -141,7 +141,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         key if STEP.split('|').any(|known| known == key) => {
             let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
             stated.of_one_series |= rate.is_some();
-            stated.rate = rate.or(stated.rate);
+            stated.rate = stated.rate.or(rate);
         }
         "npts" | "number of points" | "number of samples" | "record length" | "memory length"
         | "blocksize" | "total data points" => {
@@ -216,8 +216,9 @@ fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> 
         printed.contains(',') && !printed.contains('.') && !number::may_be_grouped(printed.as_bytes());
     let (number, used) = number::prefix(value.as_bytes(), if comma { b',' } else { b'.' })?;
     // `44100 Hz.  Linear scale.`
-    let rest = value.get(used..)?.split_whitespace().next().unwrap_or_default();
-    let rest = rest.trim_end_matches(['.', ',', ';']).trim_matches(['[', ']']).to_lowercase();
+    let rest = value.get(used..)?.trim();
+    let first = rest.split_whitespace().next().filter(|word| word.ends_with(['.', ',', ';'])).unwrap_or(rest);
+    let rest = first.trim_end_matches(['.', ',', ';']).trim_matches(['[', ']']).to_lowercase();
     let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
     let factor = units.iter().find(|u| u.0 == unit)?.1;
     Some(number * factor)

@@ -48,6 +48,7 @@ pub fn build(
     let again =
         |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
     let plain = dialect.names.is_none();
+    let plain = plain && printed.as_ref().is_some_and(|axis| table.iter().any(|c| !again(c, axis)));
     table.retain(|column| !printed.as_ref().is_some_and(|axis| (is_table || plain) && again(column, axis)));
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     let has_axis = printed.is_some();

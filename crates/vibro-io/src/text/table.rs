@@ -19,6 +19,7 @@ use super::{Text, in_line, shorten};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
 use std::ops::Range;
+use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Error, Result};
 
 /// From the one that stands in numbers least to the one that does most.
@@ -67,10 +68,12 @@ pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
             }
             // One column last: `1,5` under `a,b` is no decimal comma.
             let alone = |(separator, _): &(Separator, _)| fit(&above, line, *separator, 1, &text.head);
-            let mut below = Lines::new(&text.head, line.at, line.number, REMARKS).filter(|l| !l.is_blank());
-            let column = below
-                .nth(1)
-                .is_none_or(|l| SEPARATORS.iter().any(|mark| row(l.text, *mark, options) == Some(1)));
+            let mut below = Lines::new(&text.head, line.at, line.number, REMARKS)
+                .filter(|l| !l.is_blank() && l.remark.is_none());
+            let column = below.nth(1).is_none_or(|l| {
+                let one = SEPARATORS.iter().any(|mark| row(l.text, *mark, options) == Some(1));
+                one || number::is_missing(l.text.trim().as_bytes())
+            });
             if text.called_csv()
                 && misfit.is_none()
                 && column
@@ -199,10 +202,13 @@ fn fit(
     if used.is_empty() && columns > 1 && rises() {
         names[0].unit = preamble.axis_unit();
     }
-    // `min,CH1`: some head the column of times with its unit.
+    // `min,CH1`: some head the column of times with its unit; `s` is one where all are.
+    let units = names.iter().skip(1).all(|name| Unit::parse(&name.name).is_some());
     if let Some(first) = names.first_mut().filter(|first| first.unit.is_none() && columns > 1) {
         let timed = Name::with_unit_row("", &first.name);
-        if let Some(kind) = timed.axis(true).filter(|_| rises()) {
+        let extremes = first.name == "min" && spoken[0].text.to_lowercase().contains("max");
+        if let Some(kind) = timed.axis(true).filter(|_| (first.name != "s" || units) && !extremes && rises())
+        {
             let name = if kind == AxisKind::Time { "time" } else { "frequency" };
             *first = Name { name: name.to_owned(), ..timed };
         }
@@ -249,7 +255,7 @@ fn names_in(
         let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
         let quantity = |cell: &str| {
             let used = number::prefix(cell.as_bytes(), b'.').map_or(0, |(_, used)| used);
-            used > 0 && cell[used..].starts_with(char::is_alphabetic)
+            used > 0 && Unit::parse(&cell[used..]).is_some_and(|unit| unit.quantity() == Quantity::Time)
         };
         let upper_names = named(upper) && !upper.iter().any(|(_, cell)| quantity(cell));
         units.len() == upper.len() && upper_names && (*at == 0 || fits(units.len())) && is_unit_row(cells)
@@ -259,8 +265,9 @@ fn names_in(
         return Some((at..at + 2, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect()));
     }
     let lower = block.first().filter(|lower| named(lower) && !title)?;
-    // `Values;64;` counts what follows; `x-axis,1,2` numbers its channels.
-    let counts = lower.iter().any(|(_, cell)| number::parse(cell.as_bytes()).is_some());
+    // `Values;64;` counts what follows; `Angle,1,2` numbers its channels.
+    let numbers: Vec<f64> = lower.iter().filter_map(|(_, cell)| number::parse(cell.as_bytes())).collect();
+    let counts = numbers.iter().zip(1u8..).any(|(number, n)| *number != f64::from(n));
     let first = Name::parse(&lower[0].1);
     if counts && first.axis(true).is_none() && !first.counts() {
         return None;
@@ -273,7 +280,15 @@ fn names_in(
 /// Number of the line that says where rows begin: `data:`. 0 where there is none.
 pub(super) fn beginning(head: &str) -> u64 {
     let says = |line: &str| line.trim_end_matches([',', ';', '\t', ' ', '\r']).eq_ignore_ascii_case("data:");
-    head.lines().position(says).map_or(0, |at| at as u64 + 1)
+    let number = |line: &str| line.starts_with(|c: char| c.is_ascii_digit() || "+-. \t".contains(c));
+    let lines: Vec<&str> = head.lines().collect();
+    let all = (0..lines.len()).filter(|at| says(lines[*at]));
+    // Rows stand behind it, and none before it; one may be the value of a key.
+    let begins = |at: &usize| {
+        let rows = |range: Range<usize>| range.filter(|i| number(lines[*i])).count();
+        rows(at.saturating_sub(2)..*at) < 2 && rows(at + 1..(at + 2).min(lines.len())) > 0
+    };
+    all.filter(begins).last().map_or(0, |at| at as u64 + 1)
 }
 
 /// Whether a line holds types of numbers only: `f8`, `float`.

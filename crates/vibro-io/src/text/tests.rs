@@ -355,6 +355,56 @@ fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
     assert!((step - 1.0 / 1024.0).abs() <= 1e-3 / 19_999.0, "{step}");
 }
 
+/// The first record of a text without names.
+fn plain(text: String) -> Record {
+    Reader::new().from_reader("x.txt", text.as_bytes()).unwrap().records.swap_remove(0)
+}
+
+#[test]
+fn what_a_head_says_beside_the_values_is_said() {
+    let rows = |row: &dyn Fn(usize) -> String| (0..20).map(row).collect::<String>();
+    let counted = rows(&|i| format!("{},{}\n", (i * i) % 7, 3 * i));
+    let found = of(format!("SLOPE,0.001,1\nRATE,1000 Hz\nforce,turns\n{counted}"));
+    assert!(
+        has_finding(&found.all_findings(), "scale-in-head", &["scale=0.001"]),
+        "{:?}",
+        found.all_findings()
+    );
+    assert!(has_finding(&found.findings, "columns-rise-evenly", &["columns=turns"]), "{:?}", found.findings);
+    // A ramp in mm is a measurement, and a factor of 1 none.
+    let found = of(format!("SLOPE,1,1\nRATE,1000 Hz\nforce [N],way [mm]\n{counted}"));
+    assert!(found.all_findings().is_empty(), "{:?}", found.all_findings());
+    // Statements of which one does not mean what the other does.
+    let rate = |head: &str| match &plain(format!("{head}\n{}", rows(&|i| format!("{}\n", (i * i) % 7)))) {
+        Record::Trace(trace) => trace.rate(),
+        _ => panic!(),
+    };
+    assert_eq!(rate("Sample Rate: 44100 Hz.   Linear scale."), Some(44_100.0));
+    assert_eq!(rate("Frequency range: 20 Hz - 20 kHz"), None);
+    assert_eq!(rate("X-Axis: Frequency\nSampling rate: 2048 Hz\ndx: 0.5"), Some(2048.0));
+    assert_eq!(rate("Sampling rate: 1000 Hz\nDelta t: 10 s"), Some(1000.0));
+}
+
+#[test]
+fn the_cell_that_is_no_number_is_named() {
+    let said = |text: &str| read_with(&Reader::new(), text).unwrap_err().to_string();
+    let found = said("time,level\n0,4.2 mm/s\n1,4.3 mm/s\n");
+    assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
+    let found = said("n,gear,v\n1,N,0.5\n2,N,0.6\n");
+    assert!(found.contains("\"N\""), "{found}");
+}
+
+#[test]
+fn data_begins_where_it_is_said() {
+    let numbers = |text: &str| match plain(text.to_owned()) {
+        Record::Trace(trace) => trace.values,
+        _ => panic!(),
+    };
+    assert_eq!(numbers("dt:\n0.5\ndata:\n1.5\n2.5\n"), [1.5, 2.5]);
+    let said = read_with(&Reader::new(), "1.0\n2.5\n3.1\nData:\n4.0\n5.5\n").unwrap_err().to_string();
+    assert!(said.contains("line 4"), "{said}");
+}
+
 proptest! {
     #[test]
     fn never_panics_on_random_tables(text in "[tf \\[\\]Hzms,;\t\"#%:=\r\n0-9.eE+µ-]{0,120}") {
