@@ -175,7 +175,7 @@ impl Raw<'_> {
         let (mut ends, columns) = match self.kept {
             Kept::Undecided => (Extremes::NONE, self.columns.clone()),
             Kept::Ends(ends) => (ends, std::mem::take(&mut self.columns)),
-            _ => return,
+            Kept::Values => return,
         };
         self.kept = match self.scales.apply(&self.object.slots, columns) {
             Ok(Values::Real(mut values)) if !(new && rises(&values)) => {

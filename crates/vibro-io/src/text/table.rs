@@ -282,13 +282,13 @@ pub(super) fn beginning(head: &str) -> u64 {
     let says = |line: &str| line.trim_end_matches([',', ';', '\t', ' ', '\r']).eq_ignore_ascii_case("data:");
     let number = |line: &str| line.starts_with(|c: char| c.is_ascii_digit() || "+-. \t".contains(c));
     let lines: Vec<&str> = head.lines().collect();
-    let all = (0..lines.len()).filter(|at| says(lines[*at]));
+    let mut all = (0..lines.len()).rev().filter(|at| says(lines[*at]));
     // Rows stand behind it, and none before it; one may be the value of a key.
     let begins = |at: &usize| {
         let rows = |range: Range<usize>| range.filter(|i| number(lines[*i])).count();
         rows(at.saturating_sub(2)..*at) < 2 && rows(at + 1..(at + 2).min(lines.len())) > 0
     };
-    all.filter(begins).last().map_or(0, |at| at as u64 + 1)
+    all.find(begins).map_or(0, |at| at as u64 + 1)
 }
 
 /// Whether a line holds types of numbers only: `f8`, `float`.
