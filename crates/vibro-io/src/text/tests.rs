@@ -356,7 +356,7 @@ fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
 }
 
 /// The first record of a text without names.
-fn plain(text: String) -> Record {
+fn plain(text: &str) -> Record {
     Reader::new().from_reader("x.txt", text.as_bytes()).unwrap().records.swap_remove(0)
 }
 
@@ -375,7 +375,7 @@ fn what_a_head_says_beside_the_values_is_said() {
     let found = of(format!("SLOPE,1,1\nRATE,1000 Hz\nforce [N],way [mm]\n{counted}"));
     assert!(found.all_findings().is_empty(), "{:?}", found.all_findings());
     // Statements of which one does not mean what the other does.
-    let rate = |head: &str| match &plain(format!("{head}\n{}", rows(&|i| format!("{}\n", (i * i) % 7)))) {
+    let rate = |head: &str| match &plain(&format!("{head}\n{}", rows(&|i| format!("{}\n", (i * i) % 7)))) {
         Record::Trace(trace) => trace.rate(),
         _ => panic!(),
     };
@@ -396,7 +396,7 @@ fn the_cell_that_is_no_number_is_named() {
 
 #[test]
 fn data_begins_where_it_is_said() {
-    let numbers = |text: &str| match plain(text.to_owned()) {
+    let numbers = |text: &str| match plain(text) {
         Record::Trace(trace) => trace.values,
         _ => panic!(),
     };
