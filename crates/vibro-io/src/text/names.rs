@@ -109,7 +109,8 @@ impl Name {
         let by_unit = unit.as_ref().and_then(kind_of);
         let key = self.name.to_lowercase();
         let word = match key.as_str() {
-            "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" => Some(AxisKind::Time),
+            "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" | "relative time"
+            | "relative zeit" | "running time" | "time since start" => Some(AxisKind::Time),
             "frequency" | "freq" | "freq." | "frequenz" | "fréquence" => Some(AxisKind::Frequency),
             _ if first && begins(&key, "time") => Some(AxisKind::Time),
             _ if first && self.is_vague() && !self.counts() => Some(AxisKind::Time),

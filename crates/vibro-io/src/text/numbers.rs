@@ -9,7 +9,7 @@
 //! Complex values stand as `(re+imj)` or as two columns under a header with `real` and `imag`.
 
 use super::dialect::{Dialect, Separator};
-use super::lines::{Line, Lines, fields, is_torn};
+use super::lines::{Fields, Line, Lines, fields, is_torn};
 use super::table::beginning;
 use super::{Text, clock, in_line, names, shorten};
 use crate::{Format, Options, number};
@@ -104,22 +104,34 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     })
 }
 
-/// Names the cell that is no number in the first line of which most cells are.
+/// The cells of a line between tabs, semicolons or commas, else between blanks.
+fn cells<'a>(line: &Line<'a>) -> Option<Fields<'a>> {
+    let cut = |separator| fields(line.text, separator).ok();
+    let marks = [b'\t', b';', b','].map(Separator::Char).into_iter();
+    marks.filter_map(cut).find(|cells| cells.len() > 1).or_else(|| cut(Separator::Blank))
+}
+
+/// Names the cell that is no number in the first of the lines at the end that hold numbers in the same cells.
 fn stray(lines: &[Line]) -> Option<Error> {
     let begins = |cell: &str| number::prefix(cell.as_bytes(), b'.').is_some();
-    let is =
-        |cell: &str| [b'.', b','].iter().any(|mark| number::parse_with(cell.as_bytes(), *mark).is_some());
-    let odd = |line: &&Line| {
-        let cut = |separator| fields(line.text, separator).ok();
-        let marks = [b'\t', b';', b','].map(Separator::Char).into_iter();
-        let cells = marks.filter_map(cut).find(|cells| cells.len() > 1);
-        let cells = cells.or_else(|| cut(Separator::Blank))?;
-        let most = 2 * cells.iter().filter(|(_, cell)| begins(cell)).count() > cells.len();
-        let fine = |cell: &str| is(cell) || number::is_missing(cell.as_bytes()) || clock::is_clock(cell);
-        let (byte, cell) = cells.iter().find(|(_, cell)| most && !fine(cell))?;
-        Some((in_line(line.number).column(line.column(*byte)), shorten(cell)))
+    let numbers = |line: &Line| -> Vec<bool> {
+        cells(line).unwrap_or_default().iter().map(|(_, cell)| begins(cell)).collect()
     };
-    let (place, cell) = lines.iter().filter(|line| line.remark.is_none()).find_map(|line| odd(&line))?;
+    let lines: Vec<&Line> = lines.iter().filter(|line| line.remark.is_none()).collect();
+    let last = numbers(lines.last()?);
+    let first = lines.iter().rposition(|line| numbers(line) != last).map_or(0, |above| above + 1);
+    if lines.len() < first + 2 || !last.contains(&true) {
+        return None;
+    }
+    let fine = |cell: &str| {
+        let mut marks = [b'.', b','].into_iter();
+        let is = marks.any(|mark| number::parse_with(cell.as_bytes(), mark).is_some());
+        is || number::is_missing(cell.as_bytes()) || clock::is_clock(cell)
+    };
+    let row = cells(lines[first])?;
+    let (byte, cell) = row.iter().find(|(_, cell)| !fine(cell))?;
+    let place = in_line(lines[first].number).column(lines[first].column(*byte));
+    let cell = shorten(cell);
     Some(
         Error::input(place, format!("{cell:?}, and no row of numbers"), "numbers in all cells of a row")
             .hint("take out the column, or what is no number in its cells, and read again"),

@@ -16,6 +16,7 @@ use super::lines::{Fields, Line, Lines, fields, is_torn};
 use super::names::{Name, is_unit_row, unit_word};
 use super::preamble::{BESIDE, Preamble, beside, beside_rows, said};
 use super::{Text, in_line, shorten};
+use crate::assemble::kind_of;
 use crate::{Format, Options, number};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -257,8 +258,19 @@ fn names_in(
             let used = number::prefix(cell.as_bytes(), b'.').map_or(0, |(_, used)| used);
             used > 0 && Unit::parse(&cell[used..]).is_some_and(|unit| unit.quantity() == Quantity::Time)
         };
+        // Below a time in s, or a frequency in Hz, stand units, known or not.
+        let of_axis = || {
+            let kind = Unit::parse(&units[0].1).and_then(|unit| kind_of(&unit));
+            let numbers = units
+                .iter()
+                .any(|(_, cell)| number::prefix(cell.as_bytes(), b'.').is_some_and(|(_, n)| n == cell.len()));
+            kind.is_some() && kind == Name::parse(&upper[0].1).axis(true) && !numbers
+        };
         let upper_names = named(upper) && !upper.iter().any(|(_, cell)| quantity(cell));
-        units.len() == upper.len() && upper_names && (*at == 0 || fits(units.len())) && is_unit_row(cells)
+        units.len() == upper.len()
+            && upper_names
+            && (*at == 0 || fits(units.len()))
+            && (of_axis() || is_unit_row(cells))
     };
     if let Some(at) = (0..block.len() - 1).find(is_units) {
         let pairs = block[at + 1].iter().zip(&block[at]);

@@ -390,8 +390,25 @@ fn the_cell_that_is_no_number_is_named() {
     let said = |text: &str| read_with(&Reader::new(), text).unwrap_err().to_string();
     let found = said("time,level\n0,4.2 mm/s\n1,4.3 mm/s\n");
     assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
+    let found = said("Serial,12\nn,reading,unit,state\n1,0.5,Volt DC,F\n2,0.6,Volt DC,F\n");
+    assert!(found.contains("line 3, column 7") && found.contains("\"Volt DC\""), "{found}");
     let found = said("n,gear,v\n1,N,0.5\n2,N,0.6\n");
     assert!(found.contains("\"N\""), "{found}");
+}
+
+/// Units that are not known stand below a time in s all the same.
+#[test]
+fn units_below_an_axis_need_not_be_known() {
+    let found = of("Time,Light,Spread\ns,lux,G²/Hz\n0,1,2\n0.5,3,4\n1,5,7\n");
+    let names: Vec<_> =
+        found.records.iter().map(|r| (r.meta().name.as_str(), r.meta().unit.symbol())).collect();
+    assert_eq!(names, [("Light", "lux"), ("Spread", "G²/Hz")]);
+    assert_eq!(found.records[0].axis(), &Axis::time(0.0, 0.5, 3));
+    let found = of("Sample;Relative Zeit [ms];Weg [mm]\n0;-200,0;1,5\n1;-196,0;2,5\n2;-192,0;0,5\n");
+    let axis = found.records[0].axis();
+    // Differences of printed numbers round to 1e-16 of the largest.
+    assert!((axis.step().unwrap() - 0.004).abs() < 1e-15 && axis.kind == AxisKind::Time, "{axis:?}");
+    assert_eq!((found.records.len(), axis.start()), (1, -0.2));
 }
 
 #[test]
