@@ -7,16 +7,16 @@
 mod damped;
 mod usable;
 
+use super::mean::average;
 use super::residuals::chi_squared_above;
 use super::{Estimate, noise};
-use damped::{Damped, Group, OWN};
+use damped::{Damped, Group, LINES, OWN, lines};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::ops::Range;
-use usable::{Usable, usable};
+use usable::{Usable, levels, usable};
 use vibro_record::{Error, Finding, Result, Trace};
-use vibro_signal::fft::Transform;
 
 /// What is known of a decay beside its record.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -76,8 +76,6 @@ const MOST: usize = 12;
 const ODD: usize = 8;
 /// How often the largest line of pure noise may pass for a mode.
 const BY_CHANCE: f64 = 1e-4;
-/// Lines that are fitted on either side of a sine at least, and in parts of its width.
-const LINES: (f64, f64) = (8.0, 6.0);
 /// F of four more parameters to be worth them, at a chance of about 1e-4.
 const WORTH: f64 = 10.0;
 /// Two sines nearer than so many half-widths of the wider one are one that does not decay as a mode does.
@@ -151,10 +149,8 @@ impl Sines {
     /// Finds the sines of a part, the strongest first.
     fn of(part: &[f64], rate: f64, options: &DecayOptions) -> Sines {
         let n = part.len();
-        let mean = part.iter().sum::<f64>() / n as f64;
-        let level: Vec<f64> = part.iter().map(|v| v - mean).collect();
-        let spectrum: Vec<Complex64> =
-            Transform::new(n).forward(&level).iter().map(|line| line * (2.0 / n as f64)).collect();
+        let mean = average(part);
+        let spectrum = lines(&part.iter().map(|v| v - mean).collect::<Vec<f64>>());
         let line = |f: f64| (f * n as f64 / rate) as usize;
         let all = 1..spectrum.len() - 1;
         let band =
@@ -166,7 +162,7 @@ impl Sines {
         {
             let rest = sines.rest(&spectrum, None);
             let Some(top) = sines.next(&rest, band.clone()) else { break };
-            sines.add(&spectrum, top);
+            sines.add(&spectrum, &rest, top);
         }
         for at in (0..sines.groups.len()).cycle().take(2 * sines.groups.len()) {
             let rest = sines.rest(&spectrum, Some(at));
@@ -227,16 +223,14 @@ impl Sines {
     }
 
     /// Adds the sine of a line, fitted together with those near it.
-    fn add(&mut self, spectrum: &[Complex64], top: usize) {
-        let rest = self.rest(spectrum, None);
+    fn add(&mut self, spectrum: &[Complex64], rest: &[Complex64], top: usize) {
         let power = |k: usize| rest[k].norm_sqr();
         let half = |k: &usize| power(*k) > 0.5 * power(top);
         let wide = (top..rest.len() - 1).take_while(half).count() + (1..top).rev().take_while(half).count();
         let decay = std::f64::consts::PI * wide as f64;
-        let reach = |s: &Damped| LINES.0.max(LINES.1 * s.width());
         let new = Damped { periods: top as f64, decay, amplitude: Complex64::ZERO };
         let near = |group: &Group| {
-            group.sines.iter().any(|s| (s.periods - new.periods).abs() < 0.5 * (reach(s) + reach(&new)))
+            group.sines.iter().any(|s| (s.periods - new.periods).abs() < 0.5 * (s.reach() + new.reach()))
         };
         let (near, others): (Vec<Group>, Vec<Group>) = self.groups.drain(..).partition(near);
         self.groups = others;
@@ -249,7 +243,7 @@ impl Sines {
         let mut best: Option<Group> = None;
         for decay in [0.3 * decay, decay, 0.2] {
             let sines: Vec<Damped> = old.iter().copied().chain([Damped { decay, ..new }]).collect();
-            let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * reach(s));
+            let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * s.reach());
             let low = ends(-1.0).fold(f64::INFINITY, f64::min).max(1.0) as usize;
             let high = ends(1.0).fold(0.0, f64::max) as usize + 1;
             let lines = low..high.max(low + 2 * OWN * (sines.len() + 1)).min(rest.len() - 1);
@@ -279,11 +273,7 @@ impl Sines {
     /// Samples at the beginning of a part in which something else acts, as the contact of a blow: what is left falls at once behind it.
     fn contact(&self, part: &[f64], block: usize) -> Option<usize> {
         let left = self.left(part);
-        let level = |block: &[f64]| {
-            let mean = block.iter().sum::<f64>() / block.len() as f64;
-            (block.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / block.len() as f64).sqrt()
-        };
-        let levels: Vec<f64> = left.chunks_exact(block).map(level).collect();
+        let levels = levels(&left, block);
         let largest = levels.iter().copied().fold(0.0, f64::max);
         let first = self.strongest().map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
         let clear = |level: f64| level > 5e-3 * first && level > 0.3 * largest;
@@ -310,7 +300,10 @@ impl Sines {
         for (group, m) in self.all() {
             let mode = mode(group, m, self.n, self.rate, unit);
             if decays(group, m) {
-                let doubted = self.odd.iter().any(|k| near(&group.sines[m], *k));
+                let doubted = self
+                    .odd
+                    .iter()
+                    .any(|k| (group.sines[m].periods - *k as f64).abs() < group.sines[m].reach());
                 modes.push(if doubted { mode.without_uncertainty() } else { mode });
                 decaying.push((group, m));
                 if doubted {
@@ -384,8 +377,7 @@ impl Sines {
         let n = self.n / stretches;
         let starts = [(own.periods / stretches as f64, own.decay / stretches as f64)];
         let levels = alone.chunks_exact(n).enumerate().filter_map(|(i, stretch)| {
-            let lines = Transform::new(n).forward(stretch);
-            let spectrum: Vec<Complex64> = lines.iter().map(|line| line * (2.0 / n as f64)).collect();
+            let spectrum = lines(stretch);
             let centre = starts[0].0 as usize;
             let range = centre.saturating_sub(LINES.0 as usize).max(1)
                 ..(centre + LINES.0 as usize + 2).min(spectrum.len() - 1);
@@ -406,11 +398,6 @@ impl Sines {
             });
         (levels, decrement)
     }
-}
-
-/// Whether a line lies where a sine has most of its power.
-fn near(sine: &Damped, k: usize) -> bool {
-    (sine.periods - k as f64).abs() < LINES.0.max(LINES.1 * sine.width())
 }
 
 /// Whether a sine surely decays.

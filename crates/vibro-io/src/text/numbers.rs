@@ -124,9 +124,8 @@ fn stray(lines: &[Line]) -> Option<Error> {
         return None;
     }
     let fine = |cell: &str| {
-        let mut marks = [b'.', b','].into_iter();
-        let is = marks.any(|mark| number::parse_with(cell.as_bytes(), mark).is_some());
-        is || number::is_missing(cell.as_bytes()) || clock::is_clock(cell)
+        let bytes = cell.as_bytes();
+        number::either(bytes).is_some() || number::is_missing(bytes) || clock::is_clock(cell)
     };
     let row = cells(lines[first])?;
     let (byte, cell) = row.iter().find(|(_, cell)| !fine(cell))?;

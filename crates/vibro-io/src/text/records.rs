@@ -126,12 +126,17 @@ impl Column {
 
     /// Whether it rises as a clock or a counter does, and has no unit of anything else.
     fn rises_evenly(&self) -> bool {
-        let values = self.reals();
-        let steps = || values.windows(2).map(|w| w[1] - w[0]);
-        let (low, high) = steps().fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), s| (l.min(s), h.max(s)));
         let unit = self.name.unit.as_deref();
         let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
-        !other && values.len() > 10 && low > 0.0 && high - low <= 1e-3 * high
+        let values = self.values.reals().filter(|values| !other && values.len() > 10);
+        // Ends with the first step that is another: long records hold it soon.
+        let even = |(low, high): (f64, f64), step: f64| {
+            let (low, high) = (low.min(step), high.max(step));
+            (low > 0.0 && high - low <= 1e-3 * high).then_some((low, high))
+        };
+        values.is_some_and(|values| {
+            values.windows(2).map(|w| w[1] - w[0]).try_fold((f64::INFINITY, 0.0), even).is_some()
+        })
     }
 
     fn counts(&self) -> bool {

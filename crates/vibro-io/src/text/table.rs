@@ -197,8 +197,7 @@ fn fit(
     if let Some(cells) = clock.clone().filter(|cells| cells.end <= columns) {
         names.splice(cells, [Name { name: "time".to_owned(), unit: Some("s".to_owned()) }]);
     }
-    let value = |cell: &[u8]| number::parse(cell).or_else(|| number::parse_with(cell, b','));
-    let begin = || rows.iter().map(|row| value(row.get(skipped)?.1.as_bytes()));
+    let begin = || rows.iter().map(|row| number::either(row.get(skipped)?.1.as_bytes()));
     let rises = || begin().zip(begin().skip(1)).all(|(a, b)| a < b);
     if used.is_empty() && columns > 1 && rises() {
         names[0].unit = preamble.axis_unit();
@@ -291,23 +290,34 @@ fn names_in(
 
 /// Number of the line that says where rows begin: `data:`. 0 where there is none.
 pub(super) fn beginning(head: &str) -> u64 {
-    let says = |line: &str| line.trim_end_matches([',', ';', '\t', ' ', '\r']).eq_ignore_ascii_case("data:");
     let number = |line: &str| line.starts_with(|c: char| c.is_ascii_digit() || "+-. \t".contains(c));
-    let lines: Vec<&str> = head.lines().collect();
-    let mut all = (0..lines.len()).rev().filter(|at| says(lines[*at]));
+    let begin = |at: &usize| head[..*at].rfind('\n').map_or(0, |end| end + 1);
+    // Few heads hold a colon: the others are told at once.
+    let says = |at: &usize| {
+        let rest = head[at + 1..].lines().next().unwrap_or_default();
+        head[begin(at)..*at].eq_ignore_ascii_case("data")
+            && rest.trim_matches([',', ';', '\t', ' ']).is_empty()
+    };
     // Rows stand behind it, and none before it; one may be the value of a key.
     let begins = |at: &usize| {
-        let rows = |range: Range<usize>| range.filter(|i| number(lines[*i])).count();
-        rows(at.saturating_sub(2)..*at) < 2 && rows(at + 1..(at + 2).min(lines.len())) > 0
+        let before = head[..begin(at)].lines().rev().take(2).filter(|line| number(line)).count();
+        before < 2 && head[*at..].lines().nth(1).is_some_and(number)
     };
-    all.find(begins).map_or(0, |at| at as u64 + 1)
+    let colons = head.rmatch_indices(':').map(|(at, _)| at);
+    let found = colons.filter(says).find(begins);
+    found.map_or(0, |at| head[..at].matches('\n').count() as u64 + 1)
 }
 
 /// Whether a line holds types of numbers only: `f8`, `float`.
 fn is_types(line: &Line, separator: Separator) -> bool {
     const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
     let known = |(_, cell): &(usize, Cow<str>)| TYPES.contains(&cell.to_lowercase().as_str());
-    fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
+    let begins = |kind: &&str| {
+        let first = line.text.trim_start_matches(['"', ' ']).get(..kind.len());
+        first.is_some_and(|first| first.eq_ignore_ascii_case(kind))
+    };
+    TYPES.iter().any(begins)
+        && fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
 }
 
 /// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.

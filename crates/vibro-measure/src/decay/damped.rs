@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
+use vibro_signal::fft::Transform;
 
 /// One sine Re(c e^((−d + 2πiκ) t/T)) over a part of duration T.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +26,7 @@ pub struct Damped {
 impl Damped {
     /// Line `k` of a part of `n` samples, (2/N) Σ xⱼ e^(−2πijk/N).
     pub fn line(&self, k: usize, n: usize) -> Complex64 {
-        let [own, image] = lines(self.periods, self.decay, k, n);
+        let [own, image] = exponentials(self.periods, self.decay, k, n);
         self.amplitude * own + self.amplitude.conj() * image
     }
 
@@ -39,10 +40,24 @@ impl Damped {
     pub fn width(&self) -> f64 {
         (self.decay.abs() / TAU).max(1.0)
     }
+
+    /// Lines on either side that it is fitted to.
+    pub fn reach(&self) -> f64 {
+        LINES.0.max(LINES.1 * self.width())
+    }
+}
+
+/// Lines that are fitted on either side of a sine at least, and in parts of its width.
+pub const LINES: (f64, f64) = (8.0, 6.0);
+
+/// The lines of a part as [`Damped::line`] has them.
+pub fn lines(part: &[f64]) -> Vec<Complex64> {
+    let n = part.len();
+    Transform::new(n).forward(part).iter().map(|line| line * (2.0 / n as f64)).collect()
 }
 
 /// Line `k` of e^((−d ± 2πiκ) j/N), divided by N.
-fn lines(periods: f64, decay: f64, k: usize, n: usize) -> [Complex64; 2] {
+fn exponentials(periods: f64, decay: f64, k: usize, n: usize) -> [Complex64; 2] {
     let all = n as f64;
     [periods, -periods].map(|at| {
         let step = Complex64::new(-decay, TAU * (at - k as f64)) / all;
@@ -159,7 +174,7 @@ fn start(spectrum: &[Complex64], range: &Range<usize>, n: usize, starts: &[(f64,
             (matrix[(2 * i, column)], matrix[(2 * i + 1, column)]) = (value.re, value.im);
         };
         for (m, (periods, decay)) in starts.iter().enumerate() {
-            let [own, image] = lines(*periods, *decay, k, n);
+            let [own, image] = exponentials(*periods, *decay, k, n);
             put(2 * m, own + image);
             put(2 * m + 1, Complex64::i() * (own - image));
         }
@@ -180,7 +195,6 @@ fn start(spectrum: &[Complex64], range: &Range<usize>, n: usize, starts: &[(f64,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vibro_signal::fft::Transform;
 
     /// Against the transform of the samples; the geometric sum of N terms rounds to N ε.
     #[test]

@@ -1,5 +1,7 @@
 //! The part of a record in which motion decays freely.
 
+use crate::mean::average;
+use num_complex::Complex64;
 use std::ops::Range;
 use vibro_record::{Error, Finding, Result, Scaling, Trace, Window};
 use vibro_signal::fft::Transform;
@@ -75,11 +77,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
         Some(_) => within(&trace.values, low..high),
         None => trace.values.clone(),
     };
-    let level = |block: &[f64]| {
-        let mean = block.iter().sum::<f64>() / block.len() as f64;
-        (block.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / block.len() as f64).sqrt()
-    };
-    let levels: Vec<f64> = values.chunks_exact(block).map(level).collect();
+    let levels = levels(&values, block);
     let top = (0..levels.len()).max_by(|a, b| levels[*a].total_cmp(&levels[*b])).unwrap_or(0);
     let mut sorted = levels.clone();
     sorted.sort_by(f64::total_cmp);
@@ -93,7 +91,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let limit = begins.map_or(n, |b| (b - 1) * block);
     let last = (top + 1..levels.len()).find(|b| levels[*b] < gone).unwrap_or(levels.len());
     let around_top = top * block..((top + 2) * block).min(n);
-    let mean = values[around_top.clone()].iter().sum::<f64>() / around_top.len() as f64;
+    let mean = average(&values[around_top.clone()]);
     let size = |i: &usize| (values[*i] - mean).abs();
     let mut start = around_top.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
     let mut findings = Vec::new();
@@ -122,13 +120,21 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     Ok(Usable { part: start..end, block, limit, findings })
 }
 
+/// Root mean square of each whole block about its mean.
+pub fn levels(values: &[f64], block: usize) -> Vec<f64> {
+    let level = |block: &[f64]| {
+        let mean = average(block);
+        (block.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / block.len() as f64).sqrt()
+    };
+    values.chunks_exact(block).map(level).collect()
+}
+
 /// The record with the lines of a band only.
 fn within(values: &[f64], band: Range<usize>) -> Vec<f64> {
     let transform = Transform::new(values.len());
     let mut lines = transform.forward(values);
-    for (_, line) in lines.iter_mut().enumerate().filter(|(k, _)| !band.contains(k)) {
-        *line *= 0.0;
-    }
+    lines.truncate(band.end);
+    lines[..band.start].fill(Complex64::ZERO);
     transform.inverse(&lines)
 }
 
