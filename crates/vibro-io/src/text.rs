@@ -19,6 +19,7 @@ mod records;
 mod rows;
 mod table;
 mod tail;
+mod words;
 mod wrapped;
 
 use crate::held::Contents;
@@ -58,12 +59,14 @@ impl<'a> Text<'a> {
     }
 }
 
-/// Hands a source to `read`, UTF-16 and lone CRs turned into UTF-8 with LF.
+/// Hands a source to `read`, UTF-16, other scripts and lone CRs turned into UTF-8 with LF.
 fn with_text<T>(source: &Source, read: impl FnOnce(&Text) -> Result<T>) -> Result<T> {
     let head = source.head();
     let cut = source.len() > head.len() as u64;
     let converted = if encoding::is_utf16(head) {
         Some(encoding::decode(&source.all()?).into_owned().into_bytes())
+    } else if let Some(encoding) = encoding::foreign(head) {
+        Some(encoding.decode(&source.all()?).0.into_owned().into_bytes())
     } else if encoding::lone_cr(head, cut) {
         Some(source.all()?.into_owned())
     } else {
@@ -84,19 +87,34 @@ pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
 }
 
 pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<Contents> {
-    with_text(source, |text| match table::detect(text, options) {
-        Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
-        None => Err(Error::usage(
+    let without_names = || {
+        Error::usage(
             "no row of numbers with names of columns right above it",
             "e.g. `time [s],velocity [mm/s]`, then rows of numbers",
         )
         .hint("read numbers without names as the format ascii")
-        .setting("format")),
+        .setting("format")
+    };
+    with_text(source, |text| match table::detect(text, options) {
+        Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
+        None => without_words(text, options, without_names()),
     })
 }
 
 pub(crate) fn read_numbers(source: &Source, options: &Options, _: bool) -> Result<Contents> {
-    with_text(source, |text| read(text, &numbers::detect(text, options)?, options))
+    with_text(source, |text| match numbers::detect(text, options) {
+        Ok(dialect) => read(text, &dialect, options),
+        Err(why) => without_words(text, options, why),
+    })
+}
+
+/// What is left without its columns of words; where it has none, the complaint `why` it cannot be read.
+fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
+    let Some((source, found)) = words::left_out(text)? else { return Err(why) };
+    let read = if is_table(source.head(), &source) { read_table } else { read_numbers };
+    let mut contents = read(&source, options, false)?;
+    contents.findings.push(found);
+    Ok(contents)
 }
 
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Contents> {

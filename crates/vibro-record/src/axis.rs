@@ -114,6 +114,18 @@ impl Axis {
         }
     }
 
+    /// Every `step`-th value from `first` on.
+    pub fn every(&self, first: usize, step: usize) -> Axis {
+        let n = self.len().saturating_sub(first).div_ceil(step.max(1));
+        let grid = match &self.grid {
+            Grid::Even { step: own, .. } => Grid::Even { start: self.at(first), step: own * step as f64, n },
+            Grid::Uneven(values) => {
+                Grid::Uneven(values.iter().skip(first).step_by(step.max(1)).copied().collect())
+            }
+        };
+        Axis { kind: self.kind.clone(), grid }
+    }
+
     /// All values.
     pub fn values(&self) -> Vec<f64> {
         (0..self.len()).map(|i| self.at(i)).collect()

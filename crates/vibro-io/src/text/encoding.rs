@@ -1,5 +1,7 @@
 //! Bytes to text, whatever the instrument's code page.
 
+use chardetng::{EncodingDetector, Iso2022JpDetection, Utf8Detection};
+use encoding_rs::Encoding;
 use std::borrow::Cow;
 
 /// How many bytes are looked at to tell text from binary data.
@@ -21,7 +23,26 @@ pub fn name(head: &[u8]) -> Option<&'static str> {
     if is_utf16(head) {
         return Some("UTF-16");
     }
+    if let Some(encoding) = foreign(head) {
+        return Some(encoding.name());
+    }
     std::str::from_utf8(head).is_err_and(|e| e.error_len().is_some()).then_some("Latin-1")
+}
+
+/// The encoding of a text with words in another script, such as Shift JIS, GBK or Windows-1251; `None` for UTF-8 and Latin-1.
+///
+/// What stands alone among ASCII, as in `µm` or `Prüfkörper`, is taken as Latin-1 whatever else it may be.
+pub(crate) fn foreign(head: &[u8]) -> Option<&'static Encoding> {
+    const FEWEST: usize = 4;
+    let pairs = || head.windows(2).filter(|pair| !pair[0].is_ascii() && !pair[1].is_ascii());
+    let utf8 = std::str::from_utf8(head).map_or_else(|e| e.error_len().is_none(), |_| true);
+    if utf8 || is_utf16(head) || pairs().count() < FEWEST {
+        return None;
+    }
+    let mut detector = EncodingDetector::new(Iso2022JpDetection::Deny);
+    detector.feed(head, true);
+    let found = detector.guess(None, Utf8Detection::Allow);
+    (![encoding_rs::UTF_8, encoding_rs::WINDOWS_1252].contains(&found)).then_some(found)
 }
 
 /// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells nothing.
@@ -81,6 +102,26 @@ mod tests {
     fn latin1_superscripts() {
         assert_eq!(decode(b"g\xb2/Hz"), "g²/Hz");
         assert_eq!(decode(b"\xb5m"), "µm");
+    }
+
+    #[test]
+    fn words_of_other_scripts_are_told_from_latin1() {
+        for (text, encoding) in [
+            ("サンプリング周波数(Hz),1000\n時間,変位 μm\n", encoding_rs::SHIFT_JIS),
+            ("采样频率,1000\n时间,通道一加速度\n", encoding_rs::GBK),
+            ("Частота дискретизации;1000\nвремя;ускорение\n", encoding_rs::WINDOWS_1251),
+        ] {
+            let bytes = encoding.encode(text).0;
+            assert_eq!(name(&bytes), Some(encoding.name()));
+            assert_eq!(encoding.decode(&bytes).0, text);
+        }
+        for text in
+            ["time [s];a [µm];b [µm/m];c [µm]\n", "Kräfte über Prüfkörper: ±10 µV, 20 °C\n", "g²/Hz;g²/Hz"]
+        {
+            let latin1: Vec<u8> = text.chars().map(|c| u8::try_from(c).unwrap()).collect();
+            assert_eq!(name(&latin1), Some("Latin-1"), "{text}");
+        }
+        assert_eq!(name("変位 サンプリング".as_bytes()), None);
     }
 
     #[test]

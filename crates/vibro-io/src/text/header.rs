@@ -41,7 +41,7 @@ const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequenc
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
                     messfrequenz";
 const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
-                    interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|\
+                    interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
                     x delta|xdelta|abtastintervall";
 /// Keys of what the abscissa is, or of its unit.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
@@ -151,13 +151,18 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             let parsed = scaled(value, unit_in_key, &SECONDS);
             stated.start = parsed.filter(|start| *start == 0.0 || checked(start.abs()).is_some());
         }
+        "pre trigger length" | "pre trigger" | "pretrigger" | "pre trigger time" => {
+            let before = quantity(value.trim_start_matches('-'), unit_in_key, &SECONDS);
+            stated.start = before.filter(|_| !bare).map(|before| -before).or(stated.start);
+        }
         "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
             stated.line_width = hertz();
         }
         "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "amplitude unit"
         | "engineering unit" => {
             let unit = Some(value.trim_matches(['[', ']']).to_owned());
-            stated.unit = unit.filter(|v| !v.is_empty() && !v.contains(';'));
+            // One for each of several channels belongs to none.
+            stated.unit = unit.filter(|v| !v.is_empty() && !v.contains(';') && !v.contains(" and "));
         }
         "slope" | "scale factor" | "scaling factor" => {
             let other = |factor: &str| factor.parse::<f64>().is_ok_and(|factor| factor != 1.0);
@@ -169,7 +174,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
                 .or_else(|| Window::from_name(value));
         }
         "channel" | "name" | "title" | "channel name" | "signal" | "source" => {
-            stated.name = Some(value.to_owned()).filter(|v| !v.is_empty());
+            stated.name = Some(value.trim_matches('"').to_owned()).filter(|v| !v.is_empty());
         }
         _ => {}
     }

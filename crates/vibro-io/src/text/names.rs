@@ -3,8 +3,9 @@
 use super::dialect::Separator;
 use super::header;
 use crate::assemble::{domain, kind_of};
+use crate::number;
 use vibro_record::units::{Quantity, Unit, spelled};
-use vibro_record::{AxisKind, Error, Finding, Result};
+use vibro_record::{AxisKind, Error, Finding, Result, Scaling};
 
 /// Name and unit of a column.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -46,7 +47,7 @@ impl Name {
             let unit = long(name, unit).unwrap_or(unit);
             // `X (100g)` is a sensor of that range.
             let multiple = unit.starts_with(|c: char| c.is_ascii_digit()) && !unit.starts_with("1/");
-            let known = || Unit::parse_or_opaque(unit);
+            let known = || Unit::parse_or_opaque(amplitude(unit).0);
             (!name.is_empty()
                 && !multiple
                 && (known().is_known() || known().is_level() || matches!(unit, HOUR | DAY)))
@@ -77,6 +78,14 @@ impl Name {
                 Name { name: text.trim().to_owned(), unit: Some(unit) }
             }
         }
+    }
+
+    /// Reads `t/s`, `a/(m/s²)`: a quantity over its unit; `None` for other text.
+    pub(crate) fn over_unit(text: &str) -> Option<Name> {
+        let (name, unit) = text.split_once('/')?;
+        let unit = bare_unit(unit);
+        let known = Unit::parse(unit).is_some() && !name.trim().is_empty();
+        known.then(|| Name { name: name.trim().to_owned(), unit: Some(unit.to_owned()) })
     }
 
     /// Factor that takes this column as an abscissa to s or Hz, and a finding where something is assumed.
@@ -110,8 +119,12 @@ impl Name {
         let key = self.name.to_lowercase();
         let word = match key.as_str() {
             "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" | "relative time"
-            | "relative zeit" | "running time" | "time since start" => Some(AxisKind::Time),
-            "frequency" | "freq" | "freq." | "frequenz" | "fréquence" => Some(AxisKind::Frequency),
+            | "relative zeit" | "running time" | "time since start" | "время" | "时间" | "時間" => {
+                Some(AxisKind::Time)
+            }
+            "frequency" | "freq" | "freq." | "frequenz" | "fréquence" | "частота" | "频率" | "周波数" => {
+                Some(AxisKind::Frequency)
+            }
             _ if first && begins(&key, "time") => Some(AxisKind::Time),
             _ if first && self.is_vague() && !self.counts() => Some(AxisKind::Time),
             _ if first && begins(&key, "freq") => Some(AxisKind::Frequency),
@@ -180,8 +193,10 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
         return None;
     }
     // A number, a date or a clock names nothing; what ends with a unit may begin with a digit.
+    let decimal = |word: &str| word.contains('.') && number::parse(word.as_bytes()).is_some();
     let odd = |f: &String| {
-        f.contains(':') || (f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']))
+        let begins = f.starts_with(|c: char| c.is_ascii_digit()) && !f.ends_with([']', ')']);
+        f.contains(':') || begins || f.split(' ').any(decimal)
     };
     let fit = |fields: Vec<String>| (fields.len() == columns && !fields.iter().any(odd)).then_some(fields);
     let split = |at: &str| -> Vec<String> {
@@ -242,16 +257,29 @@ fn long(name: &str, unit: &str) -> Option<&'static str> {
 fn symbol(text: &str) -> &str {
     let lower = text.to_lowercase();
     match lower.strip_suffix('s').filter(|t| t.len() > 2).unwrap_or(&lower) {
-        "second" | "sec" | "sekunde" | "sekunden" => "s",
+        "second" | "sec" | "sekunde" | "sekunden" | "с" | "秒" => "s",
         "millisecond" | "msec" => "ms",
         "microsecond" | "usec" | "µsec" => "µs",
         "minute" => "min",
         "hour" => HOUR,
-        "hertz" => "Hz",
+        "hertz" | "гц" => "Hz",
         "kilohertz" => "kHz",
         "vdc" => "V",
         _ => text,
     }
+}
+
+/// A unit without what says that amplitudes are RMS or peak, and the scaling that this is: `Vrms`, `mm/s RMS`, `g pk`.
+pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
+    const SAID: [(&str, Scaling); 4] =
+        [("rms", Scaling::Rms), ("peak", Scaling::Peak), ("pk", Scaling::Peak), ("eff", Scaling::Rms)];
+    let without = |(word, scaling)| {
+        let at = unit.len().checked_sub(str::len(word)).filter(|at| unit.is_char_boundary(*at))?;
+        let bare = unit[..at].trim_end_matches([' ', '_', '(']);
+        let said = unit[at..].eq_ignore_ascii_case(word) && Unit::parse(bare).is_some() && !bare.is_empty();
+        said.then_some((bare, Some(scaling)))
+    };
+    SAID.into_iter().find_map(without).unwrap_or((unit, None))
 }
 
 /// Radians over a time: hertz only by 1/(2π).
@@ -272,7 +300,7 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {
         let unit = symbol(bare_unit(field));
-        let understood = Unit::parse(unit).is_some()
+        let understood = Unit::parse(amplitude(unit).0).is_some()
             || matches!(unit, "h" | "d" | HOUR)
             || COUNTERS.contains(&unit.to_lowercase().as_str());
         total += 1;
@@ -286,6 +314,7 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
 
 fn bare_unit(field: &str) -> &str {
     let field = field.trim();
+    let field = field.strip_prefix("Unit:").unwrap_or(field).trim_start();
     let inner = |open, close| field.strip_prefix(open).and_then(|f| f.strip_suffix(close));
     match inner('[', ']').or(inner('(', ')')) {
         // `(m/s²)/(N)` begins and ends with brackets too.

@@ -59,7 +59,7 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
             None => "no row of numbers".to_owned(),
         };
         return Err(Error::usage(found, "one or more numbers a line")
-            .hint("export the table with commas or tabs between its columns; give a list of files to `vibro response`"));
+            .hint("export it again as a table: names in the first line, then rows of numbers between commas or tabs"));
     };
     let (separator, decimal) = marks(&rows, options)?;
     let mut cells = fields(first.text, separator).unwrap_or_default();
@@ -69,7 +69,8 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
     let imaginary = |c: &str| {
         number::parse_with(c.as_bytes(), decimal).is_none() && complex(c.as_bytes(), decimal).is_some()
     };
-    let whole = imaginary(first.text.trim());
+    // Between commas stand two numbers.
+    let whole = !first.text.contains(',') && imaginary(first.text.trim());
     let complex = whole || cells.iter().any(|(_, c)| imaginary(c));
     // Rows above the first that do not parse are rows: reading will complain, with the place.
     let torn = |l: &&Line| l.remark.is_none() && is_torn(l.text, separator, cells.len());
@@ -151,6 +152,10 @@ fn count_and_step(rows: &[Line]) -> Option<String> {
 fn is_row(line: &[u8]) -> bool {
     let timed = line.contains(&b':');
     let mut numbers = 0;
+    let polar = |cell: &[u8]| number::parse(cell).is_some() || complex(cell, b'.').is_some();
+    if line.contains(&b'\t') && line.contains(&b'(') && line.split(|b| *b == b'\t').all(polar) {
+        return true;
+    }
     for token in line.split(|b| b" \t,;\r".contains(b)).filter(|t| !t.is_empty()) {
         if number::parse(token).is_some() || complex(token, b'.').is_some() {
             numbers += 1;
@@ -228,9 +233,12 @@ fn grouped(rows: &[Line]) -> bool {
     })
 }
 
-/// Reads `(re+imj)`, `re + im i` and the like; a bare number has no imaginary part and is accepted.
+/// Reads `(re+imj)`, `re + im i` and the like, and what circuit simulators print; a bare number has no imaginary part and is accepted.
 pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     let text = text.trim_ascii();
+    if let Some(comma) = text.iter().position(|b| *b == b',').filter(|_| decimal == b'.') {
+        return pair(&text[..comma], &text[comma + 1..]);
+    }
     let text = match text.strip_prefix(b"(") {
         Some(inner) => inner.strip_suffix(b")")?.trim_ascii(),
         None => text,
@@ -247,6 +255,17 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     let rest = rest[used..].trim_ascii_start();
     let rest = rest.strip_prefix(b"*").unwrap_or(rest);
     matches!(rest, [b'i' | b'j' | b'I' | b'J']).then_some(Complex64::new(first, sign * second))
+}
+
+/// Real and imaginary part, each with its exponent, since `1,234` is one number; or level and angle: `(-3.1e+00dB,4.5e+01°)`.
+fn pair(first: &[u8], second: &[u8]) -> Option<Complex64> {
+    let level = first.strip_prefix(b"(").and_then(|first| first.strip_suffix(b"dB"));
+    if let Some(level) = level.map(number::parse) {
+        let degrees = second.strip_suffix("°)".as_bytes()).and_then(number::parse)?;
+        return Some(Complex64::from_polar(10f64.powf(level? / 20.0), degrees.to_radians()));
+    }
+    let part = |text: &[u8]| number::parse(text).filter(|_| text.contains(&b'e'));
+    Some(Complex64::new(part(first)?, part(second)?))
 }
 
 #[cfg(test)]

@@ -24,10 +24,11 @@ pub const BESIDE: usize = 40;
 pub struct Preamble(Vec<Vec<String>>);
 
 const SOURCE: &[&str] = &["source", "tracename", "trace name", "signal", "signal name", "channel name", "ch"];
-const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units", "unit", "units"];
+pub const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units", "unit", "units"];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
-fn key(cell: &str) -> String {
+/// A cell as a key.
+pub fn key(cell: &str) -> String {
     cell.trim_end_matches(':').trim().replace('_', " ").to_lowercase()
 }
 

@@ -4,7 +4,7 @@ use super::Text;
 use super::axis::{Printed, choose};
 use super::dialect::Dialect;
 use super::header::Stated;
-use super::names::{Name, Part};
+use super::names::{Name, Part, amplitude};
 use super::rows::Rows;
 use super::tail;
 use crate::assemble::{self, Spectral, domain, from_values, kind_of, short, to_si};
@@ -26,15 +26,16 @@ pub fn build(
     options: &Options,
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Record>> {
-    let n = rows.columns.first().map_or(0, Values::len);
+    let n = rows.columns.iter().map(Values::len).max().unwrap_or(0);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
     let made = Made { text, tail, dialect, is_table, options, stated };
     let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
-    let columns = rows.columns.into_iter().zip(names).enumerate();
-    let mut table: Vec<Column> =
-        columns.map(|(i, (values, name))| Column { at: i + 1, name, values }).collect();
+    let sparse = rows.sparse.into_iter().chain(std::iter::repeat(None));
+    let columns = rows.columns.into_iter().zip(names).zip(sparse).enumerate();
+    let column = |(i, ((values, name), sparse))| Column { at: i + 1, name, values, sparse };
+    let mut table: Vec<Column> = columns.map(column).collect();
     let numbered = made.numbered(&table);
     if numbered {
         table.remove(0);
@@ -89,7 +90,14 @@ pub fn build(
         of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
     }
     for (i, column) in table.into_iter().enumerate() {
-        let mut record = made.record(i, column, &axis)?;
+        let sparse = column.sparse;
+        let mut record = match sparse {
+            Some((first, every)) => made.record(i, column, &axis.every(first, every))?,
+            None => made.record(i, column, &axis)?,
+        };
+        if let Some((_, every)) = sparse {
+            record.meta_mut().found(Finding::note("column-sparse").count("every", every));
+        }
         record.meta_mut().declared_n = declared;
         if !is_table {
             for found in &of_axis {
@@ -110,6 +118,8 @@ struct Column {
     at: usize,
     name: Name,
     values: Values,
+    /// First row and distance of its rows, where it has a value in some only.
+    sparse: Option<(usize, usize)>,
 }
 
 impl Column {
@@ -304,7 +314,7 @@ impl Made<'_> {
 
     /// The record of one column.
     fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Record> {
-        let Column { at, name: Name { name, unit }, mut values } = column;
+        let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
             (1, false) if !title.is_empty() => title.to_owned(),
@@ -330,18 +340,20 @@ impl Made<'_> {
             how.push(("decimal mark", &"comma"));
         }
         meta.step("read", &how);
-        let factor = self.options.adopt(&mut meta, unit.as_deref().or(self.stated.unit.as_deref()));
+        let unit = unit.as_deref().or(self.stated.unit.as_deref()).map(amplitude);
+        let factor = self.options.adopt(&mut meta, unit.map(|(unit, _)| unit));
         to_si(&mut values, factor)?;
-        let spectral = self.spectral(&meta.name, unit.as_deref());
+        let spectral = self.spectral(&meta.name, unit);
         assemble::record(meta, axis.clone(), values, spectral)
     }
 
     /// What remarks and the unit of a column say of its spectrum.
-    fn spectral(&self, name: &str, unit: Option<&str>) -> Spectral {
-        let density = unit.is_some_and(is_density).then_some(Scaling::Psd);
+    fn spectral(&self, name: &str, unit: Option<(&str, Option<Scaling>)>) -> Spectral {
+        let (unit, scaling) = unit.unwrap_or_default();
+        let by_unit = if is_density(unit) { Some(Scaling::Psd) } else { scaling };
         let own = self.said("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
-            scaling: self.said("scaling", name).and_then(|s| Scaling::from_name(&s)).or(density),
+            scaling: self.said("scaling", name).and_then(|s| Scaling::from_name(&s)).or(by_unit),
             // A remark about another column says nothing of this one.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),
@@ -376,7 +388,8 @@ fn one_clock(
         let rises = n > 1 && values.is_sorted_by(|a, b| a < b);
         rises.then(|| factor * (values[n - 1] - values[0]))
     };
-    for other in others.iter().filter(|c| c.name.axis(true).as_ref() == Some(kind)) {
+    let same = |c: &&Column| c.sparse.is_none() && c.name.axis(true).as_ref() == Some(kind);
+    for other in others.iter().filter(same) {
         if let Ok((theirs, _)) = other.name.to_axis(kind)
             // The columns of a channel with fewer values end in blanks.
             && let n = other.reals().iter().take_while(|v| v.is_finite()).count()

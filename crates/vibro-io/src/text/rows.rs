@@ -16,6 +16,8 @@ use vibro_record::{Error, Result, Values};
 pub struct Rows {
     /// One a column, all of one length; a missing value is NaN.
     pub columns: Vec<Values>,
+    /// First row and distance of the rows that have a value, for each column that has one in every second, third, … only.
+    pub sparse: Vec<Option<(usize, usize)>>,
     /// Number of missing values.
     pub missing: usize,
     /// Remarks between and behind the rows.
@@ -83,12 +85,33 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
             values.push(MISSING);
         }
     }
-    rows.missing =
+    let named = dialect.names.is_some() && !dialect.complex;
+    rows.sparse = columns.iter().map(|values| sparse(values).filter(|_| named)).collect();
+    let mut gaps = 0;
+    for (values, sparse) in columns.iter_mut().zip(&rows.sparse) {
+        match sparse {
+            Some((first, every)) => *values = values.iter().skip(*first).step_by(*every).copied().collect(),
+            None => gaps += values.iter().filter(|v| v.re.is_nan()).count(),
+        }
+    }
+    if gaps > 0 {
         missing.check("missing value(s) (NaN, Inf, over-range or blank) in line(s)", allow_missing)?;
+    }
+    rows.missing = gaps;
     let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
     let all = columns.into_iter();
     rows.columns = if dialect.complex { all.map(Values::Complex).collect() } else { all.map(real).collect() };
     Ok(rows)
+}
+
+/// First row and distance of the rows with a value, where these are even and no others have one: a channel of a lower rate.
+fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
+    let has = |i: &usize| !values[*i].re.is_nan();
+    let mut with = (0..values.len()).filter(has);
+    let (first, second) = (with.next()?, with.next()?);
+    let every = second - first;
+    let regular = (0..values.len()).all(|i| has(&i) == (i >= first && (i - first).is_multiple_of(every)));
+    (every > 1 && regular && values.len() > 3 * every).then_some((first, every))
 }
 
 const MISSING: Complex64 = Complex64::new(f64::NAN, 0.0);

@@ -14,7 +14,7 @@ use super::clock;
 use super::dialect::{Dialect, Separator};
 use super::lines::{Fields, Line, Lines, fields, is_torn};
 use super::names::{Name, is_unit_row, unit_word};
-use super::preamble::{BESIDE, Preamble, beside, beside_rows, said};
+use super::preamble::{BESIDE, Preamble, UNIT, beside, beside_rows, key, said};
 use super::{Text, in_line, shorten};
 use crate::assemble::kind_of;
 use crate::{Format, Options, number};
@@ -168,13 +168,18 @@ fn fit(
     count: usize,
     head: &str,
 ) -> Option<(Dialect, bool)> {
-    let spoken: Vec<&Line> =
-        above.iter().filter(|l| l.remark.is_none() && !is_types(l, separator)).rev().collect();
     let rows =
         Lines::new(head, first.at, first.number, REMARKS).filter(|l| !l.is_blank() && l.remark.is_none());
     let rows: Vec<Fields> = rows.take(BESIDE).map_while(|l| fields(l.text, separator).ok()).collect();
     // Keys of a preamble may have a column of their own, which is empty below.
     let skipped = usize::from(rows.len() > 1 && rows.iter().all(|row| row.len() > 1 && row[0].1.is_empty()));
+    // A line that has nothing above the values is none of their names.
+    let empty = |line: &Line| {
+        let cells = fields(line.text, separator).unwrap_or_default();
+        skipped > 0 && cells.iter().skip(skipped).all(|(_, cell)| cell.is_empty())
+    };
+    let spoken = above.iter().filter(|l| l.remark.is_none() && !is_types(l, separator) && !empty(l));
+    let spoken: Vec<&Line> = spoken.rev().collect();
     let values = rows.first()?.get(skipped..)?;
     let width = values.iter().rposition(|(_, f)| !f.is_empty()).map_or(0, |last| last + 1);
     let deepest = spoken.iter().take(DEEPEST);
@@ -253,6 +258,9 @@ fn names_in(
         let (units, upper) = (&block[*at], &block[*at + 1]);
         let outside = |i: &usize| !clock.is_some_and(|cells| cells.contains(i));
         let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
+        // `No.,OUT1` over `Unit,mm`: a label stands where a counter has no unit.
+        let labelled = usize::from(is_label(&units[0].1) && Name::parse(&upper[0].1).counts());
+        let cells = cells.skip(labelled);
         let quantity = |cell: &str| {
             let used = number::prefix(cell.as_bytes(), b'.').map_or(0, |(_, used)| used);
             used > 0 && Unit::parse(&cell[used..]).is_some_and(|unit| unit.quantity() == Quantity::Time)
@@ -272,8 +280,11 @@ fn names_in(
             && (of_axis() || is_unit_row(cells))
     };
     if let Some(at) = (0..block.len() - 1).find(is_units) {
-        let pairs = block[at + 1].iter().zip(&block[at]);
-        return Some((at..at + 2, pairs.map(|((_, n), (_, u))| Name::with_unit_row(n, u)).collect()));
+        let named = block[at + 1].iter().zip(&block[at]).map(|((_, name), (_, unit))| {
+            let unit = if is_label(unit) { "" } else { unit };
+            Name::with_unit_row(name, unit)
+        });
+        return Some((at..at + 2, named.collect()));
     }
     let lower = block.first().filter(|lower| named(lower) && !title)?;
     // `Values;64;` counts what follows; `Angle,1,2` numbers its channels.
@@ -285,7 +296,15 @@ fn names_in(
     }
     // `Second,Volt` under a preamble: units, and no names.
     let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
-    Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, n)| Name::parse(n)).collect())))
+    // `t/s;F/N;a/(m/s²)`, after DIN 1313: quantities over their units.
+    let over = Name::over_unit(&lower[0].1).is_some_and(|first| first.axis(true).is_some());
+    let name = |cell: &str| Name::over_unit(cell).filter(|_| over).unwrap_or_else(|| Name::parse(cell));
+    Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, cell)| name(cell)).collect())))
+}
+
+/// Whether a cell of a row of units says that this is one.
+fn is_label(cell: &str) -> bool {
+    UNIT.contains(&key(cell).as_str())
 }
 
 /// Number of the line that says where rows begin: `data:`. 0 where there is none.
@@ -308,9 +327,17 @@ pub(super) fn beginning(head: &str) -> u64 {
     found.map_or(0, |at| head[..at].matches('\n').count() as u64 + 1)
 }
 
-/// Whether a line holds types of numbers only: `f8`, `float`.
+const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
+
+/// Whether a line holds types of numbers only, `f8`, `float`, or something other than units behind one label: `Interp: zoh`.
 fn is_types(line: &Line, separator: Separator) -> bool {
-    const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
+    let label = |cell: &str| Some(cell.split_once(": ")?.0.to_owned()).filter(|label| label != "Unit");
+    if let Ok(cells) = fields(line.text, separator)
+        && cells.len() > 1
+        && let Some(first) = label(&cells[0].1)
+    {
+        return cells.iter().all(|(_, cell)| label(cell).as_ref() == Some(&first));
+    }
     let known = |(_, cell): &(usize, Cow<str>)| TYPES.contains(&cell.to_lowercase().as_str());
     let begins = |kind: &&str| {
         let first = line.text.trim_start_matches(['"', ' ']).get(..kind.len());

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{Axis, AxisKind, FrfKind, Record, Scaling, Values};
+use vibro_record::{Axis, AxisKind, FrfKind, Record, Scaling, Spectrum, Values};
 
 fn read_with(reader: &Reader, text: impl AsRef<[u8]>) -> Result<Recording> {
     reader.from_reader("x.csv", text.as_ref())
@@ -390,10 +390,132 @@ fn the_cell_that_is_no_number_is_named() {
     let said = |text: &str| read_with(&Reader::new(), text).unwrap_err().to_string();
     let found = said("time,level\n0,4.2 mm/s\n1,4.3 mm/s\n");
     assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
-    let found = said("Serial,12\nn,reading,unit,state\n1,0.5,Volt DC,F\n2,0.6,Volt DC,F\n");
-    assert!(found.contains("line 3, column 7") && found.contains("\"Volt DC\""), "{found}");
-    let found = said("n,gear,v\n1,N,0.5\n2,N,0.6\n");
-    assert!(found.contains("\"N\""), "{found}");
+    let found = said("time,level,state\n0,4.2 mm/s,on\n1,4.3 mm/s,on\n");
+    assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
+}
+
+#[test]
+fn columns_of_one_word_are_left_out_and_said() {
+    for (text, left_out, names) in [
+        (
+            "Serial,12\nn,reading,unit,state\n1,0.5,Volt DC,F\n2,0.6,Volt DC,F\n3,0.2,Volt DC,F\n",
+            "unit (Volt DC), state (F)",
+            vec![("reading", 3)],
+        ),
+        (
+            "% time [s],frame,a [g],b [g]\n0,imu,1,2\n0.5,imu,2,3\n1,imu,0,1\n",
+            "frame (imu)",
+            vec![("a", 3), ("b", 3)],
+        ),
+        (
+            "X = 1 | Y = 2\nX = 3 | Y = 1\n",
+            "column 1 (X), column 5 (Y)",
+            vec![("column 1", 2), ("column 2", 2)],
+        ),
+    ] {
+        let found = Reader::new().from_reader("x.txt", text.as_bytes()).unwrap();
+        let read: Vec<_> = found.records.iter().map(|r| (r.meta().name.as_str(), r.axis().len())).collect();
+        assert_eq!(read, names, "{text}");
+        assert!(
+            has_finding(&found.findings, "columns-of-words", &[&format!("columns={left_out}")]),
+            "{:?}",
+            found.findings
+        );
+    }
+    // Rows of several channels below each other are not one channel.
+    let long = "time,name,value\n0,ax,1\n0,ay,2\n1,ax,3\n1,ay,4\n";
+    let why = read_with(&Reader::new(), long).unwrap_err().to_string();
+    assert!(why.contains("line 3, column 3") && why.contains("\"ay\" below \"ax\""), "{why}");
+}
+
+/// Two rates in one table: the slower channel has its own step.
+#[test]
+fn blank_cells_in_every_second_row_are_a_lower_rate() {
+    let found = of("t [s],a [g],F [N]\n0,1,\n0.5,2,5\n1,3,\n1.5,4,6\n2,5,\n2.5,6,7\n3,7,\n");
+    assert_eq!(found.records[0].axis(), &Axis::time(0.0, 0.5, 7));
+    assert_eq!(
+        (found.records[1].axis(), values(&found.records[1])),
+        (&Axis::time(0.5, 1.0, 3), &[5.0, 6.0, 7.0][..])
+    );
+    assert!(has_finding(&found.all_findings(), "column-sparse", &["every=2"]), "{:?}", found.all_findings());
+    // One blank more, or one less, is a gap.
+    for text in [
+        "t [s],F [N]\n0,\n0.5,5\n1,\n1.5,\n2,\n2.5,7\n3,\n",
+        "t [s],F [N]\n0,\n0.5,5\n1,\n1.5,6\n2,8\n2.5,7\n3,\n",
+    ] {
+        let why = read_with(&Reader::new(), text).unwrap_err().to_string();
+        assert!(why.contains("missing value"), "{why}");
+    }
+}
+
+#[test]
+fn labels_beside_names_and_units() {
+    let rows = "0,1,4\n0.5,2,5\n1,3,2\n";
+    for text in [
+        format!("No.,a,b\nUnit,mm,um\n{}", "1,+000.5,+1.0\n2,+000.6,+2.0\n3,+000.2,+5.0\n"),
+        format!(
+            "t,a,b\nType: double,Type: double,Type: double\nUnit: s,Unit: mm,Unit: um\nInterp: zoh,Interp: zoh,Interp: zoh\n{rows}"
+        ),
+        format!(
+            "\"version\",\"1.0\"\n\"name\",\"t\",\"a\",\"b\"\n\"unit\",\"s\",\"mm\",\"um\"\n\"remark\",\"\",\"\",\"\"\n\"values\"\n{}",
+            rows.lines().fold(String::new(), |all, row| all + "\"\"," + row + "\n")
+        ),
+    ] {
+        let found = of(&text);
+        let names: Vec<_> =
+            found.records.iter().map(|r| (r.meta().name.as_str(), r.meta().unit.symbol())).collect();
+        assert_eq!(names, [("a", "m"), ("b", "m")], "{text}");
+        assert!(
+            (values(&found.records[1])[1] * 1e6 - if text.starts_with('N') { 2.0 } else { 5.0 }).abs() < 1e-9
+        );
+    }
+}
+
+/// A quantity over its unit, after DIN 1313.
+#[test]
+fn quantities_over_their_units() {
+    let found = of("t/ms;F/N;a/(m/s²)\n0,0;1,5;2\n0,5;2;1\n1,0;3;2\n");
+    let read: Vec<_> =
+        found.records.iter().map(|r| (r.meta().name.as_str(), r.meta().unit.symbol())).collect();
+    assert_eq!(read, [("F", "N"), ("a", "m/s²")]);
+    assert_eq!(found.records[0].axis(), &Axis::time(0.0, 5e-4, 3));
+}
+
+#[test]
+fn units_say_whether_amplitudes_are_rms() {
+    let scaling = |unit: &str| {
+        let text = format!("f [Hz],a [{unit}]\n0,1\n1,2\n2,1\n");
+        let Record::Spectrum(spectrum) = of(text).records.swap_remove(0) else { panic!() };
+        (spectrum.scaling, spectrum.meta.unit.symbol().to_owned())
+    };
+    for (unit, expected) in [
+        ("Vrms", (Scaling::Rms, "V")),
+        ("mm/s RMS", (Scaling::Rms, "m/s")),
+        ("g pk", (Scaling::Peak, "m/s²")),
+        ("mm/s", (Scaling::Unknown, "m/s")),
+    ] {
+        assert_eq!(scaling(unit), (expected.0, expected.1.to_owned()), "{unit}");
+    }
+}
+
+#[test]
+fn levels_and_angles_of_circuit_simulators() {
+    let found = plain("Freq.\tV(out)\n1.0e+00\t(-2.0e+01dB,9.0e+01°)\n2.0e+00\t(0.0e+00dB,0.0e+00°)\n");
+    let Record::Spectrum(Spectrum { values: Values::Complex(values), .. }) = found else { panic!() };
+    assert!((values[0] - Complex64::new(0.0, 0.1)).norm() < 1e-15 && values[1] == Complex64::new(1.0, 0.0));
+    let found = plain("Freq.\tV(out)\n1.0e+00\t1.5e+00,-2.0e+00\n2.0e+00\t0.0e+00,1.0e+00\n");
+    let Record::Spectrum(Spectrum { values: Values::Complex(values), .. }) = found else { panic!() };
+    assert_eq!(values[0], Complex64::new(1.5, -2.0));
+}
+
+/// Seconds before the trigger, in a head of several units.
+#[test]
+fn what_seismographs_say_of_their_trigger() {
+    let found = of(
+        "\"Pre-trigger Length : -0.250 sec\"\n\"Sample Rate : 1024 sps\"\n\"Units : mm/s and pa.(L)\"\nTran,Mic\n1,2\n3,1\n2,5\n",
+    );
+    assert_eq!(found.records[0].axis(), &Axis::time(-0.25, 1.0 / 1024.0, 3));
+    assert_eq!(found.records[0].meta().unit.symbol(), "");
 }
 
 /// Units that are not known stand below a time in s all the same.
