@@ -5,7 +5,7 @@
 //! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
 
 mod classical;
-
+mod leakage;
 mod rational;
 mod report;
 mod response;
@@ -17,7 +17,7 @@ pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 
 use rational::{Rational, rational};
 use report::Candidate;
-use selection::{Group, chosen, groups, together};
+use selection::{Group, averaging, chosen, groups, together};
 use vibro_record::{Error, Finding, FrfKind, Result};
 
 /// Peaks and the modes that were fitted to them.
@@ -38,11 +38,15 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     }
     let decayed = |decay| Finding::note("modal-window-decay").number("decay", decay);
     let mut findings: Vec<Finding> = options.decay.map(decayed).into_iter().collect();
-    let lines = measured.clone().usable(least, &mut findings)?;
+    let mut lines = measured.clone().usable(least, &mut findings)?;
     findings.extend((lines.kind == FrfKind::Other).then(|| Finding::caution("modal-unit-unknown")));
     findings.extend(lines.magnitude_only.then(|| Finding::doubt("modal-magnitudes-only")));
     let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
-    for mut group in groups(&lines, options.band)? {
+    let groups = groups(&lines, options.band)?;
+    // A coherence tells that the function was averaged, and not how.
+    let unsaid = lines.window.is_none() && lines.coherence.is_some() && !options.from_blows;
+    let unsaid = unsaid && !averaging(&mut lines, &groups);
+    for mut group in groups {
         match chosen(&lines, &mut group, &mut unsupported) {
             Ok(fit) => fits.push((group, fit)),
             Err(error) => {
@@ -62,7 +66,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     for (at, (group, fit)) in fits.iter().enumerate() {
         let others = poles_beside(&fits, at);
         for (m, sound) in fit.sound(&lines, &group.peaks).into_iter().enumerate() {
-            let candidate = Candidate { measured: &lines, options, group, fit, m };
+            let candidate = Candidate { measured: &lines, options, group, fit, m, unsaid };
             modes.extend(candidate.mode(sound, &others, &mut findings));
         }
     }
@@ -121,7 +125,14 @@ mod tests {
             poles.map(|(frequency, zeta)| Pole { frequency, zeta, constant: Complex64::new(2.0, 0.0) });
         let frequency: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.5).collect();
         let values = frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 2)).sum()).collect();
-        Measured { frequency, values, magnitude_only: false, kind: FrfKind::Accelerance, coherence: None }
+        Measured {
+            frequency,
+            values,
+            magnitude_only: false,
+            kind: FrfKind::Accelerance,
+            coherence: None,
+            window: None,
+        }
     }
 
     fn says(result: &ModalResult, code: &str) -> bool {

@@ -113,7 +113,9 @@ fn response(
         (found.transfer, traces.rate() / length as f64, Some(blows))
     } else {
         let averages = averages(traces, options, progress)?;
-        (transfer(&averages, 1, traces.channels(), estimator)?, averages.step(), None)
+        let mut found = transfer(&averages, 1, traces.channels(), estimator)?;
+        found.frf.meta.step("segments", &[("window", &options.window().name())]);
+        (found, averages.step(), None)
     };
     let fmin = options.lowest(step);
     let mut found = found.integrated(options.integrate, fmin)?;

@@ -22,7 +22,7 @@ use num_complex::Complex64;
 pub use axis::{Axis, AxisKind, Grid};
 pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
-pub use meta::{ADDED_DECAY, FROM_BLOWS, Meta, Step};
+pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
 pub use spectrum::{Frf, FrfKind, Scaling, Spectrum, Values};
 pub use sweep::{Direction, Sweep, SweepPoint};
 pub use trace::Trace;

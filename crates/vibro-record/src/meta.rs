@@ -1,7 +1,7 @@
 //! What is known of a record beside its values.
 
-use crate::Finding;
 use crate::units::{Quantity, Unit};
+use crate::{Finding, Window};
 
 /// One step that made a record: its name, its arguments, the version of this crate.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -30,6 +30,9 @@ pub const ADDED_DECAY: &str = "exponential window; decay in 1/s ";
 
 /// Identification line of UFF-58, and key of a remark in CSV, that a function was averaged over the blows of a hammer.
 pub const FROM_BLOWS: &str = "averaged over hammer blows";
+
+/// How an identification line of UFF-58 begins that states the window of the segments that a function was averaged over.
+pub const AVERAGED_WITH: &str = "averaged over segments; window ";
 
 /// Channel, quantity, unit, history and findings.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,6 +89,20 @@ impl Meta {
         let remark = remark.find_map(|(_, text)| text.strip_suffix(own.as_str()));
         let text = made.map(|(_, value)| value.as_str()).or(line).or(remark)?;
         text.trim().parse().ok().filter(|decay: &f64| decay.is_finite() && *decay > 0.0)
+    }
+
+    /// Window of the segments over which a frequency response function was averaged: from the history, or as the writers of this crate
+    /// state it. `None` for one that was averaged over blows.
+    pub fn averaged_with(&self) -> Option<Window> {
+        let made = self.history.iter().rev().find(|step| step.name == "segments");
+        let made = made.and_then(|step| step.arguments.iter().find(|(key, _)| key == "window"));
+        let line = self.notes.iter().find(|(key, _)| key == "id line 4").map(|(_, line)| line.as_str());
+        let line = line.and_then(|line| line.strip_prefix(AVERAGED_WITH));
+        let own = format!(" of {}", self.name);
+        let mut remark = self.notes.iter().filter(|(key, _)| key == "averaged with");
+        let remark = remark.find_map(|(_, text)| text.strip_suffix(own.as_str()));
+        let name = made.map(|(_, name)| name.as_str()).or(line).or(remark)?;
+        Window::from_name(name).filter(|_| !self.from_blows())
     }
 
     /// Whether a frequency response function was averaged over the blows of a hammer: from the history, or as the writers of this

@@ -68,19 +68,16 @@ fn the_example_bench_gives_back_the_truth() {
     let mode = &results["frf"][0]["modes"][0];
     let (f, f_std) = value(&mode["frequency"]);
     assert!((f - 60.0).abs() < 4.0 * f_std && f_std < 0.5, "{mode}");
-    // The damping of a peak of 2.4 Hz at lines of 1 Hz: leakage widens it by some 4/3 (1/2.4)², 23 % at most, which is said and is
-    // in no uncertainty.
+    // The damping of a peak of 2.4 Hz at lines of 1 Hz: leakage, which would widen it by up to 23 %, is in the fit, and said.
     let (zeta, zeta_std) = value(&mode["zeta"]);
-    assert!((zeta - 0.02).abs() < 4.0 * zeta_std + 0.23 * 0.02 && zeta_std < 0.25 * 0.02, "{mode}");
-    assert!(
-        mode["zeta"]["value"].as_f64().unwrap() > 0.0 && answer["warnings"].to_string().contains("leakage")
-    );
+    assert!((zeta - 0.02).abs() < 4.0 * zeta_std && zeta_std < 0.25 * 0.02, "{mode}");
+    assert!(answer["results"].to_string().contains("modal-leakage-fitted"), "{}", answer["results"]["frf"]);
     let spring = |f: f64| 0.125 * (std::f64::consts::TAU * f).powi(2);
     let (k, k_std) = value(&mode["stiffness"]);
     assert!((k - spring(60.0)).abs() < 4.0 * k_std && k_std < 0.02 * k, "{mode}");
-    // A = 1/m of a single mass, its peak lowered by what it is widened.
+    // A = 1/m of a single mass.
     let (constant, constant_std) = value(&mode["modal_constant"]);
-    assert!((0.125 * constant - 1.0).abs() < 4.0 * 0.125 * constant_std + 0.23, "{mode}");
+    assert!((0.125 * constant - 1.0).abs() < 4.0 * 0.125 * constant_std, "{mode}");
     // The contact through both amplifiers: uniform noise of ±3 m/s², a standard deviation of √3.
     for pulse in &results["pulses"].as_array().unwrap()[..2] {
         for (key, truth) in [("xi", 0.2), ("frequency", 500.0), ("stiffness", spring(500.0))] {

@@ -80,11 +80,12 @@ fn column(index: usize, record: &Record) -> (&Record, String, String) {
 
 fn remarks(record: &Record, name: &str, text: &mut String) {
     let remarks = match record {
-        Record::Trace(_) => [None, None, None],
+        Record::Trace(_) => Default::default(),
         Record::Frf(Frf { meta, .. }) => [
             Some(("kind", "frf".to_owned())),
             meta.added_decay().map(|decay| ("added decay", decay.to_string())),
             meta.from_blows().then(|| (FROM_BLOWS, "yes".to_owned())),
+            meta.averaged_with().map(|window| ("averaged with", window.name().to_owned())),
         ],
         Record::Spectrum(Spectrum { values, scaling, window, enbw, .. }) => {
             // A complex one must say that it is no frequency response.
@@ -93,6 +94,7 @@ fn remarks(record: &Record, name: &str, text: &mut String) {
                 scaled.then(|| ("scaling", scaling.name().to_owned())),
                 window.map(|window| ("window", window.name().to_owned())),
                 enbw.map(|enbw| ("enbw", enbw.to_string())),
+                None,
             ]
         }
     };

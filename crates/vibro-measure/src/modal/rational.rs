@@ -1,5 +1,6 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
+use super::leakage::Leakage;
 use super::selection::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
@@ -36,6 +37,8 @@ struct Scaled<'a> {
     unit: f64,
     height: f64,
     power: i32,
+    /// Of the segments that the function was averaged over.
+    leakage: Option<Leakage>,
     magnitude_only: bool,
 }
 
@@ -48,6 +51,9 @@ impl Scaled<'_> {
 
     fn mode(&self, i: usize, (own, zeta): (f64, f64)) -> Complex64 {
         let x = self.x[i];
+        if let Some(leakage) = self.leakage.as_ref().filter(|_| zeta.abs() < 1.0) {
+            return leakage.mode(x, (own, zeta), self.power);
+        }
         self.factor[i] / Complex64::new(own * own - x * x, 2.0 * zeta * own * x)
     }
 
@@ -182,6 +188,7 @@ pub(super) fn rational(
         unit,
         height,
         power,
+        leakage: measured.window.map(|window| Leakage::of(window, TAU * unit / measured.spacing())),
         magnitude_only: measured.magnitude_only,
     };
     let (numbers, parameters) = (scaled.rows(), scaled.free().len());

@@ -26,6 +26,8 @@ pub(super) struct Candidate<'a> {
     pub fit: &'a Rational,
     /// Its place in the fit.
     pub m: usize,
+    /// Whether the function was averaged, and the lines do not tell over what segments.
+    pub unsaid: bool,
 }
 
 impl Candidate<'_> {
@@ -55,8 +57,14 @@ impl Candidate<'_> {
         let bandwidth = 2.0 * pole.zeta * pole.frequency / spacing;
         let leakage = 4.0 / 3.0 / bandwidth.powi(2);
         let blows = self.options.from_blows;
-        let leaks = !blows && measured.coherence.is_some() && leakage * pole.zeta > std[1];
-        find(leaks, Finding::caution("modal-leakage").number("bandwidth", bandwidth).number("part", leakage));
+        let leaks = leakage * pole.zeta > std[1];
+        let of = |found: Finding| found.number("bandwidth", bandwidth).number("part", leakage);
+        if self.unsaid && leaks {
+            std[1] = std[1].hypot(leakage * pole.zeta);
+            std[2] = std[2].hypot(leakage * pole.constant.norm());
+            find(true, of(Finding::caution("modal-leakage")));
+        }
+        find(measured.window.is_some() && leaks, of(Finding::note("modal-leakage-fitted")));
         if blows {
             // A record that ends T after the blow lacks e^(sT − iωT) of a mode's part: a factor on A.
             let left = (-TAU * pole.frequency * pole.zeta / spacing).exp();
@@ -71,6 +79,7 @@ impl Candidate<'_> {
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
         // A peak that leakage widens has no longer the form of one mode.
+        let leaks = self.unsaid && leaks;
         let two = if leaks { None } else { support_for_two(measured, (group, fit), m, others) };
         let ahead = two.unwrap_or(f64::NAN);
         find(two.is_some(), Finding::doubt("modal-two-modes").number("ahead", ahead));
@@ -82,7 +91,7 @@ impl Candidate<'_> {
     /// The estimates of a mode that has `own` pole without the decay of a window, and standard uncertainties of frequency, ζ, modal
     /// constant and phase.
     fn estimates(&self, own: &Pole, std: [Option<f64>; 4]) -> Mode {
-        let Candidate { measured, options, group, fit, m } = *self;
+        let Candidate { measured, options, group, fit, m, .. } = *self;
         let f = &measured.frequency[group.lines.clone()];
         let n = f.len();
         let together = match group.peaks.len() {

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 use vibro_record::units::Quantity;
 use vibro_record::{
     Axis, AxisKind, Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values,
+    Window,
 };
 
 /// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
@@ -19,16 +20,27 @@ pub struct Measured {
     pub kind: FrfKind,
     /// Coherence of each line.
     pub coherence: Option<Vec<f64>>,
+    /// Window of the segments that the function was averaged over, each as long as one over the distance of the lines; `None` where it
+    /// was not averaged so, or that is not known.
+    pub window: Option<Window>,
 }
 
 impl Measured {
     /// All lines of a complex function.
     pub fn complex(frf: &Frf) -> Measured {
-        Measured::of(&frf.axis, frf.values.clone(), frf.kind)
+        let window = frf.meta.averaged_with();
+        Measured { window, ..Measured::of(&frf.axis, frf.values.clone(), frf.kind) }
     }
 
     fn of(axis: &Axis, values: Vec<Complex64>, kind: FrfKind) -> Measured {
-        Measured { frequency: axis.values(), values, magnitude_only: false, kind, coherence: None }
+        Measured {
+            frequency: axis.values(),
+            values,
+            magnitude_only: false,
+            kind,
+            coherence: None,
+            window: None,
+        }
     }
 
     /// The function that a record is: a response over a force, complex or in magnitude, or complex values of which the file does not
@@ -118,7 +130,7 @@ impl Measured {
         let Values::Real(values) = values else {
             return Err(Error::refused("the coherence is complex: it is no coherence"));
         };
-        let width = self.frequency.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let width = self.spacing();
         let near = |(i, f): (usize, &f64)| (axis.at(i) - f).abs() <= 1e-3 * width;
         let (own, other) = (self.frequency.len(), values.len());
         if own != other || !self.frequency.iter().enumerate().all(near) {
@@ -127,6 +139,11 @@ impl Measured {
         }
         self.coherence = Some(values.clone());
         Ok(self)
+    }
+
+    /// Distance of the lines in Hz.
+    pub(super) fn spacing(&self) -> f64 {
+        self.frequency.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min)
     }
 
     /// The lines of a band in Hz.

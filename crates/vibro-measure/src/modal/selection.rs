@@ -6,7 +6,7 @@ use crate::mean::upper_median;
 use crate::peaks::local_maxima;
 use std::ops::Range;
 use vibro_record::units::notation::shortest;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, Window};
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
 const TOGETHER: usize = 6;
@@ -18,6 +18,21 @@ const NEEDED: f64 = 10.0;
 fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
     let start = |p: &Peak| (lines.frequency[p.at], p.width / (2.0 * lines.frequency[p.at]));
     peaks.iter().map(start).collect()
+}
+
+/// Finds out whether the highest peak shows the leakage of segments under a Hann window, which analysers take if nothing else is said, or
+/// none at all, as under a periodic excitation; `false` where its lines do not tell.
+pub(super) fn averaging(lines: &mut Measured, groups: &[Group]) -> bool {
+    let highest = |group: &Group| group.peaks.iter().map(|p| p.rise).fold(0.0, f64::max);
+    let Some(group) = groups.iter().max_by(|a, b| highest(a).total_cmp(&highest(b))) else { return false };
+    let aicc = |window| {
+        let lines = Measured { window, ..lines.clone() };
+        let fit = rational(&lines, group.lines.clone(), &starts(&lines, &group.peaks), &[]);
+        fit.ok().map(|fit| fit.aicc)
+    };
+    let (Some(without), Some(with)) = (aicc(None), aicc(Some(Window::Hann))) else { return false };
+    lines.window = (with < without - NEEDED).then_some(Window::Hann);
+    (without - with).abs() > NEEDED
 }
 
 /// Finds the peaks of a group that the lines need. The group keeps those; the others are added to `unsupported`.
@@ -274,7 +289,14 @@ mod bands {
             }
         }
         let frequency = (0..2000).map(f64::from).collect();
-        Measured { frequency, values, magnitude_only, kind: FrfKind::Receptance, coherence: None }
+        Measured {
+            frequency,
+            values,
+            magnitude_only,
+            kind: FrfKind::Receptance,
+            coherence: None,
+            window: None,
+        }
     }
 
     #[test]

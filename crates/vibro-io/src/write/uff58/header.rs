@@ -3,7 +3,7 @@
 use super::{Layout, field};
 use crate::uff58::KINDS;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{ADDED_DECAY, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
+use vibro_record::{ADDED_DECAY, AVERAGED_WITH, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
 
 /// Record 6 behind the function type, of a record without a degree of freedom.
 const NOWHERE: &str = "         0    0         0 NONE               0   0 NONE               0   0";
@@ -38,6 +38,9 @@ pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]
             }
             if meta.from_blows() {
                 FROM_BLOWS.clone_into(&mut id[3]);
+            }
+            if let Some(window) = meta.averaged_with() {
+                id[3] = format!("{AVERAGED_WITH}{}", window.name());
             }
         }
         Record::Trace(_) => {}
