@@ -108,8 +108,11 @@ fn line(text: &mut String, r: &Header, numbered: bool) {
 
 /// A number to six digits, with its unit.
 fn known(value: f64, unit: &str) -> String {
-    let digits = format!("{value:.5e}").parse().unwrap_or(value);
-    format!("{digits} {unit}").trim_end().to_owned()
+    let six = format!("{value:.5e}");
+    let digits: f64 = six.parse().unwrap_or(value);
+    let plain = digits == 0.0 || (1e-7..1e12).contains(&digits.abs());
+    let text = if plain { digits.to_string() } else { format!("{digits:e}") };
+    format!("{text} {unit}").trim_end().to_owned()
 }
 
 fn notes(text: &mut String, notes: &[String]) {

@@ -148,11 +148,13 @@ fn seconds(word: &str) -> Option<f64> {
         return None;
     }
     let of = |h: f64, m: f64, s: f64| (m < 60.0 && s < 61.0).then_some((h * 60.0 + m) * 60.0 + s);
+    // `10:11:12:05` may be hundredths or frames of a film.
+    let thousandths = word.rsplit(':').next().is_some_and(|cell| cell.len() == 3);
     match *cells {
         [m, s] if word.contains(['.', ',']) => of(0.0, m, s),
         [h, m] => of(h, m, 0.0),
         [h, m, s] => of(h, m, s),
-        [h, m, s, ms] if ms < 1000.0 => of(h, m, s + 1e-3 * ms),
+        [h, m, s, ms] if thousandths => of(h, m, s + 1e-3 * ms),
         _ => None,
     }
 }

@@ -37,10 +37,10 @@ pub struct Stated {
 }
 
 /// Keys of a sampling rate, and of the step of time.
-const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|fs|rate|abtastrate|\
+const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|data rate|fs|rate|abtastrate|\
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
                     messfrequenz";
-const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
+const STEP: &str = "dt|delta t|sampling interval|sampling interval s|sample interval|sampling period|time step|delta time|increment|clock|\
                     interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
                     x delta|xdelta|abtastintervall";
 /// Keys of what the abscissa is, or of its unit.
@@ -61,7 +61,7 @@ impl Stated {
             // `NPTS= 6000, DT= .01 SEC` are two statements.
             let several = line.split(',').all(|part| part.contains('='));
             for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
-                let (key, value) = split(line.trim().trim_matches('"'));
+                let (key, value) = split(line.trim().trim_matches('"').trim_start_matches([';', ' ']));
                 stated.notes.push((key.to_owned(), value.to_owned()));
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
                 let hertz = value.to_lowercase();
@@ -127,7 +127,9 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         // Without a unit these may be anything, but for an increment beside a start.
-        "rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval" | "time interval" if bare => {}
+        "rate" | "data rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval"
+        | "time interval"
+            if bare => {}
         "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
             stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)]).and_then(line_count);

@@ -56,6 +56,12 @@ impl Name {
         text.split_once(" / ")
             .and_then(|(name, unit)| known(name, unit))
             .or_else(|| bracketed(text, '(', ')').and_then(|(name, unit)| known(name, unit)))
+            // `Force (N) Run #1`
+            .or_else(|| {
+                let (name, behind) = text.split_once(" (")?;
+                let (unit, behind) = behind.split_once(") ")?;
+                known(name, unit).map(|found| Name { name: format!("{} {behind}", found.name), ..found })
+            })
             .or_else(|| text.split_once(", ").and_then(|(name, unit)| known(name, unit)))
             .or_else(|| text.rsplit_once(" in ").and_then(|(name, unit)| known(name, unit)))
             .or_else(|| {

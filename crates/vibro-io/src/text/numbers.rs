@@ -243,18 +243,21 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
         Some(inner) => inner.strip_suffix(b")")?.trim_ascii(),
         None => text,
     };
-    let (first, used) = number::prefix(text, decimal)?;
-    let (sign, rest) = match text[used..].trim_ascii_start() {
-        [] => return Some(first.into()),
-        [b'i' | b'j' | b'I' | b'J'] => return Some(Complex64::new(0.0, first)),
-        [b'+', rest @ ..] => (1.0, rest.trim_ascii_start()),
-        [b'-', rest @ ..] => (-1.0, rest.trim_ascii_start()),
-        _ => return None,
+    let Some((b'i' | b'j' | b'I' | b'J', imaginary)) = text.split_last() else {
+        return number::parse_with(text, decimal).map(Into::into);
     };
-    let (second, used) = number::prefix(rest, decimal)?;
-    let rest = rest[used..].trim_ascii_start();
-    let rest = rest.strip_prefix(b"*").unwrap_or(rest);
-    matches!(rest, [b'i' | b'j' | b'I' | b'J']).then_some(Complex64::new(first, sign * second))
+    let imaginary = imaginary.strip_suffix(b"*").unwrap_or(imaginary).trim_ascii();
+    // The last sign that is none of an exponent; an exponent without its letter, `1.5+210`, is none here.
+    let sign = |at: &usize| matches!(imaginary[*at], b'+' | b'-') && !b"eEdDqQ".contains(&imaginary[*at - 1]);
+    let (real, imaginary) = match (1..imaginary.len()).rfind(sign) {
+        None => (0.0, number::parse_with(imaginary, decimal)?),
+        Some(at) => {
+            let part = number::parse_with(imaginary[at + 1..].trim_ascii(), decimal)?;
+            let real = number::parse_with(&imaginary[..at], decimal)?;
+            (real, if imaginary[at] == b'-' { -part } else { part })
+        }
+    };
+    Some(Complex64::new(real, imaginary))
 }
 
 /// Real and imaginary part, each with its exponent, since `1,234` is one number; or level and angle: `(-3.1e+00dB,4.5e+01°)`.
@@ -332,6 +335,16 @@ mod tests {
             assert_eq!(complex(text.as_bytes(), b'.'), Some(Complex64::new(1.5, -2e-3)), "{text}");
         }
         assert_eq!(complex(b"2j", b'.'), Some(Complex64::new(0.0, 2.0)));
+        // Not exponents without their letter.
+        for (text, re, im) in [
+            ("1.5+210i", 1.5, 210.0),
+            ("(1101.5-201j)", 1101.5, -201.0),
+            ("0+210.551560556573i", 0.0, 210.551560556573),
+            ("-0.00395030847979745+2.9645842249887E-6i", -0.00395030847979745, 2.9645842249887e-6),
+            ("1e-3-101j", 1e-3, -101.0),
+        ] {
+            assert_eq!(complex(text.as_bytes(), b'.'), Some(Complex64::new(re, im)), "{text}");
+        }
         for text in ["(1+2j", "1+2", "1+2jj", "j", "1+j", "", "()"] {
             assert_eq!(complex(text.as_bytes(), b'.'), None, "{text}");
         }

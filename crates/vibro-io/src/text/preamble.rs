@@ -23,13 +23,15 @@ pub const BESIDE: usize = 40;
 #[derive(Debug, Default)]
 pub struct Preamble(Vec<Vec<String>>);
 
-const SOURCE: &[&str] = &["source", "tracename", "trace name", "signal", "signal name", "channel name", "ch"];
-pub const UNIT: &[&str] = &["vertical units", "vert units", "vunit", "yunits", "y units", "unit", "units"];
+const SOURCE: &[&str] =
+    &["source", "tracename", "trace name", "signal", "signal name", "channel name", "channeltitle", "ch"];
+pub const UNIT: &[&str] =
+    &["vertical units", "vert units", "vunit", "yunits", "y units", "unitname", "unit", "units"];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
 /// A cell as a key.
 pub fn key(cell: &str) -> String {
-    cell.trim_end_matches(':').trim().replace('_', " ").to_lowercase()
+    cell.trim_end_matches([':', '=']).trim().replace('_', " ").to_lowercase()
 }
 
 impl Preamble {

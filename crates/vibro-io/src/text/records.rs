@@ -41,7 +41,6 @@ pub fn build(
         table.remove(0);
     }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
-    table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     // A column that only counts says nothing, unless there is no other.
     let counts = is_table && table.len() > 1 && table[0].counts();
     let first = if counts { table.remove(0).reals().first().copied() } else { None };
@@ -52,6 +51,7 @@ pub fn build(
     let plain = plain && printed.as_ref().is_some_and(|axis| table.iter().any(|c| !again(c, axis)));
     table.retain(|column| !printed.as_ref().is_some_and(|axis| (is_table || plain) && again(column, axis)));
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
+    table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     let has_axis = printed.is_some();
     if numbered && !has_axis {
         of_axis.push(Finding::caution("column-numbers-rows"));
@@ -242,12 +242,43 @@ impl Made<'_> {
         let finer = values.windows(2).all(|w| (w[1] - w[0]).abs() < single);
         let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
         let own = own.max(if finer { largest * f64::EPSILON } else { single });
-        one_clock(&kind, column, (factor, own), others)?;
+        self.one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| (v - from) * factor).collect();
         let (axis, finding) = from_values(kind, values, own * factor, &label);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
         let findings = assumed.into_iter().chain(finding).collect();
         Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), findings })
+    }
+
+    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
+    fn one_clock(
+        &self,
+        kind: &AxisKind,
+        axis: &Column,
+        (factor, resolution): (f64, f64),
+        others: &[Column],
+    ) -> Result<()> {
+        let own = |column: &Column| tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
+        let span = |column: &Column, factor: f64, n: usize| {
+            let values = &column.reals()[..n];
+            let rises = n > 1 && values.is_sorted_by(|a, b| a < b);
+            rises.then(|| factor * (values[n - 1] - values[0]))
+        };
+        let same = |c: &&Column| c.sparse.is_none() && c.name.axis(true).as_ref() == Some(kind);
+        for other in others.iter().filter(same) {
+            if let Ok((theirs, _)) = other.name.to_axis(kind)
+                // The columns of a channel with fewer values end in blanks.
+                && let n = other.reals().iter().take_while(|v| v.is_finite()).count()
+                && let (Some(a), Some(b)) = (span(axis, factor, n), span(other, theirs, n))
+                && (b - a).abs() > 4.0 * (resolution * factor).max(own(other) * theirs) + 1e-6 * a.abs()
+            {
+                let (one, two) = (axis.label(), other.label());
+                let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
+                let hint = "take out the one that is wrong, or write each of them with its channels to a file of its own";
+                return Err(Error::usage(found, "one clock for all columns").hint(hint));
+            }
+        }
+        Ok(())
     }
 
     /// Whether a clock has two numbers and no date: hours and minutes, or minutes and seconds.
@@ -374,35 +405,6 @@ impl Made<'_> {
         let value = own.or_else(|| self.remarks(key).find(|v| !v.contains(" of ")))?;
         Some(value.trim().to_lowercase())
     }
-}
-
-/// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
-fn one_clock(
-    kind: &AxisKind,
-    axis: &Column,
-    (factor, resolution): (f64, f64),
-    others: &[Column],
-) -> Result<()> {
-    let span = |column: &Column, factor: f64, n: usize| {
-        let values = &column.reals()[..n];
-        let rises = n > 1 && values.is_sorted_by(|a, b| a < b);
-        rises.then(|| factor * (values[n - 1] - values[0]))
-    };
-    let same = |c: &&Column| c.sparse.is_none() && c.name.axis(true).as_ref() == Some(kind);
-    for other in others.iter().filter(same) {
-        if let Ok((theirs, _)) = other.name.to_axis(kind)
-            // The columns of a channel with fewer values end in blanks.
-            && let n = other.reals().iter().take_while(|v| v.is_finite()).count()
-            && let (Some(a), Some(b)) = (span(axis, factor, n), span(other, theirs, n))
-            && (b - a).abs() > 4.0 * resolution * factor.max(theirs) + 1e-6 * a.abs()
-        {
-            let (one, two) = (axis.label(), other.label());
-            let found = format!("{one:?} and {two:?} run over {} and {}", short(a), short(b));
-            let hint = "write each of them with its channels to a file of its own";
-            return Err(Error::usage(found, "one clock for all columns").hint(hint));
-        }
-    }
-    Ok(())
 }
 
 /// `g²/Hz`, `(m/s^2)^2/Hz`: a square over hertz is a power spectral density.

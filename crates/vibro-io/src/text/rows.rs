@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::dialect::Dialect;
-use super::lines::{Fields, Line};
+use super::lines::{Fields, Line, Lines};
 use super::numbers::complex;
 use super::tail::CUT_OFF;
 use super::{in_line, shorten};
@@ -22,6 +22,8 @@ pub struct Rows {
     pub missing: usize,
     /// Remarks between and behind the rows.
     pub remarks: Vec<String>,
+    /// Lines of words behind the rows.
+    pub behind: Vec<String>,
 }
 
 /// Reads all rows from the first one on.
@@ -49,6 +51,11 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         let fields = dialect.cut(&line).map_err(|at| {
             fault(&line, at, "text behind a closing quote", "a separator or the end of the line")
         })?;
+        // Words behind the rows are a remark.
+        if reader.is_words(&fields) && !reader.rows_behind(&line) {
+            rows.behind.push(line.text.trim().to_owned());
+            continue;
+        }
         if fields.len() != n {
             return Err(reader.ragged(&line, &fields));
         }
@@ -138,6 +145,26 @@ impl Reader<'_> {
         half || number::is_missing(field.as_bytes())
     }
 
+    /// Whether there are words and no values in any field.
+    fn is_words(&self, fields: &Fields) -> bool {
+        let word = |field: &str| field.contains(char::is_alphabetic) && !self.is_missing(field);
+        let none = |field: &str| field.is_empty() || (word(field) && self.value(field).is_none());
+        self.dialect.clock.is_none()
+            && fields.iter().any(|(_, f)| word(f))
+            && fields.iter().all(|(_, f)| none(f))
+    }
+
+    /// Whether rows stand behind a line.
+    fn rows_behind(&self, line: &Line) -> bool {
+        let behind = (line.at + line.text.len()).min(self.text.len());
+        let has = |line: &Line| {
+            let values = |fields: &Fields| fields.iter().any(|(_, field)| self.value(field).is_some());
+            self.dialect.cut(line).is_ok_and(|fields| values(&fields))
+        };
+        Lines::new(self.text, behind, line.number, self.dialect.remarks)
+            .any(|line| line.remark.is_none() && has(&line))
+    }
+
     fn ragged(&self, line: &Line, fields: &Fields) -> Error {
         let n = self.dialect.columns;
         // A field that is no number says more than the number of fields.
@@ -174,7 +201,13 @@ impl Reader<'_> {
 
     /// What to try, or else that the file ends within a row that does not end with a line end.
     fn hint(&self, line: &Line, hint: &'static str) -> &'static str {
-        if line.at + line.text.len() == self.text.len() { CUT_OFF } else { hint }
+        if self.dialect.cut(line).is_ok_and(|fields| self.is_words(&fields)) && self.rows_behind(line) {
+            "write each table of the file to a file of its own, the lines above its rows with it"
+        } else if line.at + line.text.len() == self.text.len() {
+            CUT_OFF
+        } else {
+            hint
+        }
     }
 }
 

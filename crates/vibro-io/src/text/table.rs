@@ -296,6 +296,12 @@ fn names_in(
     }
     // `Second,Volt` under a preamble: units, and no names.
     let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
+    // `V,V` names nothing.
+    let first = lower[0].1.as_ref();
+    let alike =
+        lower.len() > 1 && Unit::parse(first).is_some() && lower.iter().all(|(_, cell)| cell == first);
+    let unit = || Name { name: String::new(), unit: Some(first.to_owned()) };
+    let units = units.or_else(|| alike.then(|| lower.iter().map(|_| unit()).collect()));
     // `t/s;F/N;a/(m/s²)`, after DIN 1313: quantities over their units.
     let over = Name::over_unit(&lower[0].1).is_some_and(|first| first.axis(true).is_some());
     let name = |cell: &str| Name::over_unit(cell).filter(|_| over).unwrap_or_else(|| Name::parse(cell));

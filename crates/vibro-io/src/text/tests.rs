@@ -449,6 +449,46 @@ fn blank_cells_in_every_second_row_are_a_lower_rate() {
 }
 
 #[test]
+fn what_stands_behind_the_rows_is_said_or_begins_another_table() {
+    let found = of("BEGIN CH1\nf [Hz],a [V]\n0,1\n1,2\n2,1\nEND\n");
+    assert_eq!(values(&found.records[0]), [1.0, 2.0, 1.0]);
+    assert!(has_finding(&found.findings, "words-behind", &["words=END"]), "{:?}", found.findings);
+    let two = "f [Hz],a [V]\n0,1\n1,2\nEND\nf [Hz],b [V]\n0,1\n1,3\n";
+    let why = read_with(&Reader::new(), two).unwrap_err().to_string();
+    assert!(why.contains("line 4") && why.contains("each table"), "{why}");
+}
+
+/// The columns of times disagree: days in place of ms.
+#[test]
+fn a_clock_beside_other_times_must_agree_with_them() {
+    let rows = |step: f64| {
+        (0..5).fold("when,t [ms],F [N]\n".to_owned(), |all, i| {
+            all + &format!("2023-03-14 10:27:3{i},{},{}\n", step * f64::from(i), i * i % 3)
+        })
+    };
+    let found = of(rows(1000.0));
+    assert_eq!((found.records.len(), found.records[0].axis()), (1, &Axis::time(0.0, 1.0, 5)));
+    let why = read_with(&Reader::new(), rows(5000.0)).unwrap_err().to_string();
+    assert!(why.contains("one clock"), "{why}");
+    // Hundredths, or frames of a film: not thousandths.
+    assert!(read_with(&Reader::new(), "t,a\n0:00:00:03,1\n0:00:00:06,2\n").is_err());
+}
+
+#[test]
+fn names_and_units_where_few_look_for_them() {
+    for (text, names, rate) in [
+        ("; Samplerate: 10 kHz\nV,V\n0,0.4\n1,0.5\n0.5,2\n", vec![("column 1", "V"), ("column 2", "V")], 1e4),
+        ("\"Time (s) Run #1\",\"Force (kN) Run #1\"\n0,1\n0.5,2\n1,0\n", vec![("Force Run #1", "N")], 2.0),
+    ] {
+        let found = of(text);
+        let read: Vec<_> =
+            found.records.iter().map(|r| (r.meta().name.as_str(), r.meta().unit.symbol())).collect();
+        assert_eq!(read, names, "{text}");
+        assert!((found.records[0].axis().step().unwrap() * rate - 1.0).abs() < 1e-12, "{text}");
+    }
+}
+
+#[test]
 fn labels_beside_names_and_units() {
     let rows = "0,1,4\n0.5,2,5\n1,3,2\n";
     for text in [
