@@ -2,14 +2,13 @@
 
 mod change;
 
-use super::Run;
-use super::print;
+use super::{Run, print};
 use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::record::{Finding, Record};
 use crate::report::Output;
-use crate::report::layout::table;
+use crate::report::layout::headed;
 use crate::write::{Precision, Storage, Target};
 use change::Change;
 use serde_json::json;
@@ -61,15 +60,8 @@ impl Run for Convert {
         answer.add("", changes);
         answer.add("", (target == Target::Npy).then(|| Finding::caution("values-only")));
         answer.add("", existed.then(|| Finding::caution("file-replaced").name("file", &*written)));
-        answer.tables.push(table(
-            "",
-            [()],
-            &[
-                ("written", "", &|()| written.as_str().into()),
-                ("records", "", &|()| records.into()),
-                ("format", "", &|()| format.into()),
-            ],
-        ));
+        let done = headed("", &[("written", ""), ("records", ""), ("format", "")]);
+        answer.tables.push(done.row([written.into(), records.into(), format.into()]));
         print::answer(answer, None, json)
     }
 }

@@ -1,9 +1,8 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
-use super::Run;
 use super::convert::{apart, folder_of, write_beside};
 use super::sweep::of_script;
-use super::{complain, print};
+use super::{Run, complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::{Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
 use crate::campaign::{Channel, Reading};
@@ -11,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
 use crate::measure::{Estimate, legacy};
 use crate::record::{Finding, Trace};
-use crate::report::layout::table;
+use crate::report::layout::{headed, table};
 use clap::Args;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -150,16 +149,9 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
     }))?;
     answer.add("", [of_script("timeav")]);
     answer.add("", (n == 1).then(|| Finding::caution("timeav-one-peak")));
-    answer.tables.push(table(
-        "timeav",
-        [()],
-        &[
-            ("maxp", "", &|()| found.maxima.into()),
-            ("maxpeak", "", &|()| n.into()),
-            ("diffav", "s", &|()| found.interval.into()),
-            ("diffreq", "Hz", &|()| found.frequency.into()),
-        ],
-    ));
+    let printed = headed("timeav", &[("maxp", ""), ("maxpeak", ""), ("diffav", "s"), ("diffreq", "Hz")]);
+    let printed = printed.row([found.maxima.into(), n.into(), found.interval.into(), found.frequency.into()]);
+    answer.tables.push(printed);
     answer.table("impacts", table("Peaks", &found.times, &[("peakt", "s", &|t| (**t).into())]));
     Ok(answer)
 }

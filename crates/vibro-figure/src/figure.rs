@@ -1,7 +1,6 @@
 //! Figures as data: what is shown, with which labels, in which arrangement.
 
 use super::axis::AxisSpec;
-use super::draw::Drawing;
 use super::grid::Grid;
 use super::heatmap::Heatmap;
 use super::series::Series;
@@ -128,11 +127,6 @@ impl Figure {
     pub fn panel(mut self, panel: impl Into<Panel>) -> Figure {
         self.panels.push(panel.into());
         self
-    }
-
-    /// Draws the figure. Nothing outside is needed, so figures can be drawn at once.
-    pub fn draw(&self) -> Drawing {
-        super::draw::draw(self)
     }
 }
 
