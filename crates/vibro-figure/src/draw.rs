@@ -1,11 +1,6 @@
 //! From figures to pictures: the layout of the panels.
 
-use super::axis::Extent;
-use super::canvas::{self, Canvas};
-use super::figure::{Figure, Panel};
-use super::frame::Insets;
-use super::path::Rect;
-use super::plot::{self, Sheet};
+use crate::{Canvas, Extent, Figure, Insets, Panel, Rect, Sheet, canvas, plot};
 
 /// A drawn figure, at its size in print.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,10 +1,6 @@
 //! Figures as data: what is shown, with which labels, in which arrangement.
 
-use super::axis::AxisSpec;
-use super::grid::Grid;
-use super::heatmap::Heatmap;
-use super::series::Series;
-use super::waterfall::Waterfall;
+use crate::{AxisSpec, Grid, Heatmap, Series, Waterfall};
 
 /// Panels in a grid, at the size in which they are printed.
 ///

@@ -1,12 +1,7 @@
 //! The frame of a plot: axes, ticks, their numbers and names.
 
-use super::canvas::{Anchor, Canvas, Text};
-use super::style::{DESCENT, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
-use crate::axis::Axis;
-use crate::colour::BLACK;
-use crate::font;
-use crate::path::{Point, Rect};
-use crate::ticks::Ticks;
+use crate::style::{DESCENT, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
+use crate::{Anchor, Axis, BLACK, Canvas, Point, Rect, Text, Ticks, font};
 
 /// Room around a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

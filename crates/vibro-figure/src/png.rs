@@ -3,9 +3,7 @@
 //! Only the bundled font is used and nothing of the time or the machine is written, so equal drawings give
 //! equal bytes everywhere.
 
-use super::canvas::{self, Image};
-use super::draw::Drawing;
-use super::font;
+use crate::{Drawing, Image, canvas, font};
 use resvg::tiny_skia::{Color, FilterQuality, Pixmap, PixmapPaint, Transform};
 use resvg::usvg;
 use vibro_record::{Error, Result};
