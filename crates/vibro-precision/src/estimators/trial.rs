@@ -1,8 +1,6 @@
 //! Methods tried on random records of which the truth is known.
 
-use crate::failure::{Found, Question};
-use crate::scene::{median, timed};
-use crate::{Measured, Outcome};
+use crate::{Found, Measured, Outcome, Question, median, timed};
 use rayon::prelude::*;
 use std::sync::Arc;
 use vibro_math::Noise;
