@@ -97,10 +97,6 @@ impl Record {
             })
         })
     }
-
-    fn print(&self, answer: Answer, json: bool) -> Result<u8> {
-        print::answer(answer, self.out.as_deref(), json)
-    }
 }
 
 impl<K: Args> Measured<K> {
@@ -112,7 +108,7 @@ impl<K: Args> Measured<K> {
 impl<K: Args + OfFile> Run for Measured<K> {
     /// Prints what is found in one record.
     fn run(&self, json: bool) -> Result<u8> {
-        self.record.print(self.by(json, K::measure)?, json)
+        print::answer(self.by(json, K::measure)?, self.record.out.as_deref(), json)
     }
 }
 
@@ -125,7 +121,7 @@ impl Run for Impacts {
             }
             keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
         })?;
-        self.of.record.print(answer, json)
+        print::answer(answer, self.of.record.out.as_deref(), json)
     }
 }
 
@@ -167,7 +163,7 @@ impl Run for Measured<frf::Keys> {
         }
         let mut answer = answers.pop().ok_or_else(|| Error::refused("no frequency response function"))?;
         answer.refused.take().map_or(Ok(()), Err)?;
-        self.record.print(answer, json)
+        print::answer(answer, self.record.out.as_deref(), json)
     }
 }
 
@@ -179,7 +175,7 @@ impl Run for Pulse {
             Some(file) => self.record.measured(file, json, |source| self.keys.measure(source))?,
             None => self.keys.times("")?,
         };
-        self.record.print(answer, json)
+        print::answer(answer, self.record.out.as_deref(), json)
     }
 }
 
@@ -192,7 +188,7 @@ impl Run for Restitution {
         for (i, file) in self.files.iter().enumerate() {
             self.record.measured(file, json, |source| series.add_record(&self.keys, source, i + 1))?;
         }
-        self.record.print(series.answer("")?, json)
+        print::answer(series.answer("")?, self.record.out.as_deref(), json)
     }
 }
 
@@ -220,6 +216,6 @@ impl Run for Drill {
             complain::line(&format!("wrote {written}"));
             answer.result.insert("each_cycle".to_owned(), written.into());
         }
-        self.of.record.print(answer, json)
+        print::answer(answer, self.of.record.out.as_deref(), json)
     }
 }

@@ -11,8 +11,8 @@ use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::read::{SweepList, SweepReader};
 use crate::record::{Finding, Sweep};
-use crate::report::files;
 use crate::report::layout::{headed, pair, table};
+use crate::report::{Table, files};
 use ndarray::Array2;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -145,14 +145,9 @@ fn largest_lines(sweep: &Sweep) -> Result<Answer> {
     let rows = rows.collect::<Vec<Value>>();
     let mut answer = Answer::of(&json!({ "points": rows, "resonances": [], "jumps": [] }))?;
     answer.add("", [of_script("sinesw3")]);
-    answer.table(
-        "response",
-        table(
-            "Largest lines",
-            &points,
-            &[("excitation", "Hz", &|p| p.0.into()), ("amplitude", unit, &|p| p.1.into())],
-        ),
-    );
+    let columns = [("excitation", "Hz"), ("amplitude", unit)];
+    let rows = points.iter().map(|(excitation, amplitude)| [(*excitation).into(), (*amplitude).into()]);
+    answer.table("response", rows.fold(headed("Largest lines", &columns), Table::row));
     Ok(answer)
 }
 

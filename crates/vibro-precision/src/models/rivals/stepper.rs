@@ -121,11 +121,7 @@ impl Taken {
             if middle <= low || middle >= high {
                 break;
             }
-            if height(self.start + middle, &self.at(&f, middle)) > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
+            if height(self.start + middle, &self.at(&f, middle)) > 0.0 { low = middle } else { high = middle }
         }
         Some(high)
     }
