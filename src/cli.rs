@@ -19,52 +19,33 @@ use std::path::PathBuf;
 
 /// All commands, in the order of the help. A new one is a row.
 const COMMANDS: &[Row] = &[
-    Row::of::<info::Info>("info", "List the records of a file: channels, units, sampling rate"),
-    Row::of::<convert::Convert>(
-        "convert",
-        "Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT",
-    ),
-    Row::of::<record::Measured<spectrum::Keys>>(
-        "spectrum",
-        "Spectrum of a channel, or frequency response function between two",
-    ),
-    Row::of::<sweep::Excitation>("excitation", "Excitation frequency of every point of a sweep"),
-    Row::of::<sweep::Waterfall>("waterfall", "Waterfall of all response spectra of a sweep"),
-    Row::of::<sweep::Taken>(
-        "response",
-        "Response of a sweep at the excitation frequency, with resonances and jumps",
-    ),
-    Row::of::<record::Drill>("drill", "Speed, impacts and average turn of a hammer drill"),
-    Row::of::<record::Impacts>(
-        "impacts",
-        "Impacts in a contact signal: interval, frequency, impacts per cycle",
-    ),
-    Row::of::<record::Restitution>(
-        "restitution",
-        "Coefficient of restitution from drops, bounces or velocities, every method side by side",
-    ),
-    Row::of::<record::Measured<frf::Keys>>(
-        "modal",
-        "Natural frequency, damping and modal constant of the modes of a frequency response function",
-    ),
-    Row::of::<record::Measured<decay::Keys>>(
-        "decay",
-        "Natural frequency and damping of each mode of a free decay",
-    ),
-    Row::of::<record::Pulse>("pulse", "Damping ratio, frequency and restitution of a contact from its pulse"),
-    Row::of::<model::Model>(
-        "model",
-        "Model of a rig: periodic motions, simulation, sweep, map, choice of a model",
-    ),
-    Row::of::<campaign::Compare>(
-        "compare",
-        "Compare the measured responses of a campaign with the model; fit parameters of the rig",
-    ),
-    Row::of::<precision::Precision>(
-        "precision",
-        "Speed and accuracy of every method on scenes with a known truth",
-    ),
-    Row::of::<campaign::Run>("run", "Run a campaign: results, tables, figures, report"),
+    Row::of::<info::Info>("info").about("List the records of a file: channels, units, sampling rate"),
+    Row::of::<convert::Convert>("convert")
+        .about("Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT"),
+    Row::of::<record::Measured<spectrum::Keys>>("spectrum")
+        .about("Spectrum of a channel, or frequency response function between two"),
+    Row::of::<sweep::Excitation>("excitation").about("Excitation frequency of every point of a sweep"),
+    Row::of::<sweep::Waterfall>("waterfall").about("Waterfall of all response spectra of a sweep"),
+    Row::of::<sweep::Taken>("response")
+        .about("Response of a sweep at the excitation frequency, with resonances and jumps"),
+    Row::of::<record::Drill>("drill").about("Speed, impacts and average turn of a hammer drill"),
+    Row::of::<record::Impacts>("impacts")
+        .about("Impacts in a contact signal: interval, frequency, impacts per cycle"),
+    Row::of::<record::Restitution>("restitution")
+        .about("Coefficient of restitution from drops, bounces or velocities, every method side by side"),
+    Row::of::<record::Measured<frf::Keys>>("modal")
+        .about("Natural frequency, damping and modal constant of the modes of a frequency response function"),
+    Row::of::<record::Measured<decay::Keys>>("decay")
+        .about("Natural frequency and damping of each mode of a free decay"),
+    Row::of::<record::Pulse>("pulse")
+        .about("Damping ratio, frequency and restitution of a contact from its pulse"),
+    Row::of::<model::Model>("model")
+        .about("Model of a rig: periodic motions, simulation, sweep, map, choice of a model"),
+    Row::of::<campaign::Compare>("compare")
+        .about("Compare the measured responses of a campaign with the model; fit parameters of the rig"),
+    Row::of::<precision::Precision>("precision")
+        .about("Speed and accuracy of every method on scenes with a known truth"),
+    Row::of::<campaign::Run>("run").about("Run a campaign: results, tables, figures, report"),
 ];
 
 /// What is typed behind the name of a command, and what it does.
@@ -86,12 +67,16 @@ struct Row {
 }
 
 impl Row {
-    const fn of<T: Run>(name: &'static str, about: &'static str) -> Row {
+    const fn of<T: Run>(name: &'static str) -> Row {
         let run = |typed: &ArgMatches, json| match T::from_arg_matches(typed) {
             Ok(typed) => typed.run(json),
             Err(error) => Ok(complain::usage(&error, json)),
         };
-        Row { name, about, voice: T::VOICE, options: T::augment_args, run }
+        Row { name, about: "", voice: T::VOICE, options: T::augment_args, run }
+    }
+
+    const fn about(self, about: &'static str) -> Row {
+        Row { about, ..self }
     }
 }
 

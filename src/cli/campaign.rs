@@ -7,7 +7,7 @@ use crate::campaign::FitEntry;
 use crate::error::Result;
 use crate::report::words::{Voice, sentences};
 use crate::report::{Output, Table};
-use serde_json::{Map, Value, json};
+use serde_json::json;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -51,12 +51,12 @@ impl super::Run for Run {
             print::busy(json, "campaign", |bar| analysis::run(&campaign, options, &mut output, bar))?;
         let files = output.commit()?;
         if json {
-            let mut answer = Map::new();
-            answer.insert("warnings".to_owned(), found.result["warnings"].clone());
-            answer.insert("results".to_owned(), Value::Object(found.result));
-            answer.insert("files".to_owned(), json!(files));
-            answer.insert("folder".to_owned(), json!(folder.display().to_string()));
-            print::object(answer)?;
+            print::object(json!({
+                "warnings": found.result["warnings"],
+                "results": found.result,
+                "files": files,
+                "folder": folder.display().to_string(),
+            }))?;
         } else {
             complain::warn(&sentences(&found.findings, Voice::Campaign, true));
             let tables = found.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::report::words::Voice;
 use clap::error::ContextKind;
-use serde_json::{Map, json};
+use serde_json::json;
 use std::io::Write;
 
 /// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
@@ -11,7 +11,7 @@ pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
     let text = error.spoken(|key| voice.setting(key));
     line(&format!("vibro: {text}"));
     if json {
-        object(text, error.exit_code());
+        object(&text, error.exit_code());
     }
     error.exit_code()
 }
@@ -32,7 +32,7 @@ pub fn usage(error: &clap::Error, json: bool) -> u8 {
     }
     if json {
         let tried = tried.map_or_else(String::new, |t| format!("\n  try: {t}"));
-        object(format!("{}{tried}", text.trim().trim_start_matches("error: ")), 2);
+        object(&format!("{}{tried}", text.trim().trim_start_matches("error: ")), 2);
     }
     2
 }
@@ -52,13 +52,9 @@ fn advice(error: &clap::Error) -> Option<String> {
 }
 
 /// What a program reads in place of an answer.
-fn object(error: String, exit_code: u8) {
-    let mut answer = Map::new();
-    answer.insert("error".to_owned(), error.into());
-    answer.insert("exit_code".to_owned(), exit_code.into());
-    answer.insert("warnings".to_owned(), json!([]));
+fn object(error: &str, exit_code: u8) {
     // There is nobody left to tell of a failure to print a failure.
-    let _ = super::print::object(answer);
+    let _ = super::print::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
 }
 
 /// Prints a warning for a person; JSON carries warnings itself.

@@ -1,17 +1,16 @@
 //! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY, on the way filtered and integrated.
 
-mod change;
-
-use super::Run;
-use super::print;
+use super::{Run, print};
 use crate::analysis::Answer;
-use crate::campaign::{Channel, Reading};
+use crate::campaign::{Channel, Reading, above_zero};
 use crate::error::{Error, Result};
-use crate::record::{Finding, Record};
+use crate::record::{Finding, Record, Trace};
 use crate::report::Output;
-use crate::report::layout::table;
+use crate::report::layout::headed;
+use crate::signal::filter::Filter;
+use crate::signal::{differentiate, integrate};
+use crate::units::Quantity;
 use crate::write::{Precision, Storage, Target};
-use change::Change;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -61,15 +60,8 @@ impl Run for Convert {
         answer.add("", changes);
         answer.add("", (target == Target::Npy).then(|| Finding::caution("values-only")));
         answer.add("", existed.then(|| Finding::caution("file-replaced").name("file", &*written)));
-        answer.tables.push(table(
-            "",
-            [()],
-            &[
-                ("written", "", &|()| written.as_str().into()),
-                ("records", "", &|()| records.into()),
-                ("format", "", &|()| format.into()),
-            ],
-        ));
+        let done = headed("", &[("written", ""), ("records", ""), ("format", "")]);
+        answer.tables.push(done.row([written.into(), records.into(), format.into()]));
         print::answer(answer, None, json)
     }
 }
@@ -100,4 +92,137 @@ pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     let mut output = Output::new(folder)?;
     output.write(&name.to_string_lossy(), bytes)?;
     output.commit().map(drop)
+}
+
+/// What is done to time traces on the way.
+#[derive(Debug, clap::Args)]
+struct Change {
+    /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
+    low_pass: Option<f64>,
+    /// Time constant in s of exponential smoothing (delays the signal), instead of the zero-phase low-pass
+    #[arg(conflicts_with = "low_pass")]
+    smoothing: Option<f64>,
+    /// Corner in Hz of a zero-phase Butterworth high-pass of order 4
+    high_pass: Option<f64>,
+    /// Integrations in time: 1 takes velocity to displacement, −1 to acceleration
+    #[arg(default_value_t = 0, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    integrate: i8,
+    /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a differentiation
+    #[arg(requires = "integrate")]
+    fmin: Option<f64>,
+    /// Excitation frequency in Hz: the mean over whole periods is removed
+    #[arg(requires = "integrate")]
+    excitation: Option<f64>,
+}
+
+/// Order of one pass of every filter here.
+const ORDER: usize = 4;
+
+impl Change {
+    /// Whether anything is to be done.
+    fn wanted(&self) -> bool {
+        self.integrate != 0 || self.smoothing.is_some() || self.low_pass.is_some() || self.high_pass.is_some()
+    }
+
+    /// Does it to all records; gives what was done.
+    ///
+    /// # Errors
+    /// If options contradict each other, a record is no time trace, or it cannot be filtered or integrated.
+    fn apply(&self, records: &mut [Record]) -> Result<Vec<Finding>> {
+        above_zero("low_pass", self.low_pass)?;
+        above_zero("high_pass", self.high_pass)?;
+        above_zero("fmin", self.fmin)?;
+        above_zero("excitation", self.excitation)?;
+        above_zero("smoothing", self.smoothing)?;
+        if self.integrate > 0 && self.fmin.is_none() {
+            let expected = "a cut-off in Hz: below it noise and drift would be all that is seen";
+            return Err(Error::usage("an integration in time without a cut-off", expected)
+                .setting("fmin")
+                .hint("half the lowest frequency that matters; the answer says from where on amplitudes are right"));
+        }
+        let idle = [
+            ("fmin", self.fmin.is_some() && self.integrate == 0),
+            ("excitation", self.excitation.is_some() && self.integrate < 1),
+        ];
+        if let Some((name, _)) = idle.iter().find(|(_, idle)| *idle) {
+            let found = format!("{name} with {} integrations", self.integrate);
+            return Err(Error::usage(found, "an integration").setting(name).setting("integrate"));
+        }
+        let mut done = Vec::new();
+        for record in records.iter_mut().filter(|_| self.wanted()) {
+            let (kind, name) = (record.kind(), record.meta().name.clone());
+            let Record::Trace(trace) = record else {
+                return Err(Error::refused(format!("{name:?} is a {kind}, no time trace"))
+                    .hint("choose a trace; `vibro spectrum` integrates in frequency")
+                    .setting("channel"));
+            };
+            self.trace(trace, &mut done).map_err(|e| e.of_record(&name))?;
+        }
+        Ok(done)
+    }
+
+    fn trace(&self, trace: &mut Trace, done: &mut Vec<Finding>) -> Result<()> {
+        let rate =
+            trace.rate().ok_or_else(|| Error::refused("the sampling rate is not known").setting("rate"))?;
+        let name = trace.meta.name.clone();
+        let was = |code: Finding| code.about(name.as_str());
+        if let Some(time) = self.smoothing {
+            let corner = 1.0 / (std::f64::consts::TAU * time);
+            let filter = Filter::smoothing(corner, rate)?;
+            if let Some(i) = trace.values.iter().position(|v| !v.is_finite()) {
+                let found = format!("sample {i} is missing: smoothing would lose all behind it");
+                return Err(Error::refused(found).hint("cut the record before the gap"));
+            }
+            if let Some(first) = trace.values.first().copied() {
+                filter.causal(&mut trace.values, first);
+            }
+            trace.meta.step("filter", &[("filter", &filter), ("passes", &1)]);
+            done.push(was(Finding::caution("smoothed")).number("time", time).number("corner", corner));
+        }
+        let low = self.low_pass.map(|corner| Filter::low_pass(corner, ORDER, rate));
+        let high = [self.high_pass, self.fmin.filter(|_| self.integrate < 0)].into_iter().flatten();
+        for filter in low.into_iter().chain(high.map(|corner| Filter::high_pass(corner, ORDER, rate))) {
+            let filter = filter?;
+            trace.values = filter.zero_phase(&trace.values)?;
+            trace.meta.step("filter", &[("filter", &filter), ("passes", &2)]);
+            done.push(was(Finding::caution("filtered")).name("filter", filter.to_string()));
+        }
+        if let (1.., Some(corner)) = (self.integrate, self.fmin) {
+            let (times, period) = (self.integrate, self.excitation.map(f64::recip));
+            let how = integrate::InTime { times, corner, order: ORDER, period };
+            let found = integrate::in_time(trace, &how)?;
+            let [low, high] = found.band;
+            let facts = was(Finding::caution("integrated")).name("times", often(times));
+            let facts = facts.count("order", ORDER).number("corner", corner).number("low", low);
+            let facts = facts.number("high", high).number("edge", found.edge).number("drift", found.drift);
+            done.push(facts.name("unit", found.trace.meta.unit.symbol()));
+            if let Some(f) = self.excitation {
+                let facts = was(Finding::caution("integration-gain")).number("frequency", f);
+                let facts = facts.number("gain", how.gain(f, rate)?);
+                let inside = (low..=high).contains(&f);
+                done.push(if inside { facts } else { facts.number("outside", f) });
+            }
+            *trace = renamed(found.trace, trace);
+        }
+        if self.integrate < 0 {
+            let found = differentiate::in_time(trace, self.integrate.unsigned_abs())?;
+            let facts = was(Finding::caution("differentiated")).name("times", often(self.integrate));
+            done.push(facts.number("highest", found.highest));
+            *trace = renamed(found.trace, trace);
+        }
+        Ok(())
+    }
+}
+
+/// A channel that is named after its quantity takes the name of the new one: no displacement is called velocity.
+fn renamed(mut made: Trace, from: &Trace) -> Trace {
+    let (before, after) = (from.meta.quantity, made.meta.quantity);
+    if Quantity::from_name(&made.meta.name) == Some(before) && after != Quantity::Other {
+        after.name().clone_into(&mut made.meta.name);
+    }
+    made
+}
+
+fn often(times: i8) -> &'static str {
+    if times.abs() == 1 { "once" } else { "twice" }
 }

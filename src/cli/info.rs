@@ -1,13 +1,13 @@
 //! `vibro info`: what is in a file.
 
-use super::Run;
-use super::{complain, print};
+use super::{Run, complain, print};
+use crate::analysis::Answer;
 use crate::campaign::Reading;
 use crate::error::Result;
 use crate::read::Header;
 use crate::record::Finding;
 use crate::report::words::{Voice, put, sentences};
-use serde_json::{Map, json};
+use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -56,11 +56,9 @@ impl Run for Info {
             files.push(json!({ "path": path, "format": format.name(), "records": records }));
         }
         if json {
-            let mut answer = Map::new();
-            answer.insert("files".to_owned(), json!(files));
-            answer.insert("errors".to_owned(), json!(errors));
-            put(&mut answer, &about, Voice::Command);
-            print::object(answer)?;
+            let mut answer = Answer::of(&json!({ "files": files, "errors": errors }))?;
+            put(&mut answer.result, &about, Voice::Command);
+            print::object(answer.result)?;
         } else {
             complain::warn(&sentences(&about, Voice::Command, true));
             print::text(&text)?;

@@ -1,7 +1,6 @@
 //! `vibro model`: what the motion of a rig should be.
 
-use super::Run;
-use super::print;
+use super::{Run, print};
 use crate::analysis::model::{choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
 use clap::{Args, Subcommand};

@@ -1,7 +1,6 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
-use super::Run;
-use super::print;
+use super::{Run, print};
 use crate::analysis::Answer;
 use crate::analysis::precision as shown;
 use crate::error::{Error, Result};

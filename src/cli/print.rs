@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::report::words::{Voice, put, sentences};
 use crate::report::{Output, Table, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::fmt::Write as _;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -48,8 +48,8 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> 
 ///
 /// # Errors
 /// As [`text`].
-pub fn object(object: Map<String, Value>) -> Result<()> {
-    text(&format!("{:#}\n", Value::Object(object)))
+pub fn object(object: impl Into<Value>) -> Result<()> {
+    text(&format!("{:#}\n", object.into()))
 }
 
 /// Prints text.

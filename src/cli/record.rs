@@ -1,9 +1,8 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
-use super::Run;
 use super::convert::{apart, folder_of, write_beside};
 use super::sweep::of_script;
-use super::{complain, print};
+use super::{Run, complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::{Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
 use crate::campaign::{Channel, Reading};
@@ -11,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
 use crate::measure::{Estimate, legacy};
 use crate::record::{Finding, Trace};
-use crate::report::layout::table;
+use crate::report::layout::{headed, table};
 use clap::Args;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -98,10 +97,6 @@ impl Record {
             })
         })
     }
-
-    fn print(&self, answer: Answer, json: bool) -> Result<u8> {
-        print::answer(answer, self.out.as_deref(), json)
-    }
 }
 
 impl<K: Args> Measured<K> {
@@ -113,7 +108,7 @@ impl<K: Args> Measured<K> {
 impl<K: Args + OfFile> Run for Measured<K> {
     /// Prints what is found in one record.
     fn run(&self, json: bool) -> Result<u8> {
-        self.record.print(self.by(json, K::measure)?, json)
+        print::answer(self.by(json, K::measure)?, self.record.out.as_deref(), json)
     }
 }
 
@@ -126,7 +121,7 @@ impl Run for Impacts {
             }
             keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
         })?;
-        self.of.record.print(answer, json)
+        print::answer(answer, self.of.record.out.as_deref(), json)
     }
 }
 
@@ -150,16 +145,9 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
     }))?;
     answer.add("", [of_script("timeav")]);
     answer.add("", (n == 1).then(|| Finding::caution("timeav-one-peak")));
-    answer.tables.push(table(
-        "timeav",
-        [()],
-        &[
-            ("maxp", "", &|()| found.maxima.into()),
-            ("maxpeak", "", &|()| n.into()),
-            ("diffav", "s", &|()| found.interval.into()),
-            ("diffreq", "Hz", &|()| found.frequency.into()),
-        ],
-    ));
+    let printed = headed("timeav", &[("maxp", ""), ("maxpeak", ""), ("diffav", "s"), ("diffreq", "Hz")]);
+    let printed = printed.row([found.maxima.into(), n.into(), found.interval.into(), found.frequency.into()]);
+    answer.tables.push(printed);
     answer.table("impacts", table("Peaks", &found.times, &[("peakt", "s", &|t| (**t).into())]));
     Ok(answer)
 }
@@ -175,7 +163,7 @@ impl Run for Measured<frf::Keys> {
         }
         let mut answer = answers.pop().ok_or_else(|| Error::refused("no frequency response function"))?;
         answer.refused.take().map_or(Ok(()), Err)?;
-        self.record.print(answer, json)
+        print::answer(answer, self.record.out.as_deref(), json)
     }
 }
 
@@ -187,7 +175,7 @@ impl Run for Pulse {
             Some(file) => self.record.measured(file, json, |source| self.keys.measure(source))?,
             None => self.keys.times("")?,
         };
-        self.record.print(answer, json)
+        print::answer(answer, self.record.out.as_deref(), json)
     }
 }
 
@@ -200,7 +188,7 @@ impl Run for Restitution {
         for (i, file) in self.files.iter().enumerate() {
             self.record.measured(file, json, |source| series.add_record(&self.keys, source, i + 1))?;
         }
-        self.record.print(series.answer("")?, json)
+        print::answer(series.answer("")?, self.record.out.as_deref(), json)
     }
 }
 
@@ -228,6 +216,6 @@ impl Run for Drill {
             complain::line(&format!("wrote {written}"));
             answer.result.insert("each_cycle".to_owned(), written.into());
         }
-        self.of.record.print(answer, json)
+        print::answer(answer, self.of.record.out.as_deref(), json)
     }
 }

@@ -1,8 +1,7 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
 
-use super::Run;
 use super::convert::{apart, write_beside};
-use super::print;
+use super::{Run, print};
 use crate::analysis::sweep::{Stored, figures, named, tables};
 use crate::analysis::{self, Answer};
 use crate::campaign::above_zero;
@@ -12,8 +11,8 @@ use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::read::{SweepList, SweepReader};
 use crate::record::{Finding, Sweep};
-use crate::report::files;
-use crate::report::layout::{pair, table};
+use crate::report::layout::{headed, pair, table};
+use crate::report::{Table, files};
 use ndarray::Array2;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -146,14 +145,9 @@ fn largest_lines(sweep: &Sweep) -> Result<Answer> {
     let rows = rows.collect::<Vec<Value>>();
     let mut answer = Answer::of(&json!({ "points": rows, "resonances": [], "jumps": [] }))?;
     answer.add("", [of_script("sinesw3")]);
-    answer.table(
-        "response",
-        table(
-            "Largest lines",
-            &points,
-            &[("excitation", "Hz", &|p| p.0.into()), ("amplitude", unit, &|p| p.1.into())],
-        ),
-    );
+    let columns = [("excitation", "Hz"), ("amplitude", unit)];
+    let rows = points.iter().map(|(excitation, amplitude)| [(*excitation).into(), (*amplitude).into()]);
+    answer.table("response", rows.fold(headed("Largest lines", &columns), Table::row));
     Ok(answer)
 }
 
@@ -192,16 +186,9 @@ impl Run for Waterfall {
         answer.figure("map", figures::map(&matrix, self.fmax)?);
         answer.files.push(("waterfall.csv".to_owned(), files::matrix_csv(&matrix).into_bytes()));
         let (points, lines) = matrix.magnitude.dim();
-        answer.tables.push(table(
-            "Waterfall",
-            [()],
-            &[
-                ("spectra", "", &|()| points.into()),
-                ("lines", "", &|()| lines.into()),
-                ("quantity", "", &|()| matrix.quantity.name().into()),
-                ("unit", "", &|()| matrix.unit.as_str().into()),
-            ],
-        ));
+        let shape = headed("Waterfall", &[("spectra", ""), ("lines", ""), ("quantity", ""), ("unit", "")]);
+        let (quantity, unit) = (matrix.quantity.name(), matrix.unit.as_str());
+        answer.tables.push(shape.row([points.into(), lines.into(), quantity.into(), unit.into()]));
         print::answer(answer, self.taken.out.as_deref(), json)
     }
 }
@@ -211,7 +198,7 @@ impl Run for Excitation {
     fn run(&self, json: bool) -> Result<u8> {
         let (list, how) = self.sweep.listed()?;
         let sweep = how.read(&list)?;
-        let points = if self.sweep.legacy {
+        let (points, findings) = if self.sweep.legacy {
             let found = legacy::excitation(&sweep)?.into_iter().zip(&sweep.points);
             let point = |(frequency, point): (f64, &crate::record::SweepPoint)| excitation::Excitation {
                 file: point.name(),
@@ -220,18 +207,14 @@ impl Run for Excitation {
                 force: None,
                 force_std: None,
             };
-            found.map(point).collect()
+            (found.map(point).collect(), vec![of_script("sineswpf")])
         } else {
-            excitation::excitations(&sweep, self.sweep.fmin.unwrap_or(0.0))?
+            (excitation::excitations(&sweep, self.sweep.fmin.unwrap_or(0.0))?, sweep.findings)
         };
         let frequencies: Vec<f64> = points.iter().map(|p| p.frequency).collect();
         let written = self.lists(&list, &frequencies)?;
         let mut answer = Answer::of(&json!({ "points": points, "written": written }))?;
-        if self.sweep.legacy {
-            answer.add("", [of_script("sineswpf")]);
-        } else {
-            answer.add("", &sweep.findings);
-        }
+        answer.add("", findings);
         answer.tables.push(table(
             "Excitation",
             &points,

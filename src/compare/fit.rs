@@ -20,20 +20,24 @@ pub use answer::{Fit, FitPoint, Fitted, LeftOut};
 pub use hold_out::{Block, Rung};
 pub use uncertainty::{Profile, Unidentified};
 
-use super::simulated::Pace;
+use super::forcing::{median, range};
+use super::pair::reached;
+use super::predicting::Swept;
+use super::prediction::{Kind, Motion, motions};
+use super::simulated::{Pace, Simulated, simulated_briefly};
 use crate::campaign::FitEntry;
 use crate::error::{Error, Result};
 use crate::measure::response::Response;
 use crate::model::Rig;
 use answer::Answer;
 use compliance::corrected;
-use converge::Converged;
-use data::Data;
+use converge::{Converged, Least, assigned};
+use data::{Data, GUESS, Reading, Step};
 use hold_out::rungs;
-use problem::Problem;
+use problem::{Problem, shown};
 use rayon::prelude::*;
-use search::End;
-use uncertainty::Uncertainty;
+use search::{End, FINE, distances};
+use uncertainty::{NORMAL, Uncertainty, profile};
 use unknown::{Setting, Unknown};
 
 /// Starting points where none are asked for.

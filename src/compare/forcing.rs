@@ -5,13 +5,13 @@ use crate::measure::response::{Response, ResponsePoint};
 use crate::record::Finding;
 use crate::units::notation::significant;
 
-/// Force amplitude in N over excitation frequency.
+/// Force amplitude over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Forcing {
-    /// One for all points.
-    Constant(f64),
-    /// Frequency in Hz and force of each point, rising in frequency, one point or more.
-    Measured(Vec<(f64, f64)>),
+pub struct Forcing {
+    /// Frequency in Hz and force in N of each point, rising in frequency; a single one where the force is the same for all points.
+    points: Vec<(f64, f64)>,
+    /// Whether it was measured at each point.
+    measured: bool,
 }
 
 /// Neighbouring forces within this ratio are one level: a shaker's force drops by less at a resonance, and levels that are chosen differ by
@@ -21,12 +21,17 @@ const LEVEL: f64 = 1.2;
 const DIFFERS: f64 = 0.05;
 
 impl Forcing {
+    /// One force in N for all points.
+    pub fn constant(force: f64) -> Forcing {
+        Forcing { points: vec![(0.0, force)], measured: false }
+    }
+
     /// The measured force of a sweep, where it was measured.
     pub fn measured(response: &Response) -> Option<Forcing> {
         let points = response.points.iter().filter_map(|p| Some((p.excitation, p.force?)));
         let mut points: Vec<(f64, f64)> = points.collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        (!points.is_empty()).then_some(Forcing::Measured(points))
+        (!points.is_empty()).then_some(Forcing { points, measured: true })
     }
 
     /// The force of each of these responses, with findings: the stated one for all, else each its own. A sweep without one takes the median
@@ -46,7 +51,7 @@ impl Forcing {
                 let differs = Finding::caution("stated-force-differs").number("stated", stated);
                 differs.number("median", median).number("part", part)
             });
-            return Ok((vec![Forcing::Constant(stated); responses.len()], differs.into_iter().collect()));
+            return Ok((vec![Forcing::constant(stated); responses.len()], differs.into_iter().collect()));
         }
         let Some(median) = median(all()) else {
             return Err(Error::refused("the force is neither stated nor measured")
@@ -58,7 +63,7 @@ impl Forcing {
         let own = |r: &&Response| {
             Forcing::measured(r).unwrap_or_else(|| {
                 findings.push(Finding::caution("force-not-measured").about(&r.name).number("median", median));
-                Forcing::Constant(median)
+                Forcing::constant(median)
             })
         };
         let forcings = responses.iter().map(own).collect();
@@ -72,22 +77,19 @@ impl Forcing {
             return Some((*first).clone());
         }
         let mean = |f: f64| of.iter().map(|o| o.at(f)).sum::<f64>() / of.len() as f64;
-        let points = of.iter().flat_map(|o| match o {
-            Forcing::Constant(_) => &[],
-            Forcing::Measured(points) => points.as_slice(),
-        });
+        let points = of.iter().filter(|o| o.measured).flat_map(|o| &o.points);
         let mut points: Vec<(f64, f64)> = points.map(|p| (p.0, mean(p.0))).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Some(if points.is_empty() { Forcing::Constant(mean(0.0)) } else { Forcing::Measured(points) })
+        if points.is_empty() {
+            return Some(Forcing::constant(mean(0.0)));
+        }
+        Some(Forcing { points, measured: true })
     }
 
     /// Force in N at a frequency in Hz, linear between points and constant beyond the last.
     pub fn at(&self, frequency: f64) -> f64 {
-        let points = match self {
-            Forcing::Constant(force) => return *force,
-            Forcing::Measured(points) => points,
-        };
-        match points.split_at(points.partition_point(|p| p.0 < frequency)) {
+        let below = self.points.partition_point(|p| p.0 < frequency);
+        match self.points.split_at(below) {
             ([.., a], [b, ..]) => a.1 + (b.1 - a.1) * (frequency - a.0) / (b.0 - a.0),
             ([.., only], []) | ([], [only, ..]) => only.1,
             ([], []) => f64::NAN,
@@ -96,18 +98,15 @@ impl Forcing {
 
     /// Force in N of a point of the sweep, and its standard uncertainty: 0 where it is stated, taken from other points, or not known.
     pub(super) fn of(&self, point: &ResponsePoint) -> (f64, f64) {
-        match (self, point.force) {
-            (Forcing::Measured(_), Some(force)) => (force, point.force_std.unwrap_or(0.0)),
+        match point.force {
+            Some(force) if self.measured => (force, point.force_std.unwrap_or(0.0)),
             _ => (self.at(point.excitation), 0.0),
         }
     }
 
     /// Median in N.
     pub fn median(&self) -> f64 {
-        match self {
-            Forcing::Constant(force) => *force,
-            Forcing::Measured(points) => median(points.iter().map(|p| p.1)).unwrap_or(f64::NAN),
-        }
+        median(self.points.iter().map(|p| p.1)).unwrap_or(f64::NAN)
     }
 }
 
@@ -155,12 +154,13 @@ mod tests {
 
     #[test]
     fn a_measured_force_is_linear_between_its_points() {
-        let forcing = Forcing::Measured(vec![(4.0, 0.1), (6.0, 0.2), (6.0, 0.3), (8.0, 0.3)]);
+        let forcing =
+            Forcing { points: vec![(4.0, 0.1), (6.0, 0.2), (6.0, 0.3), (8.0, 0.3)], measured: true };
         let at: Vec<f64> = [3.0, 4.0, 5.0, 6.0, 7.0, 9.0].map(|f| forcing.at(f)).to_vec();
         // 0.1 + 0.1/2 is rounded once more than 0.15.
         assert!((at[2] - 0.15).abs() < 1e-16, "{at:?}");
         assert_eq!((at[0], at[1], at[3], at[4], at[5]), (0.1, 0.1, 0.2, 0.3, 0.3));
-        let mean = Forcing::mean(&[&forcing, &Forcing::Constant(0.5)]).unwrap();
+        let mean = Forcing::mean(&[&forcing, &Forcing::constant(0.5)]).unwrap();
         assert!((mean.at(5.0) - 0.325).abs() < 1e-15);
         assert_eq!(Forcing::mean(&[&forcing, &forcing]), Some(forcing));
     }

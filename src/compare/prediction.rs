@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn history_decides_where_two_motions_exist() {
         let rig = Rig { restitution: 0.95, ..Rig::thesis() };
-        let p = Prediction::over(&rig, &Forcing::Constant(0.1), (6.0, 13.0), 1401).unwrap();
+        let p = Prediction::over(&rig, &Forcing::constant(0.1), (6.0, 13.0), 1401).unwrap();
         let (up, down) = (p.followed(Direction::Up), p.followed(Direction::Down));
         let largest = |f: &[Option<Motion>]| {
             let mut best = (0.0, 0.0);

@@ -49,10 +49,9 @@ pub(crate) fn matrix_csv(matrix: &Waterfall) -> String {
     for (k, frequency) in matrix.frequency.iter().enumerate() {
         let _ = write!(text, "{frequency}");
         for value in matrix.magnitude.column(k) {
+            text.push(',');
             if value.is_finite() {
-                let _ = write!(text, ",{value:e}");
-            } else {
-                text.push(',');
+                let _ = write!(text, "{value:e}");
             }
         }
         text.push('\n');

@@ -140,9 +140,7 @@ impl Table {
         if !self.title.is_empty() {
             let _ = writeln!(out, "{}", self.title);
         }
-        for line in 0..=self.rows.len() {
-            let cells = columns.iter().filter_map(|c| c.get(line).map(String::as_str));
-            let row = cells.collect::<Vec<_>>().join("  ");
+        for row in self.lines(&columns, "  ") {
             // A hyphen can be copied into other programs, a typographic minus cannot.
             let _ = writeln!(out, "{}", row.trim_end().replace('\u{2212}', "-"));
         }
@@ -155,32 +153,29 @@ impl Table {
     /// For other programs (RFC 4180): every number with all its digits, missing ones empty, and a column `…
     /// std` beside each column with uncertainties.
     pub fn csv(&self) -> String {
-        let uncertain: Vec<bool> =
-            (0..self.columns.len()).map(|i| self.cells(i).any(|c| c.std().is_some())).collect();
-        let mut out = String::new();
-        let mut head = Vec::new();
-        for (column, uncertain) in self.columns.iter().zip(&uncertain) {
-            head.push(quoted(&labelled(&column.name, &column.unit)));
-            if *uncertain {
-                head.push(quoted(&labelled(&format!("{} std", column.name), &column.unit)));
+        let number = |value: Option<f64>| value.map_or_else(String::new, exact);
+        let shown = |cell: &Cell| match cell {
+            Cell::Text(text) => quoted(text),
+            cell => number(cell.value()),
+        };
+        let mut columns: Vec<Vec<String>> = Vec::new();
+        for (i, Column { name, unit }) in self.columns.iter().enumerate() {
+            let head = |name: &str| std::iter::once(quoted(&labelled(name, unit)));
+            columns.push(head(name).chain(self.cells(i).map(shown)).collect());
+            if self.cells(i).any(|c| c.std().is_some()) {
+                let stds = self.cells(i).map(|c| number(c.std()));
+                columns.push(head(&format!("{name} std")).chain(stds).collect());
             }
         }
-        let _ = writeln!(out, "{}", head.join(","));
-        for row in &self.rows {
-            let mut line = Vec::new();
-            for (i, uncertain) in uncertain.iter().enumerate() {
-                let cell = row.get(i).unwrap_or(&Cell::Missing);
-                line.push(match cell {
-                    Cell::Text(text) => quoted(text),
-                    cell => cell.value().map_or_else(String::new, exact),
-                });
-                if *uncertain {
-                    line.push(cell.std().map_or_else(String::new, exact));
-                }
-            }
-            let _ = writeln!(out, "{}", line.join(","));
-        }
-        out
+        self.lines(&columns, ",").map(|line| line + "\n").collect()
+    }
+
+    /// Head and rows of these columns, each a line.
+    fn lines(&self, columns: &[Vec<String>], between: &str) -> impl Iterator<Item = String> {
+        (0..=self.rows.len()).map(move |line| {
+            let cells: Vec<&str> = columns.iter().filter_map(|c| c.get(line).map(String::as_str)).collect();
+            cells.join(between)
+        })
     }
 
     /// For a page: a `table` element with its title as caption.

@@ -1,6 +1,6 @@
 //! Axes: what a caller asks for, and what it becomes once the data are known.
 
-use super::ticks::{self, Ticks};
+use crate::{Ticks, ticks};
 use vibro_record::units::notation::{self, engineering, labelled, scaled_unit};
 
 /// How values are laid out along an axis.

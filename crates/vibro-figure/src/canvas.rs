@@ -3,9 +3,7 @@
 //! Coordinates are points (1/72 inch) with two decimals, so equal figures give equal bytes. Nothing refers to
 //! anything by an id, so any number of pictures can stand in one page.
 
-use crate::colour::{BLACK, Rgb};
-use crate::path::{Point, Rect};
-use crate::{font, png};
+use crate::{BLACK, Point, Rect, Rgb, font, png};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use ndarray::Array2;
 use resvg::tiny_skia::{ColorU8, Pixmap};

@@ -1,13 +1,6 @@
 //! From figures to pictures: the layout of the panels.
 
-use super::axis::Extent;
-use super::canvas::{self, Canvas};
-use super::figure::{Figure, Panel};
-use super::frame::Insets;
-use super::path::Rect;
-use super::plot::{self, Sheet};
-use super::png;
-use vibro_record::Result;
+use crate::{Canvas, Extent, Figure, Insets, Panel, Rect, Sheet, canvas, plot};
 
 /// A drawn figure, at its size in print.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,47 +18,40 @@ impl Drawing {
     pub fn svg(&self) -> String {
         canvas::document(self.size, &self.name, &self.canvas.images, &self.canvas.body)
     }
-
-    /// The picture as PNG of `dpi` dots per inch (30 to 1200; 300 is usual in print), on white, in the
-    /// bundled font.
-    ///
-    /// # Errors
-    /// If the picture is too large to be held in memory as pixels.
-    pub fn png(&self, dpi: f64) -> Result<Vec<u8>> {
-        png::rasterised(self, dpi)
-    }
 }
 
 /// White edge around everything.
 const EDGE: f64 = 3.0;
 
-/// Lays out the panels and draws them.
-pub(super) fn draw(figure: &Figure) -> Drawing {
-    // A size that is no size becomes the nearest that is.
-    let millimetres = |v: f64| if v.is_nan() { 86.0 } else { v.clamp(20.0, 1000.0) };
-    let size = (millimetres(figure.width), millimetres(figure.height));
-    let points = 72.0 / 25.4;
-    let page = Rect { x: 0.0, y: 0.0, w: size.0 * points, h: size.1 * points }.grown(-EDGE);
-    let mut canvas = Canvas::default();
-    let columns = figure.columns.clamp(1, figure.panels.len().max(1));
-    let mut sheets = sheets(figure, columns);
-    // A legend that finds no place inside makes its frame smaller, which can cost another its place.
-    let layout = loop {
-        let layout = Layout::new(&sheets, columns, page);
-        let plots = sheets.iter_mut().enumerate().filter_map(|(i, sheet)| Some((i, sheet.as_mut()?)));
-        if plots.filter_map(|(i, sheet)| sheet.make_room(layout.frame(i)).then_some(())).count() == 0 {
-            break layout;
+impl Figure {
+    /// Draws the figure: lays out the panels and draws them. Nothing outside is needed, so figures can be drawn at once.
+    pub fn draw(&self) -> Drawing {
+        // A size that is no size becomes the nearest that is.
+        let millimetres = |v: f64| if v.is_nan() { 86.0 } else { v.clamp(20.0, 1000.0) };
+        let size = (millimetres(self.width), millimetres(self.height));
+        let points = 72.0 / 25.4;
+        let page = Rect { x: 0.0, y: 0.0, w: size.0 * points, h: size.1 * points }.grown(-EDGE);
+        let mut canvas = Canvas::default();
+        let columns = self.columns.clamp(1, self.panels.len().max(1));
+        let mut sheets = sheets(self, columns);
+        // A legend that finds no place inside makes its frame smaller, which can cost another its place.
+        let layout = loop {
+            let layout = Layout::new(&sheets, columns, page);
+            let plots = sheets.iter_mut().enumerate().filter_map(|(i, sheet)| Some((i, sheet.as_mut()?)));
+            if plots.filter_map(|(i, sheet)| sheet.make_room(layout.frame(i)).then_some(())).count() == 0 {
+                break layout;
+            }
+        };
+        for (i, (panel, sheet)) in self.panels.iter().zip(&sheets).enumerate() {
+            match (panel, sheet) {
+                (Panel::Plot(_), Some(sheet)) => sheet.draw(&mut canvas, layout.frame(i)),
+                (Panel::Waterfall(waterfall), _) => waterfall.draw(&mut canvas, layout.cell(i)),
+                (Panel::Grid(grid), _) => grid.draw(&mut canvas, layout.cell(i)),
+                (Panel::Plot(_), None) => {}
+            }
         }
-    };
-    for (i, (panel, sheet)) in figure.panels.iter().zip(&sheets).enumerate() {
-        match (panel, sheet) {
-            (Panel::Plot(_), Some(sheet)) => sheet.draw(&mut canvas, layout.frame(i)),
-            (Panel::Waterfall(waterfall), _) => waterfall.draw(&mut canvas, layout.cell(i)),
-            (Panel::Grid(grid), _) => grid.draw(&mut canvas, layout.cell(i)),
-            (Panel::Plot(_), None) => {}
-        }
+        Drawing { name: self.title.clone(), size, canvas }
     }
-    Drawing { name: figure.title.clone(), size, canvas }
 }
 
 /// All plots with their axes; those over one another have one abscissa where the figure says so.

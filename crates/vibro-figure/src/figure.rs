@@ -1,11 +1,6 @@
 //! Figures as data: what is shown, with which labels, in which arrangement.
 
-use super::axis::AxisSpec;
-use super::draw::Drawing;
-use super::grid::Grid;
-use super::heatmap::Heatmap;
-use super::series::Series;
-use super::waterfall::Waterfall;
+use crate::{AxisSpec, Grid, Heatmap, Series, Waterfall};
 
 /// Panels in a grid, at the size in which they are printed.
 ///
@@ -128,11 +123,6 @@ impl Figure {
     pub fn panel(mut self, panel: impl Into<Panel>) -> Figure {
         self.panels.push(panel.into());
         self
-    }
-
-    /// Draws the figure. Nothing outside is needed, so figures can be drawn at once.
-    pub fn draw(&self) -> Drawing {
-        super::draw::draw(self)
     }
 }
 

@@ -1,13 +1,10 @@
 //! Series as shapes on the page.
 
-use super::canvas::{Anchor, Canvas, Pen};
-use super::frame::Place;
-use super::notes::Clutter;
-use super::style::{Look, MARKER, OUTLINE, SMALL};
-use crate::colour::{Rgb, WHITE};
-use crate::font;
-use crate::path::{Point, Rect, clipped, thinned};
-use crate::series::{Marker, Series, Shape};
+use crate::style::{Look, MARKER, OUTLINE, SMALL};
+use crate::{
+    Anchor, Canvas, Clutter, Marker, Pen, Place, Point, Rect, Rgb, Series, Shape, WHITE, clipped, font,
+    thinned,
+};
 
 /// A part of a series, ready to be drawn.
 #[derive(Debug, Clone, PartialEq)]

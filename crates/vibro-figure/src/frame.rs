@@ -1,12 +1,7 @@
 //! The frame of a plot: axes, ticks, their numbers and names.
 
-use super::canvas::{Anchor, Canvas, Text};
-use super::style::{DESCENT, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
-use crate::axis::Axis;
-use crate::colour::BLACK;
-use crate::font;
-use crate::path::{Point, Rect};
-use crate::ticks::Ticks;
+use crate::style::{DESCENT, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
+use crate::{Anchor, Axis, BLACK, Canvas, Point, Rect, Text, Ticks, font};
 
 /// Room around a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -94,12 +89,10 @@ pub(super) fn insets(x: &Axis, y: &Axis, size: (f64, f64), named_x: bool) -> Ins
     };
     let (first, last) = (half(tx.major.first(), 0.0, x), half(tx.major.last(), 1.0, x));
     let name = if y.title.is_empty() { 0.0 } else { LARGE + DESCENT + GAP };
-    let bottom = if !named_x {
-        SMALL / 2.0
-    } else if x.title.is_empty() {
-        GAP + SMALL + GAP
-    } else {
-        GAP + LEADING + 1.25 * LARGE
+    let bottom = match (named_x, x.title.is_empty()) {
+        (false, _) => SMALL / 2.0,
+        (true, true) => GAP + SMALL + GAP,
+        (true, false) => GAP + LEADING + 1.25 * LARGE,
     };
     Insets {
         left: (name + widest(&ty) + GAP + 1.0).max(first),

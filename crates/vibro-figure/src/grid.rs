@@ -1,10 +1,7 @@
 //! Grids of classes: named rows in groups, named columns, a colour and a letter a cell.
 
-use super::canvas::{Anchor, Canvas, Pen};
-use super::colour::{GREY, Rgb, WHITE};
-use super::font;
-use super::path::Rect;
-use super::style::{FRAME, GAP, SMALL};
+use crate::style::{FRAME, GAP, SMALL};
+use crate::{Anchor, Canvas, GREY, Pen, Rect, Rgb, WHITE, font};
 
 /// What a cell can be.
 #[derive(Debug, Clone, PartialEq, Eq)]

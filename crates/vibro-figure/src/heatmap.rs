@@ -1,11 +1,7 @@
 //! Maps: a value over two axes, shown by colour.
 
-use super::axis::{Axis, AxisSpec, Extent, Room, Scale};
-use super::canvas::Canvas;
-use super::colour::{self, Rgb};
-use super::frame::{self, Place, Ruler, Side};
-use super::path::Rect;
-use super::style::{FRAME, GAP, LARGE, LEADING, TICK, TICKS};
+use crate::style::{FRAME, GAP, LARGE, LEADING, TICK, TICKS};
+use crate::{Axis, AxisSpec, Canvas, Extent, Place, Rect, Rgb, Room, Ruler, Scale, Side, colour, frame};
 use ndarray::{Array2, ArrayRef2};
 use std::ops::Range;
 use vibro_record::{Error, Result};

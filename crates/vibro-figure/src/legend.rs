@@ -1,13 +1,7 @@
 //! The names of series, and the place for them.
 
-use super::canvas::{Anchor, Canvas, Pen};
-use super::forms::Form;
-use super::notes::Clutter;
-use super::style::{LEADING, Look, MARKER, OUTLINE, SMALL};
-use crate::font;
-use crate::heatmap::{Heatmap, Key};
-use crate::path::{Point, Rect};
-use crate::series::{Marker, Series, Shape};
+use crate::style::{LEADING, Look, MARKER, OUTLINE, SMALL};
+use crate::{Anchor, Canvas, Clutter, Form, Heatmap, Key, Marker, Pen, Point, Rect, Series, Shape, font};
 
 /// Length of a sample with a line and of one without, and its distance from the name.
 const SAMPLE: f64 = 18.0;

@@ -33,3 +33,16 @@ pub use grid::{Grid, Kind};
 pub use heatmap::Heatmap;
 pub use series::{Ink, Marker, Series, Shape, Stroke};
 pub use waterfall::Waterfall;
+
+// What several modules speak of.
+use axis::{Axis, Extent, Room};
+use canvas::{Anchor, Canvas, Image, Pen, Text};
+use colour::{BLACK, GREY, PALE, Rgb, WHITE};
+use forms::Form;
+use frame::{Insets, Place, Ruler, Side, fitted};
+use heatmap::{Key, ascending, fits};
+use legend::KeyList;
+use notes::Clutter;
+use path::{Point, Rect, clipped, thinned};
+use plot::Sheet;
+use ticks::Ticks;

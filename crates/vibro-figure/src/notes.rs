@@ -1,14 +1,7 @@
 //! Words among the data: names of points with leaders, names of reference lines.
 
-use super::canvas::{Anchor, Canvas, Text};
-use super::forms::Form;
-use super::frame::Place;
-use super::style::{LEADER, MARKER, SMALL, TICK};
-use crate::colour::{BLACK, GREY, Rgb};
-use crate::figure::Note;
-use crate::font;
-use crate::path::{Point, Rect};
-use crate::series::{Series, Shape};
+use crate::style::{LEADER, MARKER, SMALL, TICK};
+use crate::{Anchor, BLACK, Canvas, Form, GREY, Note, Place, Point, Rect, Rgb, Series, Shape, Text, font};
 
 /// Part of the height of small text by which its baseline lies over the lower edge of its box.
 const DESCENT: f64 = 0.16;

@@ -1,16 +1,10 @@
 //! A plot on its sheet: axes settled, room measured, then drawn.
 
-use super::canvas::{Anchor, Canvas};
-use super::forms::{self, Form};
-use super::frame::{self, Insets, Place, fitted};
-use super::heatmap::{self, Heatmap};
-use super::legend::KeyList;
-use super::notes::{self, Clutter};
-use super::style::{self, FRAME, GAP, LARGE, LEADING, Look, SMALL, TICK};
-use crate::axis::{Axis, Extent, Room};
-use crate::figure::{Legend, Plot};
-use crate::path::Rect;
-use crate::series::Shape;
+use crate::style::{self, FRAME, GAP, LARGE, LEADING, Look, SMALL, TICK};
+use crate::{
+    Anchor, Axis, Canvas, Clutter, Extent, Form, Heatmap, Insets, KeyList, Legend, Place, Plot, Rect, Room,
+    Shape, fitted, forms, frame, heatmap, notes,
+};
 use vibro_record::units::notation::labelled;
 
 /// Most room of a legend beside the frame, in parts of the frame's width.

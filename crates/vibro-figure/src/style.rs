@@ -1,8 +1,6 @@
 //! Sizes and pens of every figure, in points at print size.
 
-use super::canvas::Pen;
-use crate::colour::{self, BLACK, GREY, PALE, Rgb, WHITE};
-use crate::series::{Ink, Marker, Series, Shape, Stroke};
+use crate::{BLACK, GREY, Ink, Marker, PALE, Pen, Rgb, Series, Shape, Stroke, WHITE, colour};
 
 /// Numbers at ticks, names in legends, notes.
 pub(super) const SMALL: f64 = 8.0;

@@ -1,13 +1,10 @@
 //! Spectra behind each other: frequency to the right, excitation frequency to the back, amplitude up.
 
-use super::axis::{Axis, AxisSpec, Extent, Room, Scale};
-use super::canvas::{Anchor, Canvas, Pen, Text};
-use super::colour::{BLACK, WHITE};
-use super::font;
-use super::frame::{self, Ruler, Side, fitted};
-use super::heatmap::{ascending, fits};
-use super::path::{Point, Rect, thinned};
-use super::style::{DESCENT, FLOOR, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
+use crate::style::{DESCENT, FLOOR, FRAME, GAP, LARGE, LEADING, SMALL, TICK, TICKS};
+use crate::{
+    Anchor, Axis, AxisSpec, BLACK, Canvas, Extent, Pen, Point, Rect, Room, Ruler, Scale, Side, Text, WHITE,
+    ascending, fits, fitted, font, frame, thinned,
+};
 use ndarray::ArrayRef2;
 use vibro_record::Result;
 

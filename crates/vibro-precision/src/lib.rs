@@ -24,3 +24,7 @@ mod scene;
 pub use failure::{Cell, FailureMap, Outcome};
 pub use results::Results;
 pub use scene::{Family, Measured, Scene};
+
+// What several modules speak of.
+use failure::{Found, Question};
+use scene::{median, timed};

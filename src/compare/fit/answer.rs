@@ -1,11 +1,8 @@
 //! What a fit says of the rig, and what a person must know of it.
 
-use super::super::prediction::Kind;
-use super::converge::Converged;
-use super::data::{GUESS, Step};
-use super::hold_out::Rung;
-use super::uncertainty::{NORMAL, Profile, Uncertainty, Unidentified, profile};
-use super::unknown::{Setting, Unknown};
+use super::{
+    Converged, GUESS, Kind, NORMAL, Profile, Rung, Setting, Step, Uncertainty, Unidentified, Unknown, profile,
+};
 use crate::campaign::FitEntry;
 use crate::error::Result;
 use crate::measure::Estimate;

@@ -1,10 +1,6 @@
 //! The compliance of the contact, taken out of the points.
 
-use super::super::prediction::Kind;
-use super::converge::{Converged, assigned};
-use super::data::{Data, Reading, Step};
-use super::problem::Problem;
-use super::unknown::Setting;
+use super::{Converged, Data, Kind, Problem, Reading, Setting, Step, assigned};
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;

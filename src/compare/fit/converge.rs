@@ -1,13 +1,9 @@
 //! Motions by history and parameters by least squares, in turn until both stay.
 
-use super::super::forcing::median;
-use super::super::pair::reached;
-use super::super::prediction::{Kind, Motion, motions};
-use super::super::simulated::{Pace, Simulated, simulated_briefly};
-use super::data::{Data, Reading, Step};
-use super::problem::{Problem, shown};
-use super::search::{FINE, distances};
-use super::unknown::Setting;
+use super::{
+    Data, FINE, Kind, Motion, Pace, Problem, Reading, Setting, Simulated, Step, distances, median, motions,
+    reached, shown, simulated_briefly,
+};
 use crate::error::Result;
 use crate::math::Minimum;
 use crate::measure::residuals::{Whiteness, student};

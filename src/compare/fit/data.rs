@@ -1,10 +1,6 @@
 //! The measured points of a fit, both masses of one step together.
 
-use super::super::forcing::median;
-use super::super::predicting::Swept;
-use super::super::prediction::Kind;
-use super::super::simulated::Pace;
-use super::unknown::Setting;
+use super::{Kind, Pace, Setting, Swept, median};
 use crate::error::Result;
 use crate::measure::response::{Response, ResponsePoint};
 use crate::record::Direction;

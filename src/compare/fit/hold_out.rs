@@ -1,10 +1,6 @@
 //! No more model than the points ask for: models of rising order, each judged by points that it was not fitted to.
 
-use super::super::prediction::Kind;
-use super::converge::{Converged, assigned};
-use super::data::Data;
-use super::problem::Problem;
-use super::unknown::Setting;
+use super::{Converged, Data, Kind, Problem, Setting, assigned};
 use crate::measure::residuals::aicc;
 use crate::measure::response::Response;
 use crate::model::Parameter;

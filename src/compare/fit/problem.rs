@@ -1,9 +1,6 @@
 //! Weighted residuals of the steps whose motion is known.
 
-use super::super::forcing::range;
-use super::super::prediction::Kind;
-use super::data::{Data, Reading, Step};
-use super::unknown::{Setting, Unknown};
+use super::{Data, Kind, Reading, Setting, Step, Unknown, range};
 use crate::error::{Error, Result};
 use crate::math::{Minimum, minimise};
 use crate::model::Parameter;

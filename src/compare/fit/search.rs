@@ -6,10 +6,7 @@
 //! valley that most points share is found before its floor (graduated non-convexity: A. Blake & A. Zisserman, *Visual Reconstruction*
 //! (1987), 7).
 
-use super::super::prediction::Kind;
-use super::data::{Data, Step};
-use super::problem::Problem;
-use super::unknown::{Setting, Unknown};
+use super::{Data, Kind, Problem, Setting, Step, Unknown};
 use crate::math::minimise;
 use crate::model::Parameter;
 use rayon::prelude::*;

@@ -398,7 +398,7 @@ fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
     // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
     assert!(c1.rests_on_prior && (c1.estimate.std.unwrap() / 1e-7 - 1.0).abs() < 1e-3, "{c1:?}");
     // The profile of one parameter of a straight problem is a parabola: its interval is ±1.96 standard deviations.
-    let profile = uncertainty::profile(&answer.found.least, &answer.uncertainty, 0).unwrap();
+    let profile = profile(&answer.found.least, &answer.uncertainty, 0).unwrap();
     let [low, high] = profile.interval.map(Option::unwrap);
     let width = 2.0 * NORMAL * gap.estimate.std.unwrap();
     assert!(((high - low) / width - 1.0).abs() < 0.02, "{profile:?} {gap:?}");

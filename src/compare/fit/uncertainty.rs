@@ -1,8 +1,6 @@
 //! How well the points determine each parameter: by the slopes at the least sum of squares, and by its profile.
 
-use super::super::prediction::Kind;
-use super::converge::Least;
-use super::problem::Problem;
+use super::{Kind, Least, Problem};
 use crate::error::{Error, Result};
 use crate::model::Parameter;
 use nalgebra::{DMatrix, DVector, SVD};

@@ -1,6 +1,6 @@
 //! The parameters that a fit looks for, their coordinates without bounds, and the rig that has them.
 
-use super::super::prediction::Kind;
+use super::Kind;
 use crate::campaign::FitEntry;
 use crate::error::{Error, Result};
 use crate::model::{Parameter, Rig, Sine, Steady, shown};

@@ -2,8 +2,7 @@
 
 use super::trial::{Answer, Case, Kind, Method, measured, questions};
 use super::{bounds, rivals, scene};
-use crate::Scene;
-use crate::failure::Question;
+use crate::{Question, Scene};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::Noise;

@@ -2,8 +2,7 @@
 
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
 use super::{bounds, rivals, scene};
-use crate::Scene;
-use crate::failure::Question;
+use crate::{Question, Scene};
 use std::f64::consts::{PI, TAU};
 use vibro_math::Noise;
 use vibro_measure::pulse::{Instrument, KelvinVoigt, PulseOptions, pulse, two_times};

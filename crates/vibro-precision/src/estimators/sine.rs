@@ -2,8 +2,7 @@
 
 use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
 use super::{bounds, one_point, rivals, scene};
-use crate::failure::Question;
-use crate::{Measured, Scene};
+use crate::{Measured, Question, Scene};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::excitation::{Excitation, excitations};

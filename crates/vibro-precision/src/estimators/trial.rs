@@ -1,8 +1,6 @@
 //! Methods tried on random records of which the truth is known.
 
-use crate::failure::{Found, Question};
-use crate::scene::{median, timed};
-use crate::{Measured, Outcome};
+use crate::{Found, Measured, Outcome, Question, median, timed};
 use rayon::prelude::*;
 use std::sync::Arc;
 use vibro_math::Noise;
@@ -142,11 +140,8 @@ pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: 
         let squares: Vec<f64> = answers.iter().flatten().map(|e| e * e).collect();
         let (n, refusal) = (squares.len(), answers.into_iter().find_map(std::result::Result::err));
         let why = refusal.map(|why: String| format!("{} of {records} records refused: {why}", records - n));
-        let answer = if 2 * n < records {
-            Err(String::new())
-        } else {
-            Ok((squares.iter().sum::<f64>() / n as f64).sqrt())
-        };
+        let rms = (squares.iter().sum::<f64>() / n as f64).sqrt();
+        let answer = if 2 * n < records { Err(String::new()) } else { Ok(rms) };
         Measured { why, ..Measured::new(method.name(), setting.name.clone(), median(&mut times), answer) }
     };
     methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()

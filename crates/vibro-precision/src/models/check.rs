@@ -3,8 +3,7 @@
 use super::ours::soft_forms;
 use super::task::{Log, Task};
 use super::truth::{Repeats, repeats, settled};
-use crate::Outcome;
-use crate::failure::Found;
+use crate::{Found, Outcome};
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use vibro_model::{Orbit, State, orbits};

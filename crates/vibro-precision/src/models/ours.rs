@@ -1,7 +1,7 @@
 //! The library's own methods on a task.
 
 use super::task::{Log, Spring, Task};
-use crate::failure::Found;
+use crate::Found;
 use vibro_model::contact::conversion::damping_ratio;
 use vibro_model::{
     Chirp, Compliance, Compliant, Event, Excitation, Law, Motion, Orbits, Piece, Simulation, Sine, State,

@@ -7,7 +7,7 @@ mod stepper;
 
 use super::ours;
 use super::task::{Log, Task};
-use crate::failure::Found;
+use crate::Found;
 #[cfg(feature = "diffsol")]
 use diffsol::{
     Diffsol::{Bdf, Tsit45},

@@ -5,9 +5,7 @@ mod chaos;
 use super::rivals::{self as by, Kind, Locate, Method, events};
 use super::task::{Log, Task};
 use super::{ours, truth};
-use crate::failure::Found;
-use crate::scene::{median, timed};
-use crate::{Family, Measured, Scene};
+use crate::{Family, Found, Measured, Scene, median, timed};
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result};
@@ -32,16 +30,6 @@ struct Setup {
 const REPEATS: [usize; 2] = [15, 3];
 
 impl Setup {
-    /// Name, what it is, what the error is and where the truth comes from; tasks, methods and the judge.
-    fn new(
-        texts: [String; 4],
-        tasks: Vec<Task>,
-        methods: Vec<Run>,
-        judge: impl Fn(&[Log]) -> Verdict + 'static,
-    ) -> Setup {
-        Setup { scene: Scene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) }
-    }
-
     /// Runs, times and judges every method; `quick` with the first half of its settings.
     fn measured(self, quick: bool) -> Scene {
         let one = |method: &Method, setting: f64| {
@@ -158,7 +146,8 @@ fn scene_b(seconds: f64) -> Result<Setup> {
         &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
     ]
     .concat();
-    Ok(Setup::new(texts, vec![task], methods, judge))
+    let scene = Scene::new(Family::Models, texts);
+    Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
 /// Starts in each direction of a grazing motion.
@@ -220,7 +209,7 @@ fn grazing(depth: f64) -> Result<Setup> {
         "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
     ];
     let methods = [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat();
-    Ok(Setup::new(texts, tasks, methods, judge))
+    Ok(Setup { scene: Scene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) })
 }
 
 /// End of the first chatter of scene C, release, and end of the second chatter in s, by arithmetic with 40 digits.
@@ -263,7 +252,8 @@ fn scene_c() -> Setup {
         (by::RK45_RESTLESS, &[1e-6]),
         (by::RK4_ENDS, &[100.0, 1e3]),
     ];
-    Setup::new(texts.map(str::to_owned), vec![task_c()], [&first, EVENTS].concat(), judge)
+    let (scene, methods) = (Scene::new(Family::Models, texts), [&first, EVENTS].concat());
+    Setup { scene, tasks: vec![task_c()], methods, judge: Box::new(judge) }
 }
 
 /// Stiffness in N/m of contacts, and cycles until the motion is read: the slowest multiplier of the rigid orbit, 0.970, is then below
@@ -315,7 +305,8 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
         #[cfg(feature = "diffsol")]
         (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
     ];
-    Ok(Setup::new(texts, vec![task], methods, judge))
+    let scene = Scene::new(Family::Models, texts);
+    Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
 /// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which its start is still felt.
@@ -350,7 +341,8 @@ fn slow_sweep() -> Result<Setup> {
         &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
     ]
     .concat();
-    Ok(Setup::new(texts, vec![task], methods, judge))
+    let scene = Scene::new(Family::Models, texts);
+    Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! What is asked of a method: a rig, its excitation, a start and an end; and what comes back.
 
-use crate::Outcome;
-use crate::failure::Found;
+use crate::{Found, Outcome};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use vibro_model::Rig;
 use vibro_model::contact::conversion::damping_ratio;

@@ -2,7 +2,7 @@
 
 use super::rivals::{Course, Kind, Locate, events};
 use super::task::{Log, Spring, Task};
-use crate::failure::Found;
+use crate::Found;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::{PI, TAU};
 

@@ -5,8 +5,7 @@
 use super::super::task::{Log, Spring, Task};
 use super::stages::{Course, Guard, Locate, Stage, System};
 use super::stepper::{FLOOR, Kind, first_step};
-use crate::Outcome;
-use crate::failure::Found;
+use crate::{Found, Outcome};
 use ::diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason,
     Vector, VectorCommon, error::DiffsolError,

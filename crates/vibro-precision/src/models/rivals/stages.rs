@@ -2,7 +2,7 @@
 
 use super::super::task::{Log, Spring, Task};
 use super::stepper::{Kind, Stepper, rk4};
-use crate::failure::Found;
+use crate::Found;
 
 /// Where the masses are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 //! a fixed or a controlled size behind one face.
 
 use super::super::task::{Log, Task};
-use crate::failure::Found;
+use crate::Found;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
 /// Displacements in m and speeds in m/s below which errors are not counted against the state itself.
@@ -121,11 +121,7 @@ impl Taken {
             if middle <= low || middle >= high {
                 break;
             }
-            if height(self.start + middle, &self.at(&f, middle)) > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
+            if height(self.start + middle, &self.at(&f, middle)) > 0.0 { low = middle } else { high = middle }
         }
         Some(high)
     }

@@ -3,6 +3,7 @@
 use super::super::rivals::{self as by, Kind, Locate, events};
 use super::super::task::{Log, Task};
 use super::{ONE, Setup, Verdict};
+use crate::{Family, Scene};
 use rayon::prelude::*;
 use vibro_model::Rig;
 use vibro_record::Result;
@@ -86,7 +87,8 @@ pub(super) fn scene() -> Result<Setup> {
         (by::DOP853_DENSE, &[1e-6, 1e-9]),
         (by::ROUGH_SPRING, &[1e6]),
     ];
-    Ok(Setup::new(texts, vec![irregular(0.0, CYCLES)], methods, judge))
+    let (scene, tasks) = (Scene::new(Family::Models, texts), vec![irregular(0.0, CYCLES)]);
+    Ok(Setup { scene, tasks, methods, judge: Box::new(judge) })
 }
 
 #[cfg(test)]
