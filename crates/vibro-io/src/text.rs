@@ -161,9 +161,6 @@ fn records_of(
     let mut findings: Vec<Finding> =
         tail::cut_off(tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
-    if !rows.behind.is_empty() {
-        findings.push(Finding::note("words-behind").name("words", shorten(&rows.behind.join("; "))));
-    }
     if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));
     }

@@ -22,8 +22,6 @@ pub struct Rows {
     pub missing: usize,
     /// Remarks between and behind the rows.
     pub remarks: Vec<String>,
-    /// Lines of words behind the rows.
-    pub behind: Vec<String>,
 }
 
 /// Reads all rows from the first one on.
@@ -51,9 +49,9 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         let fields = dialect.cut(&line).map_err(|at| {
             fault(&line, at, "text behind a closing quote", "a separator or the end of the line")
         })?;
-        // Words behind the rows are a remark.
-        if reader.is_words(&fields) && !reader.rows_behind(&line) {
-            rows.behind.push(line.text.trim().to_owned());
+        let mark = line.text.trim();
+        if ENDS.iter().any(|end| mark.eq_ignore_ascii_case(end)) && !reader.rows_behind(&line) {
+            rows.remarks.push(mark.to_owned());
             continue;
         }
         if fields.len() != n {
@@ -110,6 +108,9 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     rows.columns = if dialect.complex { all.map(Values::Complex).collect() } else { all.map(real).collect() };
     Ok(rows)
 }
+
+/// What stands behind the last row.
+const ENDS: [&str; 3] = ["end", "endcurve", "eof"];
 
 /// First row and distance of the rows with a value, where these are even and no others have one: a channel of a lower rate.
 fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
