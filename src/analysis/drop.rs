@@ -27,6 +27,8 @@ pub struct Keys {
     /// Times between successive impacts of one train of bounces, in s
     #[cfg_attr(feature = "cli", arg(long, value_name = "A,B,C", value_delimiter = ','))]
     pub intervals: Vec<f64>,
+    /// How long an impact lasts, in s: taken off each interval, which runs from beginning to beginning [default: 0]
+    pub contact_time: Option<f64>,
     /// Acceleration of free fall in m/s² [default: 9.80665]
     pub gravity: Option<f64>,
     /// Its standard uncertainty in m/s²
@@ -122,6 +124,7 @@ impl Keys {
             ("height", self.height == other.height),
             ("height_std", self.height_std == other.height_std),
             ("interval_std", self.interval_std == other.interval_std),
+            ("contact_time", self.contact_time == other.contact_time),
             ("gravity", self.gravity == other.gravity),
             ("gravity_std", self.gravity_std == other.gravity_std),
             ("threshold", self.threshold == other.threshold),
@@ -137,6 +140,7 @@ pub struct Series {
     drop: Drop,
     trains: Vec<Train>,
     velocities: Option<Velocities>,
+    contact_time: Option<f64>,
     files: Vec<String>,
     answer: Answer,
 }
@@ -152,8 +156,8 @@ impl Series {
             gravity_std: keys.gravity_std,
             ..Drop::default()
         };
-        let (trains, files) = (Vec::new(), Vec::new());
-        Series { drop, trains, velocities: None, files, answer: Answer::default() }
+        let (trains, files, contact_time) = (Vec::new(), Vec::new(), keys.contact_time);
+        Series { drop, trains, velocities: None, contact_time, files, answer: Answer::default() }
     }
 
     /// Adds what the keys say of a drop without a record.
@@ -203,7 +207,8 @@ impl Series {
         let drop = self.drop.beginning(&self.trains);
         let fell = drop.height.is_finite() && !drop.intervals.is_empty();
         let drop = fell.then_some(drop);
-        let found = restitution(&Measured { drop, trains: self.trains, velocities: self.velocities })?;
+        let (trains, velocities, contact_time) = (self.trains, self.velocities, self.contact_time);
+        let found = restitution(&Measured { drop, trains, velocities, contact_time })?;
         let mut answer = Answer::of(&found)?;
         answer.figures = self.answer.figures;
         answer.findings = self.answer.findings;

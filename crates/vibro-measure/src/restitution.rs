@@ -55,6 +55,8 @@ pub struct Measured {
     pub trains: Vec<Train>,
     /// Velocities before and after.
     pub velocities: Option<Velocities>,
+    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than the flights. 0 where `None`.
+    pub contact_time: Option<f64>,
 }
 
 /// Restitution by every method that `measured` allows.
@@ -71,21 +73,45 @@ pub struct Measured {
 /// Where nothing is given from which it follows, and where what is given is impossible: a height of 0, an interval longer than the
 /// fall allows, masses that do not approach.
 pub fn restitution(measured: &Measured) -> Result<Restitution> {
+    not_negative("a contact time", measured.contact_time)?;
     let (mut by, mut findings) = (Vec::new(), Vec::new());
     let mut intervals: Vec<Vec<f64>> = measured.trains.iter().map(|t| t.intervals.clone()).collect();
+    let contact = measured.contact_time.unwrap_or(0.0);
+    let flights =
+        |intervals: &[f64]| intervals.iter().map(|interval| interval - contact).collect::<Vec<f64>>();
+    // What a thousandth of a second of contact makes of R.
+    let mut bias = Vec::new();
     if let Some(drop) = &measured.drop {
+        let drop = Drop { intervals: flights(&drop.intervals), ..drop.clone() };
         by.push(drop.answer(&mut findings)?);
+        bias.push(1e-3 / average(&drop.intervals));
         if intervals.is_empty() {
             intervals = drop.intervals.iter().map(|d| vec![*d]).collect();
         }
     }
-    match train::answer(&measured.trains, &mut findings) {
-        Ok(way) => by.extend(way),
+    let trains: Vec<Train> =
+        measured.trains.iter().map(|t| Train { intervals: flights(&t.intervals), ..t.clone() }).collect();
+    match train::answer(&trains, &mut findings) {
+        Ok(way) => {
+            by.extend(way);
+            let of = |t: &Train| {
+                Some(
+                    1e-3 * (1.0 / t.intervals.last()? - 1.0 / t.intervals.first()?)
+                        / t.intervals.len() as f64,
+                )
+            };
+            bias.push(average(&trains.iter().filter_map(of).collect::<Vec<f64>>()));
+        }
         // What follows a drop may be no train of bounces; the drop answers nevertheless.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
             findings.push(Finding::caution("flight-times-ignored"));
         }
         Err(error) => return Err(error),
+    }
+    let matters =
+        |(way, part): (&Way, &f64)| way.restitution.std.is_some_and(|s| part * way.restitution.value > s);
+    if measured.contact_time.is_none() && by.iter().zip(&bias).any(matters) {
+        findings.push(Finding::caution("contact-time-unsaid").numbers("parts", bias));
     }
     if let Some(velocities) = &measured.velocities {
         by.extend(velocities.answers()?);

@@ -100,7 +100,6 @@ impl Drop {
                 None => without,
             });
         }
-        findings.push(Finding::note("drop-biases"));
         let of = if n == 1 { "one drop".to_owned() } else { format!("the mean of {n} drops") };
         let restitution = Estimate::new(value, std, "1", n, format!("(Δt/2)√(g/2h) of {of}"));
         Ok(Way { method: "drop", restitution })

@@ -1,4 +1,5 @@
 use super::*;
+use vibro_record::Fact;
 
 fn finding<'a>(found: &'a Restitution, code: &str) -> Option<&'a Finding> {
     found.findings.iter().find(|f| f.code == code)
@@ -35,6 +36,27 @@ fn the_thesis_drop_and_its_uncertainty() {
     let expected = (by_height.powi(2) + by_gravity.powi(2) + by_interval.powi(2)).sqrt();
     // Differences over 1e-7 lose nine digits of sixteen.
     assert!((found.restitution.std.unwrap() / expected - 1.0).abs() < 1e-5, "{found:?}");
+}
+
+/// Intervals between beginnings hold the impact itself: 1 ms of 144 is 0.7 % of R.
+#[test]
+fn the_contact_time_is_taken_off() {
+    let (r, contact) = (0.7, 1e-3);
+    // From 0.57 m: 2R√(2h/g), and each next flight R times as long.
+    let first = 2.0 * r * (2.0 * 0.57 / GRAVITY).sqrt();
+    let intervals: Vec<f64> = (0..6).map(|k| first * f64::powi(r, k) + contact).collect();
+    let train = Train { intervals: intervals.clone(), onset_std: Some(1e-6) };
+    let fell = Drop { height_std: Some(1e-4), interval_std: Some(1e-6), ..drop(0.57, intervals[0]) };
+    let measured = Measured { drop: Some(fell), trains: vec![train], ..Measured::default() };
+    let said = of(&Measured { contact_time: Some(contact), ..measured.clone() });
+    assert!(said.by.iter().all(|way| (way.restitution.value - r).abs() < 1e-12), "{said:?}");
+    assert!(said.findings.is_empty() && said.intervals == [intervals.clone()], "{said:?}");
+    let unsaid = of(&measured);
+    let parts = finding(&unsaid, "contact-time-unsaid").unwrap().fact("parts").cloned();
+    assert!((unsaid.by[0].restitution.value / r - 1.0 - contact / first).abs() < 1e-12, "{unsaid:?}");
+    let Some(Fact::Numbers(parts)) = parts else { panic!() };
+    // A part of the interval, which is longer by the contact.
+    assert!((parts[0] - contact / intervals[0]).abs() < 1e-12, "{parts:?}");
 }
 
 #[test]

@@ -100,7 +100,6 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
     let value = log.exp();
     let few = Finding::caution("too-few-flights").count("n", n).count("trains", logs.len());
     findings.extend(std.is_none().then_some(few));
-    findings.push(Finding::note("flight-times-assume"));
     let method = format!("log-linear fit of {n} flight times");
     let restitution = Estimate::new(value, std.map(|s| value * s), "1", n, method);
     Ok(Some(Way { method: "flight times", restitution }))
