@@ -182,8 +182,10 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     if let Some(best) = result.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc)) {
         let ahead = result.fits[0].aicc - best.aicc;
         if ahead > NO_SUPPORT {
-            let other = Finding::caution("pulse-other-model").name("model", best.model.name());
+            let other = Finding::doubt("pulse-other-model").name("model", best.model.name());
             found.push(other.number("ahead", ahead));
+            let best = best.clone();
+            result.led_by(&best);
         }
     }
     result.findings = found;

@@ -33,7 +33,8 @@ pub struct PulseResult {
     pub xi: Estimate,
     /// Its undamped natural frequency in Hz.
     pub frequency: Estimate,
-    /// Velocity after over velocity before, when it is left at zero force.
+    /// Velocity after over velocity before, when it is left at zero force; like the velocity of approach and the duration by the model that
+    /// the record prefers, where that states it.
     pub restitution: Estimate,
     /// Stiffness in N/m; `None` without a mass.
     pub stiffness: Option<Estimate>,
@@ -53,15 +54,32 @@ pub struct PulseResult {
 }
 
 impl PulseResult {
-    /// The same without values: the record is no such contact.
-    pub(super) fn refused(mut self) -> PulseResult {
+    fn estimates(&mut self) -> impl Iterator<Item = &mut Estimate> {
         let contact = [&mut self.xi, &mut self.frequency, &mut self.restitution, &mut self.duration];
         let more = [&mut self.stiffness, &mut self.damping, &mut self.initial_velocity];
-        for estimate in contact.into_iter().chain(more.into_iter().flatten()) {
+        contact.into_iter().chain(more.into_iter().flatten())
+    }
+
+    /// The same without values: the record is no such contact.
+    pub(super) fn refused(mut self) -> PulseResult {
+        for estimate in self.estimates() {
             (estimate.value, estimate.std) = (f64::NAN, None);
             estimate.method.push_str(", refused: see the findings");
         }
         self
+    }
+
+    /// Leads with `other`, the model that the record prefers: what it states takes the place of what spring and damper do, and that loses
+    /// its uncertainty.
+    pub(super) fn led_by(&mut self, other: &PulseFit) {
+        self.estimates().for_each(|estimate| estimate.std = None);
+        let stated = |name: &str| {
+            let estimate = other.parameters.get(name)?.clone();
+            Some(Estimate { method: format!("{}, {}", estimate.method, other.model.name()), ..estimate })
+        };
+        self.restitution = stated("restitution").unwrap_or_else(|| self.restitution.clone());
+        self.duration = stated("duration").unwrap_or_else(|| self.duration.clone());
+        self.initial_velocity = stated("initial_velocity").or(self.initial_velocity.take());
     }
 }
 

@@ -156,6 +156,14 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!(says(&result, "pulse-other-model"), "{:?}", result.findings);
     let alpha = &result.fits[2].parameters["alpha"];
     assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
+    // That model leads, and what only spring and damper state has no uncertainty.
+    let restitution = &result.restitution;
+    assert_eq!(restitution.value, result.fits[2].parameters["restitution"].value);
+    assert!(
+        (restitution.value - contact.restitution).abs() < 5.0 * restitution.std.unwrap(),
+        "{restitution:?}"
+    );
+    assert!(result.xi.std.is_none() && result.frequency.std.is_none(), "{result:?}");
 }
 
 /// A contact through a low-pass of 30 kHz, fitted without.
