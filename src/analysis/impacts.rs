@@ -27,6 +27,11 @@ pub struct Keys {
     pub threshold: Option<f64>,
     /// Shortest time between two impacts in s: ringing within it counts once [default: found from the trace]
     pub refractory: Option<f64>,
+    /// Band in Hz in which the impacts ring: the trace is filtered to it first, without delay
+    #[cfg_attr(feature = "cli", arg(value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
+    pub band: Option<(f64, f64)>,
+    /// Seek impacts in the envelope, which ringing does not part
+    pub envelope: bool,
     /// Do not remove mains hum
     pub keep_hum: bool,
     /// Record of one pulse: each impact is matched to its shape
@@ -67,6 +72,8 @@ impl Keys {
             threshold: self.threshold,
             refractory: self.refractory,
             excitation: self.excitation,
+            band: self.band,
+            envelope: self.envelope,
             keep_hum: self.keep_hum,
             reference: reference.transpose()?.map(|r| r.values),
             shape: shape.transpose()?,

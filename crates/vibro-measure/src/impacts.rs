@@ -88,6 +88,15 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let counted = count(&times, &steps, options.complete || pattern.is_some());
     let kept: Vec<f64> = counted.kept.iter().map(|i| times[*i]).collect();
     let even = pattern.map_or_else(|| kept.clone(), |length| evened(&kept, length));
+    let known = options.complete || options.excitation.is_some() || options.reference.is_some();
+    if !known && pattern.is_none() && irregular(&steps) {
+        let why = format!("{} bursts whose intervals are irregular: no period is in them", times.len());
+        return Err(Error::refused(why)
+            .hint("choose the band in which the impacts ring, and the envelope; or say that none is missed, for their mean interval")
+            .setting("band")
+            .setting("envelope")
+            .setting("none_missed"));
+    }
     let fitted = interval(&even, &counted.index)
         .ok_or_else(|| Error::refused("one impact alone counts: an interval needs two"))?;
     findings.extend(fitted.wanders.then(|| Finding::caution("intervals-drift")));
@@ -98,6 +107,9 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     // The shifts of the places of a pattern are fitted with the interval.
     let free = |parameters: usize| even.len().saturating_sub(parameters) as f64;
     let widened = (free(2) / free(1 + pattern.unwrap_or(1))).sqrt();
+    let mostly_missed = counted.missed > times.len();
+    let missed = Finding::doubt("impacts-mostly-missed").count("n", times.len());
+    findings.extend(mostly_missed.then(|| missed.count("missed", counted.missed)));
     let doubted = findings.iter().any(|f| f.severity == Severity::Doubt);
     let std = (widened * fitted.std).hypot(sampled);
     let std = Some(std).filter(|s| s.is_finite() && !doubted);
@@ -137,6 +149,16 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     Ok(answer)
 }
 
+/// Fewest intervals that show that they are irregular.
+const TELLING: usize = 12;
+
+/// Whether no more intervals lie near a multiple of their median than chance brings there: within 5 % on either side lies one in ten.
+fn irregular(steps: &[f64]) -> bool {
+    let median = median(steps);
+    let off = |step: &&f64| ((*step / median).round().max(1.0) - *step / median).abs() > REGULAR;
+    steps.len() >= TELLING && steps.iter().filter(off).count() as f64 > 0.85 * steps.len() as f64
+}
+
 /// Standard deviation of the intervals between neighbours without a missed impact between them; `None` of fewer than two.
 fn spread(times: &[f64], counted: &Counted) -> Option<f64> {
     let pairs = times.windows(2).zip(counted.index.windows(2));
@@ -150,7 +172,9 @@ fn of_train(found: &Impacts) -> Vec<Finding> {
     let all = [
         found.pattern.map(|n| Finding::note("interval-pattern").count("n", n)),
         (found.n == 2).then(|| Finding::note("one-interval")),
-        (found.missed > 0).then(|| Finding::caution("impacts-missed").count("n", found.missed)),
+        (1..=found.n)
+            .contains(&found.missed)
+            .then(|| Finding::caution("impacts-missed").count("n", found.missed)),
         (found.doubled > 0).then(|| Finding::caution("impacts-doubled").count("n", found.doubled)),
         irregular.map(|s| Finding::caution("impacts-irregular").number("spread", s / found.median_interval)),
     ];

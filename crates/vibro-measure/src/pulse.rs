@@ -179,23 +179,11 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let fits: Vec<Fitted> =
         std::iter::once(main).chain(rivals.into_iter().filter_map(|m| samples.fit(m).ok())).collect();
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known)).collect();
-    if let Some(best) = result.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc)) {
-        let ahead = result.fits[0].aicc - best.aicc;
-        if ahead > NO_SUPPORT {
-            let other = Finding::doubt("pulse-other-model").name("model", best.model.name());
-            found.push(other.number("ahead", ahead));
-            let best = best.clone();
-            result.led_by(&best);
-        }
-    }
+    found.extend(result.led_by_best());
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)
 }
-
-/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
-/// Inference, 2002, section 2.6).
-const NO_SUPPORT: f64 = 10.0;
 
 /// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.
 const UNKNOWN: f64 = 0.1;

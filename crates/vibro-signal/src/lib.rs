@@ -15,6 +15,7 @@
 //! ```
 
 pub mod differentiate;
+pub mod envelope;
 pub mod fft;
 pub mod filter;
 pub mod impact;

@@ -4,9 +4,12 @@ use super::background::{background, bursts, median};
 use super::onset::Shape;
 use super::onset::{Onsets, onsets};
 use super::{Hum, hum};
+use std::cmp::Ordering;
 use std::ops::Range;
 use vibro_record::units::notation::{quantity, shortest};
 use vibro_record::{Error, Finding, Grid, Result, Trace};
+use vibro_signal::envelope::envelope;
+use vibro_signal::filter::Filter;
 
 /// Lowest impact as a part of the median one.
 const THRESHOLD: f64 = 0.125;
@@ -45,7 +48,7 @@ pub struct Detected {
 pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
-    let mut values = trace.values.clone();
+    let mut values = prepared(trace, options, rate)?;
     let mut findings = Vec::new();
     let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), &mut findings) };
     let quiet = background(&values);
@@ -107,6 +110,22 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     })
 }
 
+/// Order of one pass of a filter.
+const ORDER: usize = 4;
+
+/// The values in their band, without delay, or the envelope of that.
+fn prepared(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f64>> {
+    let mut values = trace.values.clone();
+    if let Some((low, high)) = options.band {
+        if low.partial_cmp(&high) != Some(Ordering::Less) {
+            return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI"));
+        }
+        values = Filter::high_pass(low, ORDER, rate)?.zero_phase(&values)?;
+        values = Filter::low_pass(high, ORDER, rate)?.zero_phase(&values)?;
+    }
+    Ok(if options.envelope { envelope(&values) } else { values })
+}
+
 /// The shape of a recorded pulse, for a trace of this sampling rate in Hz.
 fn recorded(pulse: &Trace, rate: f64) -> Result<Shape> {
     let own = rate_of(pulse).map_err(|error| error.setting("shape_rate"))?;
@@ -129,6 +148,10 @@ pub struct ImpactsOptions {
     pub threshold: Option<f64>,
     /// Pause in s that separates two impacts. Default: from the pauses of the trace.
     pub refractory: Option<f64>,
+    /// Band in Hz to which the trace is filtered first, without delay. Default: all of it.
+    pub band: Option<(f64, f64)>,
+    /// Whether impacts are sought in the envelope, which the ringing of a structure does not part. Default false.
+    pub envelope: bool,
     /// Whether mains hum stays. Default: it is removed.
     pub keep_hum: bool,
     /// One recorded pulse of the shape that all have. Default: the average of the pulses.

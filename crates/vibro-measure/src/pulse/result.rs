@@ -69,9 +69,14 @@ impl PulseResult {
         self
     }
 
-    /// Leads with `other`, the model that the record prefers: what it states takes the place of what spring and damper do, and that loses
-    /// its uncertainty.
-    pub(super) fn led_by(&mut self, other: &PulseFit) {
+    /// Leads with the model that the record prefers, where that is not the one of spring and damper: what it states takes the place of what that
+    /// states, which loses its uncertainty.
+    pub(super) fn led_by_best(&mut self) -> Option<Finding> {
+        let other = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?.clone();
+        let ahead = self.fits[0].aicc - other.aicc;
+        if ahead <= NO_SUPPORT {
+            return None;
+        }
         self.estimates().for_each(|estimate| estimate.std = None);
         let stated = |name: &str| {
             let estimate = other.parameters.get(name)?.clone();
@@ -80,8 +85,13 @@ impl PulseResult {
         self.restitution = stated("restitution").unwrap_or_else(|| self.restitution.clone());
         self.duration = stated("duration").unwrap_or_else(|| self.duration.clone());
         self.initial_velocity = stated("initial_velocity").or(self.initial_velocity.take());
+        Some(Finding::doubt("pulse-other-model").name("model", other.model.name()).number("ahead", ahead))
     }
 }
+
+/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
+/// Inference, 2002, section 2.6).
+const NO_SUPPORT: f64 = 10.0;
 
 /// A model fitted to a pulse.
 #[derive(Debug, Clone, PartialEq, Serialize)]
