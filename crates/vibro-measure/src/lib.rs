@@ -8,7 +8,8 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
-pub mod crossing;
+pub mod clipping;
+mod crossing;
 pub mod decay;
 pub mod drill;
 pub mod excitation;

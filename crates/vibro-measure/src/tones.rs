@@ -7,6 +7,7 @@
 //! own line only: where that is stronger than white noise of the same variance, uncertainties grow by it (P. Whittle, Ark. Mat. 2
 //! (1953) 423).
 
+use super::clipping::clipped;
 use super::line::interpolate;
 use super::residuals::student;
 use super::{Estimate, noise};
@@ -189,6 +190,8 @@ struct Fit {
     noise: f64,
     /// Half of the record in s.
     half: f64,
+    /// Samples that are clipped and left out.
+    clipped: Vec<usize>,
 }
 
 /// Time of a sample from the middle of the record, in parts of half of it.
@@ -199,19 +202,49 @@ fn time(i: usize, n: usize) -> f64 {
 impl Fit {
     /// By Gauss–Newton, from first guesses of the frequencies in Hz within half a line.
     fn new(trace: &Trace, start: &[f64]) -> Result<Fit> {
+        let (n, rate) = (trace.values.len(), trace.rate().unwrap_or(1.0));
+        // Of the slowest sine the crests are the flattest.
+        let slowest = start.iter().copied().fold(f64::INFINITY, f64::min);
+        let clipped = clipped(&trace.values, rate / slowest);
+        let fit = Fit::of(trace, start, clipped)?;
+        if fit.clipped.is_empty() {
+            return Ok(fit);
+        }
+        // Beside the cut those samples are left that noise has lowered: what the sine has within it is left out on both sides.
+        let rest = fit.rest(trace);
+        let cut = |end: f64| fit.clipped.iter().any(|i| trace.values[*i] == end);
+        let low = trace.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = trace.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (low_cut, high_cut) = (cut(low), cut(high));
+        let near = |i: &usize| {
+            let sine = trace.values[*i] - rest.values[*i];
+            let beside = |room: f64| room < 3.0 * fit.noise;
+            fit.clipped.binary_search(i).is_ok()
+                || low_cut && beside(sine - low)
+                || high_cut && beside(high - sine)
+        };
+        Fit::of(trace, start, (0..n).filter(near).collect())
+    }
+
+    /// Without the samples `clipped`.
+    fn of(trace: &Trace, start: &[f64], clipped: Vec<usize>) -> Result<Fit> {
         let (n, count) = (trace.values.len(), start.len());
         let half = 0.5 * n as f64 / trace.rate().unwrap_or(1.0);
         let size = 3 * count + 1;
-        if n <= size {
+        let mut used = vec![true; n];
+        clipped.iter().for_each(|i| used[*i] = false);
+        let free = (n - clipped.len()).saturating_sub(size);
+        if free == 0 {
             return Err(Error::refused(format!("{n} samples do not determine {count} sines")));
         }
+        let samples = || trace.values.iter().enumerate().filter(|(i, _)| used[*i]);
         let mut omega: Vec<f64> = start.iter().map(|f| TAU * f * half).collect();
         let mut linear = vec![0.0; 2 * count + 1];
         let mut row = DVector::<f64>::zeros(size);
-        let all: f64 = trace.values.iter().map(|v| v * v).sum();
+        let all: f64 = samples().map(|(_, v)| v * v).sum();
         for step in 0..STEPS {
             let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
-            for (i, v) in trace.values.iter().enumerate() {
+            for (i, v) in samples() {
                 let t = time(i, n);
                 for (k, w) in omega.iter().enumerate() {
                     let (sin, cos) = (w * t).sin_cos();
@@ -232,7 +265,7 @@ impl Fit {
             let inverse = normal.cholesky().ok_or_else(unclear)?.inverse();
             let p = &inverse * &right;
             // Variance of what is left, to first order: the steps end far below what it lets be known.
-            let left = (all - p.dot(&right)).max(0.0) / (n - size) as f64;
+            let left = (all - p.dot(&right)).max(0.0) / free as f64;
             let mut settled = step > 0;
             for (k, w) in omega.iter_mut().enumerate() {
                 let (a, b) = (p[3 * k], p[3 * k + 1]);
@@ -256,9 +289,9 @@ impl Fit {
                     );
                     return Err(Error::refused(why).hint("sample faster"));
                 }
-                let mut fit = Fit { omega, linear, inverse, noise: 0.0, half };
+                let mut fit = Fit { omega, linear, inverse, noise: 0.0, half, clipped };
                 let squares: f64 = fit.rest(trace).values.iter().map(|v| v * v).sum();
-                fit.noise = (squares / (n - size) as f64).sqrt();
+                fit.noise = (squares / free as f64).sqrt();
                 return Ok(fit);
             }
         }
@@ -297,7 +330,10 @@ impl Fit {
             let each = self.omega.iter().zip(self.linear.chunks_exact(2));
             each.map(|(w, p)| p[0] * (w * t).cos() + p[1] * (w * t).sin()).sum()
         };
-        let values = trace.values.iter().enumerate().map(|(i, v)| v - mean - sum(time(i, n))).collect();
+        let mut values: Vec<f64> =
+            trace.values.iter().enumerate().map(|(i, v)| v - mean - sum(time(i, n))).collect();
+        // What was cut off is not known.
+        self.clipped.iter().for_each(|i| values[*i] = 0.0);
         Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values }
     }
 
@@ -308,7 +344,8 @@ impl Fit {
         let lines = if self.is_exact() { None } else { Lines::of(&rest).ok() };
         // The first sample, in the time of the fit.
         let first = time(0, n);
-        let mut findings = Vec::new();
+        let lost = Finding::caution("sine-clipped").count("n", self.clipped.len()).count("all", n);
+        let mut findings: Vec<Finding> = (!self.clipped.is_empty()).then_some(lost).into_iter().collect();
         let tone = |(k, (omega, p)): (usize, (&f64, &[f64]))| {
             let (a, b) = (p[0], p[1]);
             let (amplitude, frequency) = (a.hypot(b), omega / (TAU * self.half));

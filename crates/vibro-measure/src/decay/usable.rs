@@ -1,5 +1,6 @@
 //! The part of a record in which motion decays freely.
 
+use crate::clipping::clipped;
 use crate::mean::average;
 use num_complex::Complex64;
 use std::ops::Range;
@@ -136,24 +137,4 @@ fn within(values: &[f64], band: Range<usize>) -> Vec<f64> {
     lines.truncate(band.end);
     lines[..band.start].fill(Complex64::ZERO);
     transform.inverse(&lines)
-}
-
-/// Samples at either end of the range in runs longer than any crest of this period stays within a step of the converter.
-fn clipped(values: &[f64], period: f64) -> Vec<usize> {
-    let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
-    let step = steps.fold(f64::INFINITY, f64::min);
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    let crest = |run: usize| {
-        0.5 * (high - low) * (1.0 - (std::f64::consts::PI * (run as f64 / period).min(0.5)).cos())
-    };
-    let mut all = Vec::new();
-    let mut at = 0;
-    for run in values.chunk_by(|a, b| a == b) {
-        if (run[0] == low || run[0] == high) && run.len() > 1 && crest(run.len() - 1) > 3.0 * step {
-            all.extend(at..at + run.len());
-        }
-        at += run.len();
-    }
-    all
 }

@@ -151,3 +151,24 @@ fn clean_sines_are_exact() {
     let more = tones(&trace((0..1000).map(value).collect()), 4).unwrap();
     assert!(more.tones.len() == 3 && more.findings[0].code == "tones-fewer", "{:?}", more.findings);
 }
+
+/// Clipped at 80 % of its amplitude: the samples in between hold it.
+#[test]
+fn the_amplitude_of_a_clipped_sine_is_covered() {
+    let mut far = [0.0; 2];
+    for seed in 0..20 {
+        let mut noise = Noise::new(seed);
+        let f = noise.between(20.0, 90.0);
+        let of = |t: f64| (TAU * f * t).cos();
+        let values: Vec<f64> =
+            (0..4000).map(|i| (of(f64::from(i) * 1e-3) + 0.01 * noise.normal()).clamp(-0.8, 0.8)).collect();
+        let found = sine(&trace(values), None).unwrap();
+        assert!(found.findings.iter().any(|f| f.code == "sine-clipped"), "{:?}", found.findings);
+        let tone = &found.tones[0];
+        for (far, (estimate, truth)) in far.iter_mut().zip([(&tone.amplitude, 1.0), (&tone.frequency, f)]) {
+            *far += ((estimate.value - truth) / estimate.std.unwrap()).powi(2);
+        }
+    }
+    // χ² of 20: 45.3 is passed by one in a thousand.
+    assert!(far.iter().all(|sum| *sum < 45.3), "{far:?}");
+}
