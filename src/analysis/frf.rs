@@ -139,7 +139,9 @@ impl Keys {
             of_file.add("", &found.findings);
             let records = found.records();
             let Some(Record::Frf(frf)) = records.first() else { return Ok(Vec::new()) };
-            let measured = Measured::complex(frf).with_coherence_of(&records)?;
+            let measured = Measured::complex(frf);
+            // One blow alone has no coherence.
+            let measured = if records.len() > 1 { measured.with_coherence_of(&records)? } else { measured };
             return Ok(vec![Function { meta: frf.meta.clone(), measured, records }]);
         }
         let recording = source.reader()?.from_path(source.path)?;

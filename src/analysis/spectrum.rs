@@ -155,7 +155,7 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
             ("unit", "", &|_| Cell::from(found.unit.as_str())),
             ("scaling", "", &|_| Cell::from(found.scaling)),
             ("phase", "°", &|k| Cell::from(response.and_then(|r| of(&r.phase, *k)))),
-            ("coherence", "", &|k| Cell::from(response.and_then(|r| of(&r.coherence, *k)))),
+            ("coherence", "", &|k| Cell::from(response.and_then(|r| of(r.coherence.as_ref()?, *k)))),
         ],
     )
 }

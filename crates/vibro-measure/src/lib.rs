@@ -8,8 +8,8 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
-pub mod clipping;
-mod crossing;
+mod clipping;
+pub mod crossing;
 pub mod decay;
 pub mod drill;
 pub mod excitation;

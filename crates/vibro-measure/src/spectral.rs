@@ -113,6 +113,11 @@ fn response(
         (found.transfer, traces.rate() / length as f64, Some(blows))
     } else {
         let averages = averages(traces, options, progress)?;
+        if averages.count == 1 {
+            return Err(Error::refused("one segment only; coherence needs two or more")
+                .hint("take a longer record or shorter segments, for ten averages or more")
+                .setting("segment"));
+        }
         let mut found = transfer(&averages, 1, traces.channels(), estimator)?;
         found.frf.meta.step("segments", &[("window", &options.window().name())]);
         (found, averages.step(), None)

@@ -232,7 +232,9 @@ impl Fit {
         let half = 0.5 * n as f64 / trace.rate().unwrap_or(1.0);
         let size = 3 * count + 1;
         let mut used = vec![true; n];
-        clipped.iter().for_each(|i| used[*i] = false);
+        for i in &clipped {
+            used[*i] = false;
+        }
         let free = (n - clipped.len()).saturating_sub(size);
         if free == 0 {
             return Err(Error::refused(format!("{n} samples do not determine {count} sines")));
@@ -333,7 +335,9 @@ impl Fit {
         let mut values: Vec<f64> =
             trace.values.iter().enumerate().map(|(i, v)| v - mean - sum(time(i, n))).collect();
         // What was cut off is not known.
-        self.clipped.iter().for_each(|i| values[*i] = 0.0);
+        for i in &self.clipped {
+            values[*i] = 0.0;
+        }
         Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values }
     }
 

@@ -80,8 +80,8 @@ pub struct BlowTransfer {
 /// Finds the blows in a force, averages those that are clean, and relates the response to the force.
 ///
 /// # Errors
-/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing, or fewer than two
-/// blows are clean.
+/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing, or no blow is
+/// clean.
 pub fn from_blows(
     force: &Trace,
     response: &Trace,
@@ -109,11 +109,11 @@ pub fn from_blows(
     }
     let blows = find(force, response, how, rate);
     let kept: Vec<usize> = blows.iter().filter(|b| b.rejected.is_none()).map(|b| b.start).collect();
-    if kept.len() < 2 {
+    if kept.is_empty() {
         let named = |b: &Blow| b.rejected.map(|why| format!("{:.3} s: {why}", b.time));
         let why: Vec<String> = blows.iter().filter_map(named).take(8).collect();
         let (clean, all, why) = (kept.len(), blows.len(), why.join(", "));
-        let found = format!("{clean} of {all} blows are clean, two are needed at least; {why}");
+        let found = format!("{clean} of {all} blows are clean; {why}");
         return Err(Error::refused(found));
     }
     let (decay, weights) = windows(how, rate)?;
@@ -136,6 +136,7 @@ pub fn from_blows(
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
     transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
     transfer.findings.extend(left_out(&blows));
+    transfer.findings.extend((kept.len() == 1).then(|| Finding::caution("frf-one-blow")));
     if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {
         left.widen(&mut transfer);
     }

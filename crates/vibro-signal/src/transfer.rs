@@ -48,7 +48,7 @@ impl Estimator {
 pub struct Transfer {
     /// The function; NaN where excitation or response is empty.
     pub frf: Frf,
-    /// Coherence γ²; NaN where there is no function.
+    /// Coherence γ²; NaN where there is no function, and empty for one average, which has none.
     pub coherence: Vec<f64>,
     /// Standard deviation of the magnitude, in its unit; NaN where the coherence is too low for one.
     pub magnitude_std: Vec<f64>,
@@ -78,7 +78,7 @@ impl Transfer {
         let result = integrate::in_frequency(&spectrum, times, fmin)?;
         let gone = spectrum.axis.len() - result.axis.len();
         for column in [&mut self.coherence, &mut self.phase_std, &mut self.magnitude_std] {
-            column.drain(..gone);
+            column.drain(..gone.min(column.len()));
         }
         for (k, std) in self.magnitude_std.iter_mut().enumerate() {
             *std *= (TAU * result.axis.at(k)).powi(-i32::from(times));
@@ -98,11 +98,12 @@ impl Transfer {
 /// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)), and the phase's
 /// arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and B (1/n) and their covariance (γ²/n)
 /// from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is spent on H itself; n counts independent segments. Few
-/// averages (below 7) keep their standard deviations, with a finding: they are right, but are themselves known poorly.
+/// averages (below 7) keep their standard deviations, with a finding: they are right, but are themselves known poorly. One alone has neither
+/// a coherence, which would always be 1, nor a standard deviation.
 ///
 /// # Errors
-/// For fewer than two independent averages (the coherence of one is always 1; segments that overlap count for less), and if there
-/// are no products with that channel or the excitation is empty.
+/// For fewer than two independent averages of segments that overlap, and if there are no products with that channel or the excitation is
+/// empty.
 pub fn transfer(
     averages: &Averages,
     channel: usize,
@@ -110,11 +111,10 @@ pub fn transfer(
     estimator: Estimator,
 ) -> Result<Transfer> {
     // Sums of squares may take two segments that do not overlap a hair below.
-    if averages.effective < LEAST - 1e-9 {
-        let why = match averages.count {
-            1 => "one segment only; coherence needs two or more".to_owned(),
-            n => format!("{n} segments count as {:.2}; coherence needs two or more", averages.effective),
-        };
+    let alone = averages.count == 1;
+    if !alone && averages.effective < LEAST - 1e-9 {
+        let (n, effective) = (averages.count, averages.effective);
+        let why = format!("{n} segments count as {effective:.2}; coherence needs two or more");
         let hint = "take a longer record or shorter segments, for ten averages or more";
         return Err(Error::refused(why).hint(hint).setting("segment"));
     }
@@ -139,7 +139,7 @@ pub fn transfer(
             Estimator::Hv => xy / xy.norm() * (yy / xx).sqrt(),
         };
         // Rounding may take the coherence a hair above 1.
-        let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
+        let coherence = if alone { f64::NAN } else { (xy.norm_sqr() / (xx * yy)).min(1.0) };
         if empty(xx, yy) || !h.is_finite() { (NOWHERE, f64::NAN) } else { (h, coherence) }
     };
     let (values, coherence): (Vec<Complex64>, Vec<f64>) = xx.iter().zip(yy).zip(xy).skip(1).map(line).unzip();
@@ -151,7 +151,7 @@ pub fn transfer(
     let few = Finding::caution("frf-few-averages").count("averages", averages.count);
     let findings = [
         (silent > 0, Finding::caution("frf-lines-empty").count("n", silent).count("lines", lines)),
-        (averages.effective < ENOUGH, few.number("independent", averages.effective)),
+        (averages.effective < ENOUGH && !alone, few.number("independent", averages.effective)),
         (2 * poor > lines, Finding::caution("frf-low-coherence").count("n", poor).count("lines", lines)),
     ];
     let mut meta = named(reference, response);
@@ -171,7 +171,7 @@ pub fn transfer(
         averages: averages.count,
         findings: findings.into_iter().filter(|f| f.0).map(|f| f.1).collect(),
         frf: Frf { kind: FrfKind::of(meta.quantity), meta, axis, values },
-        coherence,
+        coherence: if alone { Vec::new() } else { coherence },
     })
 }
 

@@ -91,6 +91,9 @@ fn transfer(title: &str, transfer: &Transfer) -> Figure {
     let middle = phase_plot(&f, frf.values.iter().copied(), &transfer.coherence, Ink::Nth(0));
     let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Coherence", "").limits(0.0, 1.0))
         .with(Series::line("", f, transfer.coherence.clone()).ink(Ink::Nth(0)));
-    lettered(Figure::double(title).height(140.0).shared_x().panel(above).panel(middle).panel(below))
-        .caption("The phase is drawn where the coherence is 0.5 or more.")
+    let figure = Figure::double(title).height(140.0).shared_x().panel(above).panel(middle);
+    if transfer.coherence.is_empty() {
+        return lettered(figure).caption("Of one blow: without coherence.");
+    }
+    lettered(figure.panel(below)).caption("The phase is drawn where the coherence is 0.5 or more.")
 }

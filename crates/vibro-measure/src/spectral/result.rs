@@ -68,8 +68,8 @@ pub struct Response {
     pub phase: Vec<f64>,
     /// Degrees.
     pub phase_std: Vec<f64>,
-    /// Coherence γ².
-    pub coherence: Vec<f64>,
+    /// Coherence γ²; null for one blow alone.
+    pub coherence: Option<Vec<f64>>,
     /// Every blow of a hammer, also those left out.
     pub blows: Vec<Blow>,
 }
@@ -85,7 +85,7 @@ impl SpectralResult {
             estimator: options.estimator.map_or("", Estimator::name),
             phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
             phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),
-            coherence: found.coherence.clone(),
+            coherence: Some(found.coherence.clone()).filter(|coherence| !coherence.is_empty()),
             blows: Vec::new(),
         };
         let (meta, axis, value, scaling, enbw, function) = match &found {
@@ -160,7 +160,9 @@ impl SpectralResult {
                 };
                 let (axis, kept) = finite(&frf.axis, |k| frf.values[k].is_finite());
                 let values = kept.iter().map(|k| frf.values[*k]).collect();
-                vec![Record::Frf(Frf { axis, values, ..frf }), known(coherence)]
+                let function = Record::Frf(Frf { axis, values, ..frf });
+                let coherence = (!found.coherence.is_empty()).then(|| known(coherence));
+                std::iter::once(function).chain(coherence).collect()
             }
         }
     }

@@ -101,6 +101,16 @@ fn double_hits_and_overload_are_left_out_by_name() {
 }
 
 #[test]
+fn one_clean_blow_is_enough_and_has_no_coherence() {
+    let [force, response] = bench(&[(9000, 100.0)], 30_000);
+    let how = Blows { length: 16_384, before: 100, force_window: Some(0.01), left_at_end: None };
+    let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    assert!(has(&found, "frf-one-blow") && found.transfer.coherence.is_empty());
+    assert!(found.transfer.magnitude_std.iter().all(|std| std.is_nan()));
+    near(&found, 0.01);
+}
+
+#[test]
 fn records_longer_than_the_record_are_refused() {
     let [force, response] = bench(&[(500, 100.0), (2000, 80.0)], 4000);
     for (length, before) in
