@@ -75,11 +75,18 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
             .hint("choose a band around one peak, or check the sign of the phase")
             .setting("band"));
     }
-    if !unsupported.is_empty() {
-        let mut at: Vec<f64> = unsupported.iter().map(|p| lines.frequency[p.at]).collect();
+    // The highest peaks that are no modes are told one by one; many more are noise, of which each says nothing.
+    let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
+    let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
+    let mut at: Vec<f64> = findings.iter().filter_map(odd).collect();
+    at.sort_by(|a, b| height(b).total_cmp(&height(a)));
+    let mut at = at.split_off(at.len().min(NAMED));
+    findings.retain(|found| odd(found).is_none_or(|f| !at.contains(&f)));
+    if !unsupported.is_empty() || !at.is_empty() {
+        at.extend(unsupported.iter().map(|p| lines.frequency[p.at]));
         at.sort_by(f64::total_cmp);
+        let finding = Finding::caution("modal-peaks-of-noise").count("n", at.len());
         at.truncate(NAMED);
-        let finding = Finding::caution("modal-peaks-of-noise").count("n", unsupported.len());
         findings.push(finding.numbers("lines", at));
     }
     modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));

@@ -20,8 +20,12 @@ pub struct Stated {
     pub values: Option<usize>,
     /// Whether it is a step that is stated, as above the values of one series, and no rate.
     pub of_one_series: bool,
+    /// That step, in s or Hz.
+    step: Option<f64>,
     /// First instant in s.
     pub start: Option<f64>,
+    /// Whether values are said to be complex.
+    pub complex: bool,
     /// Distance of spectral lines in Hz.
     pub line_width: Option<f64>,
     /// Unit as written.
@@ -64,8 +68,9 @@ impl Stated {
                 let (key, value) = split(line.trim().trim_matches('"').trim_start_matches([';', ' ']));
                 stated.notes.push((key.to_owned(), value.to_owned()));
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
-                let hertz = value.to_lowercase();
-                let hertz = matches!(hertz.as_str(), "hz" | "hertz") || hertz.starts_with("frequency");
+                let said = value.to_lowercase();
+                stated.complex |= said == "complex" || said.contains("real and imaginary");
+                let hertz = matches!(said.as_str(), "hz" | "hertz") || said.starts_with("frequency");
                 lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
                 if key.is_empty() {
                     free_text(line, &mut stated);
@@ -75,8 +80,8 @@ impl Stated {
             }
         }
         if lines_apart && stated.of_one_series {
-            let step = stated.rate.take().map(|rate| 1.0 / rate);
-            let step = step.filter(|_| stated.start.is_none_or(|start| start == 0.0));
+            stated.rate = None;
+            let step = stated.step.filter(|_| stated.start.is_none_or(|start| start == 0.0));
             stated.line_width = stated.line_width.or(step);
         }
         stated
@@ -143,13 +148,14 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         key if STEP.split('|').any(|known| known == key) => {
             let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
             stated.of_one_series |= rate.is_some();
+            stated.step = rate.map(|rate| 1.0 / rate).or(stated.step);
             stated.rate = stated.rate.or(rate);
         }
         "npts" | "number of points" | "number of samples" | "record length" | "memory length"
         | "blocksize" | "total data points" => {
             stated.values = quantity(value, "", &[("", 1.0)]).and_then(line_count).map(|n| n as usize);
         }
-        "start" | "t0" | "x origin" | "xorg" | "hoffset" => {
+        "start" | "t0" | "time of first sample" | "start time s" | "x origin" | "xorg" | "hoffset" => {
             let parsed = scaled(value, unit_in_key, &SECONDS);
             stated.start = parsed.filter(|start| *start == 0.0 || checked(start.abs()).is_some());
         }
@@ -175,7 +181,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
                 .or_else(|| Window::from_name(value));
         }
-        "channel" | "name" | "title" | "channel name" | "signal" | "source" => {
+        "channel" | "name" | "name of the channel" | "title" | "channel name" | "signal" | "source" => {
             stated.name = Some(value.trim_matches('"').to_owned()).filter(|v| !v.is_empty());
         }
         _ => {}

@@ -304,7 +304,9 @@ impl Made<'_> {
     /// Joins real and imaginary parts that belong together; over time there are none.
     fn joined(&self, table: Vec<Column>, axis: &Axis) -> Result<Vec<Column>> {
         let parts = !self.dialect.complex && axis.kind != AxisKind::Time;
-        let (n, stated) = (table.len(), self.options.complex);
+        let unnamed = self.dialect.names.is_none() && axis.kind == AxisKind::Frequency;
+        let (n, stated) =
+            (table.len(), self.options.complex || self.stated.complex && unnamed && table.len() == 2);
         let mut out: Vec<Column> = Vec::new();
         for column in table {
             let partner = match column.name.part() {

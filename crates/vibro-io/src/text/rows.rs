@@ -100,7 +100,12 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         }
     }
     if gaps > 0 {
-        missing.check("missing value(s) (NaN, Inf, over-range or blank) in line(s)", allow_missing)?;
+        let gaps = |values: &[Complex64]| values.iter().filter(|v| v.re.is_nan()).count();
+        let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
+        let end_early = columns.iter().all(|values| gaps(values) == behind(values));
+        let checked =
+            missing.check("missing value(s) (NaN, Inf, over-range or blank) in line(s)", allow_missing);
+        checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })?;
     }
     rows.missing = gaps;
     let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
@@ -108,6 +113,9 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     rows.columns = if dialect.complex { all.map(Values::Complex).collect() } else { all.map(real).collect() };
     Ok(rows)
 }
+
+/// What to try where columns are of different length.
+const END_EARLY: &str = "write the columns that end early to a file of their own, with their axis; or keep what is missing as such";
 
 /// What stands behind the last row.
 const ENDS: [&str; 3] = ["end", "endcurve", "eof"];
@@ -146,13 +154,12 @@ impl Reader<'_> {
         half || number::is_missing(field.as_bytes())
     }
 
-    /// Whether there are words and no values in any field.
-    fn is_words(&self, fields: &Fields) -> bool {
-        let word = |field: &str| field.contains(char::is_alphabetic) && !self.is_missing(field);
-        let none = |field: &str| field.is_empty() || (word(field) && self.value(field).is_none());
-        self.dialect.clock.is_none()
-            && fields.iter().any(|(_, f)| word(f))
-            && fields.iter().all(|(_, f)| none(f))
+    /// Whether the first field is a word, as above the rows of a table.
+    fn begins_with_word(&self, fields: &Fields) -> bool {
+        let first = fields.iter().map(|(_, field)| field).find(|field| !field.is_empty());
+        first.is_some_and(|first| {
+            first.starts_with(char::is_alphabetic) && self.value(first).is_none() && !self.is_missing(first)
+        })
     }
 
     /// Whether rows stand behind a line.
@@ -202,7 +209,8 @@ impl Reader<'_> {
 
     /// What to try, or else that the file ends within a row that does not end with a line end.
     fn hint(&self, line: &Line, hint: &'static str) -> &'static str {
-        if self.dialect.cut(line).is_ok_and(|fields| self.is_words(&fields)) && self.rows_behind(line) {
+        if self.dialect.cut(line).is_ok_and(|fields| self.begins_with_word(&fields)) && self.rows_behind(line)
+        {
             "write each table of the file to a file of its own, the lines above its rows with it"
         } else if line.at + line.text.len() == self.text.len() {
             CUT_OFF

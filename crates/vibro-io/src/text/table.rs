@@ -337,7 +337,8 @@ const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "re
 
 /// Whether a line holds types of numbers only, `f8`, `float`, or something other than units behind one label: `Interp: zoh`.
 fn is_types(line: &Line, separator: Separator) -> bool {
-    let label = |cell: &str| Some(cell.split_once(": ")?.0.to_owned()).filter(|label| label != "Unit");
+    let label =
+        |cell: &str| Some(cell.split_once(": ")?.0.to_owned()).filter(|l| l == "Type" || l == "Interp");
     if let Ok(cells) = fields(line.text, separator)
         && cells.len() > 1
         && let Some(first) = label(&cells[0].1)
@@ -391,7 +392,9 @@ fn named(fields: &Fields) -> bool {
         let number = number::either(bytes).is_some();
         field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
     };
-    !statement && fields.iter().any(|(_, f)| is_name(f))
+    // `Run 1: Time (s),Run 1: Force (N)`
+    let all = fields.len() > 1 && fields.iter().all(|(_, f)| f.contains(": "));
+    (!statement || all) && fields.iter().any(|(_, f)| is_name(f))
 }
 
 #[cfg(test)]

@@ -457,6 +457,38 @@ fn what_stands_behind_the_rows_is_said_or_begins_another_table() {
     assert!(why.contains("line 4") && why.contains("each table"), "{why}");
 }
 
+/// As crash tests, analysers of functions and loggers of several runs have it.
+#[test]
+fn heads_say_where_time_begins_and_whether_values_are_complex() {
+    let found = plain("Time of first sample :-2.0E-02\nSampling interval :1.0E-04\n1.5\n2.5\n0.5\n");
+    assert_eq!(found.axis(), &Axis::time(-0.02, 1e-4, 3));
+    let found = plain(
+        "Title:\tFunction (Real and Imaginary)\nSampling frequency:\t2048 Hz\nX-axis unit:\tHz\nX-axis delta:\t4\n1\t0.5\t1.5\n2\t2.5\t0.5\n3\t1.0\t0.0\n",
+    );
+    let Record::Spectrum(Spectrum { values: Values::Complex(values), axis, .. }) = found else { panic!() };
+    assert_eq!((values[1], axis), (Complex64::new(2.5, 0.5), Axis::frequency(0.0, 4.0, 3)));
+    let found = of("Run 1: Time (s),Run 1: Force (N)\n0,1.5\n0.5,2.5\n1,0.5\n");
+    assert_eq!(
+        (found.records[0].meta().name.as_str(), found.records[0].axis().step()),
+        ("Run 1: Force", Some(0.5))
+    );
+}
+
+/// Numbers about a series above its rows do not hide that it is one.
+#[test]
+fn a_series_below_a_block_of_numbers_is_asked_about() {
+    let mut rows = String::new();
+    for k in 0..400 {
+        let end = if k % 10 == 9 { "\n" } else { "" };
+        let _ = write!(rows, "{:8.1}{end}", 900.0 * (0.05 * f64::from(k)).sin());
+    }
+    let text = format!(
+        "accelerogram\n    2011       2      21      23      51     420    9999       0    2011       2\n{rows}"
+    );
+    let why = Reader::new().from_reader("x.txt", text.as_bytes()).unwrap_err().to_string();
+    assert!(why.contains("10 columns that may continue each other"), "{why}");
+}
+
 /// The columns of times disagree: days in place of ms.
 #[test]
 fn a_clock_beside_other_times_must_agree_with_them() {

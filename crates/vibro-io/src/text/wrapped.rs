@@ -44,9 +44,11 @@ pub fn continues(columns: &[Values]) -> bool {
     let rows = columns[0].len().min(LOOK);
     let last = columns.len() - 1;
     let step = |a: f64, b: f64| (b - a).abs();
-    let within = columns.windows(2).flat_map(|w| (0..rows).map(|i| step(w[0][i], w[1][i])));
-    let over = (1..rows).map(|i| step(columns[last][i - 1], columns[0][i]));
-    let down = columns.iter().flat_map(|c| (1..rows).map(|i| step(c[i - 1], c[i])));
+    // The first rows may hold numbers about the series.
+    let from = 1 + rows / 4;
+    let within = columns.windows(2).flat_map(|w| (from..rows).map(|i| step(w[0][i], w[1][i])));
+    let over = (from..rows).map(|i| step(columns[last][i - 1], columns[0][i]));
+    let down = columns.iter().flat_map(|c| (from..rows).map(|i| step(c[i - 1], c[i])));
     let (within, over, down) = (mean(within), mean(over), mean(down));
     // Channels of one level that change slowly go less far down than across.
     within > 0.0 && over < 2.0 * within && within < 0.7 * down && over < 0.7 * down
