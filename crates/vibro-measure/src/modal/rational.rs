@@ -42,6 +42,49 @@ struct Scaled<'a> {
     magnitude_only: bool,
 }
 
+/// How much of the lines modes `starts` leave at the least, unweighted: to choose among first guesses.
+pub(super) fn left_by(
+    measured: &Measured,
+    part: std::ops::Range<usize>,
+    starts: &[(f64, f64)],
+    others: &[Pole],
+) -> Option<f64> {
+    let scaled = Scaled::of(measured, part, starts, others);
+    let mut p = vec![0.0; 4 * starts.len() + 4];
+    (0..starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
+    scaled.linear(&mut p, &vec![1.0; scaled.x.len()])
+}
+
+impl<'a> Scaled<'a> {
+    /// The lines `part` without the modes `others`.
+    fn of(
+        measured: &Measured,
+        part: std::ops::Range<usize>,
+        starts: &'a [(f64, f64)],
+        others: &[Pole],
+    ) -> Scaled<'a> {
+        let power = measured.power();
+        let f = &measured.frequency[part.clone()];
+        let taken = |f: f64| others.iter().map(|o| o.at(f, power)).sum::<Complex64>();
+        let values: Vec<Complex64> =
+            f.iter().zip(&measured.values[part]).map(|(f, v)| v - taken(*f)).collect();
+        let height = values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let unit = starts.iter().map(|s| s.0).sum::<f64>() / starts.len() as f64;
+        let x: Vec<f64> = f.iter().map(|f| f / unit).collect();
+        Scaled {
+            factor: x.iter().map(|x| Complex64::new(0.0, *x).powi(power)).collect(),
+            values: values.iter().map(|v| v / height).collect(),
+            x,
+            starts,
+            unit,
+            height,
+            power,
+            leakage: measured.window.map(|window| Leakage::of(window, TAU * unit / measured.spacing())),
+            magnitude_only: measured.magnitude_only,
+        }
+    }
+}
+
 impl Scaled<'_> {
     /// Frequency and damping of mode `m` from its parameters: in units of the first guess of its half bandwidth and damping.
     fn shape(&self, p: &[f64], m: usize) -> (f64, f64) {
@@ -102,11 +145,11 @@ impl Scaled<'_> {
         sum.is_finite().then_some(sum)
     }
 
-    /// First guess: each mode's frequency and damping in turn on a small grid, all else by linear least squares.
-    fn start(&self, width: f64, weight: &[f64]) -> Option<Vec<f64>> {
+    /// First guess: frequency and damping of each mode but the first `known` in turn on a small grid, all else by linear least squares.
+    fn start(&self, known: usize, width: f64, weight: &[f64]) -> Option<Vec<f64>> {
         let mut p = vec![0.0; 4 * self.starts.len() + 4];
         (0..self.starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
-        for (m, (f, zeta)) in self.starts.iter().enumerate() {
+        for (m, (f, zeta)) in self.starts.iter().enumerate().skip(known) {
             let mut least = (f64::INFINITY, p.clone());
             for shift in [-0.5, -0.25, 0.0, 0.25, 0.5] {
                 for damping in [0.1, 0.3, 0.6, 1.0, 1.6] {
@@ -171,26 +214,20 @@ pub(super) fn rational(
     starts: &[(f64, f64)],
     others: &[Pole],
 ) -> Result<Rational> {
-    let power = measured.power();
+    with_known(measured, part, (starts, 0), others)
+}
+
+/// As [`rational`], where the first `known` of the first guesses come from a fit.
+pub(super) fn with_known(
+    measured: &Measured,
+    part: std::ops::Range<usize>,
+    (starts, known): (&[(f64, f64)], usize),
+    others: &[Pole],
+) -> Result<Rational> {
     let lines = part.len();
     let f = &measured.frequency[part.clone()];
-    let taken = |f: f64| others.iter().map(|o| o.at(f, power)).sum::<Complex64>();
-    let values: Vec<Complex64> =
-        f.iter().zip(&measured.values[part.clone()]).map(|(f, v)| v - taken(*f)).collect();
-    let height = values.iter().map(|v| v.norm()).fold(0.0, f64::max);
-    let unit = starts.iter().map(|s| s.0).sum::<f64>() / starts.len() as f64;
-    let x: Vec<f64> = f.iter().map(|f| f / unit).collect();
-    let scaled = Scaled {
-        factor: x.iter().map(|x| Complex64::new(0.0, *x).powi(power)).collect(),
-        values: values.iter().map(|v| v / height).collect(),
-        x,
-        starts,
-        unit,
-        height,
-        power,
-        leakage: measured.window.map(|window| Leakage::of(window, TAU * unit / measured.spacing())),
-        magnitude_only: measured.magnitude_only,
-    };
+    let taken = |f: f64| others.iter().map(|o| o.at(f, measured.power())).sum::<Complex64>();
+    let scaled = Scaled::of(measured, part.clone(), starts, others);
     let (numbers, parameters) = (scaled.rows(), scaled.free().len());
     if numbers < parameters + 3 {
         let why = format!(
@@ -204,7 +241,7 @@ pub(super) fn rational(
     let start = if measured.magnitude_only {
         scaled.guess()
     } else {
-        scaled.start(width, &equal).ok_or_else(refuse)?
+        scaled.start(known, width, &equal).ok_or_else(refuse)?
     };
     let first = scaled.fit(&start, &equal)?;
     let at = first.parameters.clone();

@@ -3,7 +3,6 @@
 use super::classical::{circle, half_power};
 use super::rational::Rational;
 use super::selection::Group;
-use super::selection::support_for_two;
 use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
 use crate::Estimate;
 use num_complex::Complex64;
@@ -35,8 +34,8 @@ impl Candidate<'_> {
         self.options.decay.unwrap_or(0.0)
     }
 
-    /// The mode beside those of `others`, and what was found of it; `None` where its peak supports none.
-    pub fn mode(&self, sound: bool, others: &[Pole], findings: &mut Vec<Finding>) -> Option<Mode> {
+    /// The mode, and what was found of it; `None` where its peak supports none.
+    pub fn mode(&self, sound: bool, findings: &mut Vec<Finding>) -> Option<Mode> {
         let Candidate { measured, group, fit, m, .. } = *self;
         let (pole, mut std) = (&fit.modes[m], fit.std[m]);
         let at = measured.frequency[group.peaks[m].at];
@@ -78,13 +77,10 @@ impl Candidate<'_> {
         // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
-        // A peak that leakage widens has no longer the form of one mode.
-        let leaks = self.unsaid && leaks;
-        let two = if leaks { None } else { support_for_two(measured, (group, fit), m, others) };
-        let ahead = two.unwrap_or(f64::NAN);
-        find(two.is_some(), Finding::doubt("modal-two-modes").number("ahead", ahead));
+        let ahead = group.ahead.unwrap_or(f64::NAN);
+        find(group.ahead.is_some(), Finding::doubt("modal-two-modes").number("ahead", ahead));
         // What the phases of residual terms and other modes do to magnitudes is in no residual.
-        let known = two.is_none() && !measured.magnitude_only;
+        let known = group.ahead.is_none() && !measured.magnitude_only;
         Some(self.estimates(&own, std.map(|s| known.then_some(s))))
     }
 

@@ -1,6 +1,6 @@
 //! Which lines belong to which peak, which peaks are modes, and on which lines they are fitted.
 
-use super::rational::{Rational, rational};
+use super::rational::{Rational, left_by, rational, with_known};
 use super::{Measured, Pole};
 use crate::mean::upper_median;
 use crate::peaks::local_maxima;
@@ -52,7 +52,10 @@ pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<
             fit => break fit?,
         }
     };
-    let fit = pruned(lines, group, fit, unsupported);
+    let mut fit = pruned(lines, group, fit, unsupported);
+    if fit.whiteness.rejected() {
+        complete(lines, group, &mut fit, &[]);
+    }
     Ok(if fit.whiteness.rejected() { narrowed(lines, group, fit) } else { fit })
 }
 
@@ -107,7 +110,7 @@ pub(super) fn together(
     if fit.whiteness.rejected() && explained {
         return;
     }
-    let mut all = Group { peaks, lines: part };
+    let mut all = Group { peaks, lines: part, ahead: None };
     let fit = pruned(lines, &mut all, fit, unsupported);
     *fits = vec![(all, fit)];
 }
@@ -134,29 +137,100 @@ fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
     wide
 }
 
-/// An additional mode under one peak must lower Akaike's criterion by this much: its four numbers then explain 28 of χ², as chance does
+/// An additional mode that shows no peak must lower Akaike's criterion by this much: its four numbers then explain 28 of χ², as chance does
 /// in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance in one of a thousand.
 const SPLIT: f64 = 20.0;
 
-/// How much lower Akaike's criterion is with mode `m` of a fit split in two, where the lines support that: its frequency and damping
-/// are then those of neither. `others` are the modes of other groups, which were subtracted before the fit.
-pub(super) fn support_for_two(
-    lines: &Measured,
-    (group, fit): (&Group, &Rational),
-    m: usize,
-    others: &[Pole],
-) -> Option<f64> {
-    // Anything would explain residuals better that are not white.
-    if lines.magnitude_only || fit.whiteness.rejected() {
-        return None;
+/// Bandwidths from a mode at which another is looked for that shows no peak.
+const BESIDE_A_MODE: [f64; 6] = [-3.0, -1.5, -0.5, 0.5, 1.5, 3.0];
+
+/// What a fit leaves of a peak of noise, over the highest line, at the least.
+const NOISE: f64 = 0.2;
+
+/// A neighbour of this part of the highest peak of a group, or less, is left to the residual terms.
+const LOW: f64 = 0.05;
+
+/// Of those places the best, at which it is fitted.
+const TRIED: usize = 3;
+
+/// The best fit of a group with one more mode than `fit`, whether it shows a peak or not; `others` are subtracted first.
+fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) -> Option<Rational> {
+    let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
+    let guess = |(m, bandwidths): (usize, f64)| {
+        let (frequency, zeta) = starts[m];
+        let at = frequency * (1.0 + 2.0 * bandwidths * zeta);
+        let mut starts = starts.clone();
+        // Where they are near, both move to the sides of the peak.
+        if bandwidths.abs() < 1.0 {
+            starts[m].0 = frequency * (1.0 - bandwidths * zeta);
+        }
+        starts.push((at, zeta));
+        let left = left_by(lines, group.lines.clone(), &starts, others)?;
+        Some((left, starts))
+    };
+    let places = (0..starts.len()).flat_map(|m| BESIDE_A_MODE.map(|bandwidths| (m, bandwidths)));
+    let mut guesses: Vec<(f64, Vec<(f64, f64)>)> = places.filter_map(guess).collect();
+    guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let fitted = |(_, starts): (f64, Vec<(f64, f64)>)| {
+        let known = starts.len() - 1;
+        let more = with_known(lines, group.lines.clone(), (&starts, known), others).ok()?;
+        more.modes.iter().all(|m| m.zeta > 0.0).then_some(more)
+    };
+    guesses.into_iter().take(TRIED).filter_map(fitted).min_by(|a, b| a.aicc.total_cmp(&b.aicc))
+}
+
+/// Adds the modes that a group needs though they show no peak, as one beside a higher peak, or two under one. Where the lines support another
+/// mode and do not tell which, the group says so; where they do not tell whether there is one, the uncertainties hold both cases
+/// (Burnham & Anderson 2002, 4.3.2).
+pub(super) fn complete(lines: &Measured, group: &mut Group, fit: &mut Rational, others: &[Pole]) {
+    let sound = fit.sound(lines, &group.peaks);
+    // A peak of noise has no neighbours.
+    if lines.magnitude_only || !sound.contains(&true) && fit.unexplained > NOISE {
+        return;
     }
-    let mut starts: Vec<(f64, f64)> = fit.modes.iter().map(|o| (o.frequency, o.zeta)).collect();
-    let (frequency, zeta) = starts[m];
-    let half = 0.5 * zeta * frequency;
-    starts.splice(m..=m, [(frequency - half, zeta), (frequency + half, zeta)]);
-    let both = rational(lines, group.lines.clone(), &starts, others).ok()?;
-    let better = fit.aicc - both.aicc;
-    (better > SPLIT && both.modes.iter().all(|m| m.zeta > 0.0)).then_some(better)
+    while fit.modes.len() < TOGETHER && fit.modes.iter().all(|m| m.zeta > 0.0) {
+        let Some(more) = one_more(lines, group, fit, others) else { return };
+        let better = fit.aicc - more.aicc;
+        if fit.whiteness.rejected() && more.whiteness.rejected() {
+            // Anything would explain residuals better that are not white.
+            return;
+        }
+        // What lies beyond the lines, or is much lower, is what the residual terms are for.
+        let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
+        let highest = more.modes.iter().map(height).fold(0.0, f64::max);
+        let part = lines.frequency[group.lines.start]..lines.frequency[group.lines.end - 1];
+        let beside = !more.modes.iter().all(|m| part.contains(&m.frequency) && height(m) > LOW * highest);
+        if beside && better > SPLIT {
+            return;
+        }
+        let peaks: Vec<Peak> = more.modes.iter().map(|mode| lines.peak(mode)).collect();
+        let sound = more.sound(lines, &peaks).iter().all(|sound| *sound);
+        if better > SPLIT && sound {
+            (group.peaks, *fit) = (peaks, more);
+            continue;
+        }
+        if better > SPLIT {
+            group.ahead = Some(better);
+            return;
+        }
+        let weight = 1.0 / (1.0 + (-0.5 * better).exp());
+        for (mode, std) in fit.modes.iter().zip(&mut fit.std) {
+            let near = |i: &usize| (more.modes[*i].frequency - mode.frequency).abs();
+            let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { return };
+            let (other, its) = (&more.modes[i], more.std[i]);
+            let turned = (other.constant / mode.constant).arg();
+            let apart = [
+                other.frequency - mode.frequency,
+                other.zeta - mode.zeta,
+                other.constant.norm() - mode.constant.norm(),
+                turned,
+            ];
+            for ((std, its), apart) in std.iter_mut().zip(its).zip(apart) {
+                *std = ((1.0 - weight) * *std * *std + weight * (its * its + apart * apart)).sqrt();
+            }
+        }
+        return;
+    }
 }
 
 /// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its valleys.
@@ -172,6 +246,17 @@ pub(super) struct Peak {
 pub(super) struct Group {
     pub peaks: Vec<Peak>,
     pub lines: Range<usize>,
+    /// How much lower Akaike's criterion is with one more mode, where that is not known by itself: then no mode is what it seems.
+    pub ahead: Option<f64>,
+}
+
+impl Measured {
+    /// The peak that a mode has, whether it shows or not.
+    fn peak(&self, mode: &Pole) -> Peak {
+        let last = self.frequency.len() - 2;
+        let at = self.frequency.partition_point(|f| *f < mode.frequency).clamp(1, last);
+        Peak { at, width: 2.0 * mode.zeta * mode.frequency, rise: 0.0 }
+    }
 }
 
 /// A peak must stand this factor above its valleys.
@@ -235,7 +320,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         let below = i.checked_sub(1).map_or(0, |before| usize::midpoint(spans[before].1, spans[i].0));
         let above = spans.get(i + 1).map_or(f.len(), |after| usize::midpoint(after.0, spans[i].1) + 1);
         let lines = low.max(below).max(within.start)..high.min(above).min(within.end);
-        Group { peaks, lines }
+        Group { peaks, lines, ahead: None }
     };
     Ok(groups.into_iter().enumerate().map(group).collect())
 }

@@ -1,0 +1,52 @@
+//! Modes whose neighbour shows no peak of its own: drawn at random, and counted.
+
+use super::{Measured, ModalOptions, Mode, Pole, modal};
+use num_complex::Complex64;
+use vibro_math::Noise;
+use vibro_record::FrfKind;
+
+/// Two modes some bandwidths apart, as a receptance with noise; each of them.
+fn pair(seed: u64) -> (Measured, [Pole; 2]) {
+    let mut noise = Noise::new(seed);
+    let zeta = 0.005 * 4f64.powf(noise.between(0.0, 1.0));
+    let own = 100.0;
+    let bandwidth = 2.0 * zeta * own;
+    let apart = noise.between(0.5, 5.0) * bandwidth;
+    let ratio = noise.between(0.15, 1.0) * if noise.between(0.0, 1.0) < 0.3 { -1.0 } else { 1.0 };
+    let pole = |frequency: f64, zeta: f64, constant: f64| Pole { frequency, zeta, constant: constant.into() };
+    let modes = [pole(own, zeta, 1.0), pole(own + apart, zeta * noise.between(0.7, 1.4), ratio)];
+    let step = bandwidth / noise.between(5.0, 20.0);
+    let frequency: Vec<f64> = (0..(90.0 / step) as usize).map(|k| 60.0 + step * k as f64).collect();
+    let clean: Vec<Complex64> = frequency.iter().map(|f| modes.iter().map(|m| m.at(*f, 0)).sum()).collect();
+    let sigma = clean.iter().map(|v| v.norm()).fold(0.0, f64::max) * 10f64.powf(noise.between(-3.0, -1.5));
+    let values = clean.iter().map(|v| v + sigma * Complex64::new(noise.normal(), noise.normal())).collect();
+    let kind = FrfKind::Receptance;
+    (Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None }, modes)
+}
+
+/// Half to five bandwidths apart, 30 to 60 dB above the noise. Without a search for what shows no peak, 430 of 586 modes were found and 76 % of
+/// the values held within 1.96 standard uncertainties; with it 94 and 91 %, since modes within a bandwidth pass for one.
+#[test]
+#[ignore = "Monte Carlo: cargo test --release -- --ignored"]
+fn modes_beside_higher_ones_are_found_and_covered() {
+    let (mut held, mut known, mut all, mut matched) = (0, 0, 0.0, 0.0);
+    for seed in 0..300 {
+        let (measured, modes) = pair(seed);
+        let found = modal(&measured, &ModalOptions::default()).unwrap().modes;
+        for truth in modes {
+            all += 1.0;
+            let off = |m: &&Mode| (m.frequency.value - truth.frequency).abs();
+            let near = found.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+            let Some(mode) = near.filter(|m| off(m) < truth.zeta * truth.frequency) else { continue };
+            matched += 1.0;
+            for (estimate, value) in [(&mode.frequency, truth.frequency), (&mode.zeta, truth.zeta)] {
+                let Some(std) = estimate.std else { continue };
+                known += 1;
+                held += i32::from((estimate.value - value).abs() < 1.96 * std);
+            }
+        }
+    }
+    // Three standard deviations of 1100 at 91 % are 2.6 %, of 600 at 94 % 2.9 %.
+    assert!(f64::from(held) > 0.88 * f64::from(known), "{held} of {known}");
+    assert!(matched > 0.91 * all, "{matched} of {all}");
+}
