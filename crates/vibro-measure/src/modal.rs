@@ -64,14 +64,12 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         together(&lines, lines.within(band), &mut fits, &mut unsupported);
     }
     refine(&lines, &mut fits);
+    let mut modes = Vec::new();
     for at in 0..fits.len() {
         let others = poles_beside(&fits, at);
         let (group, fit) = &mut fits[at];
-        complete(&lines, group, fit, &others);
-    }
-    let mut modes = Vec::new();
-    for (group, fit) in &fits {
-        for (m, sound) in fit.sound(&lines, &group.peaks).into_iter().enumerate() {
+        let sound = complete(&lines, group, fit, &others);
+        for (m, sound) in sound.into_iter().enumerate() {
             let candidate = Candidate { measured: &lines, options, group, fit, m, unsaid };
             modes.extend(candidate.mode(sound, &mut findings));
         }

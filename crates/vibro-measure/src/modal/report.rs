@@ -77,10 +77,12 @@ impl Candidate<'_> {
         // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
-        let ahead = group.ahead.unwrap_or(f64::NAN);
-        find(group.ahead.is_some(), Finding::doubt("modal-two-modes").number("ahead", ahead));
+        let around = |other: f64| (other - pole.frequency).abs() < 4.0 * pole.zeta * pole.frequency;
+        let ahead = group.ahead.filter(|(_, other)| around(*other)).map(|(ahead, _)| ahead);
+        let two = Finding::doubt("modal-two-modes").number("ahead", ahead.unwrap_or(f64::NAN));
+        find(ahead.is_some(), two);
         // What the phases of residual terms and other modes do to magnitudes is in no residual.
-        let known = group.ahead.is_none() && !measured.magnitude_only;
+        let known = ahead.is_none() && !measured.magnitude_only;
         Some(self.estimates(&own, std.map(|s| known.then_some(s))))
     }
 

@@ -147,6 +147,9 @@ const BESIDE_A_MODE: [f64; 6] = [-3.0, -1.5, -0.5, 0.5, 1.5, 3.0];
 /// What a fit leaves of a peak of noise, over the highest line, at the least.
 const NOISE: f64 = 0.2;
 
+/// Modes nearer than this part of their mean bandwidth are not two, but one of another form.
+const APART: f64 = 0.25;
+
 /// A neighbour of this part of the highest peak of a group, or less, is left to the residual terms.
 const LOW: f64 = 0.05;
 
@@ -181,42 +184,51 @@ fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) ->
 
 /// Adds the modes that a group needs though they show no peak, as one beside a higher peak, or two under one. Where the lines support another
 /// mode and do not tell which, the group says so; where they do not tell whether there is one, the uncertainties hold both cases
-/// (Burnham & Anderson 2002, 4.3.2).
-pub(super) fn complete(lines: &Measured, group: &mut Group, fit: &mut Rational, others: &[Pole]) {
-    let sound = fit.sound(lines, &group.peaks);
+/// (Burnham & Anderson 2002, 4.3.2). Says which modes stand.
+pub(super) fn complete(
+    lines: &Measured,
+    group: &mut Group,
+    fit: &mut Rational,
+    others: &[Pole],
+) -> Vec<bool> {
+    let mut sound = fit.sound(lines, &group.peaks);
     // A peak of noise has no neighbours.
     if lines.magnitude_only || !sound.contains(&true) && fit.unexplained > NOISE {
-        return;
+        return sound;
     }
     while fit.modes.len() < TOGETHER && fit.modes.iter().all(|m| m.zeta > 0.0) {
-        let Some(more) = one_more(lines, group, fit, others) else { return };
+        let Some(more) = one_more(lines, group, fit, others) else { break };
         let better = fit.aicc - more.aicc;
         if fit.whiteness.rejected() && more.whiteness.rejected() {
             // Anything would explain residuals better that are not white.
-            return;
+            break;
         }
         // What lies beyond the lines, or is much lower, is what the residual terms are for.
         let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
         let highest = more.modes.iter().map(height).fold(0.0, f64::max);
         let part = lines.frequency[group.lines.start]..lines.frequency[group.lines.end - 1];
-        let beside = !more.modes.iter().all(|m| part.contains(&m.frequency) && height(m) > LOW * highest);
-        if beside && better > SPLIT {
-            return;
+        if !more.modes.iter().all(|m| part.contains(&m.frequency)) {
+            return sound;
         }
+        let low = more.modes.iter().any(|m| height(m) < LOW * highest);
+        let width = |pair: &[Pole]| pair[0].zeta * pair[0].frequency + pair[1].zeta * pair[1].frequency;
+        let close = |w: &&[Pole]| w[1].frequency - w[0].frequency <= APART * width(w);
+        let one = more.modes.windows(2).find(close).map(|w| w[0].frequency);
         let peaks: Vec<Peak> = more.modes.iter().map(|mode| lines.peak(mode)).collect();
-        let sound = more.sound(lines, &peaks).iter().all(|sound| *sound);
-        if better > SPLIT && sound {
-            (group.peaks, *fit) = (peaks, more);
+        let its = more.sound(lines, &peaks);
+        if better > SPLIT && !low {
+            let unknown = its.iter().position(|sound| !sound).map(|at| more.modes[at].frequency);
+            group.ahead = one.or(unknown).map(|at| (better, at));
+            if group.ahead.is_some() {
+                return sound;
+            }
+            (group.peaks, *fit, sound) = (peaks, more, its);
             continue;
-        }
-        if better > SPLIT {
-            group.ahead = Some(better);
-            return;
         }
         let weight = 1.0 / (1.0 + (-0.5 * better).exp());
         for (mode, std) in fit.modes.iter().zip(&mut fit.std) {
             let near = |i: &usize| (more.modes[*i].frequency - mode.frequency).abs();
-            let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { return };
+            let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { continue };
             let (other, its) = (&more.modes[i], more.std[i]);
             let turned = (other.constant / mode.constant).arg();
             let apart = [
@@ -229,8 +241,9 @@ pub(super) fn complete(lines: &Measured, group: &mut Group, fit: &mut Rational, 
                 *std = ((1.0 - weight) * *std * *std + weight * (its * its + apart * apart)).sqrt();
             }
         }
-        return;
+        break;
     }
+    sound
 }
 
 /// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its valleys.
@@ -246,8 +259,9 @@ pub(super) struct Peak {
 pub(super) struct Group {
     pub peaks: Vec<Peak>,
     pub lines: Range<usize>,
-    /// How much lower Akaike's criterion is with one more mode, where that is not known by itself: then no mode is what it seems.
-    pub ahead: Option<f64>,
+    /// How much lower Akaike's criterion is with one more mode, and its frequency, where that is not known by itself: then those around it
+    /// are not what they seem.
+    pub ahead: Option<(f64, f64)>,
 }
 
 impl Measured {
