@@ -19,7 +19,7 @@ mod records;
 mod rows;
 mod table;
 mod tail;
-mod words;
+mod word_columns;
 mod wrapped;
 
 use crate::held::Contents;
@@ -110,7 +110,7 @@ pub(crate) fn read_numbers(source: &Source, options: &Options, _: bool) -> Resul
 
 /// What is left without its columns of words; where it has none, the complaint `why` it cannot be read.
 fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
-    let Some((source, found)) = words::left_out(text)? else { return Err(why) };
+    let Some((source, found)) = word_columns::left_out(text)? else { return Err(why) };
     let read = if is_table(source.head(), &source) { read_table } else { read_numbers };
     let mut contents = read(&source, options, false)?;
     contents.findings.push(found);
