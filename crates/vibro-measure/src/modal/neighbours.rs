@@ -32,7 +32,8 @@ fn modes_beside_higher_ones_are_found_and_covered() {
     let (mut held, mut known, mut all, mut matched) = (0, 0, 0.0, 0.0);
     for seed in 0..300 {
         let (measured, modes) = pair(seed);
-        let found = modal(&measured, &ModalOptions::default()).unwrap().modes;
+        // Two modes within a bandwidth whose form is not that of one may be refused: they are not found.
+        let found = modal(&measured, &ModalOptions::default()).map_or_else(|_| Vec::new(), |m| m.modes);
         for truth in modes {
             all += 1.0;
             let off = |m: &&Mode| (m.frequency.value - truth.frequency).abs();
