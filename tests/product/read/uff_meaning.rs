@@ -73,7 +73,7 @@ fn units_that_are_not_understood_or_contradict() {
     let none = axis(0, "NONE", "NONE");
     for (function, above, symbol, word) in [
         (4, axis(0, "NONE", "EU"), "EU", "\"EU\" is not known"),
-        (4, none.clone(), "", "says no unit"),
+        (4, none.clone(), "", "No unit found"),
         (4, axis(0, "Receptance", "(m/s)/N"), "(m/s)/N", "label is \"Receptance\""),
         (12, axis(12, "Velocity", "m/s²"), "m/s²", "label is \"Velocity\""),
         (9, axis(12, "NONE", "g"), "g", "is squared"),
