@@ -63,11 +63,11 @@ impl SweepReader {
                 let expected = format!("{first}, as in the files before");
                 return Err(Error::input(Place::file(&response.path), found, expected));
             }
-            let (axis, values, enbw) = (axis.clone(), Values::Real(values), window.map(Window::enbw));
+            let (axis, enbw) = (axis.clone(), window.map(Window::enbw));
             points.push(SweepPoint {
                 force_path: list.force.get(i).cloned(),
                 response_path: list.response[i].clone(),
-                force: force.map_or_else(Vec::new, |(_, values, _)| values),
+                force: force.map_or_else(Values::default, |(_, values, _)| values),
                 given: list.excitation.get(i).copied(),
                 response: Spectrum { meta, axis, values, scaling: Scaling::Peak, window, enbw },
             });
@@ -94,7 +94,7 @@ impl SweepReader {
         force: bool,
         axis: &Axis,
         findings: &mut Vec<Finding>,
-    ) -> Result<(Meta, Vec<f64>, Option<Window>)> {
+    ) -> Result<(Meta, Values, Option<Window>)> {
         let [Record::Spectrum(spectrum)] = recording.records.as_slice() else {
             let found = match recording.records.as_slice() {
                 [record] => format!("a {}", record.kind()),
@@ -161,7 +161,7 @@ impl SweepReader {
             _ => (1.0, written.clone()),
         };
         let factor = factor * self.calibration.unwrap_or(1.0) * peak;
-        let values = magnitudes(spectrum, axis, factor)?;
+        let values = scaled(spectrum, axis, factor)?;
         if !force {
             gather(recording, findings);
         }
@@ -236,8 +236,8 @@ fn taken(meta: &Meta) -> f64 {
     steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
 }
 
-/// Peak magnitudes of a spectrum, which must have the lines of `axis`.
-fn magnitudes(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Vec<f64>> {
+/// Peak values of a spectrum, which must have the lines of `axis`.
+fn scaled(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Values> {
     if let Values::Real(values) = &spectrum.values
         && let Some(i) = values.iter().position(|v| *v < 0.0)
     {
@@ -263,7 +263,10 @@ fn magnitudes(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Vec<f64>>
     if let Some(i) = magnitudes.iter().position(|m| !m.is_finite()) {
         return Err(Error::usage(format!("line {i} is missing"), "a number in every line"));
     }
-    Ok(magnitudes.into_iter().map(|m| m * factor).collect())
+    Ok(match &spectrum.values {
+        Values::Real(_) => Values::Real(magnitudes.into_iter().map(|m| m * factor).collect()),
+        Values::Complex(values) => Values::Complex(values.iter().map(|v| v * factor).collect()),
+    })
 }
 
 /// Findings of the files, each once; what a sweep settles for itself is not repeated.

@@ -47,7 +47,7 @@ pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
             let std = Some(5e-5 / f64::sqrt(3.0));
             return Ok(Excitation { file, frequency, std, force: None, force_std: None });
         }
-        let peak = largest(&point.force, point.response.window, first).map_err(|why| {
+        let peak = largest(&point.force.magnitudes(), point.response.window, first).map_err(|why| {
             let place = Place::file(point.force_path.clone().unwrap_or_default());
             Error::input(place, why, "one line above the noise: the excitation")
                 .hint("check the force channel and that the shaker ran; else take the point out of the list")

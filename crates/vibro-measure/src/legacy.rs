@@ -18,8 +18,9 @@ pub fn excitation(sweep: &Sweep) -> Result<Vec<f64>> {
             return Ok(given);
         }
         let place = Place::file(point.force_path.clone().unwrap_or_default());
-        let largest = point.force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut at = (0..point.force.len()).filter(|k| point.force[*k] == largest);
+        let force = point.force.magnitudes();
+        let largest = force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut at = (0..force.len()).filter(|k| force[*k] == largest);
         match (at.next(), at.next()) {
             (Some(k), None) => Ok(sweep.axis.at(k)),
             (Some(a), Some(b)) => {

@@ -29,6 +29,7 @@ pub mod resonance;
 pub mod response;
 pub mod restitution;
 pub mod spectral;
+pub mod stepped;
 #[cfg(test)]
 #[path = "tests/synthetic.rs"]
 pub(crate) mod synthetic;

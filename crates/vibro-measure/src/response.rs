@@ -8,11 +8,12 @@ use super::resonance::{NamedCurve, Resonance};
 use super::{Estimate, noise};
 use crate::line::deviation;
 use crate::mean::upper_median;
+use num_complex::Complex64;
 use serde::Serialize;
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use vibro_record::units::Quantity;
-use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window};
+use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Values, Window};
 
 /// How a response is to be taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,10 +79,25 @@ pub struct ResponsePoint {
     pub harmonics: Vec<Harmonic>,
     /// Orders 1/2, 1/3, 1/4.
     pub subharmonics: Vec<Harmonic>,
+    /// Phase of the response against the force in rad, where it is known.
+    pub phase: Option<Estimate>,
+    /// Displacement over force, where its phase is known.
+    pub receptance: Option<Receptance>,
     /// Whether the largest line of the spectrum is not at the excitation.
     pub largest_elsewhere: bool,
     /// Frequency of the largest line in Hz.
     pub largest_at: f64,
+}
+
+/// Displacement over force at one frequency, in m/N.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Receptance {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+    /// Standard uncertainty of each of them.
+    pub std: Option<f64>,
 }
 
 /// A response curve.
@@ -129,7 +145,31 @@ pub(crate) fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64
 pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
     let df = sweep.line_width().unwrap_or(f64::NAN);
-    let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
+    let wrong = wrong_window(sweep, &excitations, df);
+    let mut found = read(sweep, options, &excitations)?;
+    found.findings.splice(0..0, wrong.iter().cloned());
+    let mut found = found.curve(sweep.direction);
+    if wrong.is_some() {
+        for point in &mut found.points {
+            (point.frequency_std, point.amplitude.std) = (None, None);
+        }
+        for jump in &mut found.jumps {
+            (jump.amplitude_before_std, jump.amplitude_after_std) = (None, None);
+        }
+        for resonance in &mut found.resonances {
+            (resonance.frequency_std, resonance.amplitude_std) = (None, None);
+        }
+    }
+    Ok(found)
+}
+
+/// The points of a sweep at known excitations, no curve yet.
+///
+/// # Errors
+/// If what is stored cannot be taken to a displacement, velocity or acceleration.
+pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Excitation]) -> Result<Response> {
+    let df = sweep.line_width().unwrap_or(f64::NAN);
+    let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, excitations));
     let quantity = sweep.unit().times_seconds(options.integrate).quantity();
     if quantity == Quantity::Other {
         let why = format!(
@@ -141,38 +181,8 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
         return Err(Error::refused(why).hint(hint).setting("integrate"));
     }
     let unit = quantity.symbol();
-    let wrong = wrong_window(sweep, &excitations, df);
     let taker = Taker { sweep, options, df, fmin, unit };
-    let mut points: Vec<ResponsePoint> =
-        sweep.points.iter().zip(&excitations).map(|(p, e)| taker.point(p, e)).collect();
-    let frequency: Vec<f64> = excitations.iter().map(|e| e.frequency).collect();
-    let mut findings: Vec<Finding> =
-        wrong.iter().chain(&sweep.findings).cloned().chain(repeated(sweep)).collect();
-    let direction = direction(&frequency, sweep.direction, &mut findings);
-    let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
-    let below = points.iter().filter(|p| p.amplitude.value.is_nan()).count();
-    let below_cutoff = Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", fmin);
-    findings.extend((faint > 0).then(|| Finding::caution("sweep-below-noise").count("n", faint)));
-    findings.extend((below > 0).then_some(below_cutoff));
-    let (mut jumps, mut resonances) = (Vec::new(), Vec::new());
-    if let Some(direction) = direction.filter(|_| points.len() >= 3) {
-        let at = |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));
-        let curve = NamedCurve::new(points.iter().map(at).collect(), direction, sweep.mass);
-        (jumps, resonances) = (curve.jumps, curve.resonances);
-    } else {
-        findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
-    }
-    if wrong.is_some() {
-        for point in &mut points {
-            (point.frequency_std, point.amplitude.std) = (None, None);
-        }
-        for jump in &mut jumps {
-            (jump.amplitude_before_std, jump.amplitude_after_std) = (None, None);
-        }
-        for resonance in &mut resonances {
-            (resonance.frequency_std, resonance.amplitude_std) = (None, None);
-        }
-    }
+    let points = sweep.points.iter().zip(excitations).map(|(p, e)| taker.point(p, e)).collect();
     let taken: [(_, &dyn std::fmt::Display); 4] = [
         ("band", &options.band),
         ("integrate", &options.integrate),
@@ -181,17 +191,41 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
     ];
     Ok(Response {
         name: sweep.name.clone(),
-        direction,
+        direction: None,
         mass: sweep.mass,
         quantity: quantity.name(),
         unit,
         fmin,
         points,
-        resonances,
-        jumps,
-        findings,
+        resonances: Vec::new(),
+        jumps: Vec::new(),
+        findings: sweep.findings.iter().cloned().chain(repeated(sweep)).collect(),
         history: sweep.history().iter().cloned().chain([Step::new("response", &taken)]).collect(),
     })
+}
+
+impl Response {
+    /// Finds what the points show as a curve; the direction is the one stated, else that of the frequencies.
+    pub(crate) fn curve(mut self, stated: Option<Direction>) -> Response {
+        let Response { points, findings, fmin, .. } = &mut self;
+        let frequency: Vec<f64> = points.iter().map(|p| p.excitation).collect();
+        let direction = direction(&frequency, stated, findings);
+        let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
+        let below = points.iter().filter(|p| p.amplitude.value.is_nan()).count();
+        let below_cutoff = Finding::caution("sweep-below-cutoff").count("n", below).number("fmin", *fmin);
+        findings.extend((faint > 0).then(|| Finding::caution("sweep-below-noise").count("n", faint)));
+        findings.extend((below > 0).then_some(below_cutoff));
+        if let Some(direction) = direction.filter(|_| points.len() >= 3) {
+            let at =
+                |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));
+            let curve = NamedCurve::new(points.iter().map(at).collect(), direction, self.mass);
+            (self.jumps, self.resonances) = (curve.jumps, curve.resonances);
+        } else {
+            findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
+        }
+        self.direction = direction;
+        self
+    }
 }
 
 /// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation frequency, where
@@ -265,6 +299,7 @@ impl Taker<'_> {
             (excitation.frequency, excitation.std, faint(&measured, at, window, floor), method)
         };
         let (amplitude, upper_limit) = self.estimate(frequency, amplitude, method);
+        let (phase, receptance) = self.transfer(point, excitation.frequency).unzip();
         let harmonic =
             |order: String, ratio: f64| self.harmonic(&measured, order, excitation.frequency * ratio, window);
         let largest = self.largest(&stored);
@@ -278,10 +313,36 @@ impl Taker<'_> {
             amplitude,
             upper_limit,
             harmonics: (2..=5).map(|n| harmonic(n.to_string(), f64::from(n))).collect(),
+            phase,
+            receptance: receptance.filter(|_| self.unit == Quantity::Displacement.symbol()),
             subharmonics: (2..=4).map(|n| harmonic(format!("1/{n}"), 1.0 / f64::from(n))).collect(),
             largest_elsewhere: largest.abs_diff(centre) > self.options.band,
             largest_at: self.frequency(largest as f64),
         }
+    }
+
+    /// Phase of the response against the force, and their ratio, by the line nearest to the excitation of complex spectra. Both lines have the same
+    /// window, which the ratio is free of.
+    fn transfer(&self, point: &SweepPoint, excitation: f64) -> Option<(Estimate, Receptance)> {
+        let (Values::Complex(response), Values::Complex(force)) = (&point.response.values, &point.force)
+        else {
+            return None;
+        };
+        let k = self.position(excitation).round().max(0.0) as usize;
+        let (x, f) = (*response.get(k)?, *force.get(k)?);
+        let window = point.response.window;
+        let noise = |values: &Values| noise::around(&values.magnitudes(), k, noise::REACH, window);
+        let (of_x, of_f) = (noise(&point.response.values)?, noise(&point.force)?);
+        let relative = (of_x / x.norm()).hypot(of_f / f.norm());
+        // What the analyser divided by at the line is taken to the frequency of the sine.
+        let undone =
+            Complex64::new(0.0, TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
+        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.options.integrate);
+        let ratio = x / f * undone / Complex64::new(0.0, TAU * excitation).powi(times);
+        let std = Some(relative * ratio.norm()).filter(|std| std.is_finite());
+        let phase =
+            Estimate::new(ratio.arg(), std.map(|_| relative), "rad", 1, "line nearest to the excitation");
+        Some((phase, Receptance { re: ratio.re, im: ratio.im, std }))
     }
 
     fn harmonic(&self, measured: &[f64], order: String, frequency: f64, window: Option<Window>) -> Harmonic {
@@ -332,7 +393,8 @@ pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -
     let typical = |window: Window| {
         upper_median(sweep.points.iter().zip(excitations).filter_map(|(p, e)| {
             let k = ((e.frequency - sweep.axis.start()) / df).round().max(0.0) as usize;
-            Some(deviation(&p.force, k, 1, window)? / p.force[k])
+            let force = p.force.magnitudes();
+            Some(deviation(&force, k, 1, window)? / force[k])
         }))
     };
     let off = typical(window).filter(|off| *off > WRONG_SHAPE)?;

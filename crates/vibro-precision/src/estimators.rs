@@ -84,7 +84,7 @@ fn one_point(response: Spectrum, force: Option<Vec<f64>>, given: Option<f64>) ->
         points: vec![SweepPoint {
             force_path: force.as_ref().map(|_| "force".into()),
             response_path: "response".into(),
-            force: force.unwrap_or_default(),
+            force: Values::Real(force.unwrap_or_default()),
             given,
             response,
         }],

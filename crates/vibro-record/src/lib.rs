@@ -24,7 +24,7 @@ pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
 pub use spectrum::{Frf, FrfKind, Scaling, Spectrum, Values};
-pub use sweep::{Direction, Sweep, SweepPoint};
+pub use sweep::{Direction, StepTraces, Sweep, SweepPoint};
 pub use trace::Trace;
 pub use traces::{Stream, Traces, find_channel};
 pub use window::Window;

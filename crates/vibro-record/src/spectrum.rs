@@ -15,6 +15,13 @@ pub enum Values {
     Complex(Vec<Complex64>),
 }
 
+impl Default for Values {
+    /// None.
+    fn default() -> Values {
+        Values::Real(Vec::new())
+    }
+}
+
 impl Values {
     /// Values of their real and, where they are complex, imaginary parts.
     pub fn of(real: Vec<f64>, imaginary: Option<Vec<f64>>) -> Values {

@@ -1,6 +1,6 @@
 //! A stepped-sine sweep: one force and one response spectrum a step.
 
-use super::{Axis, Finding, Spectrum, Step};
+use super::{Axis, Finding, Spectrum, Step, Trace, Values};
 use crate::units::Unit;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -29,11 +29,11 @@ pub struct SweepPoint {
     pub force_path: Option<PathBuf>,
     /// Response file.
     pub response_path: PathBuf,
-    /// Peak magnitudes of the force spectrum, in order of the lines; empty where there is none.
-    pub force: Vec<f64>,
+    /// Peak values of the force spectrum in order of the lines; empty where there is none.
+    pub force: Values,
     /// Excitation frequency in Hz where a hand-over file gives it.
     pub given: Option<f64>,
-    /// Response: peak magnitudes.
+    /// Response: peak values; complex where the phase against the force is known.
     pub response: Spectrum,
 }
 
@@ -43,6 +43,17 @@ impl SweepPoint {
         let path = self.force_path.as_ref().unwrap_or(&self.response_path);
         path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
     }
+}
+
+/// Traces of force and response of one step, sampled together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepTraces {
+    /// File.
+    pub path: PathBuf,
+    /// Force in N.
+    pub force: Trace,
+    /// Displacement, velocity or acceleration.
+    pub response: Trace,
 }
 
 /// All steps in the order in which they were taken.

@@ -225,6 +225,10 @@ pub(super) fn complete(
             (group.peaks, *fit, sound) = (peaks, more, its);
             continue;
         }
+        // Chance lowers the criterion by little, and rarely: a mode less is then as likely as it was.
+        if better <= 0.0 {
+            break;
+        }
         let weight = 1.0 / (1.0 + (-0.5 * better).exp());
         for (mode, std) in fit.modes.iter().zip(&mut fit.std) {
             let near = |i: &usize| (more.modes[*i].frequency - mode.frequency).abs();

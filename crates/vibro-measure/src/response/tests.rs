@@ -12,7 +12,7 @@ fn step(name: &str, excitation: f64, window: Window, lines: Vec<f64>) -> SweepPo
     SweepPoint {
         force_path: None,
         response_path: name.into(),
-        force: Vec::new(),
+        force: Values::default(),
         given: Some(excitation),
         response: Spectrum {
             meta: Meta::new("response", Unit::parse_or_opaque("m/s")),

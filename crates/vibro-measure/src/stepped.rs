@@ -1,0 +1,329 @@
+//! Response to a stepped sine from traces of force and response, one pair a step.
+//!
+//! The frequency is that of the force ([`sine`]). Both traces are cut into blocks of whole periods, in each of which a sine of that
+//! frequency and a mean are fitted by least squares (IEEE Std 1057, three parameters). The phasors of the response, turned by the phase of the
+//! force in the same block, are free of its drift; those from where they stay are averaged, and their scatter is the uncertainty of amplitude, phase
+//! and receptance.
+
+use super::clipping::clipped;
+use super::excitation::Excitation;
+use super::noise::upper_limit;
+use super::residuals::{Whiteness, student};
+use super::response::{Receptance, Response, ResponseOptions, ResponsePoint, read};
+use super::tones::sine;
+use super::{Estimate, mean};
+use nalgebra::{Matrix3, Vector3};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use vibro_record::units::Quantity;
+use vibro_record::{
+    Axis, Error, Finding, Place, Result, Scaling, Spectrum, StepTraces, Sweep, SweepPoint, Trace, Window,
+};
+use vibro_signal::spectrum;
+
+/// Fewest periods of a step.
+const PERIODS: f64 = 8.0;
+/// Periods of a block: subharmonics to the fourth fit in whole numbers of periods where there are enough of them.
+const BLOCK: [usize; 4] = [12, 6, 4, 2];
+/// Fewest blocks of several periods, and most.
+const BLOCKS: (usize, usize) = (12, 48);
+/// χ² of two degrees of freedom that chance passes in 1 of 100 cases.
+const CHANCE: f64 = 9.21;
+/// Part of the amplitude by which a response may still change that counts as settled.
+const SETTLED: f64 = 1e-3;
+/// An amplitude below so many standard uncertainties is one of noise.
+const FAINT: f64 = 3.0;
+
+/// The sweep that traces of its steps make: amplitude, phase and receptance from the traces, harmonics and the rest from the spectra of the settled
+/// parts, which it gives, too. `named` has name, direction and mass.
+///
+/// # Errors
+/// If the traces of a step are not sampled together and evenly, those of two steps not at the same rate, or a step holds no sine of force or fewer
+/// than eight periods.
+pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) -> Result<(Sweep, Response)> {
+    let taken = |step: &StepTraces| Step::of(step).map_err(|e| e.in_file(&step.path));
+    let taken: Vec<Step> = steps.iter().map(taken).collect::<Result<_>>()?;
+    let rate = taken.first().map_or(0.0, |step| step.rate);
+    if let Some((step, at)) = taken.iter().zip(steps).find(|(step, _)| (step.rate / rate - 1.0).abs() > 1e-6)
+    {
+        let found = format!("the step is sampled at {} Hz", step.rate);
+        return Err(Error::input(Place::file(&at.path), found, format!("{rate} Hz, as the steps before")));
+    }
+    // One number of lines for all: that of the shortest settled part.
+    let n = taken.iter().map(|step| step.samples - step.begins).min().unwrap_or(0);
+    let points =
+        steps.iter().zip(&taken).map(|(step, taken)| taken.spectra(step, n)).collect::<Result<Vec<_>>>()?;
+    let axis = points.first().map_or_else(|| Axis::index(0), |p| p.response.axis.clone());
+    let sweep = Sweep { axis, points, ..named };
+    let excitations: Vec<Excitation> =
+        taken.iter().zip(steps).map(|(taken, step)| taken.excitation(step)).collect();
+    let mut found = read(&sweep, options, &excitations)?;
+    for (point, step) in found.points.iter_mut().zip(&taken) {
+        step.overrule(point, options.integrate, found.unit);
+        found.findings.extend(step.findings.iter().cloned());
+    }
+    let direction = sweep.direction;
+    Ok((sweep, found.curve(direction)))
+}
+
+/// What the traces of a step say.
+struct Step {
+    rate: f64,
+    samples: usize,
+    /// First sample of the settled part.
+    begins: usize,
+    /// Frequency of the excitation in Hz.
+    frequency: Estimate,
+    /// Amplitude of the force in N, and its standard uncertainty.
+    force: (f64, Option<f64>),
+    /// Response as the phasor against that of the force, and what is known of it.
+    response: Phasor,
+    /// Response over force.
+    ratio: Phasor,
+    findings: Vec<Finding>,
+}
+
+impl Step {
+    fn of(step: &StepTraces) -> Result<Step> {
+        let StepTraces { force, response, .. } = step;
+        let together = || {
+            Error::refused("force and response are not sampled together").hint("export both with one clock")
+        };
+        let rate = force.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
+            Error::refused("a step needs evenly spaced samples over time")
+                .hint("state the sampling rate in Hz")
+                .setting("rate")
+        })?;
+        let samples = force.values.len();
+        if response.rate() != Some(rate) || response.values.len() != samples {
+            return Err(together());
+        }
+        if force.values.iter().chain(&response.values).any(|v| !v.is_finite()) {
+            return Err(Error::refused("samples are missing").hint("cut the file before them"));
+        }
+        let found = sine(force, None)?;
+        let Some(tone) = found.tones.into_iter().next() else {
+            return Err(Error::refused("the force holds no sine"));
+        };
+        let frequency = tone.frequency;
+        let periods = samples as f64 / rate * frequency.value;
+        if periods < PERIODS {
+            let why = format!(
+                "the step holds {periods:.1} periods of {:.4} Hz, and at least {PERIODS} are needed",
+                frequency.value
+            );
+            return Err(Error::refused(why).hint("record longer"));
+        }
+        let about = |code: fn(&'static str) -> Finding, name| code(name).number("frequency", frequency.value);
+        let mut findings = Vec::new();
+        let cut = clipped(&response.values, rate / frequency.value).len();
+        let cut_force = clipped(&force.values, rate / frequency.value).len();
+        let blocks = Blocks::of(periods, rate / frequency.value, samples);
+        let (f, x) = (blocks.phasors(force), blocks.phasors(response));
+        let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
+        let (first, settled) = settled(&ratio);
+        let turned: Vec<Complex64> = ratio.iter().zip(&f).map(|(r, f)| r * f.norm()).collect();
+        let (mut response, mut ratio) = (Phasor::of(&turned[first..]), Phasor::of(&ratio[first..]));
+        let force: Vec<f64> = f[first..].iter().map(|f| f.norm()).collect();
+        let mut force = (mean::average(&force), scatter_of_mean(&force));
+        match settled {
+            Settled::Yes => {}
+            Settled::Nearly(left) => {
+                response.allow(left);
+                ratio.allow(left / force.0);
+            }
+            Settled::No(left) => {
+                findings.push(
+                    about(Finding::doubt, "step-not-settled").number("left", left / response.value.norm()),
+                );
+                (response, ratio) = (response.doubted(), ratio.doubted());
+            }
+        }
+        if response.wanders && response.std.is_some() {
+            findings.push(about(Finding::caution, "step-wanders"));
+        }
+        if cut + cut_force > 0 {
+            findings.push(about(Finding::doubt, "step-clipped").count("n", cut + cut_force));
+            (response, ratio) = (response.doubted(), ratio.doubted());
+            force.1 = force.1.filter(|_| cut_force == 0);
+        }
+        let begins = blocks.start(first);
+        Ok(Step { rate, samples, begins, frequency, force, response, ratio, findings })
+    }
+
+    fn excitation(&self, step: &StepTraces) -> Excitation {
+        Excitation {
+            file: step.path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()),
+            frequency: self.frequency.value,
+            std: self.frequency.std,
+            force: Some(self.force.0),
+            force_std: self.force.1,
+        }
+    }
+
+    /// Spectra of the last `n` samples, all of them settled.
+    fn spectra(&self, step: &StepTraces, n: usize) -> Result<SweepPoint> {
+        let tail = |trace: &Trace| -> Result<Spectrum> {
+            let values = trace.values[self.samples - n..].to_vec();
+            let axis = Axis::time(0.0, 1.0 / self.rate, n);
+            spectrum::plain(
+                &Trace { meta: trace.meta.clone(), axis, values },
+                Window::Hann,
+                Scaling::Peak,
+                true,
+            )
+        };
+        let response = tail(&step.response)?;
+        Ok(SweepPoint {
+            force_path: None,
+            response_path: step.path.clone(),
+            force: tail(&step.force)?.values,
+            given: None,
+            response,
+        })
+    }
+
+    /// Puts what the traces say in the place of what the spectra do.
+    fn overrule(&self, point: &mut ResponsePoint, integrate: i8, unit: &'static str) {
+        let omega = Complex64::new(0.0, TAU * self.frequency.value).powi(integrate.into());
+        let method = "least-squares sine fit to blocks of the settled part";
+        let Phasor { value, std, across, n, .. } = self.response;
+        let (size, scale) = (value.norm(), omega.norm());
+        let faint = std.filter(|std| size < FAINT * std);
+        (point.frequency, point.frequency_std) = (self.frequency.value, self.frequency.std);
+        point.amplitude = Estimate::new(size / scale, std.map(|s| s / scale), unit, n, method);
+        point.upper_limit = faint.and_then(|std| upper_limit(size, std)).map(|limit| limit / scale);
+        let angle = (value / omega).arg();
+        let turned = across.filter(|_| faint.is_none()).map(|a| a / size);
+        point.phase = Some(Estimate::new(angle, turned, "rad", n, method));
+        let ratio = self.ratio.value / omega;
+        let each = self.ratio.std.zip(self.ratio.across).map(|(a, b)| ((a * a + b * b) / 2.0).sqrt() / scale);
+        let displacement = unit == Quantity::Displacement.symbol();
+        point.receptance = displacement.then_some(Receptance { re: ratio.re, im: ratio.im, std: each });
+    }
+}
+
+/// A mean of phasors.
+#[derive(Clone, Copy)]
+struct Phasor {
+    value: Complex64,
+    /// Standard uncertainty along it, and across.
+    std: Option<f64>,
+    across: Option<f64>,
+    /// Number of blocks.
+    n: usize,
+    /// Whether the blocks depend on each other.
+    wanders: bool,
+}
+
+impl Phasor {
+    fn of(all: &[Complex64]) -> Phasor {
+        let n = all.len();
+        let value = all.iter().sum::<Complex64>() / n as f64;
+        let unit = if value.norm() > 0.0 { value / value.norm() } else { Complex64::ONE };
+        let turned: Vec<Complex64> = all.iter().map(|v| (v - value) / unit).collect();
+        let (along, across): (Vec<f64>, Vec<f64>) = turned.iter().map(|v| (v.re, v.im)).unzip();
+        let whiteness = Whiteness::of(&[&along, &across]);
+        let std = |values: &[f64]| scatter_of_mean(values).map(|std| std * whiteness.inflation);
+        Phasor { value, std: std(&along), across: std(&across), n, wanders: whiteness.rejected() }
+    }
+
+    fn doubted(self) -> Phasor {
+        Phasor { std: None, across: None, ..self }
+    }
+
+    /// Adds what may be left of a transient.
+    fn allow(&mut self, left: f64) {
+        for std in [&mut self.std, &mut self.across] {
+            *std = std.map(|std| std.hypot(left));
+        }
+    }
+}
+
+/// Standard uncertainty of the mean of independent values; `None` of fewer than four.
+fn scatter_of_mean(values: &[f64]) -> Option<f64> {
+    let n = values.len();
+    student(n.saturating_sub(1)).map(|factor| factor * mean::scatter(values) / (n as f64).sqrt())
+}
+
+/// Blocks of whole periods.
+struct Blocks {
+    /// Samples of a period.
+    period: f64,
+    /// Periods of a block.
+    periods: usize,
+    /// Samples of the trace.
+    samples: usize,
+}
+
+impl Blocks {
+    fn of(periods: f64, period: f64, samples: usize) -> Blocks {
+        let whole = periods as usize;
+        let few = BLOCK.into_iter().find(|p| whole / p >= BLOCKS.0).unwrap_or(1);
+        // Long steps have blocks of more periods.
+        Blocks { period, periods: few * (whole / few).div_ceil(BLOCKS.1).max(1), samples }
+    }
+
+    fn start(&self, block: usize) -> usize {
+        ((block * self.periods) as f64 * self.period).round() as usize
+    }
+
+    /// Phasors of the sine at the excitation, block by block: A e^{iφ} of A cos(ωt + φ), t from the first sample.
+    fn phasors(&self, trace: &Trace) -> Vec<Complex64> {
+        let omega = TAU / self.period;
+        let edges = (0..).map(|block| self.start(block)).take_while(|end| *end <= self.samples);
+        let edges: Vec<usize> = edges.collect();
+        let one = |edge: &[usize]| {
+            let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+            for i in edge[0]..edge[1] {
+                let (sin, cos) = (omega * i as f64).sin_cos();
+                let row = Vector3::new(cos, sin, 1.0);
+                normal += row * row.transpose();
+                right += row * trace.values[i];
+            }
+            normal.cholesky().map_or(Complex64::ZERO, |c| {
+                let p = c.solve(&right);
+                Complex64::new(p[0], -p[1])
+            })
+        };
+        edges.windows(2).map(one).collect()
+    }
+}
+
+enum Settled {
+    Yes,
+    /// But for this change, which is small.
+    Nearly(f64),
+    /// Still changing by so much.
+    No(f64),
+}
+
+/// The first block from which on the phasors stay, no later than half-way: where those of the first quarter of the rest differ from the others by no more
+/// than chance. A transient that noise hides there is given half as long again to die.
+fn settled(all: &[Complex64]) -> (usize, Settled) {
+    let n = all.len();
+    let half = n / 2;
+    let steps = all[half..].windows(2).map(|w| (w[1] - w[0]).norm_sqr());
+    // Two components, and two blocks to a difference.
+    let variance = steps.sum::<f64>() / (4 * (n - half).saturating_sub(1).max(1)) as f64;
+    let mean = |values: &[Complex64]| values.iter().sum::<Complex64>() / values.len() as f64;
+    let change = |first: usize| {
+        let rest = &all[first..];
+        let (head, tail) = rest.split_at((rest.len() / 4).max(1));
+        let change = (mean(head) - mean(tail)).norm();
+        let chance = CHANCE * variance * (1.0 / head.len() as f64 + 1.0 / tail.len() as f64);
+        (change, change * change <= chance)
+    };
+    let size = mean(&all[half..]).norm();
+    let stays = |first: &usize| {
+        let (change, by_chance) = change(*first);
+        by_chance || change <= SETTLED * size
+    };
+    let Some(first) = (0..=half).find(stays) else { return (half, Settled::No(change(half).0)) };
+    let first = (first + first.div_ceil(2)).min(half);
+    let (left, by_chance) = change(first);
+    (first, if by_chance { Settled::Yes } else { Settled::Nearly(left) })
+}
+
+#[cfg(test)]
+mod tests;
