@@ -36,7 +36,7 @@ pub mod figures {
     pub use super::model::figures::{branches, ladder, orbit, phase_plane, poincare, regimes, sweep, traces};
     pub use super::pulse::figures::pulse;
     pub use super::spectrum::figures::lines;
-    pub use super::sweep::figures::{fit, map, overlay, response, waterfall};
+    pub use super::sweep::figures::{fit, map, overlay, receptance, response, waterfall};
 }
 
 use crate::campaign::{Campaign, Entry};

@@ -8,7 +8,7 @@ use vibroimpact::analysis;
 use vibroimpact::analysis::figures;
 use vibroimpact::measure::drill::{Beam, From};
 use vibroimpact::measure::pulse::two_times;
-use vibroimpact::measure::response::{ResponseOptions, response};
+use vibroimpact::measure::response::ResponseOptions;
 use vibroimpact::measure::restitution::Drop;
 use vibroimpact::measure::waterfall::waterfall;
 use vibroimpact::model::Rig;
@@ -17,10 +17,9 @@ use vibroimpact::model::Rig;
 pub fn spectra() -> Result<Sheet> {
     let campaign =
         analysis::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/campaign.toml"))?;
-    let options = ResponseOptions { integrate: 1, ..Default::default() };
+    let options = ResponseOptions::default();
     let points = |name: &str| -> Result<_> {
-        let (list, reader) = analysis::named(&campaign, Some(name), false)?;
-        Ok(response(&reader.read(&list)?, &options)?.points)
+        Ok(analysis::named(&campaign, Some(name), false)?.taken(&options)?.1.points)
     };
     let (up, down) = (points("mass 1, up")?, points("mass 1, down")?);
     let above = up.iter().filter(|p| p.excitation > 8.0);
@@ -29,8 +28,8 @@ pub fn spectra() -> Result<Sheet> {
     // Steps up and down have the same frequencies.
     let there = down.iter().min_by(|a, b| (a.excitation - at).abs().total_cmp(&(b.excitation - at).abs()));
     let low = there.map_or(f64::NAN, |p| p.amplitude.value);
-    let (list, reader) = analysis::named(&campaign, Some("mass 1, up"), false)?;
-    let figure = figures::waterfall(&waterfall(&reader.read(&list)?, &options)?, Some(20.0))?
+    let (sweep, _) = analysis::named(&campaign, Some("mass 1, up"), false)?.taken(&options)?;
+    let figure = figures::waterfall(&waterfall(&sweep, &options)?, Some(20.0))?
         .height(95.0)
         .caption("Spectra of the excited mass of the example campaign (a simulated rig with the numbers of the thesis' one, 0.1 N), sweeping up.");
     let claims = vec![

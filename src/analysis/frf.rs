@@ -1,11 +1,14 @@
 //! Frequency response functions and their modes: `[[frf]]`, `vibro modal`.
 
 pub mod figures;
+mod function;
 pub mod tables;
+
+pub use function::Function;
 
 use super::job::Marks;
 use super::spectrum::{self, Detrend};
-use super::{Analysis, Answer, Job, Source, no_file};
+use super::{Analysis, Answer, Job, Source, no_file, sweep};
 use crate::campaign::{Entry, above_zero, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
@@ -25,6 +28,9 @@ pub struct Keys {
     pub band: Option<(f64, f64)>,
     /// Mass in kg, for the stiffness k = m(2 pi f)^2
     pub mass: Option<f64>,
+    /// Sweep whose receptance is the function, instead of a file
+    #[cfg_attr(feature = "cli", arg(skip))]
+    pub sweep: Option<String>,
     /// File with the coherence of the same lines [default: a coherence in the file]
     pub coherence: Option<PathBuf>,
     /// Lines with a lower coherence are left out [default: 0.5]
@@ -66,14 +72,6 @@ struct Found<'a> {
     unit: &'a str,
     #[serde(flatten)]
     modal: &'a ModalResult,
-}
-
-/// A function before its modes are known.
-struct Function {
-    meta: Meta,
-    measured: Measured,
-    /// Its lines and their coherence, where it was computed.
-    records: Vec<Record>,
 }
 
 impl Keys {
@@ -126,7 +124,7 @@ impl Keys {
         let mut of_file = Answer::default();
         let functions = self.functions(source, &mut of_file)?;
         let answers = functions.into_iter().map(|function| {
-            let mut answer = self.modes(source, &function)?;
+            let mut answer = self.modes(source.name, &function)?;
             answer.findings.splice(0..0, of_file.findings.iter().cloned());
             Ok(answer)
         });
@@ -142,7 +140,10 @@ impl Keys {
             let measured = Measured::complex(frf);
             // One blow alone has no coherence.
             let measured = if records.len() > 1 { measured.with_coherence_of(&records)? } else { measured };
-            return Ok(vec![Function { meta: frf.meta.clone(), measured, records }]);
+            return Ok(vec![Function {
+                records: records.clone(),
+                ..Function::new(frf.meta.clone(), measured)
+            }]);
         }
         let recording = source.reader()?.from_path(source.path)?;
         of_file.add("", &recording.findings);
@@ -159,13 +160,17 @@ impl Keys {
                 meta.step("calibrate", &[("factor", &factor)]);
                 measured.values.iter_mut().for_each(|v| *v *= factor);
             }
-            Ok(Function { meta, measured, records: Vec::new() })
+            Ok(Function::new(meta, measured))
         };
         all.into_iter().map(function).collect()
     }
 
-    fn modes(&self, source: &Source<'_>, function: &Function) -> Result<Answer> {
-        let Function { meta, measured, records } = function;
+    /// The modes of a function, with figures, tables and files.
+    ///
+    /// # Errors
+    /// If it cannot be searched for modes; one that holds none is shown, and says so.
+    pub fn modes(&self, name: &str, function: &Function) -> Result<Answer> {
+        let Function { meta, measured, records, findings } = function;
         let options = ModalOptions {
             band: self.band,
             mass: self.mass,
@@ -184,13 +189,14 @@ impl Keys {
         let mut answer = Answer::of(&Found { quantity, unit, modal: &found })?;
         answer.result.insert("channel".to_owned(), meta.name.clone().into());
         answer.add("", &meta.findings);
+        answer.add("", findings);
         answer.add("", &found.findings);
         answer.refused = refused;
-        answer.table("modes", tables::modes(source.name, &found));
+        answer.table("modes", tables::modes(name, &found));
         let methods = tables::modal_methods(&found);
         answer.csv("methods", &methods);
         answer.details.push(methods);
-        answer.figure("frf", figures::frf(source.name, meta, measured, &found.modes));
+        answer.figure("frf", figures::frf(name, meta, measured, &found.modes));
         if !records.is_empty() {
             let (files, unwritten) = files::records("frf", records)?;
             answer.files.extend(files);
@@ -204,13 +210,30 @@ impl Analysis for Keys {
     const SECTION: &'static str = "frf";
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
-        entry.file.as_ref().ok_or_else(no_file)?;
-        entry.keys.usable()
+        match (&entry.file, &entry.keys.sweep) {
+            (Some(_), Some(_)) => {
+                Err(Error::usage("a file beside a sweep", "one of them: the function is that of one")
+                    .setting("sweep"))
+            }
+            (None, None) => Err(no_file()),
+            (None, Some(_)) if entry.keys.reference.is_some() || entry.keys.coherence.is_some() => {
+                let found = "reference or coherence beside a sweep";
+                Err(Error::usage(found, "the sweep alone").setting("reference").setting("coherence"))
+            }
+            _ => entry.keys.usable(),
+        }
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
+        let (campaign, allow) = (job.campaign, job.options.allow_outside);
         job.each("frf", entries, Marks::Numbers, |entry, source| {
-            let mut answers = entry.keys.measure(source)?;
+            let mut answers = match &entry.keys.sweep {
+                Some(name) => {
+                    let function = Function::of_sweep(campaign, Some(name), allow)?;
+                    vec![entry.keys.modes(&function.meta.name, &function)?]
+                }
+                None => entry.keys.measure(source)?,
+            };
             for answer in &mut answers {
                 let none =
                     answer.refused.take().map(|e| Finding::caution("no-modes").name("why", e.to_string()));

@@ -1,19 +1,21 @@
 //! Stepped-sine sweeps: `[[sweep]]`, `vibro response`, `vibro waterfall`, `vibro compare`.
 
 pub mod figures;
+pub mod listed;
 pub mod modelled;
 pub mod pairing;
 pub mod stored;
 pub mod tables;
 
+pub use listed::{Files, Listed};
 pub use stored::Stored;
 
 use super::{Analysis, Answer, Job, JobOptions, Progress, entries};
-use crate::campaign::{Campaign, Entry, above_zero};
+use crate::campaign::{Campaign, Entry, above_zero, one_or_more};
 use crate::error::{Error, Place, Result};
-use crate::measure::response::{Response, ResponseOptions, response, to_displacement};
+use crate::measure::response::{Response, ResponseOptions};
 use crate::measure::waterfall::{Waterfall, gathered};
-use crate::read::{SweepList, SweepReader};
+use crate::read::SweepReader;
 use crate::record::{Direction, Scaling, Sweep};
 use crate::report::files;
 use crate::report::words::About;
@@ -34,10 +36,17 @@ pub struct Keys {
     pub mass: Option<u8>,
     /// List file or hand-over file.
     pub list: Option<PathBuf>,
-    /// Force files, instead of a list.
-    pub force: Vec<PathBuf>,
-    /// Response files, instead of a list.
-    pub response: Vec<PathBuf>,
+    /// Time traces, one file a step: names, or a pattern such as `step*.csv`.
+    #[serde(deserialize_with = "one_or_more")]
+    pub traces: Vec<String>,
+    /// Sampling rate of the traces in Hz, where the files do not say it.
+    pub rate: Option<f64>,
+    /// Channel of the force in the traces; without traces the force files, instead of a list.
+    #[serde(deserialize_with = "one_or_more")]
+    pub force: Vec<String>,
+    /// Channel of the response, or several, each a sweep of its own; without traces the response files.
+    #[serde(deserialize_with = "one_or_more")]
+    pub response: Vec<String>,
     /// Spectral lines, instead of a list.
     pub lines: Option<usize>,
     /// Base band in Hz, instead of a list.
@@ -64,10 +73,14 @@ impl Keys {
         if self.name.is_empty() {
             return Err(Error::usage("the key `name` is missing", "").hint("add name = …"));
         }
+        above_zero("rate", self.rate)?;
+        if !self.traces.is_empty() {
+            return self.usable_traces();
+        }
         let written = !self.response.is_empty();
         if self.list.is_some() == written {
             let found = if written { "both a list and response" } else { "neither a list nor response" };
-            let expected = "list = \"…\", or force, response, lines and base_band";
+            let expected = "list = \"…\"; or force, response, lines and base_band; or traces, with a channel of force and of response";
             return wrong("name", &format!("{found} files"), expected);
         }
         if self.list.is_some() && (self.lines.is_some() || self.base_band.is_some()) {
@@ -84,8 +97,52 @@ impl Keys {
                 format!("{force} force and {response} response files, lines {lines}, base_band {band}");
             return wrong("name", &found, "as many force as response files, and both numbers above 0");
         }
+        self.checked()
+    }
+
+    fn usable_traces(&self) -> Result<()> {
+        let wrong = |key, found: &str, expected: &str| Err(Error::usage(found, expected).setting(key));
+        let beside = [
+            ("list", self.list.is_some()),
+            ("lines", self.lines.is_some()),
+            ("base_band", self.base_band.is_some()),
+            ("window", self.window.is_some()),
+            ("scaling", self.scaling.is_some()),
+            ("analyser_integrated", self.analyser_integrated.is_some()),
+        ];
+        if let Some((key, _)) = beside.iter().find(|(_, given)| *given) {
+            return wrong(key, &format!("{key} beside traces"), "traces alone: they are no spectra");
+        }
+        let (force, response) = (self.force.len(), self.response.len());
+        let pairs = force > 1 && force == response && self.traces.len() == 1;
+        if response == 0 || force != 1 && !pairs {
+            let found = format!("traces with {force} channels of force and {response} of response");
+            let expected = "force = CHANNEL and response = CHANNEL; of one file a channel of each a step";
+            return wrong(if response == 0 { "name" } else { "force" }, &found, expected);
+        }
+        if self.mass.is_some() && response > 1 && !pairs {
+            return wrong("mass", "one mass for several responses", "a table [[sweep]] for each mass");
+        }
+        self.checked()
+    }
+
+    /// A sweep for each response that is taken from the same traces.
+    fn each(&self) -> Vec<Keys> {
+        if self.traces.is_empty() || self.force.len() > 1 || self.response.len() < 2 {
+            return vec![self.clone()];
+        }
+        let one = |channel: &String| Keys {
+            name: format!("{} {channel}", self.name),
+            response: vec![channel.clone()],
+            ..self.clone()
+        };
+        self.response.iter().map(one).collect()
+    }
+
+    fn checked(&self) -> Result<()> {
         if let Some(mass) = self.mass.filter(|m| !matches!(m, 1 | 2)) {
-            return wrong("mass", &format!("mass = {mass}"), "1 (excited) or 2 (passive)");
+            let found = format!("mass = {mass}");
+            return Err(Error::usage(found, "1 (excited) or 2 (passive)").setting("mass"));
         }
         above_zero("force_calibration", self.force_calibration)?;
         self.reader().map(drop)
@@ -122,38 +179,12 @@ impl Keys {
     }
 }
 
-/// The files of a sweep.
-///
-/// # Errors
-/// If its list cannot be read or a name leads outside the folder.
-pub fn list(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<SweepList> {
-    let keys = &entry.keys;
-    if let Some(list) = &keys.list {
-        return SweepList::from_path(campaign.file(entry, "list", list, allow_outside)?, allow_outside);
-    }
-    let all = |key: &'static str, names: &[PathBuf]| -> Result<Vec<PathBuf>> {
-        names.iter().map(|name| campaign.path_of(entry, key, name, allow_outside)).collect()
-    };
-    Ok(SweepList {
-        lines: keys.lines.unwrap_or(0),
-        base_band: keys.base_band.unwrap_or(0.0),
-        force: all("force", &keys.force)?,
-        excitation: Vec::new(),
-        response: all("response", &keys.response)?,
-        places: Vec::new(),
-    })
-}
-
-/// List and reader of the sweep `name` of a campaign; of its only sweep where `name` is `None`.
+/// The sweep `name` of a campaign; of its only sweep where `name` is `None`.
 ///
 /// # Errors
 /// If there is no such sweep, or its list cannot be read.
-pub fn named(
-    campaign: &Campaign,
-    name: Option<&str>,
-    allow_outside: bool,
-) -> Result<(SweepList, SweepReader)> {
-    let all = entries::<Keys>(campaign)?;
+pub fn named(campaign: &Campaign, name: Option<&str>, allow_outside: bool) -> Result<Listed> {
+    let all = each(entries(campaign)?);
     let names = || all.iter().map(|s| s.keys.name.as_str()).collect::<Vec<_>>().join(", ");
     let none = |found: String| Error::input(Place::file(campaign.path()), found, names());
     let entry = match (name, all.as_slice()) {
@@ -167,7 +198,20 @@ pub fn named(
             return Err(error.hint(format!("name one: {}#NAME", campaign.path().display())));
         }
     };
-    Ok((list(campaign, entry, allow_outside)?, entry.keys.reader()?))
+    Listed::of(campaign, entry, allow_outside)
+}
+
+/// The tables of sweeps, one for each response.
+fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
+    let one = |entry: Entry<Keys>| {
+        let parts = entry.keys.each().into_iter();
+        parts.map(move |keys| {
+            let mut part = entry.clone();
+            part.keys = keys;
+            part
+        })
+    };
+    entries.into_iter().flat_map(one).collect()
 }
 
 /// Reads all sweeps of a campaign and takes their responses to displacement, with the resonances named.
@@ -175,7 +219,7 @@ pub fn named(
 /// # Errors
 /// If a list or a spectrum cannot be read, or an excitation cannot be found.
 pub fn responses(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> Result<Vec<Response>> {
-    let taken = taken(campaign, &entries(campaign)?, options, progress)?;
+    let taken = taken(campaign, entries(campaign)?, options, progress)?;
     Ok(taken.into_iter().map(|(_, response, _)| response).collect())
 }
 
@@ -183,20 +227,19 @@ type Taken = (Sweep, Response, ResponseOptions);
 
 fn taken(
     campaign: &Campaign,
-    entries: &[Entry<Keys>],
+    entries: Vec<Entry<Keys>>,
     options: JobOptions,
     progress: &dyn Progress,
 ) -> Result<Vec<Taken>> {
+    let entries = each(entries);
     progress.start("reading sweeps", entries.len());
     let mut taken: Vec<Taken> = entries
         .par_iter()
         .map(|entry| {
-            let list = list(campaign, entry, options.allow_outside)?;
-            let sweep = entry.keys.reader()?.read(&list)?;
-            let integrate = to_displacement(sweep.unit().quantity());
+            let listed = Listed::of(campaign, entry, options.allow_outside)?;
             let compute = &campaign.compute;
-            let options = ResponseOptions { band: compute.band, integrate, fmin: compute.fmin };
-            let response = response(&sweep, &options)?;
+            let options = ResponseOptions { band: compute.band, integrate: None, fmin: compute.fmin };
+            let (sweep, response) = listed.taken(&options)?;
             progress.step();
             Ok((sweep, response, options))
         })
@@ -224,7 +267,7 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        let taken = taken(job.campaign, entries, job.options, job.progress)?;
+        let taken = taken(job.campaign, entries.to_vec(), job.options, job.progress)?;
         let matrix = |(sweep, response, options): Taken| {
             let excitation = response.points.iter().map(|p| p.excitation).collect();
             (gathered(&sweep, &options, excitation, response.fmin), response)
@@ -237,6 +280,9 @@ impl Analysis for Keys {
         let mut all = Answer { findings: pairing::twice(&responses), ..Answer::default() };
         if !responses.is_empty() {
             all.figure("response", figures::response(&job.title, &responses));
+            if let Some(figure) = figures::receptance(&job.title, &responses) {
+                all.figure("receptance", figure);
+            }
             all.tables = vec![tables::resonances(&responses), tables::jumps(&responses)];
         }
         job.show("", "", all);

@@ -83,6 +83,23 @@ pub fn channel<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::
     Channel::deserialize(from).map(|channel| Some(channel.text()))
 }
 
+/// One name or channel, or a list of them.
+///
+/// # Errors
+/// If one is neither a name nor a number.
+pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a name between quotes, or a list of them")]
+    enum Names {
+        One(Channel),
+        More(Vec<Channel>),
+    }
+    Ok(match Names::deserialize(from)? {
+        Names::One(name) => vec![name.text()],
+        Names::More(names) => names.into_iter().map(Channel::text).collect(),
+    })
+}
+
 /// Channels, likewise.
 ///
 /// # Errors

@@ -1,14 +1,17 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
 use super::convert::{apart, folder_of, write_beside};
-use super::sweep::of_script;
+use super::sweep::{Place, of_script};
 use super::{Run, complain, print};
 use crate::analysis::drill::cycles;
-use crate::analysis::{Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
+use crate::analysis::sweep::{Files, Listed, Stored, named};
+use crate::analysis::{self, Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
+use crate::measure::response::ResponseOptions;
 use crate::measure::{Estimate, legacy};
+use crate::read::{SweepList, SweepReader};
 use crate::record::{Finding, Trace};
 use crate::report::layout::{headed, table};
 use clap::Args;
@@ -152,10 +155,32 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
     Ok(answer)
 }
 
+impl Measured<frf::Keys> {
+    /// The receptance of a sweep, where the file is its list or a campaign.
+    fn sweep(&self) -> Result<Option<frf::Function>> {
+        let typed = self.file.to_string_lossy();
+        let Place { path, name, campaign } = Place::of(&typed);
+        let listed = if campaign {
+            named(&analysis::open(path)?, name, false)?
+        } else {
+            let Ok(list) = SweepList::from_path(path, false) else { return Ok(None) };
+            let (unit, calibration) = (self.record.reading.unit.clone(), self.record.channel.calibration);
+            let mut reader = SweepReader { name: path.to_owned(), ..SweepReader::default() };
+            Stored { unit, calibration, ..Stored::default() }.apply(&mut reader)?;
+            Listed { files: Files::Spectra(list), reader }
+        };
+        let (_, response) = listed.taken(&ResponseOptions::default())?;
+        frf::Function::of_response(&response).map(Some)
+    }
+}
+
 impl Run for Measured<frf::Keys> {
     /// Prints the modes.
     fn run(&self, json: bool) -> Result<u8> {
-        let mut answers = self.by(json, frf::Keys::measure)?;
+        let mut answers = match self.sweep()? {
+            Some(function) => vec![self.keys.modes(&function.meta.name, &function)?],
+            None => self.by(json, frf::Keys::measure)?,
+        };
         if answers.len() > 1 {
             let names: Vec<&str> = answers.iter().filter_map(|a| a.result["channel"].as_str()).collect();
             let found = format!("{} frequency response functions, and none was chosen", names.len());

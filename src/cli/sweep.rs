@@ -2,15 +2,15 @@
 
 use super::convert::{apart, write_beside};
 use super::{Run, print};
-use crate::analysis::sweep::{Stored, figures, named, tables};
+use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
 use crate::analysis::{self, Answer};
 use crate::campaign::above_zero;
 use crate::error::{Error, Result};
-use crate::measure::response::{ResponseOptions, response, to_displacement};
-use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
+use crate::measure::response::{Response, ResponseOptions, ResponsePoint};
+use crate::measure::waterfall::{Waterfall as Matrix, gathered};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::read::{SweepList, SweepReader};
-use crate::record::{Finding, Sweep};
+use crate::record::{Finding, Sweep, SweepPoint};
 use crate::report::layout::{headed, pair, table};
 use crate::report::{Table, files};
 use ndarray::Array2;
@@ -72,28 +72,39 @@ pub fn of_script(script: &str) -> Finding {
 }
 
 impl Source {
-    /// The list of the sweep, and how to read it.
-    fn listed(&self) -> Result<(SweepList, SweepReader)> {
-        let (path, name) = self.place();
-        let (list, mut how) = if path.to_lowercase().ends_with(".toml") {
+    /// The files of the sweep, and how to read them.
+    fn listed(&self) -> Result<Listed> {
+        let Place { path, name, campaign } = Place::of(&self.path);
+        let mut listed = if campaign {
             named(&analysis::open(path)?, name, self.allow_outside)?
         } else {
-            (SweepList::from_path(path, self.allow_outside)?, SweepReader::default())
+            let files = Files::Spectra(SweepList::from_path(path, self.allow_outside)?);
+            Listed { files, reader: SweepReader::default() }
         };
+        let how = &mut listed.reader;
         if how.name.is_empty() {
             let stem = Path::new(path).file_stem();
             how.name = stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         }
         above_zero("fmin", self.fmin)?;
-        self.stored.apply(&mut how)?;
-        Ok((list, how))
+        self.stored.apply(how)?;
+        Ok(listed)
     }
+}
 
-    /// The file, and the name of a sweep in a campaign.
-    fn place(&self) -> (&str, Option<&str>) {
-        match self.path.rsplit_once('#') {
-            Some((path, name)) if path.to_lowercase().ends_with(".toml") => (path, Some(name)),
-            _ => (&self.path, None),
+/// A list of a sweep, or a campaign and the name of a sweep in it.
+pub struct Place<'a> {
+    pub path: &'a str,
+    pub name: Option<&'a str>,
+    pub campaign: bool,
+}
+
+impl Place<'_> {
+    pub fn of(typed: &str) -> Place<'_> {
+        let is_campaign = |path: &str| path.to_lowercase().ends_with(".toml");
+        match typed.rsplit_once('#') {
+            Some((path, name)) if is_campaign(path) => Place { path, name: Some(name), campaign: true },
+            _ => Place { path: typed, name: None, campaign: is_campaign(typed) },
         }
     }
 }
@@ -101,15 +112,18 @@ impl Source {
 impl Run for Taken {
     /// Prints the response.
     fn run(&self, json: bool) -> Result<u8> {
-        let (sweep, options) = self.read()?;
+        let listed = self.sweep.listed()?;
         let answer = if self.sweep.legacy {
-            largest_lines(&sweep)?
+            largest_lines(&listed.spectra()?.1)?
         } else {
-            let found = response(&sweep, &options)?;
+            let (_, found) = listed.taken(&self.options())?;
             let all = std::slice::from_ref(&found);
             let mut answer = Answer::of(&found)?;
             answer.add("", &found.findings);
             answer.figure("response", figures::response(&found.name, all));
+            if let Some(figure) = figures::receptance(&found.name, all) {
+                answer.figure("receptance", figure);
+            }
             answer.csv("response", &tables::response(&found));
             answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
             answer
@@ -119,12 +133,8 @@ impl Run for Taken {
 }
 
 impl Taken {
-    fn read(&self) -> Result<(Sweep, ResponseOptions)> {
-        let (list, how) = self.sweep.listed()?;
-        let sweep = how.read(&list)?;
-        let integrate = self.integrate.unwrap_or_else(|| to_displacement(sweep.unit().quantity()));
-        let options = ResponseOptions { band: usize::from(self.band), integrate, fmin: self.sweep.fmin };
-        Ok((sweep, options))
+    fn options(&self) -> ResponseOptions {
+        ResponseOptions { band: usize::from(self.band), integrate: self.integrate, fmin: self.sweep.fmin }
     }
 }
 
@@ -155,8 +165,9 @@ impl Run for Waterfall {
     /// Prints the matrix of spectra.
     fn run(&self, json: bool) -> Result<u8> {
         above_zero("fmax", self.fmax)?;
-        let (sweep, options) = self.taken.read()?;
+        let listed = self.taken.sweep.listed()?;
         let matrix = if self.taken.sweep.legacy {
+            let (_, sweep) = listed.spectra()?;
             let excitation = legacy::rounded(&legacy::excitation(&sweep)?);
             let rows = legacy::waterfall(&sweep);
             let shape = (excitation.len(), sweep.axis.len());
@@ -171,7 +182,10 @@ impl Run for Waterfall {
                 findings: vec![of_script("sinesw")],
             }
         } else {
-            waterfall(&sweep, &options)?
+            let options = self.taken.options();
+            let (sweep, found) = listed.taken(&options)?;
+            let Response { points, fmin, .. } = found;
+            gathered(&sweep, &options, points.iter().map(|p| p.excitation).collect(), fmin)
         };
         let rows = matrix.magnitude.rows();
         let mut answer = Answer::of(&json!({
@@ -196,11 +210,11 @@ impl Run for Waterfall {
 impl Run for Excitation {
     /// Prints the excitation of each point.
     fn run(&self, json: bool) -> Result<u8> {
-        let (list, how) = self.sweep.listed()?;
-        let sweep = how.read(&list)?;
+        let listed = self.sweep.listed()?;
         let (points, findings) = if self.sweep.legacy {
+            let (_, sweep) = listed.spectra()?;
             let found = legacy::excitation(&sweep)?.into_iter().zip(&sweep.points);
-            let point = |(frequency, point): (f64, &crate::record::SweepPoint)| excitation::Excitation {
+            let point = |(frequency, point): (f64, &SweepPoint)| excitation::Excitation {
                 file: point.name(),
                 frequency,
                 std: None,
@@ -208,11 +222,22 @@ impl Run for Excitation {
                 force_std: None,
             };
             (found.map(point).collect(), vec![of_script("sineswpf")])
-        } else {
+        } else if let Files::Spectra(_) = listed.files {
+            let (_, sweep) = listed.spectra()?;
             (excitation::excitations(&sweep, self.sweep.fmin.unwrap_or(0.0))?, sweep.findings)
+        } else {
+            let (sweep, found) = listed.taken(&ResponseOptions::default())?;
+            let point = |(point, step): (&ResponsePoint, &SweepPoint)| excitation::Excitation {
+                file: step.name(),
+                frequency: point.excitation,
+                std: point.excitation_std,
+                force: point.force,
+                force_std: point.force_std,
+            };
+            (found.points.iter().zip(&sweep.points).map(point).collect(), found.findings)
         };
         let frequencies: Vec<f64> = points.iter().map(|p| p.frequency).collect();
-        let written = self.lists(&list, &frequencies)?;
+        let written = self.lists(&listed, &frequencies)?;
         let mut answer = Answer::of(&json!({ "points": points, "written": written }))?;
         answer.add("", findings);
         answer.tables.push(table(
@@ -230,13 +255,14 @@ impl Run for Excitation {
 
 impl Excitation {
     /// Writes the hand-over files; gives their paths.
-    fn lists(&self, list: &SweepList, frequencies: &[f64]) -> Result<Vec<String>> {
+    fn lists(&self, listed: &Listed, frequencies: &[f64]) -> Result<Vec<String>> {
         let Some([force, response]) = self.write_lists.as_deref() else { return Ok(Vec::new()) };
+        let (list, _) = listed.spectra()?;
         if list.force.is_empty() {
             let found = "hand-over files of a sweep without force names";
             return Err(Error::usage(found, "a list file with them").setting("write_lists"));
         }
-        let path = Path::new(self.sweep.place().0);
+        let path = Path::new(Place::of(&self.sweep.path).path);
         apart(force, response)?;
         apart(path, force)?;
         apart(path, response)?;

@@ -155,6 +155,8 @@ mod tests {
                 frequency_std: None,
                 amplitude: Estimate::new(amplitude, None, "m", 1, "closed form"),
                 upper_limit: None,
+                phase: None,
+                receptance: None,
                 harmonics: Vec::new(),
                 subharmonics: Vec::new(),
                 largest_elsewhere: false,

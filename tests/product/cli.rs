@@ -14,6 +14,7 @@ mod precision;
 mod rig;
 mod simulate;
 mod spectrum;
+mod stepped;
 mod sweeps;
 
 use serde_json::Value;

@@ -53,6 +53,7 @@ mod missing;
 mod number;
 mod reader;
 mod source;
+mod steps;
 mod sweep;
 mod sweep_list;
 mod tdms;
@@ -66,6 +67,7 @@ pub mod write;
 
 pub use format::Format;
 pub use reader::{Header, Reader, Recording};
+pub use steps::Steps;
 pub use sweep::SweepReader;
 pub use sweep_list::{SweepList, inside};
 pub use vibro_record as record;

@@ -136,14 +136,7 @@ mod tests {
             poles.map(|(frequency, zeta)| Pole { frequency, zeta, constant: Complex64::new(2.0, 0.0) });
         let frequency: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.5).collect();
         let values = frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 2)).sum()).collect();
-        Measured {
-            frequency,
-            values,
-            magnitude_only: false,
-            kind: FrfKind::Accelerance,
-            coherence: None,
-            window: None,
-        }
+        Measured::new(frequency, values, FrfKind::Accelerance)
     }
 
     fn says(result: &ModalResult, code: &str) -> bool {

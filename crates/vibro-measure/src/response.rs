@@ -20,8 +20,8 @@ use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, V
 pub struct ResponseOptions {
     /// Lines on both sides of the excitation in which its peak is looked for. Default 3.
     pub band: usize,
-    /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default 0.
-    pub integrate: i8,
+    /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default: what takes it to displacement.
+    pub integrate: Option<i8>,
     /// Lowest frequency in Hz that is read. Default: the larger of two lines and a quarter of the lowest
     /// excitation frequency.
     pub fmin: Option<f64>,
@@ -29,16 +29,18 @@ pub struct ResponseOptions {
 
 impl Default for ResponseOptions {
     fn default() -> Self {
-        ResponseOptions { band: 3, integrate: 0, fmin: None }
+        ResponseOptions { band: 3, integrate: None, fmin: None }
     }
 }
 
-/// Integrations that take a quantity to displacement; 0 for what has none.
-pub fn to_displacement(stored: Quantity) -> i8 {
-    match stored {
-        Quantity::Velocity => 1,
-        Quantity::Acceleration => 2,
-        _ => 0,
+impl ResponseOptions {
+    /// Integrations from what a sweep holds.
+    pub(crate) fn times(&self, sweep: &Sweep) -> i8 {
+        self.integrate.unwrap_or(match sweep.unit().quantity() {
+            Quantity::Velocity => 1,
+            Quantity::Acceleration => 2,
+            _ => 0,
+        })
     }
 }
 
@@ -170,22 +172,23 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
 pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Excitation]) -> Result<Response> {
     let df = sweep.line_width().unwrap_or(f64::NAN);
     let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, excitations));
-    let quantity = sweep.unit().times_seconds(options.integrate).quantity();
+    let times = options.times(sweep);
+    let quantity = sweep.unit().times_seconds(times).quantity();
     if quantity == Quantity::Other {
         let why = format!(
             "values in {}, integrated {} times, are no displacement, velocity or acceleration",
             sweep.unit(),
-            options.integrate
+            times
         );
         let hint = "integrate once from velocity to displacement, twice from acceleration";
         return Err(Error::refused(why).hint(hint).setting("integrate"));
     }
     let unit = quantity.symbol();
-    let taker = Taker { sweep, options, df, fmin, unit };
+    let taker = Taker { sweep, options, times, df, fmin, unit };
     let points = sweep.points.iter().zip(excitations).map(|(p, e)| taker.point(p, e)).collect();
     let taken: [(_, &dyn std::fmt::Display); 4] = [
         ("band", &options.band),
-        ("integrate", &options.integrate),
+        ("integrate", &times),
         ("analyser_integrated", &sweep.analyser_integrated),
         ("fmin", &fmin),
     ];
@@ -238,6 +241,8 @@ const NEAR: f64 = 1.0;
 struct Taker<'a> {
     sweep: &'a Sweep,
     options: &'a ResponseOptions,
+    /// Integrations.
+    times: i8,
     df: f64,
     fmin: f64,
     unit: &'static str,
@@ -260,7 +265,7 @@ impl Taker<'_> {
         method: impl Into<String>,
     ) -> (Estimate, Option<f64>) {
         // (2πf)ⁿ from the measured signal to the wanted quantity.
-        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.options.integrate);
+        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.times);
         let divisor = (TAU * frequency).powi(times);
         let std = std.map(|s| s / divisor);
         (Estimate::new(value / divisor, std, self.unit, 3, method), limit.map(|l| l / divisor))
@@ -337,7 +342,7 @@ impl Taker<'_> {
         // What the analyser divided by at the line is taken to the frequency of the sine.
         let undone =
             Complex64::new(0.0, TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
-        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.options.integrate);
+        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.times);
         let ratio = x / f * undone / Complex64::new(0.0, TAU * excitation).powi(times);
         let std = Some(relative * ratio.norm()).filter(|std| std.is_finite());
         let phase =
@@ -364,8 +369,7 @@ impl Taker<'_> {
     /// Index of the largest line of the wanted quantity, cut-off and above.
     fn largest(&self, stored: &[f64]) -> usize {
         let first = self.position(self.fmin).ceil().max(1.0) as usize;
-        let wanted =
-            |k: usize| stored[k] / (TAU * self.frequency(k as f64)).powi(i32::from(self.options.integrate));
+        let wanted = |k: usize| stored[k] / (TAU * self.frequency(k as f64)).powi(i32::from(self.times));
         (first..stored.len()).max_by(|a, b| wanted(*a).total_cmp(&wanted(*b))).unwrap_or(first)
     }
 }

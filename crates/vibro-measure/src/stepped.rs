@@ -59,7 +59,7 @@ pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) ->
         taken.iter().zip(steps).map(|(taken, step)| taken.excitation(step)).collect();
     let mut found = read(&sweep, options, &excitations)?;
     for (point, step) in found.points.iter_mut().zip(&taken) {
-        step.overrule(point, options.integrate, found.unit);
+        step.overrule(point, options.times(&sweep), found.unit);
         found.findings.extend(step.findings.iter().cloned());
     }
     let direction = sweep.direction;
@@ -197,7 +197,8 @@ impl Step {
         let turned = across.filter(|_| faint.is_none()).map(|a| a / size);
         point.phase = Some(Estimate::new(angle, turned, "rad", n, method));
         let ratio = self.ratio.value / omega;
-        let each = self.ratio.std.zip(self.ratio.across).map(|(a, b)| ((a * a + b * b) / 2.0).sqrt() / scale);
+        let each =
+            self.ratio.std.zip(self.ratio.across).map(|(a, b)| f64::midpoint(a * a, b * b).sqrt() / scale);
         let displacement = unit == Quantity::Displacement.symbol();
         point.receptance = displacement.then_some(Receptance { re: ratio.re, im: ratio.im, std: each });
     }

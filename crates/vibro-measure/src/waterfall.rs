@@ -42,19 +42,20 @@ pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> 
 /// `cutoff` (Hz) hold noise divided by frequency and are left out; otherwise all lines are kept unless the options give a
 /// cut-off.
 pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, cutoff: f64) -> Waterfall {
-    let integrated = options.integrate > 0 || sweep.analyser_integrated > 0;
+    let times = options.times(sweep);
+    let integrated = times > 0 || sweep.analyser_integrated > 0;
     let fmin = if integrated { cutoff } else { options.fmin.unwrap_or(0.0) };
     let frequency = sweep.axis.values();
     let mut magnitude = Array2::from_elem((sweep.points.len(), frequency.len()), f64::NAN);
     for (mut row, point) in magnitude.rows_mut().into_iter().zip(&sweep.points) {
         for (k, (cell, f)) in row.iter_mut().zip(&frequency).enumerate() {
-            let divisor = (2.0 * PI * f).powi(i32::from(options.integrate));
+            let divisor = (2.0 * PI * f).powi(i32::from(times));
             if *f >= fmin && divisor != 0.0 && k < point.response.values.len() {
                 *cell = point.response.values.magnitude(k) / divisor;
             }
         }
     }
-    let unit = sweep.unit().times_seconds(options.integrate);
+    let unit = sweep.unit().times_seconds(times);
     let cut = (fmin > 0.0).then(|| Finding::note("lines-below-cutoff").number("fmin", fmin));
     Waterfall {
         name: sweep.name.clone(),

@@ -14,7 +14,7 @@ mod trial;
 use super::failure::Question;
 use super::{FailureMap, Family, Measured, Scene};
 use nalgebra::DMatrix;
-use vibro_record::{Spectrum, Sweep, SweepPoint};
+use vibro_record::{Spectrum, Sweep, SweepPoint, Values};
 
 /// Every scene of the estimators, each method measured; `quick` takes fewer records.
 pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> {

@@ -2,10 +2,12 @@
 
 mod fit;
 mod overlay;
+mod receptance;
 mod response;
 mod waterfall;
 
 pub use fit::fit;
 pub use overlay::overlay;
+pub use receptance::receptance;
 pub use response::response;
 pub use waterfall::{map, waterfall};

@@ -1,21 +1,29 @@
 //! Tables of sweeps, and of sweeps against the model.
 
 use crate::compare::{Fit, Kind, Overlay};
-use crate::measure::response::{Response, ResponsePoint};
+use crate::measure::response::{Receptance, Response, ResponsePoint};
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Column, Table};
 
 /// Point by point, what fits a page: excitation, force, response, and a limit where an amplitude is faint.
 pub fn curve(response: &Response) -> Table {
     let mut table = points(response);
-    if response.points.iter().all(|p| p.upper_limit.is_none()) {
-        table.columns.pop();
+    let without = [
+        (LIMIT, response.points.iter().all(|p| p.upper_limit.is_none())),
+        (PHASE, response.points.iter().all(|p| p.phase.is_none())),
+    ];
+    for (column, _) in without.into_iter().filter(|(_, without)| *without) {
+        table.columns.remove(column);
         for row in &mut table.rows {
-            row.pop();
+            row.remove(column);
         }
     }
     table
 }
+
+/// Columns of [`points`] that not every sweep has.
+const PHASE: usize = 4;
+const LIMIT: usize = 6;
 
 fn points(response: &Response) -> Table {
     table(
@@ -26,16 +34,25 @@ fn points(response: &Response) -> Table {
             ("force", "N", &|p| p.force.map(|force| pair(force, p.force_std)).into()),
             ("response frequency", "Hz", &|p| pair(p.frequency, p.frequency_std)),
             ("amplitude", response.unit, &|p| Cell::from(&p.amplitude)),
+            ("phase", "°", &|p| {
+                p.phase.as_ref().map(|p| pair(p.value.to_degrees(), p.std.map(f64::to_degrees))).into()
+            }),
             ("larger line at", "Hz", &|p| p.largest_elsewhere.then_some(p.largest_at).into()),
             ("upper limit", response.unit, &|p| p.upper_limit.into()),
         ],
     )
 }
 
-/// Point by point with harmonics and sub-harmonics, for files.
+/// Point by point with receptance, harmonics and sub-harmonics, for files.
 pub fn response(response: &Response) -> Table {
     let mut table = points(response);
-    let before = table.columns.len() - 2;
+    for (name, part) in [("receptance re", real as fn(Receptance) -> f64), ("receptance im", imaginary)] {
+        table.columns.push(Column { name: name.to_owned(), unit: "m/N".to_owned() });
+        for (row, point) in table.rows.iter_mut().zip(&response.points) {
+            row.push(point.receptance.map(|r| pair(part(r), r.std)).into());
+        }
+    }
+    let before = LIMIT - 1;
     let orders = |p: &ResponsePoint| p.harmonics.iter().chain(&p.subharmonics).cloned().collect::<Vec<_>>();
     let heads = response.points.first().map(orders).unwrap_or_default();
     let heads =
@@ -51,6 +68,14 @@ pub fn response(response: &Response) -> Table {
         drop(row.splice(before..before, cells));
     }
     table
+}
+
+fn real(receptance: Receptance) -> f64 {
+    receptance.re
+}
+
+fn imaginary(receptance: Receptance) -> f64 {
+    receptance.im
 }
 
 /// What the kinds of resonances mean, a line each.

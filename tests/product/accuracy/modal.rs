@@ -30,7 +30,7 @@ fn noisy(clean: &[Complex64], sigma: &[f64], noise: &mut Noise) -> Vec<Complex64
 }
 
 fn measured(frequency: Vec<f64>, values: Vec<Complex64>, kind: FrfKind) -> Measured {
-    Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None }
+    Measured::new(frequency, values, kind)
 }
 
 /// A bandwidth 2ζf of one line, the mode anywhere between two lines; noise equal on all lines, or proportional to the response.

@@ -50,7 +50,7 @@ fn info_says_what_was_passed_over_and_how_text_was_read() {
         serde_json::json!(["SPS390 TRACE", "Operator: X", "encoding: UTF-16", "decimal mark: comma"])
     );
     // What holds for both channels is said once.
-    let units = value["warnings"].as_array().unwrap().iter().filter(|w| w.to_string().contains("no unit"));
+    let units = value["warnings"].as_array().unwrap().iter().filter(|w| w.to_string().contains("No unit"));
     assert_eq!(units.count(), 1, "{}", value["warnings"]);
     let output = vibro(&["info", text(&path)]);
     let table = String::from_utf8(output.stdout).unwrap();

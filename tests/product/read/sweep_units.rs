@@ -33,7 +33,7 @@ fn a_force_in_volts_takes_its_calibration() {
         let how = SweepReader { force_calibration: Some(22.4), ..SweepReader::default() };
         let sweep = read(&format!("Unit: {unit}"), "Unit: m/s", &how).unwrap();
         // Newtons per stored number, whatever the unit of that is.
-        assert!(close(sweep.points[0].force[2], 2.0 * 22.4), "{unit}: {:?}", sweep.points[0].force);
+        assert!(close(sweep.points[0].force.magnitude(2), 2.0 * 22.4), "{unit}: {:?}", sweep.points[0].force);
     }
     let error = read("Unit: V", "Unit: m/s", &SweepReader::default()).unwrap_err();
     assert!(error.contains("F.DAT") && error.contains("force_calibration"), "{error}");
@@ -93,7 +93,7 @@ fn a_stated_unit_wins_over_the_files_and_that_is_said() {
         sentences(&sweep.findings)
     );
     // Nobody stated the unit of the force.
-    assert!(close(sweep.points[0].force[2], 2000.0));
+    assert!(close(sweep.points[0].force.magnitude(2), 2000.0));
     let sweep = read("Unit: N", "Unit: mm/s", &how("mm/s")).unwrap();
     assert!(close(response(&sweep), 2e-3));
     assert!(

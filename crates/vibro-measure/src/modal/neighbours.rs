@@ -20,8 +20,7 @@ fn pair(seed: u64) -> (Measured, [Pole; 2]) {
     let clean: Vec<Complex64> = frequency.iter().map(|f| modes.iter().map(|m| m.at(*f, 0)).sum()).collect();
     let sigma = clean.iter().map(|v| v.norm()).fold(0.0, f64::max) * 10f64.powf(noise.between(-3.0, -1.5));
     let values = clean.iter().map(|v| v + sigma * Complex64::new(noise.normal(), noise.normal())).collect();
-    let kind = FrfKind::Receptance;
-    (Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None }, modes)
+    (Measured::new(frequency, values, FrfKind::Receptance), modes)
 }
 
 /// Half to five bandwidths apart, 30 to 60 dB above the noise. Without a search for what shows no peak, 430 of 586 modes were found and 76 % of
@@ -47,6 +46,7 @@ fn modes_beside_higher_ones_are_found_and_covered() {
             }
         }
     }
+    println!("{held} of {known}, {matched} of {all}");
     // Three standard deviations of 1100 at 91 % are 2.6 %, of 600 at 94 % 2.9 %.
     assert!(f64::from(held) > 0.88 * f64::from(known), "{held} of {known}");
     assert!(matched > 0.91 * all, "{matched} of {all}");

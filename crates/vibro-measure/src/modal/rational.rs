@@ -206,8 +206,8 @@ impl Scaled<'_> {
 /// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio) to the lines `part` of a function from which
 /// `others` are subtracted.
 ///
-/// Noise is weighted by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal
-/// on all lines or as proportional to the response. In both cases the more likely of the two is taken.
+/// Noise is weighted by the uncertainty of each line where that is known, else by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal
+/// on all lines or as proportional to the response, of which the more likely is taken.
 pub(super) fn rational(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -250,13 +250,17 @@ pub(super) fn with_known(
         let n = fit.residuals.len() as f64;
         n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
     };
-    let (mut best, rivals) = match &measured.coherence {
-        None => {
+    let (mut best, rivals) = match (&measured.std, &measured.coherence) {
+        (Some(std), _) => {
+            let weight = std[part].iter().map(|s| s / scaled.height).collect();
+            (None, vec![(weight, "noise as stated")])
+        }
+        (None, None) => {
             let relative = (0..lines).map(|i| height(i).max(1e-2)).collect();
             let rivals = vec![(relative, "noise proportional to the response")];
             (Some((first, equal, "equal noise on all lines")), rivals)
         }
-        Some(coherence) => {
+        (None, Some(coherence)) => {
             // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
             // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
             let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();

@@ -23,9 +23,16 @@ pub struct Measured {
     /// Window of the segments that the function was averaged over, each as long as one over the distance of the lines; `None` where it
     /// was not averaged so, or that is not known.
     pub window: Option<Window>,
+    /// Standard uncertainty of one component of each value, above 0, where it is known.
+    pub std: Option<Vec<f64>>,
 }
 
 impl Measured {
+    /// Values over frequencies (Hz) of which nothing else is known.
+    pub fn new(frequency: Vec<f64>, values: Vec<Complex64>, kind: FrfKind) -> Measured {
+        Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None, std: None }
+    }
+
     /// All lines of a complex function.
     pub fn complex(frf: &Frf) -> Measured {
         let window = frf.meta.averaged_with();
@@ -33,14 +40,7 @@ impl Measured {
     }
 
     fn of(axis: &Axis, values: Vec<Complex64>, kind: FrfKind) -> Measured {
-        Measured {
-            frequency: axis.values(),
-            values,
-            magnitude_only: false,
-            kind,
-            coherence: None,
-            window: None,
-        }
+        Measured::new(axis.values(), values, kind)
     }
 
     /// The function that a record is: a response over a force, complex or in magnitude, or complex values of which the file does not
@@ -198,6 +198,7 @@ impl Measured {
             frequency: take(&self.frequency),
             values: kept.iter().map(|i| self.values[*i]).collect(),
             coherence: coherence.as_deref().map(take),
+            std: self.std.as_deref().map(take),
             ..self
         })
     }

@@ -225,8 +225,8 @@ pub(super) fn complete(
             (group.peaks, *fit, sound) = (peaks, more, its);
             continue;
         }
-        // Chance lowers the criterion by little, and rarely: a mode less is then as likely as it was.
-        if better <= 0.0 {
+        // What chance explains, or a mode that could be anything, moves no uncertainty.
+        if better <= 0.0 || its.contains(&false) {
             break;
         }
         let weight = 1.0 / (1.0 + (-0.5 * better).exp());
@@ -272,7 +272,9 @@ impl Measured {
     /// The peak that a mode has, whether it shows or not.
     fn peak(&self, mode: &Pole) -> Peak {
         let last = self.frequency.len() - 2;
-        let at = self.frequency.partition_point(|f| *f < mode.frequency).clamp(1, last);
+        let above = self.frequency.partition_point(|f| *f < mode.frequency).clamp(1, last);
+        let higher = self.values[above].norm() >= self.values[above - 1].norm();
+        let at = if higher { above } else { (above - 1).max(1) };
         Peak { at, width: 2.0 * mode.zeta * mode.frequency, rise: 0.0 }
     }
 }
@@ -344,8 +346,11 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
 }
 
 /// Standard deviation of the noise of one component of the lines around `at`, from the median of their second differences, in which what is smooth
-/// vanishes; 0 where there are too few lines.
+/// vanishes, where it is not known; 0 where there are too few lines.
 fn noise(measured: &Measured, at: usize) -> f64 {
+    if let Some(std) = &measured.std {
+        return std[at];
+    }
     let around = at.saturating_sub(LINES)..(at + LINES + 1).min(measured.values.len());
     let differences = measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm());
     // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2) of its scale; that of the size of a
@@ -392,14 +397,7 @@ mod bands {
             }
         }
         let frequency = (0..2000).map(f64::from).collect();
-        Measured {
-            frequency,
-            values,
-            magnitude_only,
-            kind: FrfKind::Receptance,
-            coherence: None,
-            window: None,
-        }
+        Measured { magnitude_only, ..Measured::new(frequency, values, FrfKind::Receptance) }
     }
 
     #[test]

@@ -57,7 +57,7 @@ fn named() -> Sweep {
 }
 
 fn taken(steps: &[StepTraces]) -> Response {
-    stepped(named(), steps, &ResponseOptions { integrate: 1, ..ResponseOptions::default() }).unwrap().1
+    stepped(named(), steps, &ResponseOptions::default()).unwrap().1
 }
 
 /// Draws of steps in noise; how many amplitudes, phases and real parts lie within 1.96 of their standard uncertainties, of how many, and the worst in them.
@@ -114,13 +114,12 @@ fn a_transient_is_left_out_and_what_has_not_settled_is_doubted() {
         let found = taken(&[step(29.0, 0.1 * f64::from(tenths), 3.0, (1e-4, &mut noise))]);
         let point = &found.points[0];
         let error = (point.amplitude.value - 3.0 * receptance(29.0).norm()).abs();
-        match point.amplitude.std {
+        if let Some(std) = point.amplitude.std {
             // Student's distribution of the three degrees of freedom of four blocks passes this in 1 of 100.
-            Some(std) => assert!(error < 6.0 * std, "{tenths}: {error} {std}"),
-            None => {
-                doubted += 1;
-                assert!(found.findings.iter().any(|f| f.code == "step-not-settled"), "{:?}", found.findings);
-            }
+            assert!(error < 6.0 * std, "{tenths}: {error} {std}");
+        } else {
+            doubted += 1;
+            assert!(found.findings.iter().any(|f| f.code == "step-not-settled"), "{:?}", found.findings);
         }
     }
     assert!(doubted > 5, "{doubted}");
@@ -143,7 +142,7 @@ fn steps_that_do_not_go_together_are_refused() {
     let mut noise = Noise::new(3);
     let mut one = step(25.0, 4.0, 0.0, (1e-3, &mut noise));
     let short = step(25.0, 0.2, 0.0, (1e-3, &mut noise));
-    let how = ResponseOptions { integrate: 1, ..ResponseOptions::default() };
+    let how = ResponseOptions::default();
     assert!(stepped(named(), &[short], &how).unwrap_err().to_string().contains("periods"));
     one.response.values.pop();
     assert!(stepped(named(), &[one], &how).unwrap_err().to_string().contains("sampled together"));

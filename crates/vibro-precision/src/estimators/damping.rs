@@ -39,14 +39,7 @@ fn case(modes: &[Pole], (from, to, step): (f64, f64, f64), part: f64, noise: &mu
     for v in &mut values {
         *v += Complex64::new(sigma * noise.normal(), sigma * noise.normal());
     }
-    let data = Measured {
-        frequency,
-        values,
-        magnitude_only: false,
-        kind: FrfKind::Receptance,
-        coherence: None,
-        window: None,
-    };
+    let data = Measured::new(frequency, values, FrfKind::Receptance);
     let zeta = modes[0].zeta;
     Case { data, truth: zeta, unit: zeta, tolerance: 0.1 * zeta }
 }

@@ -49,7 +49,7 @@ fn divided(v: &Vibration) -> Vec<f64> {
 fn with_cut_off(v: &Vibration) -> Result<Answer> {
     let lines = spectrum::plain(&v.velocity, Window::Hann, Scaling::Peak, false)?;
     let sweep = one_point(lines, None, Some(v.frequency));
-    let found = response(&sweep, &ResponseOptions { integrate: 1, ..ResponseOptions::default() })?;
+    let found = response(&sweep, &ResponseOptions::default())?;
     let point = found.points.first().ok_or_else(|| Error::refused("no point"))?;
     if let Some(limit) = point.upper_limit {
         return Err(Error::refused(format!("the amplitude does not stand out; it is below {limit:.3e} m")));

@@ -1,0 +1,95 @@
+//! The traces of a stepped sine, read together.
+
+use super::{Reader, SweepReader};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{Error, Result, StepTraces, Trace};
+
+/// Traces of a stepped sine: one file a step, or one file with a channel of force and one of response a step.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Steps {
+    /// Files, in the order of the steps.
+    pub files: Vec<PathBuf>,
+    /// Channel of the force; of one file one channel a step.
+    pub force: Vec<String>,
+    /// Channel of the response, likewise.
+    pub response: Vec<String>,
+    /// Sampling rate in Hz, where the files do not say it.
+    pub rate: Option<f64>,
+}
+
+impl SweepReader {
+    /// Reads force and response of all steps, in SI units: calibrated where that is stated, a response of unknown unit in the unit that is stated.
+    ///
+    /// # Errors
+    /// If a file cannot be read or has no such channel; if a force is not one, or a response is no displacement, velocity or acceleration.
+    pub fn steps(&self, steps: &Steps) -> Result<Vec<StepTraces>> {
+        let reader = Reader::new().rate(steps.rate).format(self.format);
+        let one = |file: &Path, force: &str, response: &str| {
+            let recording = reader.from_path(file)?;
+            let force = self.force(recording.trace(Some(force), None)?)?;
+            let response = self.response(recording.trace(Some(response), None)?)?;
+            Ok(StepTraces { path: file.to_owned(), force, response })
+        };
+        let one = |file: &Path, force: &str, response: &str| {
+            one(file, force, response).map_err(|e: Error| e.in_file(file))
+        };
+        match (steps.files.as_slice(), steps.force.as_slice(), steps.response.as_slice()) {
+            (files, [force], [response]) => files.par_iter().map(|file| one(file, force, response)).collect(),
+            ([file], forces, responses) => {
+                let pairs = forces.par_iter().zip(responses.par_iter());
+                let pair = |(force, response): (&String, &String)| {
+                    let step = one(file, force, response)?;
+                    // Each step has a name of its own.
+                    Ok(StepTraces {
+                        path: PathBuf::from(format!("{}#{response}", step.path.display())),
+                        ..step
+                    })
+                };
+                pairs.map(pair).collect()
+            }
+            (files, forces, _) => {
+                let found = format!("{} files and {} channels of force", files.len(), forces.len());
+                Err(Error::usage(found, "one channel of force and one of response in each file")
+                    .setting("force"))
+            }
+        }
+    }
+
+    fn force(&self, mut trace: Trace) -> Result<Trace> {
+        if let Some(factor) = self.force_calibration {
+            trace.calibrate(factor, &Unit::of(Quantity::Force))?;
+        }
+        if trace.meta.unit.is_known() && trace.meta.quantity != Quantity::Force {
+            let found = format!("the channel {:?} is in {}", trace.meta.name, trace.meta.unit);
+            let hint = "state force_calibration: newtons per stored number";
+            return Err(Error::usage(found, "a force, in N")
+                .hint(hint)
+                .setting("force_calibration")
+                .setting("force"));
+        }
+        Ok(trace)
+    }
+
+    fn response(&self, mut trace: Trace) -> Result<Trace> {
+        let stored = trace.meta.unit.clone();
+        let stated = self.unit.clone().or_else(|| self.quantity.map(Unit::of));
+        match (&stated, self.calibration) {
+            (Some(unit), Some(factor)) => trace.calibrate(factor, unit)?,
+            (Some(unit), None) if !stored.is_known() => trace.calibrate(1.0, unit)?,
+            (None, Some(factor)) => trace.calibrate(factor, &stored)?,
+            _ => {}
+        }
+        let motion = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+        let meant = stated.map(|unit| unit.quantity());
+        if !motion.contains(&trace.meta.quantity) || meant.is_some_and(|meant| meant != trace.meta.quantity) {
+            let found = format!("the channel {:?} is in {}", trace.meta.name, trace.meta.unit);
+            let expected = "a displacement, velocity or acceleration, such as mm, m/s or g, as was stated";
+            let hint = "state unit, and calibration: units per stored number";
+            let error = Error::usage(found, expected).hint(hint).setting("unit").setting("calibration");
+            return Err(error.setting("response"));
+        }
+        Ok(trace)
+    }
+}

@@ -1,0 +1,90 @@
+//! A frequency response function before its modes are known.
+
+use super::sweep;
+use crate::campaign::Campaign;
+use crate::error::{Error, Result};
+use crate::measure::modal::Measured;
+use crate::measure::response::{Response, ResponseOptions};
+use crate::record::{Finding, FrfKind, Meta, Record};
+use crate::units::{Quantity, Unit};
+use num_complex::Complex64;
+
+/// A function as it is searched for modes.
+#[derive(Debug, Clone)]
+pub struct Function {
+    /// Its name, unit and history.
+    pub meta: Meta,
+    /// Its lines.
+    pub measured: Measured,
+    /// Its lines and their coherence, where it was computed.
+    pub(super) records: Vec<Record>,
+    /// What was left out.
+    pub(super) findings: Vec<Finding>,
+}
+
+impl Function {
+    pub(super) fn new(meta: Meta, measured: Measured) -> Function {
+        Function { meta, measured, records: Vec::new(), findings: Vec::new() }
+    }
+
+    /// The receptance of a sweep of a campaign; of its only one where none is named.
+    ///
+    /// # Errors
+    /// If there is no such sweep, it cannot be read, or has no receptance.
+    pub fn of_sweep(campaign: &Campaign, name: Option<&str>, allow_outside: bool) -> Result<Function> {
+        let compute = &campaign.compute;
+        let options = ResponseOptions { band: compute.band, integrate: None, fmin: compute.fmin };
+        let (_, response) = sweep::named(campaign, name, allow_outside)?.taken(&options)?;
+        Function::of_response(&response)
+    }
+
+    /// The receptance of a response, its points in the order of frequency, those on both sides of a jump and those without an
+    /// uncertainty left out; a magnitude where its phase is not
+    /// known.
+    ///
+    /// # Errors
+    /// If the response is no displacement, or the force is not known.
+    pub fn of_response(response: &Response) -> Result<Function> {
+        let beside = |f: f64| response.jumps.iter().any(|jump| f == jump.from || f == jump.to);
+        let phased = response.points.iter().any(|p| p.receptance.is_some());
+        let displacement = response.unit == Quantity::Displacement.symbol();
+        let mut points: Vec<(f64, Complex64, f64)> = Vec::new();
+        let (mut at_jumps, mut doubted) = (Vec::new(), Vec::new());
+        for point in &response.points {
+            let f = point.excitation;
+            if beside(f) {
+                at_jumps.push(f);
+            } else if let Some(ratio) = point.receptance {
+                match ratio.std.filter(|std| *std > 0.0) {
+                    Some(std) => points.push((f, Complex64::new(ratio.re, ratio.im), std)),
+                    None => doubted.push(f),
+                }
+            } else if let Some(force) = point.force.filter(|_| displacement && !phased) {
+                points.push((f, Complex64::from(point.amplitude.value / force), f64::NAN));
+            }
+        }
+        points.retain(|(_, value, _)| value.is_finite());
+        if points.is_empty() {
+            let why = format!("the sweep {:?} has no receptance", response.name);
+            return Err(Error::refused(why)
+                .hint("a receptance needs the force of each step, and a displacement as response"));
+        }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup_by(|a, b| a.0 == b.0);
+        let frequency = points.iter().map(|p| p.0).collect();
+        let values = points.iter().map(|p| p.1).collect();
+        let std = phased.then(|| points.iter().map(|p| p.2).collect());
+        let mut meta = Meta::new(response.name.clone(), Unit::parse_or_opaque("m/N"));
+        meta.history.clone_from(&response.history);
+        meta.quantity = meta.unit.quantity();
+        let measured = Measured::new(frequency, values, FrfKind::Receptance);
+        let measured = Measured { magnitude_only: !phased, std, ..measured };
+        let left_out = [("modal-sweep-jumps", at_jumps), ("modal-sweep-doubted", doubted)];
+        let left_out = left_out.into_iter().filter(|(_, at)| !at.is_empty());
+        let found = |(code, at): (_, Vec<f64>)| {
+            Finding::caution(code).count("n", at.len()).numbers("frequencies", at)
+        };
+        let findings = left_out.map(found).collect();
+        Ok(Function { findings, ..Function::new(meta, measured) })
+    }
+}

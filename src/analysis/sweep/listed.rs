@@ -1,0 +1,115 @@
+//! The files of a sweep, before they are read.
+
+use super::Keys;
+use crate::campaign::{Campaign, Entry};
+use crate::error::{Error, Result};
+use crate::measure::response::{Response, ResponseOptions, response};
+use crate::measure::stepped::stepped;
+use crate::read::{Steps, SweepList, SweepReader};
+use crate::record::{Axis, Sweep};
+use std::path::{Path, PathBuf};
+
+/// A sweep that can be read.
+#[derive(Debug, Clone)]
+pub struct Listed {
+    /// Its files.
+    pub files: Files,
+    /// How they are read.
+    pub reader: SweepReader,
+}
+
+/// What the files of a sweep hold.
+#[derive(Debug, Clone)]
+pub enum Files {
+    /// A spectrum each.
+    Spectra(SweepList),
+    /// Time traces of force and response.
+    Traces(Steps),
+}
+
+impl Listed {
+    /// The sweep of a campaign.
+    ///
+    /// # Errors
+    /// If its list cannot be read, a name leads outside the folder, or no file has such a name.
+    pub fn of(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<Listed> {
+        let keys = &entry.keys;
+        let path =
+            |key: &'static str, name: &String| campaign.path_of(entry, key, Path::new(name), allow_outside);
+        let all = |key: &'static str, names: &[String]| {
+            names.iter().map(|name| path(key, name)).collect::<Result<Vec<_>>>()
+        };
+        let files = if let Some(list) = &keys.list {
+            let list = campaign.file(entry, "list", list, allow_outside)?;
+            Files::Spectra(SweepList::from_path(list, allow_outside)?)
+        } else if keys.traces.is_empty() {
+            Files::Spectra(SweepList {
+                lines: keys.lines.unwrap_or(0),
+                base_band: keys.base_band.unwrap_or(0.0),
+                force: all("force", &keys.force)?,
+                excitation: Vec::new(),
+                response: all("response", &keys.response)?,
+                places: Vec::new(),
+            })
+        } else {
+            let patterns: Vec<PathBuf> = all("traces", &keys.traces)?;
+            let found: Result<Vec<Vec<PathBuf>>> = patterns.iter().map(|pattern| matching(pattern)).collect();
+            let files = found.map_err(|e| campaign.fault(entry, e.setting("traces")))?.concat();
+            let (force, response) = (keys.force.clone(), keys.response.clone());
+            Files::Traces(Steps { files, force, response, rate: keys.rate })
+        };
+        Ok(Listed { files, reader: keys.reader()? })
+    }
+
+    /// The spectra of the sweep.
+    ///
+    /// # Errors
+    /// If one cannot be read; of traces, which are none.
+    pub fn spectra(&self) -> Result<(&SweepList, Sweep)> {
+        match &self.files {
+            Files::Spectra(list) => Ok((list, self.reader.read(list)?)),
+            Files::Traces(_) => Err(Error::usage("a sweep of time traces", "a list of spectra")
+                .setting("legacy")
+                .setting("write_lists")),
+        }
+    }
+
+    /// The sweep as spectra, and its response.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or holds no response.
+    pub fn taken(&self, options: &ResponseOptions) -> Result<(Sweep, Response)> {
+        match &self.files {
+            Files::Spectra(list) => {
+                let sweep = self.reader.read(list)?;
+                let response = response(&sweep, options)?;
+                Ok((sweep, response))
+            }
+            Files::Traces(steps) => {
+                let SweepReader { name, direction, mass, .. } = self.reader.clone();
+                let (axis, points, findings) = (Axis::index(0), Vec::new(), Vec::new());
+                let named = Sweep { name, direction, mass, axis, analyser_integrated: 0, points, findings };
+                stepped(named, &self.reader.steps(steps)?, options)
+            }
+        }
+    }
+}
+
+/// The files that a name or a pattern with `*`, `?` or `[…]` means, by their names, numbers in them by value.
+fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
+    if pattern.exists() {
+        return Ok(vec![pattern.to_owned()]);
+    }
+    let text = pattern.to_string_lossy();
+    let wrong = |e: glob::PatternError| {
+        Error::usage(format!("the pattern {text:?}: {e}"), "a pattern such as step*.csv")
+    };
+    let mut files: Vec<PathBuf> =
+        glob::glob(&text).map_err(wrong)?.filter_map(std::result::Result::ok).collect();
+    if files.is_empty() {
+        return Err(Error::usage(format!("no file is named {text}"), "")
+            .hint("names are relative to the folder of the campaign file"));
+    }
+    files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    Ok(files)
+}
