@@ -1,6 +1,6 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
-use super::excitation::{Excitation, excitations};
+use super::excitation::{Excitation, bent, excitations};
 use super::jump::Jump;
 use super::line::{SubLine, amplitude_at, interpolate, nearest};
 use super::noise::upper_limit;
@@ -287,7 +287,10 @@ impl Taker<'_> {
         let floor = noise::around(&measured, top.unwrap_or(centre), noise::REACH, window);
         // A hump of noise is not the response, nor is another line beside the excitation, which hides it.
         let clear = |p: &SubLine| floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f);
-        let peak = top.and_then(|k| interpolate(&measured, k, window, floor)).filter(clear);
+        let peak = top.and_then(|k| {
+            let line = interpolate(&measured, k, window, floor).filter(clear)?;
+            Some(bent(line, &measured, k, window.zip(floor)))
+        });
         let hidden = peak.is_some_and(|p| (p.position - at).abs() > NEAR);
         let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
             (excitation.frequency, None, (f64::NAN, None, None), "below the cut-off".to_owned())
