@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 use vibroimpact::measure::decay::{DecayOptions, decay};
 
 pub const KINDS: &[Kind] = &[
-    Kind { name: "decay of one mode", ranges: RANGES, draw: |mix| draw(mix, 1) },
-    Kind { name: "decay of two modes", ranges: RANGES, draw: |mix| draw(mix, 2) },
+    Kind { name: "decay of one mode", ranges: RANGES, every: 1, draw: |mix| draw(mix, 1) },
+    Kind { name: "decay of two modes", ranges: RANGES, every: 1, draw: |mix| draw(mix, 2) },
 ];
 
 const RANGES: &str = "ζ 0.002 to 0.1, 8 to 80 samples a period, a record of 2 to 12 time constants, rest or a held position before; second mode \
@@ -45,7 +45,7 @@ fn draw(mix: &mut Mix, count: usize) -> Record {
     let rate = highest * mix.log(8.0, 80.0);
     let longest = modes.iter().map(|m| 1.0 / (m.1 * TAU * m.0)).fold(0.0, f64::max);
     let duration = (longest * mix.log(2.0, 12.0)).max(12.0 / first);
-    let n = ((duration * rate) as usize).clamp(400, 60_000);
+    let n = ((duration * rate) as usize).clamp(400, 20_000);
     let release = mix.random.between(0.0, 0.2) * n as f64 / rate;
     let held = if mix.chance(0.5) { modes.iter().map(|m| m.at(0.0)).sum() } else { 0.0 };
     let mut values: Vec<f64> = (0..n)

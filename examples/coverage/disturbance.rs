@@ -41,28 +41,21 @@ impl Mix {
         }
     }
 
-    /// Adds white noise of a root mean square between two parts of `peak`, and in half of the records each 1/f noise up to ten times as
-    /// strong, hum of 50 or 60 Hz up to 2 %, and a converter of 12 bits whose range is 1.05 to 4 times the peak.
-    pub fn spoil(&mut self, values: &mut [f64], rate: f64, peak: f64, (low, high): (f64, f64)) {
+    /// Draws a chain: white noise of a root mean square between two parts of the peak, and in half of the records each 1/f noise up to
+    /// ten times as strong, hum of 50 or 60 Hz up to 2 %, and a converter of 12 bits whose range is 1.05 to 4 times the peak.
+    pub fn chain(&mut self, (low, high): (f64, f64)) -> Chain {
         let white = self.log(low, high);
         self.note("white noise", white);
         let pink = white * self.some(0.5, "1/f noise to white", 0.3, 10.0);
         let hum = self.some(0.5, "hum", 1e-4, 0.02);
         let range = self.some(0.5, "12-bit range", 1.05, 4.0);
-        self.add_white(values, white * peak);
-        if pink > 0.0 {
-            self.add_pink(values, pink * peak);
-        }
-        if hum > 0.0 {
-            let mains = if self.chance(0.5) { 50.0 } else { 60.0 } + self.random.between(-0.05, 0.05);
-            let phase = self.random.between(0.0, TAU);
-            for (i, v) in values.iter_mut().enumerate() {
-                *v += hum * peak * (TAU * mains * i as f64 / rate + phase).cos();
-            }
-        }
-        if range > 0.0 {
-            convert(values, range * peak, 12);
-        }
+        let mains = if self.chance(0.5) { 50.0 } else { 60.0 } + self.random.between(-0.05, 0.05);
+        Chain { white, pink, hum, mains, range }
+    }
+
+    /// Passes a record through a chain of its own.
+    pub fn spoil(&mut self, values: &mut [f64], rate: f64, peak: f64, noise: (f64, f64)) {
+        self.chain(noise).pass(self, values, rate, peak);
     }
 
     pub fn add_white(&mut self, values: &mut [f64], rms: f64) {
@@ -81,6 +74,31 @@ impl Mix {
                 *state = keep * *state + (1.0 - keep * keep).sqrt() * self.random.normal();
             }
             *v += scale * states.iter().sum::<f64>();
+        }
+    }
+}
+
+/// What stands between a motion and its record; sizes as parts of the peak, 0 for what is absent.
+pub struct Chain {
+    pub white: f64,
+    pink: f64,
+    hum: f64,
+    mains: f64,
+    range: f64,
+}
+
+impl Chain {
+    pub fn pass(&self, mix: &mut Mix, values: &mut [f64], rate: f64, peak: f64) {
+        mix.add_white(values, self.white * peak);
+        if self.pink > 0.0 {
+            mix.add_pink(values, self.pink * peak);
+        }
+        let phase = mix.random.between(0.0, TAU);
+        for (i, v) in values.iter_mut().enumerate() {
+            *v += self.hum * peak * (TAU * self.mains * i as f64 / rate + phase).cos();
+        }
+        if self.range > 0.0 {
+            convert(values, self.range * peak, 12);
         }
     }
 }

@@ -7,9 +7,12 @@
 
 mod decays;
 mod disturbance;
+mod drills;
+mod drops;
 mod modes;
 mod pulses;
 mod record;
+mod sweeps;
 mod tally;
 mod tones;
 
@@ -45,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 const HEAD: &str = "# Coverage
-How often a stated uncertainty holds the truth: RECORDS records of each kind, each with its own mix of disturbances. The truth is what made the record.
+How often a stated uncertainty holds the truth: RECORDS records of each kind, an eighth of it of averaged spectra, each with its own mix of disturbances. The truth is what made the record.
 `cargo run --release --example coverage` writes this page; its generators know nothing of the estimators.
 
 - **asked**: numbers that the records hold. **answered**: given with an uncertainty; all others are refused, not found, or doubted, and count no further.
@@ -64,14 +67,17 @@ Sizes are drawn evenly on a logarithmic scale. Each of the disturbances is in ha
 ";
 
 fn kinds() -> Vec<&'static Kind> {
-    [tones::KINDS, decays::KINDS, modes::KINDS, pulses::KINDS].into_iter().flatten().collect()
+    [sweeps::KINDS, decays::KINDS, modes::KINDS, tones::KINDS, drops::KINDS, pulses::KINDS, drills::KINDS]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// So many records of a kind. The seed hangs on the name: a kind that is added changes no other.
 fn draw(kind: &Kind, count: u64) -> Vec<(Mix, Record)> {
     let seed =
         kind.name.bytes().fold(0, |seed: u64, byte| seed.wrapping_mul(0x0100_0193) ^ u64::from(byte)) << 20;
-    (0..count)
+    (0..count / kind.every)
         .into_par_iter()
         .map(|i| {
             let mut mix = Mix::new(seed + i);

@@ -16,23 +16,27 @@ pub const KINDS: &[Kind] = &[
         name: "one mode of a function",
         ranges: "ζ 0.002 to 0.1, 1 to 20 lines in the half-power bandwidth, a residual stiffness and mass; \
         noise of each line 30 to 60 dB below the peak; receptance, mobility or accelerance",
+        every: 1,
         draw: |mix| of_lines(mix, 1),
     },
     Kind {
         name: "two modes of a function",
         ranges: "as one mode; the second 0.5 to 8 half-power bandwidths above, ζ 0.5 to 2 times, modal \
         constant 0.3 to 1 times that of the first, of either sign",
+        every: 1,
         draw: |mix| of_lines(mix, 2),
     },
     Kind {
         name: "one mode of averaged spectra",
         ranges: "random force, 10 to 60 segments of 512 to 2048 samples, Hann window, overlap 0.5, H1; \
         1 to 20 lines in the half-power bandwidth; noise of the response 30 to 60 dB below its peak, 1/f noise, hum and 12 bits",
+        every: 8,
         draw: |mix| averaged(mix, 1),
     },
     Kind {
         name: "two modes of averaged spectra",
         ranges: "as before, with modes as in two modes of a function",
+        every: 8,
         draw: |mix| averaged(mix, 2),
     },
 ];
@@ -113,11 +117,12 @@ fn averaged(mix: &mut Mix, count: usize) -> Record {
     let zeta = mix.note("ζ", (wide / (2.0 * centre)).min(0.1));
     let poles = modes(mix, count, zeta, centre);
     let (_, power, unit) = kind(mix);
-    // A force that repeats after twice the record: exact steady motion, whose lines lie too close together to be seen.
+    // A force that repeats after twice the record or later: exact steady motion, whose lines lie too close together to be seen.
     let (rate, n) = (segment as f64, (segments + 1) * segment / 2);
-    let transform = Transform::new(2 * n);
-    let step = rate / (2 * n) as f64;
-    let force: Vec<Complex64> = (0..=n)
+    let half = n.next_power_of_two();
+    let transform = Transform::new(2 * half);
+    let step = rate / (2 * half) as f64;
+    let force: Vec<Complex64> = (0..=half)
         .map(|k| {
             Complex64::new(mix.random.normal(), mix.random.normal())
                 * f64::from(u8::from((k as f64) * step < 0.45 * rate && k > 0))

@@ -11,22 +11,26 @@ pub const KINDS: &[Kind] = &[
         name: "pulse, spring and damper",
         ranges: "ξ 0.01 to 0.45, 15 to 300 samples a contact; behind a stated low-pass of order 1 to 4 in a \
         third, its corner 0.7 to 10 over the duration; white noise 0.0003 to 0.03 of the peak, 1/f noise, hum and 12 bits as in decays",
+        every: 1,
         draw: |mix| draw(mix, Family::SpringDamper),
     },
     Kind {
         name: "pulse, Hunt–Crossley",
         ranges: "δ^1.5, R 0.4 to 0.98; else as before",
+        every: 1,
         draw: |mix| draw(mix, Family::HuntCrossley),
     },
     Kind {
         name: "pulse, ringing behind",
         ranges: "a force pulse of either law whose sensor rings: a mode at 0.7 to 8 over the duration, ζ 0.005 to \
         0.1, that takes 0.3 to 20 % of the force; no low-pass",
+        every: 1,
         draw: |mix| draw(mix, Family::Ringing),
     },
     Kind {
         name: "pulse, other laws",
         ranges: "δ^1.1 to δ^2.2 with a loss δ^s δ̇, s 0 to 1.5; or a stiffness 1.05 to 3 times as high when the bodies part",
+        every: 1,
         draw: |mix| draw(mix, Family::Other),
     },
 ];

@@ -7,6 +7,8 @@ pub struct Kind {
     pub name: &'static str,
     /// What is drawn at random, and between which limits.
     pub ranges: &'static str,
+    /// Every so many records one is drawn: 1, more where the answer takes long.
+    pub every: u64,
     pub draw: fn(&mut super::disturbance::Mix) -> Record,
 }
 

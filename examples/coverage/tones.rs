@@ -10,6 +10,7 @@ pub const KINDS: &[Kind] = &[Kind {
     name: "tones",
     ranges: "1 to 5 sines of 3 lines to 0.45 of the sampling rate, 1.5 lines apart at least, amplitudes 0.03 to 1, 1000 to 8000 samples; \
              white noise 0.0003 to 0.1 of the peak, 1/f noise 0.3 to 10 times that, hum to 2 %, 12 bits; a fifth clipped at 0.6 to 0.99 of the peak",
+    every: 1,
     draw,
 }];
 
