@@ -59,7 +59,9 @@ impl Mix {
     }
 
     pub fn add_white(&mut self, values: &mut [f64], rms: f64) {
-        values.iter_mut().for_each(|v| *v += rms * self.random.normal());
+        for v in values {
+            *v += rms * self.random.normal();
+        }
     }
 
     /// Noise of a power density that falls as 1/f from the length of the record to a third of the sampling rate: first-order processes
@@ -106,12 +108,16 @@ impl Chain {
 /// A converter of so many bits between plus and minus `range`.
 pub fn convert(values: &mut [f64], range: f64, bits: i32) {
     let step = range * 2f64.powi(1 - bits);
-    values.iter_mut().for_each(|v| *v = ((*v / step).round() * step).clamp(-range, range));
+    for v in values {
+        *v = ((*v / step).round() * step).clamp(-range, range);
+    }
 }
 
 /// Cuts off what is beyond plus and minus `level`.
 pub fn clip(values: &mut [f64], level: f64) {
-    values.iter_mut().for_each(|v| *v = v.clamp(-level, level));
+    for v in values {
+        *v = v.clamp(-level, level);
+    }
 }
 
 /// The largest magnitude.

@@ -50,7 +50,9 @@ fn draw(mix: &mut Mix) -> Record {
     let pink = mix.some(0.5, "1/f noise to white", 0.3, 3.0);
     mix.add_pink(&mut values, pink * noise);
     let offset = mix.some(0.5, "offset", 1e-3, 0.02) * before;
-    values.iter_mut().for_each(|v| *v += offset);
+    for v in &mut values {
+        *v += offset;
+    }
     if mix.chance(0.5) {
         mix.note("converter", 1.0);
         convert(&mut values, 1.5 * before, 12);

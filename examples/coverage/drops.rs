@@ -8,27 +8,28 @@ use vibroimpact::measure::impacts::ImpactsOptions;
 use vibroimpact::measure::restitution::{Drop, Measured, Train, restitution};
 
 pub const KINDS: &[Kind] = &[
+    Kind { name: "drops, times", ranges: TIMES, every: 1, draw: |mix| draw(mix, times, true) },
     Kind {
-        name: "drops, times of bounces",
-        ranges: "R 0.5 to 0.95, 0.05 to 2 % of scatter from bounce to bounce in half of the records of four drops or more, 1 to 8 drops from 0.05 to 1 m (stated with an error \
-            of 0.1 to 2 mm) with 2 to 12 impacts; contact 0.01 to 1 ms, stated in half; detection 1 to 200 µs off, stated in half",
+        name: "drops, contact not stated",
+        ranges: "as before, but nothing is said of the contact",
         every: 1,
-        draw: |mix| draw(mix, times),
+        draw: |mix| draw(mix, times, false),
     },
-    Kind {
-        name: "drops, force at the plate",
-        ranges: "as before, one to five drops with at least four impacts, contact 0.1 to 1 ms, as half sines of the contact at 10 to 30 kHz; \
-        noise 0.0003 to 0.01 of the peak, 1/f noise, hum, 12 bits",
-        every: 1,
-        draw: |mix| draw(mix, forces),
-    },
+    Kind { name: "drops, force at the plate", ranges: FORCES, every: 1, draw: |mix| draw(mix, forces, true) },
     Kind {
         name: "drops, sound",
         ranges: "as before; each impact rings at 0.8 to 4 kHz, ζ 0.01 to 0.1, found by its envelope",
         every: 1,
-        draw: |mix| draw(mix, sounds),
+        draw: |mix| draw(mix, sounds, true),
     },
 ];
+
+const TIMES: &str = "R 0.5 to 0.95, 0.05 to 2 % of scatter from bounce to bounce in half of the records of four drops or more, 1 to 8 drops \
+    from 0.05 to 1 m (stated with an error of 0.1 to 2 mm) with 2 to 12 impacts; contact 0.01 to 1 ms, stated; detection 1 to 200 µs off, \
+    stated in half";
+
+const FORCES: &str = "as before, one to five drops with at least four impacts as half sines of the contact of 0.1 to 1 ms at 10 to 30 kHz; \
+    noise 0.0003 to 0.01 of the peak, 1/f noise, hum, 12 bits";
 
 /// What a drop is: its impacts with their velocities, the duration of a contact, and how far impacts that are not recorded are
 /// detected off.
@@ -41,12 +42,10 @@ struct Bounces {
 
 type Timed = fn(&mut Mix, &Bounces) -> Option<Train>;
 
-fn draw(mix: &mut Mix, timed: Timed) -> Record {
+fn draw(mix: &mut Mix, timed: Timed, stated: bool) -> Record {
     let gravity = 9.80665;
     let (r, height) = (mix.random.between(0.5, 0.95), mix.log(0.05, 1.0));
     mix.note("R", r);
-    let stated = mix.chance(0.5);
-    mix.note("contact stated", f64::from(u8::from(stated)));
     let height_std = mix.log(1e-4, 2e-3);
     let from_times = std::ptr::fn_addr_eq(timed, times as Timed);
     let shortest = if from_times { 1e-5 } else { 1e-4 };
@@ -60,6 +59,7 @@ fn draw(mix: &mut Mix, timed: Timed) -> Record {
     let scatter = if drops < 4 { 0.0 } else { mix.some(0.5, "scatter of R", 5e-4, 0.02) };
     let jitter = if from_times { mix.some(1.0, "detection in µs", 1.0, 200.0) * 1e-6 } else { 0.0 };
     let jitter_stated = mix.chance(0.5);
+    mix.note("detection stated", f64::from(u8::from(jitter_stated)));
     let mut trains = Vec::new();
     for _ in 0..drops {
         let (mut speed, mut t) = ((2.0 * gravity * height).sqrt(), mix.random.between(0.1, 0.3));
@@ -88,6 +88,8 @@ fn draw(mix: &mut Mix, timed: Timed) -> Record {
     record
 }
 
+// A type with those of records, where there may be none.
+#[allow(clippy::unnecessary_wraps)]
 fn times(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
     let jitter = bounces.jitter;
     let onsets: Vec<f64> = bounces.onsets.iter().map(|(t, _)| t + jitter * mix.random.normal()).collect();
@@ -117,6 +119,7 @@ fn found(
     options: &ImpactsOptions,
 ) -> Option<Train> {
     let rate = mix.log(10e3, 30e3).max(3.0 / bounces.contact);
+    mix.note("rate", rate);
     let end = bounces.onsets.last()?.0 + 0.2;
     let mut values = vec![0.0; (end * rate) as usize];
     for (t, speed) in &bounces.onsets {
@@ -127,6 +130,7 @@ fn found(
     }
     let top = peak(&values);
     let (noise, pink, hum) = (mix.log(3e-4, 0.01), mix.log(0.3, 10.0), mix.log(1e-4, 0.02));
+    mix.note("white noise", noise);
     mix.add_white(&mut values, noise * top);
     if mix.chance(0.5) {
         mix.add_pink(&mut values, noise * pink * top);

@@ -36,8 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut table = String::from(TABLE);
     let mut ranges = String::from(RANGES);
     for kind in kinds() {
-        let records: Vec<Record> = draw(kind, count).into_iter().map(|(_, record)| record).collect();
-        let lines = rows(kind, &records);
+        let lines = rows(kind, &draw(kind, count));
         print!("{lines}");
         table += &lines;
         writeln!(ranges, "- **{}**: {}.", kind.name, kind.ranges)?;
@@ -92,10 +91,11 @@ fn trace(unit: &str, rate: f64, values: Vec<f64>) -> Trace {
     Trace { meta: Meta::new("record", unit), axis: Axis::time(0.0, 1.0 / rate, values.len()), values }
 }
 
-fn rows(kind: &Kind, records: &[Record]) -> String {
-    let invented: usize = records.iter().map(|r| r.invented).sum();
+fn rows(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
+    let records = drawn.iter().map(|(_, record)| record);
+    let invented: usize = records.clone().map(|r| r.invented).sum();
     let mut lines = String::new();
-    for (i, (quantity, tally)) in by_quantity(records).into_iter().enumerate() {
+    for (i, (quantity, tally)) in by_quantity(&records).into_iter().enumerate() {
         let (name, invented) = if i == 0 { (kind.name, invented.to_string()) } else { ("", String::new()) };
         let answered = tally.answered();
         // Writing to a string cannot fail.
@@ -115,13 +115,12 @@ fn rows(kind: &Kind, records: &[Record]) -> String {
 
 /// The worst records of each quantity with their disturbances, and the coverage by disturbance.
 fn worst(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
-    let mut text = format!("# {}\n", kind.name);
+    let mut text = format!("# {}\n{}", kind.name, rows(kind, drawn));
     let mut names: Vec<&str> =
         drawn.iter().flat_map(|(mix, _)| mix.named.iter().map(|(name, _)| *name)).collect();
     names.sort_unstable();
     names.dedup();
-    let quantities = by_quantity_of(drawn);
-    for quantity in quantities {
+    for (quantity, _) in by_quantity(&drawn.iter().map(|(_, record)| record)) {
         let _ = writeln!(text, "## {quantity}");
         let mut errors: Vec<(f64, usize)> = Vec::new();
         for (i, (_, record)) in drawn.iter().enumerate() {
@@ -138,9 +137,11 @@ fn worst(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
             let size = |mix: &Mix| mix.named.iter().find(|(n, _)| n == name).map_or(0.0, |(_, size)| *size);
             let mut sizes: Vec<f64> = drawn.iter().map(|(mix, _)| size(mix)).collect();
             sizes.sort_by(f64::total_cmp);
-            let middle = sizes[sizes.len() / 2].max(sizes[0]);
+            // The median, or what lies below it where it is the largest size, too.
+            let most = sizes[sizes.len() - 1];
+            let middle = sizes[..=sizes.len() / 2].iter().rfind(|s| **s < most).unwrap_or(&most);
             let part = |above: bool| {
-                let some = drawn.iter().filter(|(mix, _)| (size(mix) > middle) == above);
+                let some = drawn.iter().filter(|(mix, _)| (size(mix) > *middle) == above);
                 Tally::of(some.flat_map(|(_, r)| &r.answers).filter(|a| a.quantity == quantity))
             };
             let (below, above) = (part(false), part(true));
@@ -157,14 +158,4 @@ fn worst(kind: &Kind, drawn: &[(Mix, Record)]) -> String {
         }
     }
     text
-}
-
-fn by_quantity_of(drawn: &[(Mix, Record)]) -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = Vec::new();
-    for answer in drawn.iter().flat_map(|(_, record)| &record.answers) {
-        if !names.contains(&answer.quantity) {
-            names.push(answer.quantity);
-        }
-    }
-    names
 }

@@ -137,8 +137,12 @@ fn averaged(mix: &mut Mix, count: usize) -> Record {
     force.truncate(n);
     motion.truncate(n);
     let scale = 1.0 / peak(&force);
-    force.iter_mut().for_each(|v| *v *= scale);
-    motion.iter_mut().for_each(|v| *v *= scale);
+    for v in &mut force {
+        *v *= scale;
+    }
+    for v in &mut motion {
+        *v *= scale;
+    }
     let top = peak(&motion);
     mix.spoil(&mut motion, rate, top, (1e-3, 0.03));
     let traces = Traces::from_memory(vec![trace("N", rate, force), trace(unit, rate, motion)]);

@@ -174,7 +174,9 @@ fn draw(mix: &mut Mix, family: Family) -> Record {
     // From the scales of the integration to those of a bench.
     let (velocity, duration) = (mix.log(0.05, 5.0), mix.log(2e-5, 5e-3));
     let scale = velocity * contact.duration / duration;
-    shown.iter_mut().for_each(|a| *a *= scale);
+    for a in &mut shown {
+        *a *= scale;
+    }
     let top = peak(&shown);
     let rate = samples / duration;
     mix.spoil(&mut shown, rate, top, (3e-4, 0.03));

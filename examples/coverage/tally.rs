@@ -20,16 +20,16 @@ impl Tally {
     }
 
     pub fn answered(&self) -> f64 {
-        self.share(self.errors.len(), self.asked)
+        share(self.errors.len(), self.asked)
     }
 
     /// Share of the answers within 1.96 standard uncertainties.
     pub fn covered(&self) -> f64 {
-        self.share(self.errors.iter().filter(|e| e.abs() <= 1.96).count(), self.errors.len())
+        share(self.errors.iter().filter(|e| e.abs() <= 1.96).count(), self.errors.len())
     }
 
     pub fn beyond(&self, limit: f64) -> usize {
-        self.errors.iter().filter(|e| !(e.abs() <= limit)).count()
+        self.errors.iter().filter(|e| e.abs() > limit).count()
     }
 
     /// Standard deviation of the errors in standard uncertainties.
@@ -41,15 +41,15 @@ impl Tally {
     pub fn worst(&self) -> f64 {
         self.errors.iter().fold(0.0, |most, e| e.abs().max(most))
     }
+}
 
-    fn share(&self, part: usize, all: usize) -> f64 {
-        100.0 * part as f64 / all.max(1) as f64
-    }
+fn share(part: usize, all: usize) -> f64 {
+    100.0 * part as f64 / all.max(1) as f64
 }
 
 /// The quantities of these records in the order in which they are asked, with their answers.
-pub fn by_quantity(records: &[Record]) -> Vec<(&'static str, Tally)> {
-    let answers = || records.iter().flat_map(|r| &r.answers);
+pub fn by_quantity<'a>(records: &(impl Iterator<Item = &'a Record> + Clone)) -> Vec<(&'static str, Tally)> {
+    let answers = || records.clone().flat_map(|r| &r.answers);
     let mut names: Vec<&'static str> = Vec::new();
     for answer in answers() {
         if !names.contains(&answer.quantity) {
