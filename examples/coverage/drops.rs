@@ -1,0 +1,146 @@
+//! A ball that falls onto a plate and bounces.
+
+use super::disturbance::{Mix, convert, peak};
+use super::record::{Answer, Kind, Record};
+use super::trace;
+use std::f64::consts::{PI, TAU};
+use vibroimpact::measure::impacts::ImpactsOptions;
+use vibroimpact::measure::restitution::{Drop, Measured, Train, restitution};
+
+pub const KINDS: &[Kind] = &[
+    Kind { name: "drops, times", ranges: TIMES, every: 1, draw: |mix| draw(mix, times, true) },
+    Kind {
+        name: "drops, contact not stated",
+        ranges: "as before, but nothing is said of the contact",
+        every: 1,
+        draw: |mix| draw(mix, times, false),
+    },
+    Kind { name: "drops, force at the plate", ranges: FORCES, every: 1, draw: |mix| draw(mix, forces, true) },
+    Kind {
+        name: "drops, sound",
+        ranges: "as before; each impact rings at 0.8 to 4 kHz, ζ 0.01 to 0.1, found by its envelope",
+        every: 1,
+        draw: |mix| draw(mix, sounds, true),
+    },
+];
+
+const TIMES: &str = "R 0.5 to 0.95, 0.05 to 2 % of scatter from bounce to bounce in half of the records of four drops or more, 1 to 8 drops \
+    from 0.05 to 1 m (stated with an error of 0.1 to 2 mm) with 2 to 12 impacts; contact 0.01 to 1 ms, stated; detection 1 to 200 µs off, \
+    stated in half";
+
+const FORCES: &str = "as before, one to five drops with at least four impacts as half sines of the contact of 0.1 to 1 ms at 10 to 30 kHz; \
+    noise 0.0003 to 0.01 of the peak, 1/f noise, hum, 12 bits";
+
+/// What a drop is: its impacts with their velocities, the duration of a contact, and how far impacts that are not recorded are
+/// detected off.
+struct Bounces {
+    onsets: Vec<(f64, f64)>,
+    contact: f64,
+    jitter: f64,
+    jitter_stated: bool,
+}
+
+type Timed = fn(&mut Mix, &Bounces) -> Option<Train>;
+
+fn draw(mix: &mut Mix, timed: Timed, stated: bool) -> Record {
+    let gravity = 9.80665;
+    let (r, height) = (mix.random.between(0.5, 0.95), mix.log(0.05, 1.0));
+    mix.note("R", r);
+    let height_std = mix.log(1e-4, 2e-3);
+    let from_times = std::ptr::fn_addr_eq(timed, times as Timed);
+    let shortest = if from_times { 1e-5 } else { 1e-4 };
+    let contact = mix.log(shortest, 1e-3);
+    mix.note("contact in ms", 1e3 * contact);
+    let drops = mix.random.between(1.0, if from_times { 9.0 } else { 6.0 }) as usize;
+    let impacts = mix.random.between(if from_times { 2.0 } else { 4.0 }, 13.0) as usize;
+    mix.note("drops", drops as f64);
+    mix.note("impacts a drop", impacts as f64);
+    // A single drop knows nothing of the scatter.
+    let scatter = if drops < 4 { 0.0 } else { mix.some(0.5, "scatter of R", 5e-4, 0.02) };
+    let jitter = if from_times { mix.some(1.0, "detection in µs", 1.0, 200.0) * 1e-6 } else { 0.0 };
+    let jitter_stated = mix.chance(0.5);
+    mix.note("detection stated", f64::from(u8::from(jitter_stated)));
+    let mut trains = Vec::new();
+    for _ in 0..drops {
+        let (mut speed, mut t) = ((2.0 * gravity * height).sqrt(), mix.random.between(0.1, 0.3));
+        let mut onsets = Vec::new();
+        for _ in 0..impacts {
+            onsets.push((t, speed));
+            speed *= (r * (1.0 + scatter * mix.random.normal())).min(0.999);
+            t += contact + 2.0 * speed / gravity;
+        }
+        trains.extend(timed(mix, &Bounces { onsets, contact, jitter, jitter_stated }));
+    }
+    let shown = height + height_std * mix.random.normal();
+    let drop = Drop { height: shown, height_std: Some(height_std), ..Drop::default() };
+    let drop = drop.beginning(&trains);
+    let trains = trains.into_iter().filter(|t| t.intervals.len() > 1).collect();
+    let measured =
+        Measured { drop: Some(drop), trains, velocities: None, contact_time: stated.then_some(contact) };
+    let found = restitution(&measured).ok();
+    let by = |method: &str| {
+        found.as_ref()?.by.iter().find(|way| way.method.contains(method)).map(|way| &way.restitution)
+    };
+    let mut record = Record::default();
+    record.answers.push(Answer::new("R", r, found.as_ref().map(|f| &f.restitution)));
+    record.answers.push(Answer::new("R by drop", r, by("drop")));
+    record.answers.push(Answer::new("R by flights", r, by("flight")));
+    record
+}
+
+// A type with those of records, where there may be none.
+#[allow(clippy::unnecessary_wraps)]
+fn times(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
+    let jitter = bounces.jitter;
+    let onsets: Vec<f64> = bounces.onsets.iter().map(|(t, _)| t + jitter * mix.random.normal()).collect();
+    let intervals = onsets.windows(2).map(|w| w[1] - w[0]).collect();
+    Some(Train { intervals, onset_std: bounces.jitter_stated.then_some(jitter) })
+}
+
+fn forces(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
+    let contact = bounces.contact;
+    let shape = |t: f64| if t < contact { (PI * t / contact).sin() } else { 0.0 };
+    found(mix, bounces, contact, &shape, &ImpactsOptions::default())
+}
+
+fn sounds(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
+    let (f, zeta) = (mix.log(800.0, 4000.0), mix.log(0.01, 0.1));
+    let shape = move |t: f64| (-zeta * TAU * f * t).exp() * (TAU * f * t).sin();
+    let options = ImpactsOptions { envelope: true, ..ImpactsOptions::default() };
+    found(mix, bounces, 5.0 / (zeta * TAU * f), &shape, &options)
+}
+
+/// The train in a record of pulses of this shape.
+fn found(
+    mix: &mut Mix,
+    bounces: &Bounces,
+    lasts: f64,
+    shape: &dyn Fn(f64) -> f64,
+    options: &ImpactsOptions,
+) -> Option<Train> {
+    let rate = mix.log(10e3, 30e3).max(3.0 / bounces.contact);
+    mix.note("rate", rate);
+    let end = bounces.onsets.last()?.0 + 0.2;
+    let mut values = vec![0.0; (end * rate) as usize];
+    for (t, speed) in &bounces.onsets {
+        let first = (t * rate).ceil() as usize;
+        for (i, v) in values.iter_mut().enumerate().skip(first).take((lasts * rate) as usize + 1) {
+            *v += speed * shape(i as f64 / rate - t);
+        }
+    }
+    let top = peak(&values);
+    let (noise, pink, hum) = (mix.log(3e-4, 0.01), mix.log(0.3, 10.0), mix.log(1e-4, 0.02));
+    mix.note("white noise", noise);
+    mix.add_white(&mut values, noise * top);
+    if mix.chance(0.5) {
+        mix.add_pink(&mut values, noise * pink * top);
+    }
+    if mix.chance(0.5) {
+        values
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, v)| *v += hum * top * (TAU * 50.02 * i as f64 / rate).cos());
+    }
+    convert(&mut values, 1.5 * top, 12);
+    Train::of(&trace("V", rate, values), options).ok().map(|(train, _)| train)
+}

@@ -1,0 +1,236 @@
+//! Contact pulses, integrated here.
+
+use super::disturbance::{Mix, peak};
+use super::record::{Answer, Kind, Record};
+use super::trace;
+use std::f64::consts::TAU;
+use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse};
+
+pub const KINDS: &[Kind] = &[
+    Kind {
+        name: "pulse, spring and damper",
+        ranges: "ξ 0.01 to 0.45, 15 to 300 samples a contact; behind a stated low-pass of order 1 to 4 in a \
+        third, its corner 0.7 to 10 over the duration; white noise 0.0003 to 0.03 of the peak, 1/f noise, hum and 12 bits as in decays",
+        every: 1,
+        draw: |mix| draw(mix, Family::SpringDamper),
+    },
+    Kind {
+        name: "pulse, Hunt–Crossley",
+        ranges: "δ^1.5, R 0.4 to 0.98; else as before",
+        every: 1,
+        draw: |mix| draw(mix, Family::HuntCrossley),
+    },
+    Kind {
+        name: "pulse, ringing behind",
+        ranges: "a force pulse of either law whose sensor rings: a mode at 0.7 to 8 over the duration, ζ 0.005 to \
+        0.1, that takes 0.3 to 20 % of the force; no low-pass",
+        every: 1,
+        draw: |mix| draw(mix, Family::Ringing),
+    },
+    Kind {
+        name: "pulse, other laws",
+        ranges: "δ^1.1 to δ^2.2 with a loss δ^s δ̇, s 0 to 1.5; or a stiffness 1.05 to 3 times as high when the bodies part",
+        every: 1,
+        draw: |mix| draw(mix, Family::Other),
+    },
+];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Family {
+    SpringDamper,
+    HuntCrossley,
+    Ringing,
+    Other,
+}
+
+/// F = δⁿ + c δˢ δ̇ of unit mass, the spring so much stiffer on the way back.
+#[derive(Clone, Copy)]
+struct Law {
+    n: f64,
+    s: f64,
+    loss: f64,
+    back: f64,
+}
+
+impl Law {
+    fn force(&self, d: f64, v: f64, most: f64) -> f64 {
+        let d = d.max(0.0);
+        if self.back > 1.0 && v < 0.0 {
+            // Walton and Braun: a straight line from the largest force with a higher stiffness.
+            return most.powf(self.n) * (1.0 - self.back * (1.0 - d / most));
+        }
+        d.powf(self.n) + self.loss * d.powf(self.s) * v
+    }
+}
+
+/// A contact met at velocity 1: force over time at steps of `step`, its duration and the velocity at which it is left.
+struct Contact {
+    step: f64,
+    force: Vec<f64>,
+    duration: f64,
+    restitution: f64,
+}
+
+impl Contact {
+    fn of(law: Law) -> Contact {
+        let step = 1e-3;
+        let (mut d, mut v, mut most, mut force) = (0.0, 1.0, 0.0, vec![law.force(0.0, 1.0, 0.0)]);
+        loop {
+            let slope = |d: f64, v: f64| (v, -law.force(d, v, most));
+            let a = slope(d, v);
+            let b = slope(d + 0.5 * step * a.0, v + 0.5 * step * a.1);
+            let c = slope(d + 0.5 * step * b.0, v + 0.5 * step * b.1);
+            let e = slope(d + step * c.0, v + step * c.1);
+            let next = (
+                d + step / 6.0 * (a.0 + 2.0 * b.0 + 2.0 * c.0 + e.0),
+                v + step / 6.0 * (a.1 + 2.0 * b.1 + 2.0 * c.1 + e.1),
+            );
+            most = f64::max(most, next.0);
+            let (before, after) = (force[force.len() - 1], law.force(next.0, next.1, most));
+            if next.1 < 0.0 && (after <= 0.0 || next.0 <= 0.0) {
+                // The step is small beside the contact: a straight line to the instant without force.
+                let part = if after < 0.0 { before / (before - after) } else { d / (d - next.0).max(1e-300) };
+                let duration = (force.len() as f64 - 1.0 + part.min(1.0)) * step;
+                return Contact { step, force, duration, restitution: -(v + part.min(1.0) * (next.1 - v)) };
+            }
+            (d, v) = next;
+            force.push(after);
+        }
+    }
+
+    fn at(&self, t: f64) -> f64 {
+        let place = t / self.step;
+        if !(0.0..self.duration / self.step).contains(&place) {
+            return 0.0;
+        }
+        let (i, part) = (place as usize, place.fract());
+        let next = self.force.get(i + 1).copied().unwrap_or(0.0);
+        self.force[i] * (1.0 - part) + next * part
+    }
+}
+
+fn law(mix: &mut Mix, family: Family) -> Law {
+    match family {
+        Family::SpringDamper => Law { n: 1.0, s: 0.0, loss: 2.0 * mix.random.between(0.01, 0.45), back: 1.0 },
+        Family::HuntCrossley => Law { n: 1.5, s: 1.5, loss: mix.log(0.015, 1.6), back: 1.0 },
+        Family::Ringing if mix.chance(0.5) => law(mix, Family::SpringDamper),
+        Family::Ringing => law(mix, Family::HuntCrossley),
+        Family::Other if mix.chance(0.3) => {
+            let back = mix.random.between(1.05, 3.0);
+            Law { n: 1.0, s: 0.0, loss: 0.0, back: mix.note("stiffer on the way back", back) }
+        }
+        Family::Other => {
+            let (n, s) = (mix.random.between(1.1, 2.2), mix.random.between(0.0, 1.5));
+            mix.note("exponent", n);
+            Law { n, s: mix.note("exponent of the loss", s), loss: mix.log(0.02, 0.6), back: 1.0 }
+        }
+    }
+}
+
+fn draw(mix: &mut Mix, family: Family) -> Record {
+    let law = law(mix, family);
+    let contact = Contact::of(law);
+    mix.note("restitution", contact.restitution);
+    let samples = mix.log(15.0, 300.0);
+    mix.note("samples a contact", samples);
+    let corner =
+        if family == Family::Ringing { 0.0 } else { mix.some(0.33, "low-pass by duration", 0.7, 10.0) };
+    let order = mix.random.between(1.0, 5.0) as usize;
+    if corner > 0.0 {
+        mix.note("order", order as f64);
+    }
+    let rings = if family == Family::Ringing { mix.some(1.0, "ringing", 0.003, 0.2) } else { 0.0 };
+    let own = TAU * mix.log(0.7, 8.0) / contact.duration;
+    let damping = mix.log(0.005, 0.1);
+    if rings > 0.0 {
+        mix.note("ringing by duration", own / TAU * contact.duration);
+    }
+    let (before, after) = (mix.random.between(1.0, 4.0), mix.random.between(2.0, 8.0));
+    let n = ((before + 1.0 + after) * samples) as usize;
+    let onset = (before * samples + mix.random.uniform()) / samples * contact.duration;
+    // Finer than a sample and than the step of the contact: the instrument is integrated with it.
+    let fine = (contact.duration / samples / contact.step).ceil().max(4.0) as usize;
+    let step = contact.duration / samples / fine as f64;
+    let mut sections = butterworth(order, TAU * corner / contact.duration);
+    let (mut x, mut v) = (0.0, 0.0);
+    let mut shown = Vec::with_capacity(n);
+    for i in 0..n * fine {
+        let t = i as f64 * step - onset;
+        let mut force = contact.at(t);
+        if corner > 0.0 {
+            let middle = contact.at(t - 0.5 * step);
+            force = sections.iter_mut().fold(middle, |input, section| section.pass(input, step));
+        } else if rings > 0.0 {
+            // A structure of unit static gain behind the sensor; half a step each way.
+            x += 0.5 * step * v;
+            v += step * (own * own * (force - x) - 2.0 * damping * own * v);
+            x += 0.5 * step * v;
+            force += rings * (x - force);
+        }
+        if i % fine == 0 {
+            shown.push(force);
+        }
+    }
+    // From the scales of the integration to those of a bench.
+    let (velocity, duration) = (mix.log(0.05, 5.0), mix.log(2e-5, 5e-3));
+    let scale = velocity * contact.duration / duration;
+    for a in &mut shown {
+        *a *= scale;
+    }
+    let top = peak(&shown);
+    let rate = samples / duration;
+    mix.spoil(&mut shown, rate, top, (3e-4, 0.03));
+    let instrument = match LowPass::new(corner / duration, order) {
+        Ok(low_pass) if corner > 0.0 => Instrument::LowPass(low_pass),
+        _ => Instrument::Flat,
+    };
+    let found = pulse(&trace("m/s^2", rate, shown), &PulseOptions { instrument, mass: None }).ok();
+    let found = found.as_ref();
+    let mut record = Record::default();
+    if family == Family::SpringDamper {
+        let xi = 0.5 * law.loss;
+        record.answers.push(Answer::new("ξ", xi, found.map(|p| &p.xi)));
+        let frequency = contact.duration / TAU / duration;
+        record.answers.push(Answer::new("frequency", frequency, found.map(|p| &p.frequency)));
+    }
+    record.answers.push(Answer::new("restitution", contact.restitution, found.map(|p| &p.restitution)));
+    record.answers.push(Answer::new("duration", duration, found.map(|p| &p.duration)));
+    record.answers.push(Answer::new("velocity", velocity, found.and_then(|p| p.initial_velocity.as_ref())));
+    record
+}
+
+/// One part of a low-pass of first or second order: x″ + 2ζω x′ + ω² x = ω² u, or x′ = ω (u − x).
+struct Section {
+    omega: f64,
+    zeta: Option<f64>,
+    x: f64,
+    v: f64,
+}
+
+impl Section {
+    /// What the section shows a step later, by the trapezoidal rule; the input is that in the middle of the step.
+    fn pass(&mut self, input: f64, step: f64) -> f64 {
+        let h = 0.5 * step * self.omega;
+        let before = self.x;
+        match self.zeta {
+            None => self.x = ((1.0 - h) * self.x + 2.0 * h * input) / (1.0 + h),
+            Some(zeta) => {
+                let (v, w) = (self.v, self.omega);
+                let middle = (v + h * w * (input - before)) / (1.0 + 2.0 * zeta * h + h * h);
+                self.v = 2.0 * middle - v;
+                self.x = before + step * middle;
+            }
+        }
+        0.5 * (before + self.x)
+    }
+}
+
+/// Parts of a Butterworth low-pass with its corner at ω.
+fn butterworth(order: usize, omega: f64) -> Vec<Section> {
+    let pair = |k: usize| ((2 * k + 1) as f64 * TAU / (4.0 * order as f64)).sin();
+    let pairs = (0..order / 2).map(|k| Some(pair(k)));
+    pairs
+        .chain((order % 2 == 1).then_some(None))
+        .map(|zeta| Section { omega, zeta, x: 0.0, v: 0.0 })
+        .collect()
+}
