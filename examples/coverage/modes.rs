@@ -103,7 +103,7 @@ fn of_lines(mix: &mut Mix, count: usize) -> Record {
     for v in &mut values {
         *v += Complex64::new(mix.random.normal(), mix.random.normal()) * (noise * top / 2f64.sqrt());
     }
-    let measured = Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None };
+    let measured = Measured::new(frequency, values, kind);
     compare(&measured, &poles)
 }
 

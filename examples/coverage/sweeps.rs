@@ -12,7 +12,7 @@ pub const KINDS: &[Kind] = &[Kind {
     name: "sweep",
     ranges: "12 to 30 steps over 1 to 6 half-power bandwidths, ζ 0.005 to 0.1, 512 or 1024 samples a spectrum, Hann window, resonance at 12 to 60 lines; \
         displacement from velocity; white noise 0.0001 to 0.01 of the largest response, 1/f noise, hum and 12 bits as in decays; frequency that drifts by \
-        0.01 to 0.2 lines a spectrum, amplitude modulated by 0.1 to 2 % at 0.5 to 20 lines, each in a third; the truth is the mean over the spectrum",
+        0.01 to 0.2 lines a spectrum, amplitude modulated by 0.1 to 2 % at 0.5 to 20 lines, each in a third; the truth is the mean over the spectrum under its window",
     every: 1,
     draw,
 }];
@@ -62,7 +62,9 @@ fn draw(mix: &mut Mix) -> Record {
         // Phase and size at the place u of the record, 0 to 1.
         let turn = |u: f64| TAU * (f / width * u + 0.5 * drift * u * (u - 1.0)) + phase;
         let size = |u: f64| 1.0 + modulation * (TAU * wave * u + beat).cos();
-        let mean = 1.0 + modulation * ((TAU * wave + beat).sin() - beat.sin()) / (TAU * wave);
+        // The mean of a cosine of w waves, and that under the window.
+        let plain = |w: f64| ((TAU * w + beat).sin() - beat.sin()) / (TAU * w);
+        let mean = 1.0 + modulation * (plain(wave) - 0.5 * (plain(wave + 1.0) + plain(wave - 1.0)));
         let place = |i: usize| i as f64 / n as f64;
         let mut pressed: Vec<f64> = (0..n).map(|i| force * size(place(i)) * turn(place(i)).cos()).collect();
         let speed = TAU * f * receptance(f) * force;
@@ -84,7 +86,7 @@ fn draw(mix: &mut Mix) -> Record {
         points.push(SweepPoint {
             force_path: None,
             response_path: format!("{k}").into(),
-            force: lines(&transform, &pressed),
+            force: Values::Real(lines(&transform, &pressed)),
             given: None,
             response: spectrum,
         });
@@ -94,7 +96,7 @@ fn draw(mix: &mut Mix) -> Record {
     let (name, direction) = ("sweep".into(), Some(Direction::Up));
     let sweep =
         Sweep { name, direction, mass: Some(1), axis, analyser_integrated: 0, points, findings: Vec::new() };
-    let found = response(&sweep, &ResponseOptions { integrate: 1, ..ResponseOptions::default() }).ok();
+    let found = response(&sweep, &ResponseOptions::default()).ok();
     let mut record = Record::default();
     for (k, (f, force, amplitude)) in truths.into_iter().enumerate() {
         let point = found.as_ref().map(|r| &r.points[k]);
@@ -108,11 +110,10 @@ fn draw(mix: &mut Mix) -> Record {
     let resonances = found.iter().flat_map(|r| &r.resonances);
     let nearest = resonances.min_by(|a, b| (a.frequency - top).abs().total_cmp(&(b.frequency - top).abs()));
     record.answers.push(Answer::of("resonance", top, nearest.map(|r| (r.frequency, r.frequency_std))));
-    let height = receptance(top) * force;
-    record.answers.push(Answer::of(
-        "height of resonance",
-        height,
-        nearest.map(|r| (r.amplitude, r.amplitude_std)),
-    ));
+    // The steps of a force that changes at random lie on no curve.
+    if modulation == 0.0 {
+        let found = nearest.map(|r| (r.amplitude, r.amplitude_std));
+        record.answers.push(Answer::of("height of resonance", receptance(top) * force, found));
+    }
     record
 }

@@ -111,17 +111,20 @@ impl Samples<'_> {
                 Some((at(f64::midpoint(self.times[first - 1], self.times[first])), Some(first)))
             }));
         }
-        // Noise may take the onset beyond the two samples: what the sum of squares would be with the onset held between them, to first order.
+        // Noise may take the onset beyond the two samples: what the sum of squares would be with the onset held between them, to first order. Farther
+        // beyond than noise takes it, or half a sample, the model follows a rise that it has not.
         let held = |fit: &Fitted| {
-            let onset = fit.fit.parameters[0];
+            let (onset, std) = (fit.fit.parameters[0], fit.fit.std(0));
             let beyond =
                 fit.first.map_or(0.0, |k| (self.times[k - 1] - onset).max(onset - self.times[k]).max(0.0));
+            let outside = beyond > (self.seen.step / 2.0).max(3.0 * std);
             let free = fit.fit.degrees_of_freedom() as f64;
-            fit.fit.sum_of_squares() * (1.0 + (beyond / fit.fit.std(0)).powi(2) / free)
+            (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, &start, first));
         let fits = fits.map(|fit| (held(&fit), fit));
-        let Some((_, mut best)) = fits.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        let Some((_, mut best)) = fits.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
+        else {
             return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
         };
         best.whiteness = Whiteness::of(&[&best.fit.residuals]);

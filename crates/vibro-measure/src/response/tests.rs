@@ -57,7 +57,8 @@ fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_th
             })
             .collect();
         let sweep = sweep(points);
-        let found = response(&sweep, &ResponseOptions::default()).unwrap();
+        let found =
+            response(&sweep, &ResponseOptions { integrate: Some(0), ..ResponseOptions::default() }).unwrap();
         let (mut limited, mut missed) = (0, 0);
         for (point, truth) in found.points.iter().zip(&truth) {
             let Some(limit) = point.upper_limit else { continue };
@@ -85,7 +86,9 @@ fn harmonics_in_the_noise_have_a_limit_and_no_others() {
                 step("response", 40.3, window, spectrum(window, &sines, 1.0, &mut normal))
             })
             .collect();
-        let found = response(&sweep(points), &ResponseOptions::default()).unwrap();
+        let found =
+            response(&sweep(points), &ResponseOptions { integrate: Some(0), ..ResponseOptions::default() })
+                .unwrap();
         let orders: Vec<&Harmonic> = found.points.iter().map(|p| &p.harmonics[0]).collect();
         let limited: Vec<f64> = orders.iter().filter_map(|h| h.upper_limit).collect();
         let missed = limited.iter().filter(|l| **l < second).count();
@@ -104,7 +107,9 @@ fn a_file_that_is_named_twice_is_found() {
         step(name, 80.0, Window::Hann, lines)
     };
     let steps = |points: Vec<SweepPoint>| {
-        let found = response(&sweep(points), &ResponseOptions::default()).unwrap();
+        let found =
+            response(&sweep(points), &ResponseOptions { integrate: Some(0), ..ResponseOptions::default() })
+                .unwrap();
         finding(&found, "sweep-steps-repeated").map(|f| ["first", "second"].map(|name| f.get(name).unwrap()))
     };
     assert_eq!(steps(vec![point("a", 1.0), point("b", 2.0), point("c", 3.0)]), None);
