@@ -15,11 +15,11 @@ pub const KINDS: &[Kind] = &[
         every: 1,
         draw: |mix| draw(mix, times, false),
     },
-    Kind { name: "drops, force at the plate", ranges: FORCES, every: 1, draw: |mix| draw(mix, forces, true) },
+    Kind { name: "drops, force at the plate", ranges: FORCES, every: 2, draw: |mix| draw(mix, forces, true) },
     Kind {
         name: "drops, sound",
         ranges: "as before; each impact rings at 0.8 to 4 kHz, ζ 0.01 to 0.1, found by its envelope",
-        every: 1,
+        every: 2,
         draw: |mix| draw(mix, sounds, true),
     },
 ];

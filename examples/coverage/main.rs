@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 const HEAD: &str = "# Coverage
-How often a stated uncertainty holds the truth: RECORDS records of each kind, an eighth of it of averaged spectra, each with its own mix of disturbances. The truth is what made the record.
+How often a stated uncertainty holds the truth: RECORDS records of each kind, fewer where an answer takes long, each with its own mix of disturbances. The truth is what made the record.
 `cargo run --release --example coverage` writes this page; its generators know nothing of the estimators.
 
 - **asked**: numbers that the records hold. **answered**: given with an uncertainty; all others are refused, not found, or doubted, and count no further.
