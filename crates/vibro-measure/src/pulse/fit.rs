@@ -37,7 +37,7 @@ pub(super) struct Fitted {
     pub fit: Fit,
     pub whiteness: Whiteness,
     /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than elsewhere, and is not
-    /// white noise: the pulse begins otherwise than the model can, and the parameters may be anything.
+    /// white noise, or the onset lies beyond the two samples that begin the contact: the pulse begins otherwise than the model can, and the parameters may be anything.
     pub widening: Option<f64>,
     /// First sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
@@ -123,12 +123,13 @@ impl Samples<'_> {
         };
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, &start, first));
         let fits = fits.map(|fit| (held(&fit), fit));
-        let Some((_, mut best)) = fits.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
+        let Some(((outside, _), mut best)) =
+            fits.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
         else {
             return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
         };
         best.whiteness = Whiteness::of(&[&best.fit.residuals]);
-        if !(best.whiteness.rejected() && self.more_left_at_onset(&best.fit)) {
+        if !(outside || best.whiteness.rejected() && self.more_left_at_onset(&best.fit)) {
             // At least nine samples leave four degrees of freedom.
             let student = student(best.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
             best.widening = Some(best.whiteness.inflation * student);
