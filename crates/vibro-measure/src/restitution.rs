@@ -55,7 +55,8 @@ pub struct Measured {
     pub trains: Vec<Train>,
     /// Velocities before and after.
     pub velocities: Option<Velocities>,
-    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than the flights. 0 where `None`.
+    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than the flights. Where `None` none is taken off,
+    /// and the uncertainties allow for up to a millisecond, longer than steel and most plastics touch.
     pub contact_time: Option<f64>,
 }
 
@@ -108,10 +109,17 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         }
         Err(error) => return Err(error),
     }
-    let matters =
-        |(way, part): (&Way, &f64)| way.restitution.std.is_some_and(|s| part * way.restitution.value > s);
-    if measured.contact_time.is_none() && by.iter().zip(&bias).any(matters) {
-        findings.push(Finding::caution("contact-time-unsaid").numbers("parts", bias));
+    if measured.contact_time.is_none() {
+        // Anywhere between nothing and the longest with equal chance, and the answer at its one end.
+        let by_contact = |(way, part): (&Way, &f64)| part * LONGEST / 3f64.sqrt() * way.restitution.value;
+        let matters = |at: (&Way, &f64)| at.0.restitution.std.is_some_and(|s| by_contact(at) > s);
+        let moved: Vec<f64> = by.iter().zip(&bias).map(by_contact).collect();
+        if by.iter().zip(&bias).any(matters) {
+            findings.push(Finding::caution("contact-time-unsaid").numbers("parts", bias));
+        }
+        for (way, moved) in by.iter_mut().zip(moved) {
+            way.restitution.std = way.restitution.std.map(|std| std.hypot(moved));
+        }
     }
     if let Some(velocities) = &measured.velocities {
         by.extend(velocities.answers()?);
@@ -136,6 +144,9 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     let bootstrap_std = measured.drop.as_ref().and_then(Drop::bootstrap);
     Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
 }
+
+/// Longest contact in ms that is allowed for where none is stated.
+const LONGEST: f64 = 1.0;
 
 /// Answers that differ by more than this part disagree where one has no uncertainty: the height would be wrong by twice as much. So it is with
 /// a missed flight and a height in mm.

@@ -21,7 +21,9 @@ fn held(
     for seed in 0..draws.of(CASES) {
         let mut one = train(&mut Noise::new(from + seed), r, flights, per_bounce, timing);
         one.onset_std = one.onset_std.filter(|_| stated);
-        let found = restitution(&Measured { trains: vec![one], ..Measured::default() }).unwrap();
+        let found =
+            restitution(&Measured { trains: vec![one], contact_time: Some(0.0), ..Measured::default() })
+                .unwrap();
         named += usize::from(outliers(&found) > 0);
         let std = found.restitution.std.unwrap();
         inside += usize::from((found.restitution.value - r).abs() < draws.reach() * std);

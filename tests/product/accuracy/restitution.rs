@@ -12,7 +12,9 @@ pub fn outliers(found: &Restitution) -> usize {
 }
 
 fn of_drop(drop: Drop) -> (f64, f64) {
-    let found = restitution(&Measured { drop: Some(drop), ..Measured::default() }).unwrap().restitution;
+    let found = restitution(&Measured { drop: Some(drop), contact_time: Some(0.0), ..Measured::default() })
+        .unwrap()
+        .restitution;
     (found.value, found.std.unwrap())
 }
 
@@ -66,7 +68,12 @@ fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
             }
             let intervals: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
             let train = Train { intervals, onset_std: (timing > 0.0).then_some(timing) };
-            let found = restitution(&Measured { trains: vec![train], ..Measured::default() }).unwrap();
+            let found = restitution(&Measured {
+                trains: vec![train],
+                contact_time: Some(0.0),
+                ..Measured::default()
+            })
+            .unwrap();
             n_out += outliers(&found);
             inside +=
                 usize::from((found.restitution.value - truth).abs() < 1.96 * found.restitution.std.unwrap());
@@ -108,7 +115,8 @@ fn trains_together_are_covered(draws: Draws) {
                     Train { intervals, onset_std: stated.then_some(timing) }
                 })
                 .collect();
-            let found = restitution(&Measured { trains, ..Measured::default() }).unwrap();
+            let found =
+                restitution(&Measured { trains, contact_time: Some(0.0), ..Measured::default() }).unwrap();
             n_out += outliers(&found);
             let off = (found.restitution.value - truth).abs();
             match found.restitution.std {
@@ -152,7 +160,9 @@ fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(draws: Draws) 
             for seed in 0..draws.of(CASES) {
                 let mut noise = Noise::new(130_000 + seed);
                 let trains = (0..trains).map(|_| train(&mut noise, truth, flights, 0.01, timing)).collect();
-                let found = restitution(&Measured { trains, ..Measured::default() }).unwrap().restitution;
+                let found = restitution(&Measured { trains, contact_time: Some(0.0), ..Measured::default() })
+                    .unwrap()
+                    .restitution;
                 let Some(std) = found.std else {
                     open += 1;
                     continue;
@@ -198,7 +208,9 @@ fn scatter_between_trains_is_covered_or_refused(draws: Draws) {
                     train(&mut noise, r, 5, per_bounce, 1e-6)
                 })
                 .collect();
-            let found = restitution(&Measured { trains, ..Measured::default() }).unwrap().restitution;
+            let found = restitution(&Measured { trains, contact_time: Some(0.0), ..Measured::default() })
+                .unwrap()
+                .restitution;
             match found.std {
                 Some(u) => inside += usize::from((found.value - truth).abs() < draws.reach() * u),
                 None => open += 1,
@@ -240,7 +252,12 @@ fn propagation_agrees_with_a_bootstrap() {
     // 1/√4000 = 1.6 %: four of these.
     let expected = (37f64 / 40.0).sqrt();
     assert!((bootstrap / stated - expected).abs() < 0.065);
-    let tool = restitution(&Measured { drop: Some(drop(intervals)), ..Measured::default() }).unwrap();
+    let tool = restitution(&Measured {
+        drop: Some(drop(intervals)),
+        contact_time: Some(0.0),
+        ..Measured::default()
+    })
+    .unwrap();
     assert!((tool.bootstrap_std.unwrap() / stated - expected).abs() < 0.065);
 }
 

@@ -21,7 +21,7 @@ fn the_thesis_drop_and_its_uncertainty() {
         gravity_std: Some(0.01),
         ..drop(0.57, 0.144)
     };
-    let found = of(&Measured { drop: Some(one.clone()), ..Measured::default() });
+    let found = of(&Measured { drop: Some(one.clone()), contact_time: Some(0.0), ..Measured::default() });
     // Printed as 0.2; 0.072·√(9.80665/1.14) = 0.211174.
     assert!((found.restitution.value - 0.211_174).abs() < 1e-6, "{found:?}");
     // Against the derivatives by differences.
@@ -61,7 +61,9 @@ fn the_contact_time_is_taken_off() {
 
 #[test]
 fn impossible_drops_are_refused() {
-    let why = |d: Drop| restitution(&Measured { drop: Some(d), ..Measured::default() }).unwrap_err();
+    let why = |d: Drop| {
+        restitution(&Measured { drop: Some(d), contact_time: Some(0.0), ..Measured::default() }).unwrap_err()
+    };
     assert!(why(drop(0.0, 0.144)).to_string().contains("height of 0"));
     assert!(why(drop(-1.0, 0.144)).to_string().contains("height"));
     // The fall takes 0.341 s, so twice that is the longest flight.
@@ -81,8 +83,11 @@ fn a_train_of_bounces_and_one_that_does_not_fit() {
     assert!((clean.restitution.value - 0.7).abs() < 1e-12, "{clean:?}");
     assert!(finding(&clean, "flight-outlier").is_none());
     intervals[3] *= 1.3;
-    let found =
-        of(&Measured { trains: vec![Train { intervals, ..Train::default() }], ..Measured::default() });
+    let found = of(&Measured {
+        trains: vec![Train { intervals, ..Train::default() }],
+        contact_time: Some(0.0),
+        ..Measured::default()
+    });
     let outlier = finding(&found, "flight-outlier").unwrap();
     assert_eq!((outlier.get("train"), outlier.get("flight")), (Some(1.0), Some(4.0)));
     assert!((outlier.get("expected").unwrap() / (0.4 * 0.343) - 1.0).abs() < 1e-9);
@@ -93,11 +98,11 @@ fn a_train_of_bounces_and_one_that_does_not_fit() {
 #[test]
 fn two_flights_give_their_ratio_without_an_uncertainty() {
     let train = Train { intervals: vec![0.3, 0.18], ..Train::default() };
-    let found = of(&Measured { trains: vec![train.clone()], ..Measured::default() });
+    let found = of(&Measured { trains: vec![train.clone()], contact_time: Some(0.0), ..Measured::default() });
     assert!((found.restitution.value - 0.6).abs() < 1e-14 && found.restitution.std.is_none(), "{found:?}");
     // However well the onsets are timed: one ratio does not show how R scatters.
     let timed = Train { onset_std: Some(1e-4), ..train };
-    let found = of(&Measured { trains: vec![timed], ..Measured::default() });
+    let found = of(&Measured { trains: vec![timed], contact_time: Some(0.0), ..Measured::default() });
     assert!(found.restitution.std.is_none() && finding(&found, "too-few-flights").is_some(), "{found:?}");
 }
 
@@ -192,7 +197,8 @@ fn methods_that_disagree_are_not_averaged() {
     let d = Drop { height_std: Some(0.001), interval_std: Some(0.001), ..drop(0.57, 0.144) };
     let intervals = vec![0.144, 0.072, 0.036, 0.018, 0.009];
     let train = Train { intervals, onset_std: Some(1e-4) };
-    let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
+    let found =
+        of(&Measured { drop: Some(d), trains: vec![train], contact_time: Some(0.0), ..Measured::default() });
     assert!(
         found.agree == Some(false) && found.restitution.value.is_nan() && found.by.len() == 2,
         "{found:?}"
@@ -205,8 +211,12 @@ fn methods_that_disagree_are_not_averaged() {
 fn answers_far_apart_disagree_without_uncertainties() {
     for (height, intervals) in [(570.0, vec![0.144, 0.03]), (0.57, vec![0.144, 0.015])] {
         let train = Train { intervals, ..Train::default() };
-        let found =
-            of(&Measured { drop: Some(drop(height, 0.144)), trains: vec![train], ..Measured::default() });
+        let found = of(&Measured {
+            drop: Some(drop(height, 0.144)),
+            trains: vec![train],
+            contact_time: Some(0.0),
+            ..Measured::default()
+        });
         assert!(found.agree == Some(false) && found.restitution.value.is_nan(), "{found:?}");
         assert!(finding(&found, "methods-far-apart").is_some(), "{:?}", found.findings);
     }
@@ -216,7 +226,8 @@ fn answers_far_apart_disagree_without_uncertainties() {
 fn what_cannot_be_compared_is_left_open() {
     let train = Train { intervals: vec![0.144, 0.03], ..Train::default() };
     let d = Drop { interval_std: Some(0.001), height_std: Some(0.001), ..drop(0.57, 0.144) };
-    let found = of(&Measured { drop: Some(d), trains: vec![train], ..Measured::default() });
+    let found =
+        of(&Measured { drop: Some(d), trains: vec![train], contact_time: Some(0.0), ..Measured::default() });
     assert!(found.agree.is_none() && found.restitution.value.is_finite(), "{found:?}");
 }
 
@@ -225,7 +236,7 @@ fn few_drops_have_no_uncertainty_and_five_a_bootstrap() {
     let drops = |intervals: &[f64]| {
         let d =
             Drop { height: 0.57, height_std: Some(1e-3), intervals: intervals.to_vec(), ..Drop::default() };
-        of(&Measured { drop: Some(d), ..Measured::default() })
+        of(&Measured { drop: Some(d), contact_time: Some(0.0), ..Measured::default() })
     };
     let all = [0.140, 0.142, 0.144, 0.146, 0.148];
     for n in 2..=3 {
@@ -250,7 +261,7 @@ fn two_drops_have_an_uncertainty_only_where_what_is_stated_explains_their_scatte
             interval_std: Some(stated),
             ..Drop::default()
         };
-        of(&Measured { drop: Some(d), ..Measured::default() })
+        of(&Measured { drop: Some(d), contact_time: Some(0.0), ..Measured::default() })
     };
     // Σ(d − d̄)² = 8e-6 s²: χ² of one degree of freedom passes 3.841 where the stated one is below 1.443 ms.
     assert!(of_two(1.45e-3).restitution.std.is_some());
@@ -264,7 +275,7 @@ fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
     let of_drops = |height_std: Option<f64>, interval_std: Option<f64>, intervals: &[f64]| {
         let d =
             Drop { height: 0.57, height_std, interval_std, intervals: intervals.to_vec(), ..Drop::default() };
-        of(&Measured { drop: Some(d), ..Measured::default() })
+        of(&Measured { drop: Some(d), contact_time: Some(0.0), ..Measured::default() })
     };
     let four = [0.140, 0.142, 0.144, 0.146];
     for intervals in [&four[..1], &four] {
@@ -290,10 +301,20 @@ fn drops_without_the_uncertainty_of_their_height_do_not_disagree_with_a_train() 
     let flights = [0.4, 0.248, 0.153_8, 0.095_3, 0.059_1, 0.036_6];
     let d = |height_std| Drop { height: 0.515, height_std, intervals: vec![0.4; 5], ..Drop::default() };
     let train = || Train { intervals: flights.to_vec(), ..Train::default() };
-    let found = of(&Measured { drop: Some(d(None)), trains: vec![train(); 2], ..Measured::default() });
+    let found = of(&Measured {
+        drop: Some(d(None)),
+        trains: vec![train(); 2],
+        contact_time: Some(0.0),
+        ..Measured::default()
+    });
     assert!(found.agree.is_none() && found.restitution.value.is_finite(), "{found:?}");
     assert_eq!(found.restitution.method, found.by[1].restitution.method);
-    let found = of(&Measured { drop: Some(d(Some(0.01))), trains: vec![train(); 2], ..Measured::default() });
+    let found = of(&Measured {
+        drop: Some(d(Some(0.01))),
+        trains: vec![train(); 2],
+        contact_time: Some(0.0),
+        ..Measured::default()
+    });
     assert_eq!(found.agree, Some(true), "{found:?}");
 }
 
