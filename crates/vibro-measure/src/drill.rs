@@ -99,26 +99,33 @@ pub fn drill_each(
     let smoothing = options.smoothing.corner(options.points, typical, rate);
     let smooth = smoothing.map(|corner| corner.smooth(&velocity, rate)).transpose()?;
     let smooth = smooth.as_deref().unwrap_or(&velocity);
-    let mut jumps = Jumps::new(&velocity, &states, options.contact * rate, options.fit * rate);
     let mut cycles = Cycles::new(rate, options.points);
     for (number, &turn) in whole.iter().enumerate() {
         let inside = turn.start as usize..=turn.end.ceil() as usize;
         if !states[inside].contains(&State::Lost) {
-            jumps.push(number, turn);
             cycles.differentiate(&velocity, &states, turn);
             cycles.integrate(smooth, turn);
             each(&cycles.average(smooth, &states, number, turn))?;
         }
     }
-    let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
-    let (mut impacts, residuals) = jumps.finish(rate, edge);
-    let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options);
-    let strongest = groups.first();
-    let average = cycles.phases();
+    let [stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let period = 1.0 / speed.value;
+    let offset = groups::Offset { value: drift.value / period, std: drift.std.map(|std| std / period) };
+    let around: Vec<f64> = velocity.iter().map(|v| v - offset.value).collect();
+    let mut jumps = Jumps::new(&around, &states, options.contact * rate, options.fit * rate);
+    for (number, &turn) in whole.iter().enumerate() {
+        if !states[turn.start as usize..=turn.end.ceil() as usize].contains(&State::Lost) {
+            jumps.push(number, turn);
+        }
+    }
+    let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
+    let (mut impacts, residuals) = jumps.finish(rate, edge);
+    let mut groups = groups::groups(&mut impacts, &residuals, gap, averaged, options);
+    groups.iter_mut().for_each(|group| group.allow(&offset));
+    let strongest = groups.first();
+    let average = cycles.phases();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
-    let [stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
     // Where speeds are too small, so is what they add up to: no uncertainty is stated.
     let metres = |mean: Mean, method| {
         Estimate::new(mean.value, mean.std.filter(|_| faults.clipped == 0), "m", mean.n, method)

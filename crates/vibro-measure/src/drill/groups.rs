@@ -43,6 +43,14 @@ pub struct Impact {
     pub clipped: bool,
 }
 
+/// Mean velocity over turns in m/s, which velocities at impacts are counted from: a mass that comes back each turn has none, so it is an offset of
+/// the instrument, or the machine moves as a whole.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Offset {
+    pub value: f64,
+    pub std: Option<f64>,
+}
+
 /// Impacts of one direction, by the sign of the jump of the velocity, and their means.
 ///
 /// A striker that hits the bit in front and is caught behind has two groups; means over both would be those of no impact. The first group
@@ -109,6 +117,17 @@ pub(super) fn groups(
 }
 
 impl Group {
+    /// Adds what is not known of the offset, which all impacts share.
+    pub(super) fn allow(&mut self, offset: &Offset) {
+        let Some(unknown) = offset.std else { return };
+        let add = |estimate: &mut Estimate, by: f64| estimate.std = estimate.std.map(|std| std.hypot(by));
+        add(&mut self.before, unknown);
+        add(&mut self.after, unknown);
+        if let Some(r) = &mut self.restitution {
+            add(r, (1.0 + r.value) * unknown / self.before.value.abs());
+        }
+    }
+
     /// Means over impacts with the residuals of their fits; `front`: they go towards the struck mass.
     fn new(members: &[(&Impact, &[Vec<f64>; 2])], front: bool, gap: usize, options: &DrillOptions) -> Group {
         // The means are of impacts that the instrument could follow, unless it could follow none.

@@ -107,11 +107,13 @@ const MEDIAN: f64 = 0.674_489_750_196_081_7;
 /// leaves out the samples beyond the noise limit with their neighbours, and repeats.
 pub fn background(values: &[f64]) -> Background {
     let Survey { low, high, .. } = survey(values);
+    let step = step(values).filter(|step| *step < (high - low) / FINE).unwrap_or(0.0);
     // P(|x| > zσ) < exp(−z²/2), for each of n samples.
     let z = (2.0 * (values.len().max(1) as f64 / 1e-3).ln()).sqrt();
     let of = |quiet: &[f64], part: f64, normal: f64| {
         let level = median(quiet);
-        let sigma = quantile(quiet.iter().map(|v| (v - level).abs()).collect(), part) / normal;
+        // The converter hides up to half a step of a distance.
+        let sigma = (quantile(quiet.iter().map(|v| (v - level).abs()).collect(), part) + step / 2.0) / normal;
         // A digital trace has σ = 0: the limit is at least a thousandth of the range.
         Background { level, sigma, reach: (z * sigma).max(1e-3 * (high - low)) }
     };
@@ -126,6 +128,15 @@ pub fn background(values: &[f64]) -> Background {
         found = of(&quiet, 0.5, MEDIAN);
     }
     found
+}
+
+/// A range of so many steps of the converter, or more, is no digital trace.
+const FINE: f64 = 32.0;
+
+/// Smallest step between neighbouring values that differ; `None` where all are the same.
+fn step(values: &[f64]) -> Option<f64> {
+    let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
+    steps.min_by(f64::total_cmp)
 }
 
 /// Quantile `q` of values in any order; NaN of none.
@@ -185,6 +196,22 @@ mod levels {
         // 1200 quiet samples with quiet neighbours: the median scatters by 1.25·0.1/√1200 = 0.004, its deviation by 3 %.
         assert!((found.level - 3.0).abs() < 0.02, "{found:?}");
         assert!((found.sigma / 0.1 - 1.0).abs() < 0.15, "{found:?}");
+    }
+
+    /// Noise of a third of a converter's step: most samples are the level, and what is beside it no impact.
+    #[test]
+    fn the_last_digit_of_a_converter_is_no_impact() {
+        let (mut noise, step) = (Noise::new(8), 1.0 / 2048.0);
+        let values: Vec<f64> = (0..20_000)
+            .map(|i| (0.33 * noise.normal()).round() * step + if i % 4000 == 2000 { 1.0 } else { 0.0 })
+            .collect();
+        let found = background(&values);
+        // Noise of a third of a step reaches two of them.
+        assert!(found.reach > 2.5 * step && found.reach < 8.0 * step, "{found:?}");
+        assert_eq!(bursts(&values, found.reach, None).0.len(), 5);
+        // A switch has two values, and both are what they are.
+        let switch: Vec<f64> = (0..1000).map(|i| if i % 100 < 3 { 5.0 } else { 0.0 }).collect();
+        assert!(background(&switch).reach < 0.1);
     }
 
     #[test]
