@@ -178,8 +178,14 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let rivals = [ContactModel::Hertz, ContactModel::HuntCrossley];
     let fits: Vec<Fitted> =
         std::iter::once(main).chain(rivals.into_iter().filter_map(|m| samples.fit(m).ok())).collect();
-    result.fits = fits.iter().map(|f| scale.report(f, options.mass, known)).collect();
+    let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
+    let unexplained = best.is_some_and(|best| samples.unexplained(best));
+    result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
     found.extend(result.led_by_best());
+    if unexplained {
+        result = result.doubted();
+        found.push(Finding::doubt("pulse-unexplained"));
+    }
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)

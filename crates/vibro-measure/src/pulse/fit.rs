@@ -2,7 +2,7 @@
 
 use super::{ContactModel, HuntCrossley, KelvinVoigt, LowPass};
 use crate::mean::average;
-use crate::residuals::{Whiteness, student};
+use crate::residuals::{Whiteness, aicc, student};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
@@ -137,6 +137,22 @@ impl Samples<'_> {
         Ok(best)
     }
 
+    /// Whether more is left within the contact than before it, by more than chance: then the contact follows another law, or something else moved.
+    pub fn unexplained(&self, fitted: &Fitted) -> bool {
+        let fit = &fitted.fit;
+        let (onset, end) = (fit.parameters[0], fitted.end() + self.seen.delay());
+        let of = |part: &dyn Fn(f64) -> bool| {
+            let squares =
+                self.times.iter().zip(&fit.residuals).filter(|(t, _)| part(**t)).map(|(_, r)| r * r);
+            (squares.clone().sum::<f64>(), squares.count() as f64)
+        };
+        let (inside, before) = (of(&|t| t >= onset && t <= end), of(&|t| t < onset - AROUND));
+        // The parameters follow the noise within the contact.
+        let free = inside.1 - fit.parameters.len() as f64;
+        let chance = 4.0 * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
+        free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * before.0 / before.1
+    }
+
     /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the
     /// variance of n samples of noise scatters by √(2/n).
     fn more_left_at_onset(&self, fit: &Fit) -> bool {
@@ -253,6 +269,11 @@ impl Fitted {
             times.partition_point(|t| *t < onset)
         });
         samples.model(self.model, &self.fit.parameters, times, first)
+    }
+
+    /// Akaike's criterion, corrected.
+    pub fn aicc(&self) -> f64 {
+        aicc(self.fit.sum_of_squares(), self.fit.residuals.len(), self.fit.parameters.len())
     }
 
     /// When the contact ends.

@@ -5,7 +5,6 @@ use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{ContactModel, HuntCrossley, LowPass};
 use crate::Estimate;
 use crate::mean::{average, upper_median};
-use crate::residuals::aicc;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::units::Quantity;
@@ -178,7 +177,7 @@ impl<'a> Normalised<'a> {
         PulseFit {
             model: *model,
             residual: self.height * (fit.sum_of_squares() / n as f64).sqrt(),
-            aicc: aicc(fit.sum_of_squares(), n, fit.parameters.len()),
+            aicc: fitted.aicc(),
             whiteness: whiteness.p_value,
             n,
             parameters,

@@ -69,6 +69,12 @@ impl PulseResult {
         self
     }
 
+    /// The same without uncertainties.
+    pub(super) fn doubted(mut self) -> PulseResult {
+        self.estimates().for_each(|estimate| estimate.std = None);
+        self
+    }
+
     /// Leads with the model that the record prefers, where that is not the one of spring and damper: what it states takes the place of what that
     /// states, which loses its uncertainty.
     pub(super) fn led_by_best(&mut self) -> Option<Finding> {
