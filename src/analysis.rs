@@ -33,7 +33,9 @@ pub mod figures {
     pub use super::drill::figures::drill;
     pub use super::frf::figures::frf;
     pub use super::impacts::figures::{drop, impacts};
-    pub use super::model::figures::{branches, ladder, orbit, phase_plane, poincare, regimes, sweep, traces};
+    pub use super::model::figures::{
+        branches, forces, ladder, orbit, phase_plane, poincare, regimes, sweep, traces,
+    };
     pub use super::pulse::figures::pulse;
     pub use super::spectrum::figures::lines;
     pub use super::sweep::figures::{fit, map, overlay, receptance, response, waterfall};

@@ -78,7 +78,9 @@ mod tests {
             }
         }
         assert!(size < 2_000_000, "{size}");
-        let stated = text.lines().filter(|l| l.starts_with("| ") && !l.starts_with("| what |"));
+        // Behind the figures stand tables of commands, which nothing computes.
+        let (figures, _) = text.split_once("## Scripts, simulations and hand calculations").unwrap();
+        let stated = figures.lines().filter(|l| l.starts_with("| ") && !l.starts_with("| what |"));
         for row in stated {
             assert!(rows.iter().any(|r| r == row), "nothing computes the row {row}");
         }

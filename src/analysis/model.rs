@@ -1,10 +1,12 @@
 //! The model of a rig: `vibro model`, one file a question; figures of its orbits, motions, sweeps, maps, and of the choice of a model.
 
+pub mod branch;
 pub mod choose;
 pub mod contact;
 pub mod figures;
 pub mod map;
 pub mod orbit;
+mod pattern;
 pub mod response;
 pub mod simulate;
 pub mod sweep;

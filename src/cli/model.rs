@@ -1,7 +1,7 @@
 //! `vibro model`: what the motion of a rig should be.
 
 use super::{Run, print};
-use crate::analysis::model::{choose, map, orbit, response, simulate, sweep};
+use crate::analysis::model::{branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -14,12 +14,14 @@ pub struct Model {
 
 #[derive(Debug, Subcommand)]
 enum Question {
-    /// All motions with one impact a period at one frequency, with existence and stability
+    /// All motions with one impact a period at one frequency, or those found with several, with existence and stability
     Orbit(Asked<orbit::Keys>),
     /// Simulated motion: regime, traces, phase plane, Poincaré section
     Simulate(Asked<simulate::Keys>),
     /// All motions with one impact a period over frequency, with folds and stability limits
     Response(Asked<response::Keys>),
+    /// Motions with P impacts in Q cycles followed over frequency, force, gap or restitution, through folds, flips and grazing
+    Continue(Asked<branch::Keys>),
     /// Simulated sweep of frequency or force; the state carries over from step to step
     Sweep(Asked<sweep::Keys>),
     /// The simplest adequate model of a scene, and why
@@ -46,6 +48,7 @@ impl Run for Model {
                 Question::Orbit(typed) => (typed.keys.answer()?, &typed.out),
                 Question::Simulate(typed) => (typed.keys.answer()?, &typed.out),
                 Question::Response(typed) => (typed.keys.answer()?, &typed.out),
+                Question::Continue(typed) => (typed.keys.answer()?, &typed.out),
                 Question::Sweep(typed) => (typed.keys.answer()?, &typed.out),
                 Question::Choose(typed) => (typed.keys.answer()?, &typed.out),
                 Question::Map(typed) => (typed.keys.answer(bar)?, &typed.out),

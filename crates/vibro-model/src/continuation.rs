@@ -1,8 +1,8 @@
-//! Branches of periodic motions over frequency, followed through folds, with every border of stability marked.
+//! Branches of periodic motions over frequency, force, or a value of the rig, followed through folds, with every border of stability marked.
 
 mod walk;
 
-use super::{Loss, PeriodicOrbit};
+use super::{Loss, Parameter, PeriodicOrbit};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 use walk::Walk;
@@ -10,7 +10,7 @@ use walk::Walk;
 /// A marked motion on a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// What happens there: the branch turns back at a fold (a multiplier passes +1), motions of twice the period branch off at a flip (−1), a
+    /// What happens there: the branch turns back at a fold (a multiplier passes +1), motions of twice the period branch off at a flip (−1) and turn back there, a
     /// pair of complex multipliers leaves or enters the unit circle, or an impact fades to a touch or a further contact appears (grazing).
     pub kind: Loss,
     /// The motion there.
@@ -46,22 +46,33 @@ pub struct Branch {
     pub ends: [End; 2],
 }
 
-/// Follows the branch of `start` both ways while the frequency lies in `low..=high` (Hz).
+/// Follows the branch of `start` both ways while the value of `over` lies in `low..=high` (SI units): the frequency, the force, or a value of
+/// the rig.
 ///
 /// Steps along the branch have at most the length `step` (0.05 is fine), measured in phases (rad), impulses (shares of the gap or
-/// amplitude times ω) and the logarithm of the frequency together (pseudo-arclength; H. B. Keller 1977).
+/// amplitude times ω) and what is varied together (pseudo-arclength; H. B. Keller 1977): the logarithm of its value, a gap in units of
+/// the amplitude, a restitution itself.
 ///
 /// # Errors
 /// If the range or the step is impossible or does not hold the start.
-pub fn follow(start: &PeriodicOrbit, low: f64, high: f64, step: f64) -> Result<Branch> {
-    let value = start.sine.frequency;
-    if !(low > 0.0 && high.is_finite() && (low..=high).contains(&value) && step > 1e-6 && step <= 1.0) {
+pub fn follow(start: &PeriodicOrbit, over: Parameter, low: f64, high: f64, step: f64) -> Result<Branch> {
+    let value = over.of(&start.rig, &start.sine);
+    let least = if over == Parameter::Gap { f64::NEG_INFINITY } else { 0.0 };
+    let positive = low > least || over == Parameter::Restitution && low == 0.0;
+    if !(positive && high.is_finite() && low < high && (low..=high).contains(&value)) {
+        let (name, unit) = (over.name(), over.unit());
         return Err(Error::usage(
-            format!("a branch from {value} within {low} to {high} by steps of {step}"),
-            "a range above 0 that holds the start, and a step from 1e-6 to 1",
+            format!("a branch over the {name} from {value} within {low} to {high} {unit}"),
+            "a range that holds the start, the lower end first",
         ));
     }
-    let walk = Walk { start, low, high, step };
+    over.check(high)?;
+    if !(step > 1e-6 && step <= 1.0) {
+        return Err(
+            Error::usage(format!("a branch by steps of {step}"), "a step from 1e-6 to 1").setting("step")
+        );
+    }
+    let walk = Walk { start, over, low, high, step };
     let origin = walk.point(start)?;
     let mut forth = walk.run(&origin, 1.0)?;
     if forth.end == End::Closed {

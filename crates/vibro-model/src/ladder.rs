@@ -31,6 +31,7 @@ pub use motions::Known;
 pub use question::{Change, Question};
 pub use rung::{Model, Need, Needed, Rung};
 pub use starts::Followed;
+pub(crate) use starts::starts;
 
 use super::{Law, Rig, Scene, scales};
 use climb::Climb;

@@ -37,6 +37,7 @@ mod parallel;
 mod parameter;
 mod periodic;
 pub mod portrait;
+mod reaction;
 pub mod regime;
 pub mod response;
 mod rig;
@@ -61,7 +62,8 @@ pub use orbit::{
     Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, shown, softened,
 };
 pub use parameter::Parameter;
-pub use periodic::{Beat, PeriodicOrbit};
+pub use periodic::{Beat, PeriodicOrbit, search};
+pub use reaction::{Reaction, Tally};
 pub use regime::{Pattern, Regime, regime};
 pub use response::{Change, ChangeKind, Response, ResponsePoint, response};
 pub use rig::Rig;

@@ -1,6 +1,6 @@
 //! What all simulated motions have in common, whatever their contact law: they go from event to event.
 
-use super::{Counts, Excitation, Impact, Rig, State};
+use super::{Counts, Excitation, Impact, Law, Rig, State};
 use vibro_record::Result;
 
 /// What ended a piece of a motion.
@@ -81,6 +81,11 @@ pub trait Motion {
     /// # Errors
     /// If `until` is not finite or in the past, or the motion needs more events than can be computed in bounded time.
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()>;
+
+    /// Law of its contact; `None` where impacts take no time.
+    fn law(&self) -> Option<Law> {
+        None
+    }
 
     /// What it has met so far, where that is counted.
     fn counted(&self) -> Option<Counts> {

@@ -1,7 +1,7 @@
 //! The table of what can be varied: the rig's values and those of its excitation.
 
 use super::scales::{Least, number};
-use super::{Excitation, Rig};
+use super::{Excitation, Rig, Sine};
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
@@ -120,6 +120,15 @@ impl Parameter {
     /// Its place in a rig; `None` where it belongs to the excitation.
     pub fn place(self, rig: &mut Rig) -> Option<&mut f64> {
         self.row().5.map(|place| place(rig))
+    }
+
+    /// Its value in a rig under a sine force; NaN where it belongs to another excitation.
+    pub fn of(self, rig: &Rig, sine: &Sine) -> f64 {
+        match self {
+            Parameter::Frequency => sine.frequency,
+            Parameter::Force => sine.force,
+            other => other.place(&mut rig.clone()).map_or(f64::NAN, |place| *place),
+        }
     }
 
     /// Its value in a rig, where it counts: not that of the excitation, nor of a wall.

@@ -3,8 +3,10 @@
 //! Phases and impulses of the impacts are found by Newton's method with the exact Jacobian; between the impacts everything is closed
 //! form. Each motion comes with the verdicts of those with one impact ([`Validity`]).
 
+mod search;
 mod system;
 
+pub use search::search;
 pub(super) use system::System;
 
 use super::orbit::Course;
@@ -107,21 +109,35 @@ impl PeriodicOrbit {
     /// # Errors
     /// As [`PeriodicOrbit::near`].
     pub fn shortest(self) -> Result<PeriodicOrbit> {
+        let Some((d, q)) = self.shorter(REPEATED) else { return Ok(self) };
+        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &self.pairs()[..d])
+    }
+
+    /// Whether its impacts do not repeat within its period.
+    pub fn is_shortest(&self) -> bool {
+        self.shorter(REPEATED).is_none()
+    }
+
+    /// Whether its impacts repeat within its period, to `close` in phases (rad) and impulses (relatively).
+    pub(crate) fn repeats_within(&self, close: f64) -> bool {
+        self.shorter(close).is_some()
+    }
+
+    /// Impacts and cycles after which it repeats within its period, to `close`.
+    fn shorter(&self, close: f64) -> Option<(usize, usize)> {
         let p = self.beats.len();
         let cycles =
             |d: usize| (self.cycles as usize * d).is_multiple_of(p).then(|| self.cycles as usize * d / p);
         let repeats = |d: usize, q: usize| {
             (0..p - d).all(|i| {
                 let (a, b) = (self.beats[i], self.beats[i + d]);
-                (b.phase - a.phase - TAU * q as f64).abs() < REPEATED
-                    && (b.impulse - a.impulse).abs() < REPEATED * a.impulse
+                (b.phase - a.phase - TAU * q as f64).abs() < close
+                    && (b.impulse - a.impulse).abs() < close * a.impulse
             })
         };
-        let shorter = (1..p)
+        (1..p)
             .filter(|d| p.is_multiple_of(*d))
-            .find_map(|d| Some((d, cycles(d)?)).filter(|(d, q)| repeats(*d, *q)));
-        let Some((d, q)) = shorter else { return Ok(self) };
-        PeriodicOrbit::near(&self.rig, &self.sine, q as u32, &self.pairs()[..d])
+            .find_map(|d| Some((d, cycles(d)?)).filter(|(d, q)| repeats(*d, *q)))
     }
 
     /// Impacts p in a period.

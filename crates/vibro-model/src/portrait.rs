@@ -1,7 +1,7 @@
 //! What is seen of a motion over some cycles: its impacts, its pattern, its traces, and where it is once a cycle.
 
 use super::regime::{Pattern, Watch};
-use super::{Event, Impact, Motion, Piece, State};
+use super::{Event, Impact, Motion, Piece, Reaction, State, Tally};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
@@ -17,6 +17,10 @@ pub struct Portrait {
     pub sticks: u64,
     /// The pattern of the impacts.
     pub pattern: Pattern,
+    /// The force between the masses.
+    pub reaction: Reaction,
+    /// That force (N) over time (s) in the contacts of the last cycles; empty where impacts take no time.
+    pub force: Vec<(f64, f64)>,
     /// Sampling times in s, over the last cycles.
     pub time: Vec<f64>,
     /// States at these times.
@@ -60,6 +64,7 @@ impl Portrait {
         let mut samples = Samples::new(first, period / f64::from(sitting.samples.max(1)), end);
         let mut section = Samples::new(whole, period, end);
         let mut watch = Watch::new(motion);
+        let mut tally = Tally::new(motion, first);
         let (mut impacts, mut sticks) = (Vec::new(), 0);
         let mut jumps = Vec::new();
         let mut struck: Option<(f64, State)> = None;
@@ -72,6 +77,7 @@ impl Portrait {
                 struck = Some((over, piece.path.state(piece.duration)));
             }
             watch.take(&piece);
+            tally.take(&piece);
             samples.take(&piece);
             section.take(&piece);
             match piece.event {
@@ -84,6 +90,8 @@ impl Portrait {
             impacts,
             sticks,
             pattern: watch.pattern(),
+            reaction: tally.read(sitting.cycles),
+            force: tally.trace,
             time: samples.time,
             states: samples.states,
             jumps,

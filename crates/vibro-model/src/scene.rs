@@ -11,7 +11,8 @@ use vibro_record::Result;
 /// All that a computation of the rig's motion starts from.
 ///
 /// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind, `[contact]` with `stiffness`,
-/// `damping`, `exponent`, and `[buffer]` with `gap`. Keys of the rig that are left out take the values of [`Rig::thesis`].
+/// `damping`, `exponent`, and `[buffer]` with `gap`
+/// and `damper_always`. Keys of the rig that are left out take the values of [`Rig::thesis`].
 ///
 /// ```
 /// use vibro_model::{Excitation, Scene, Sine};
@@ -31,7 +32,7 @@ pub struct Scene {
     /// A contact that gives way.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactKeys>,
-    /// The spring of mass 1 acts beyond a gap of its own: a loose mass.
+    /// Spring and damper of mass 1 act beyond a gap of its own: a loose mass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub buffer: Option<Buffer>,
 }
@@ -48,12 +49,27 @@ pub struct ContactKeys {
     pub exponent: Option<f64>,
 }
 
-/// Stop behind the loose mass 1.
+/// Buffer behind the loose mass 1: its spring and damper act in compression only.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
+#[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Buffer {
-    /// Way in m that mass 1 can go freely before its spring acts.
+    /// Way in m that mass 1 can go freely from its rest before its spring and damper act.
     pub gap: f64,
+    /// The damper acts always, not in compression only.
+    pub damper_always: bool,
+}
+
+impl Default for Buffer {
+    fn default() -> Buffer {
+        Buffer::thesis()
+    }
+}
+
+impl Buffer {
+    /// The buffer of the thesis' simulations with a loose mass: 1 mm away from it at rest.
+    pub const fn thesis() -> Buffer {
+        Buffer { gap: 1e-3, damper_always: false }
+    }
 }
 
 impl Scene {

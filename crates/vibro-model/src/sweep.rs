@@ -7,7 +7,7 @@ pub use gauge::Gauge;
 use gauge::LOW_PASS;
 pub use gauge::Observable;
 
-use super::{Motion, scales};
+use super::{Motion, Reaction, Tally, scales};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
@@ -65,6 +65,8 @@ pub struct Point {
     pub x1_scatter: f64,
     /// The same of x₂.
     pub x2_scatter: f64,
+    /// The force between the masses over the cycles read.
+    pub reaction: Reaction,
 }
 
 impl Plan {
@@ -126,18 +128,20 @@ impl Plan {
         while cycle < all {
             let until = (cycle + group).min(all);
             gauge.clear();
+            let mut tally = Tally::new(motion, f64::INFINITY);
             for c in cycle..until {
                 for step in 0..STEPS {
                     let begun = c as f64 + f64::from(step) / f64::from(STEPS);
                     // The step's mean frequency: its ends are 1/STEPS cycles apart in phase.
                     let ends = [at(begun), at(begun + 1.0 / f64::from(STEPS))];
                     motion.set_frequency(f64::midpoint(ends[0], ends[1]))?;
-                    pass(motion, 1.0 / f64::from(STEPS), &mut gauge)?;
+                    pass(motion, 1.0 / f64::from(STEPS), &mut gauge, Some(&mut tally))?;
                 }
                 gauge.close_cycle();
             }
             let (first, last) = (at(cycle as f64), at(until as f64));
-            found.push(point(&gauge, f64::midpoint(first, last), force));
+            let reaction = tally.read((until - cycle) as u32);
+            found.push(point(&gauge, f64::midpoint(first, last), force, reaction));
             cycle = until;
         }
         Ok(found)
@@ -167,34 +171,43 @@ impl Plan {
                 if self.observable == Observable::Rms {
                     // Its running mean must see the whole motion.
                     for _ in 0..settle {
-                        pass(motion, 1.0, &mut gauge)?;
+                        pass(motion, 1.0, &mut gauge, None)?;
                     }
                 } else if settle > 0 {
                     motion.advance(motion.time() + f64::from(settle) / frequency, &mut |_| {})?;
                 }
                 gauge.clear();
+                let mut tally = Tally::new(motion, f64::INFINITY);
                 for _ in 0..measure {
-                    pass(motion, 1.0, &mut gauge)?;
+                    pass(motion, 1.0, &mut gauge, Some(&mut tally))?;
                     gauge.close_cycle();
                 }
-                Ok(point(&gauge, frequency, force))
+                Ok(point(&gauge, frequency, force, tally.read(measure)))
             })
             .collect()
     }
 }
 
 /// Goes on by `cycles` of the present frequency and reads.
-fn pass(motion: &mut dyn Motion, cycles: f64, gauge: &mut Gauge) -> Result<()> {
+fn pass(
+    motion: &mut dyn Motion,
+    cycles: f64,
+    gauge: &mut Gauge,
+    mut tally: Option<&mut Tally>,
+) -> Result<()> {
     let (start, phase, frequency) = (motion.time(), motion.phase(), motion.frequency());
     let omega = TAU * frequency;
     motion.advance(start + cycles / frequency, &mut |piece| {
         gauge.take(piece.path, piece.duration, phase + omega * (piece.start - start), omega);
+        if let Some(tally) = &mut tally {
+            tally.take(&piece);
+        }
     })
 }
 
-fn point(gauge: &Gauge, frequency: f64, force: f64) -> Point {
+fn point(gauge: &Gauge, frequency: f64, force: f64, reaction: Reaction) -> Point {
     let [(x1, x1_scatter), (x2, x2_scatter)] = gauge.read();
-    Point { frequency, force, x1, x2, x1_scatter, x2_scatter }
+    Point { frequency, force, x1, x2, x1_scatter, x2_scatter, reaction }
 }
 
 /// A sweep up and one down.

@@ -1,7 +1,7 @@
 //! The contact law of a scene.
 
 use crate::error::{Error, Result};
-use crate::model::{Compliant, Excitation, Law, Motion, Scene, Simulation, State};
+use crate::model::{Buffer, Compliant, Excitation, Law, Motion, Scene, Simulation, State};
 use crate::record::Finding;
 use serde::Deserialize;
 
@@ -86,7 +86,7 @@ pub(super) fn motions(
     wanted: Contact,
     grazing: f64,
 ) -> Result<impl Fn(&Excitation, State, f64) -> Result<Moving>> {
-    let (rig, gap) = (&scene.rig, scene.buffer.map_or(0.0, |b| b.gap));
+    let (rig, buffer) = (&scene.rig, scene.buffer.unwrap_or(Buffer::thesis()));
     let meeting = meeting(scene, wanted)?;
     Ok(move |excitation: &Excitation, state, phase| -> Result<Moving> {
         Ok(match meeting {
@@ -94,7 +94,7 @@ pub(super) fn motions(
                 Box::new(Simulation::from_state(rig, excitation, state, phase)?.grazing_below(grazing))
             }
             Meeting::Giving(law) => Box::new(Compliant::new(rig, excitation, law, state, phase)?),
-            Meeting::Loose(law) => Box::new(Compliant::loose(rig, excitation, gap, law, state, phase)?),
+            Meeting::Loose(law) => Box::new(Compliant::loose(rig, excitation, buffer, law, state, phase)?),
         })
     })
 }
@@ -104,6 +104,7 @@ pub(super) fn buffer(scene: &Scene, wanted: Contact) -> Option<Finding> {
     match scene.buffer {
         Some(_) if wanted == Contact::LooseMass => None,
         Some(buffer) => Some(Finding::caution("buffer-unused").number("gap", buffer.gap)),
-        None => (wanted == Contact::LooseMass).then(|| Finding::caution("buffer-assumed")),
+        None => (wanted == Contact::LooseMass)
+            .then(|| Finding::caution("buffer-assumed").number("gap", Buffer::thesis().gap)),
     }
 }

@@ -6,9 +6,9 @@ mod motion;
 mod regimes;
 mod sweep;
 
-pub use branches::branches;
+pub use branches::{branches, continued};
 pub use ladder::ladder;
-pub use motion::{orbit, phase_plane, poincare, traces};
+pub use motion::{orbit, pattern, phase_plane, poincare, reaction, traces};
 pub(super) use regimes::counted;
 pub use regimes::regimes;
-pub use sweep::sweep;
+pub use sweep::{forces, sweep};

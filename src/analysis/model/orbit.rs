@@ -1,10 +1,10 @@
-//! All motions with one impact a period at one frequency: `vibro model orbit`.
+//! All motions with one impact a period at one frequency, and those with several that are found: `vibro model orbit`.
 
-use super::{Driven, SceneKeys, check_gap_std, figures, judged};
+use super::{Driven, SceneKeys, check_gap_std, figures, judged, pattern};
 use crate::analysis::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
-use crate::model::{Compliance, NoImpact, Orbit, Orbits, Rig, Softened, orbits_of, softened};
+use crate::model::{Compliance, NoImpact, Orbit, Orbits, Rig, Softened, orbits_of, search, softened};
 use crate::record::Finding;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
@@ -19,7 +19,10 @@ pub struct Keys {
     pub scene: SceneKeys,
     /// Excitation frequency in Hz
     pub frequency: Option<f64>,
-    /// Excitation cycles from impact to impact
+    /// Impacts in a period
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
+    pub impacts: u32,
+    /// Excitation cycles in a period
     #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
     pub cycles: u32,
     /// Standard uncertainty of the gap in m: a motion nearer to grazing is not robust
@@ -35,6 +38,9 @@ impl Keys {
         above_zero("frequency", self.frequency)?;
         check_gap_std(self.gap_std)?;
         let driven = self.scene.driven(self.frequency)?;
+        if self.impacts != 1 {
+            return self.several(&driven);
+        }
         let Driven { scene, excitation, finding } = &driven;
         let found = orbits_of(&scene.rig, excitation, self.cycles)?;
         let mut softening = Vec::new();
@@ -67,6 +73,30 @@ impl Keys {
         answer.table("orbits", orbits(&found.orbits));
         answer.table("verdicts", verdicts(&found.orbits, self.gap_std));
         answer.tables.extend([no_impact(&found.no_impact), self::soft(&soft)]);
+        Ok(answer)
+    }
+
+    /// The motions with several impacts a period that are found.
+    fn several(&self, driven: &Driven) -> Result<Answer> {
+        let Driven { scene, excitation, finding } = driven;
+        let found = search(&scene.rig, &pattern::sine(excitation)?, self.impacts, self.cycles)?;
+        let mut answer = Answer::of(&json!({
+            "scene": scene,
+            "orbits": found.iter().map(|o| pattern::told(o, self.gap_std)).collect::<Vec<Value>>(),
+            "no_impact": crate::model::no_impact(&scene.rig, excitation).ok(),
+        }))?;
+        answer.add("", finding.clone());
+        answer.add("", [Finding::note("orbits-perhaps-more")]);
+        for (i, orbit) in (1..).zip(&found) {
+            let distance = orbit.validity.grazing_distance;
+            if let Some(std) = self.gap_std.filter(|std| distance <= *std) {
+                let near = Finding::caution("verdicts-near-grazing").count("motion", i);
+                answer.add("", [near.number("distance", distance).number("std", std)]);
+            }
+            answer.figure(format!("orbit_{i}"), figures::pattern(&format!("Motion {i}"), orbit));
+        }
+        answer.table("orbits", pattern::motions(&found, self.gap_std));
+        answer.table("impacts", pattern::impacts(&found));
         Ok(answer)
     }
 }

@@ -76,6 +76,7 @@ impl Keys {
             "scene": scene,
             "impacts": portrait.impacts,
             "regime": portrait.pattern.regime,
+            "reaction": portrait.reaction,
             "grazing": grazing,
             "chatter": portrait.sticks,
             "final_state": { "time": time, "phase": phase, "x1": x1, "v1": v1, "x2": x2, "v2": v2 },
@@ -88,6 +89,7 @@ impl Keys {
         answer.figure("traces", figures::traces("Traces of both masses", portrait, scene.rig.gap));
         answer.figure("phase_plane", figures::phase_plane("Phase plane", portrait));
         answer.figure("poincare", figures::poincare("Poincaré sections", portrait));
+        answer.figure("reaction", figures::reaction("Force between the masses", portrait));
         answer.csv("traces", &states(&portrait.time, &portrait.states));
         answer.csv("poincare", &states(&portrait.beginnings, &portrait.section));
         answer.csv("impacts", &impacts(portrait));
@@ -148,7 +150,7 @@ impl Keys {
 }
 
 fn summary(seen: &Seen) -> Table {
-    let Portrait { impacts, pattern, sticks, .. } = &seen.portrait;
+    let Portrait { impacts, pattern, sticks, reaction, .. } = &seen.portrait;
     let many = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let regime = match pattern.regime {
         Regime::Periodic { impacts, cycles } => {
@@ -168,6 +170,9 @@ fn summary(seen: &Seen) -> Table {
             ("last impulse", "N s", &|()| last.map(|i| i.impulse).into()),
             ("approach speed", "m/s", &|()| last.map(|i| i.approach_velocity).into()),
             ("phase", "rad", &|()| last.map(|i| i.phase).into()),
+            ("peak force", "N", &|()| reaction.peak.into()),
+            ("RMS force", "N", &|()| reaction.rms.into()),
+            ("impulse a cycle", "N s", &|()| reaction.impulse.into()),
         ],
     )
     .note("Phase: of the excitation at the last impact, after the crest of a sine force, the impulse or the onset of the pulse.")

@@ -110,6 +110,7 @@ impl Keys {
         answer.add("", scattered(&swept));
         answer.tables.push(found(&resonances, &jumps));
         answer.figure("sweep", figures::sweep(&swept, &resonances, &jumps, plan.observable, over_force));
+        answer.figure("reaction", figures::forces(&swept, over_force));
         answer.csv("sweep", &points(&swept));
         Ok(answer)
     }
@@ -168,6 +169,9 @@ fn points(swept: &Swept) -> Table {
             ("x2", "m", &|(_, p)| p.x2.into()),
             ("x1 scatter", "m", &|(_, p)| p.x1_scatter.into()),
             ("x2 scatter", "m", &|(_, p)| p.x2_scatter.into()),
+            ("peak force", "N", &|(_, p)| p.reaction.peak.into()),
+            ("RMS force", "N", &|(_, p)| p.reaction.rms.into()),
+            ("impulse a cycle", "N s", &|(_, p)| p.reaction.impulse.into()),
         ],
     )
 }

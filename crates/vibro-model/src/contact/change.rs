@@ -38,6 +38,8 @@ impl Compliant {
             }
             Mark::SpringActs | Mark::SpringFree => {
                 self.spring_acts = mark == Mark::SpringActs;
+                // The damper's force steps.
+                self.find_stage();
                 Event::Switch
             }
         }

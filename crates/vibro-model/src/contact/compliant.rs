@@ -10,7 +10,7 @@ use crate::forcing::Tick;
 use crate::linear::{Course, Linear, Quantity};
 use crate::motion::{Event, Motion, Path, Piece};
 use crate::simulate::Impact;
-use crate::{Excitation, Rig, State, scales};
+use crate::{Buffer, Excitation, Rig, State, scales};
 use vibro_record::{Error, Result};
 
 /// Pieces of one call at most, of linear motion: some minutes. An integrated one counts as ten.
@@ -85,15 +85,15 @@ impl Compliant {
     /// A motion with a loose mass 1, whose contact with mass 2 gives way by a spring and a damper, or rebounds at once with the rig's
     /// restitution.
     ///
-    /// Behind mass 1, on the side away from mass 2, its spring is a buffer that begins `gap` (m) away from its rest: the force on mass 1 is
-    /// −k₁(x₁ + gap) for x₁ < −gap and none elsewhere, where only its damper holds it. Pieces end with `Switch` where it begins and ceases to
-    /// act; with rebounds at once, with `Impact`, with `Stick` where the masses have chattered to rest against each other and with `Release`
-    /// where they cease to move together.
+    /// Behind mass 1, on the side away from mass 2, its spring and damper are a buffer that begins `gap` (m) away from its rest: the force on
+    /// mass 1 is −k₁(x₁ + gap) − c₁v₁ for x₁ < −gap and none elsewhere, or −c₁v₁ there with [`Buffer::damper_always`]. Pieces end with
+    /// `Switch` where it begins and ceases to act; with rebounds at once, with `Impact`, with `Stick` where the masses have chattered to rest
+    /// against each other and with `Release` where they cease to move together.
     ///
     /// ```
-    /// use vibro_model::{Compliant, Event, Excitation, Motion, Rig, Sine, State};
+    /// use vibro_model::{Buffer, Compliant, Event, Excitation, Motion, Rig, Sine, State};
     /// let sine = Excitation::Sine(Sine { force: 0.1, frequency: 4.5 });
-    /// let mut motion = Compliant::loose(&Rig::thesis(), &sine, 0.0, None, State::REST, 0.0)?;
+    /// let mut motion = Compliant::loose(&Rig::thesis(), &sine, Buffer::thesis(), None, State::REST, 0.0)?;
     /// let mut switches = 0;
     /// motion.advance(2.0, &mut |piece| switches += usize::from(piece.event == Event::Switch))?;
     /// assert!(switches > 4);
@@ -106,7 +106,7 @@ impl Compliant {
     pub fn loose(
         rig: &Rig,
         excitation: &Excitation,
-        gap: f64,
+        buffer: Buffer,
         law: Option<Law>,
         state: State,
         phase: f64,
@@ -116,22 +116,22 @@ impl Compliant {
                 "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
             return Err(Error::usage("a loose mass with a contact law that is not linear", expected));
         }
-        scales::number("buffer gap", gap, "m", scales::Least::Zero)?;
-        Compliant::start(rig, excitation, law, Some(gap), state, phase)
+        scales::number("buffer gap", buffer.gap, "m", scales::Least::Zero)?;
+        Compliant::start(rig, excitation, law, Some(buffer), state, phase)
     }
 
     fn start(
         rig: &Rig,
         excitation: &Excitation,
         law: Option<Law>,
-        buffer: Option<f64>,
+        buffer: Option<Buffer>,
         state: State,
         phase: f64,
     ) -> Result<Compliant> {
         scales::check(rig, excitation)?;
         rig.check_start(&state, phase)?;
         law.map_or(Ok(()), |law| law.check())?;
-        let modes = Modes::new(rig, law, buffer.unwrap_or(0.0));
+        let modes = Modes::new(rig, law, buffer);
         let mut motion = Compliant {
             rig: *rig,
             law,
@@ -292,6 +292,10 @@ impl Motion for Compliant {
         self.drive.set_excitation(excitation)?;
         self.find_stage();
         Ok(())
+    }
+
+    fn law(&self) -> Option<Law> {
+        self.law
     }
 
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()> {

@@ -1,10 +1,10 @@
 //! The linear modes of a rig: apart, in a contact of spring and damper, or moving together.
 
 use super::Law;
-use crate::Rig;
 use crate::linear::{Linear, Quantity};
+use crate::{Buffer, Rig};
 
-/// All linear modes of a rig, each with the spring of mass 1 acting or not.
+/// All linear modes of a rig, each with the spring and damper of mass 1 acting or not.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Modes {
     /// Apart, by whether the spring of mass 1 acts.
@@ -24,18 +24,20 @@ pub(super) struct Modes {
 }
 
 impl Modes {
-    /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper, the spring of mass 1 acting for
-    /// x₁ < −`buffer`.
-    pub fn new(rig: &Rig, law: Option<Law>, buffer: f64) -> Modes {
+    /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper. Spring and damper of a loose mass 1 act in compression, beyond
+    /// the gap of its `buffer`; its damper may act always.
+    pub fn new(rig: &Rig, law: Option<Law>, buffer: Option<Buffer>) -> Modes {
         let [first, second] = rig.bodies();
         let inverse = rig.masses().map(|mass| 1.0 / mass);
         let (k3, c3) = match law {
             Some(Law::KelvinVoigt { stiffness, damping }) => (stiffness, damping),
             _ => (0.0, 0.0),
         };
+        let gap = buffer.map_or(0.0, |b| b.gap);
         let own = |acting: bool| {
             let k1 = if acting { first.stiffness } else { 0.0 };
-            ([[-k1, -first.damping, 0.0, 0.0], [0.0, 0.0, -second.stiffness, -second.damping]], -k1 * buffer)
+            let c1 = if acting || buffer.is_some_and(|b| b.damper_always) { first.damping } else { 0.0 };
+            ([[-k1, -c1, 0.0, 0.0], [0.0, 0.0, -second.stiffness, -second.damping]], -k1 * gap)
         };
         // With a spring k and a damper c between the masses.
         let free = |k: f64, c: f64| {
@@ -60,7 +62,7 @@ impl Modes {
             together,
             indentation: Quantity { weights: [1.0, 0.0, -1.0, 0.0], force: 0.0, offset: -rig.gap },
             contact_force: Quantity { weights: [k3, c3, -k3, -c3], force: 0.0, offset: -k3 * rig.gap },
-            compression: Quantity { weights: [-1.0, 0.0, 0.0, 0.0], force: 0.0, offset: -buffer },
+            compression: Quantity { weights: [-1.0, 0.0, 0.0, 0.0], force: 0.0, offset: -gap },
             reduced_mass: rig.reduced_mass(),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{End, Mark};
 use crate::periodic::{System, ordered};
-use crate::{Loss, PeriodicOrbit, Sine};
+use crate::{Loss, Parameter, PeriodicOrbit, Rig, Sine};
 use nalgebra::{DMatrix, DVector, Matrix4, Matrix6};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
@@ -11,9 +11,13 @@ use vibro_record::{Error, Result};
 const POINTS: usize = 20_000;
 /// Newton's steps of a corrector.
 const CORRECTOR: usize = 12;
+/// Both halves of a motion at a flip are the same to this (rad and shares of an impulse): branches cross there, so the equations are nearly
+/// singular about the place, which is located as nearly as they can be solved.
+const HALVES: f64 = 1e-2;
 /// Where a walk begins, how far it goes, and in what steps.
 pub struct Walk<'a> {
     pub start: &'a PeriodicOrbit,
+    pub over: Parameter,
     pub low: f64,
     pub high: f64,
     pub step: f64,
@@ -26,7 +30,7 @@ pub struct Way {
     pub end: End,
 }
 
-/// A point of the extended space: unknowns and the logarithm of the frequency; with its tangent.
+/// A point of the extended space: unknowns and the coordinate of what is varied; with its tangent.
 #[derive(Clone)]
 pub struct Spot {
     z: DVector<f64>,
@@ -34,13 +38,50 @@ pub struct Spot {
 }
 
 impl Walk<'_> {
-    fn sine(&self, z: &DVector<f64>) -> Sine {
-        Sine { frequency: z[z.len() - 1].exp(), ..self.start.sine }
+    /// Coordinate of a value of what is varied: its logarithm, the gap in units of the branch's length, the restitution itself.
+    fn coordinate(&self, value: f64) -> f64 {
+        match self.over {
+            Parameter::Gap => value / self.length(),
+            Parameter::Restitution => value,
+            _ => value.ln(),
+        }
+    }
+
+    /// The value at a coordinate.
+    fn value(&self, coordinate: f64) -> f64 {
+        match self.over {
+            Parameter::Gap => coordinate * self.length(),
+            Parameter::Restitution => coordinate,
+            _ => coordinate.exp(),
+        }
+    }
+
+    /// Rig and force at `z`.
+    fn scene(&self, z: &DVector<f64>) -> (Rig, Sine) {
+        let (mut rig, mut sine) = (self.start.rig, self.start.sine);
+        let (least, most) = self.over.limits();
+        // A step may look beyond a bound: `system` goes on there.
+        let value = self.value(z[z.len() - 1]).clamp(least, most);
+        match self.over {
+            Parameter::Frequency => sine.frequency = value,
+            Parameter::Force => sine.force = value,
+            other => {
+                if let Some(place) = other.place(&mut rig) {
+                    *place = value;
+                }
+            }
+        }
+        (rig, sine)
     }
 
     fn system(&self, z: &DVector<f64>) -> Result<System> {
-        let mut system = System::new(&self.start.rig, &self.sine(z), self.start.cycles)?;
-        // One unit of impulse along the whole branch: that of the gap and the start's frequency.
+        let (rig, sine) = self.scene(z);
+        let mut system = System::new(&rig, &sine, self.start.cycles)?;
+        if self.over == Parameter::Restitution {
+            // The equations have a meaning beyond 0 and 1, too.
+            system.contact = 1.0 / Rig { restitution: z[z.len() - 1], ..rig }.exchange();
+        }
+        // One length along the whole branch: that of its start.
         system.length = self.length();
         Ok(system)
     }
@@ -56,7 +97,7 @@ impl Walk<'_> {
         z.rows(0, z.len() - 1).into_owned()
     }
 
-    /// What is left of the equations, and the Jacobian with the derivative by the logarithm of the frequency as last column.
+    /// What is left of the equations, and the Jacobian with the derivative by the coordinate of what is varied as last column.
     fn evaluate(&self, z: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>)> {
         let n = z.len() - 1;
         let (left, jacobian) = self.system(z)?.evaluate(&Self::inner(z));
@@ -64,12 +105,12 @@ impl Walk<'_> {
         all.view_mut((0, 0), (n, n)).copy_from(&jacobian);
         // Central difference; the corrector's answer does not depend on it.
         let h = 1e-6;
-        let at = |shift: f64| -> Result<DVector<f64>> {
+        let at = |place: f64| -> Result<DVector<f64>> {
             let mut moved = z.clone();
-            moved[n] += shift;
+            moved[n] = place;
             Ok(self.system(&moved)?.evaluate(&Self::inner(z)).0)
         };
-        all.view_mut((0, n), (n, 1)).copy_from(&((at(h)? - at(-h)?) / (2.0 * h)));
+        all.view_mut((0, n), (n, 1)).copy_from(&((at(z[n] + h)? - at(z[n] - h)?) / (2.0 * h)));
         Ok((left, all))
     }
 
@@ -84,21 +125,21 @@ impl Walk<'_> {
         Ok(found.filter(|t| t.iter().all(|v| v.is_finite())))
     }
 
-    /// The place of `orbit` on the branch, with the direction in which the frequency grows.
+    /// The place of `orbit` on the branch, with the direction in which the varied value grows.
     ///
     /// # Errors
     /// If the branch folds there.
     pub fn point(&self, orbit: &PeriodicOrbit) -> Result<Spot> {
         let mut z = DVector::zeros(2 * orbit.beats.len() + 1);
         let n = z.len() - 1;
-        z[n] = orbit.sine.frequency.ln();
+        z[n] = self.coordinate(self.over.of(&orbit.rig, &orbit.sine));
         let system = self.system(&z)?;
         z.rows_mut(0, n).copy_from(&system.unknowns(&orbit.pairs()));
         let mut along = DVector::zeros(n + 1);
         along[n] = 1.0;
         let tangent = self.tangent(&z, &along)?.ok_or_else(|| {
             Error::refused("the branch has no direction at its start: it folds there")
-                .hint("start from a motion at another frequency")
+                .hint("start from another value")
         })?;
         Ok(Spot { z, tangent })
     }
@@ -129,7 +170,7 @@ impl Walk<'_> {
 
     fn orbit(&self, z: &DVector<f64>) -> Result<PeriodicOrbit> {
         let system = self.system(z)?;
-        Ok(PeriodicOrbit::build(&system, self.sine(z), self.start.cycles, &Self::inner(z)))
+        Ok(PeriodicOrbit::build(&system, self.scene(z).1, self.start.cycles, &Self::inner(z)))
     }
 
     /// From `origin` on, forth (1) or back (−1), to the end of the branch.
@@ -152,13 +193,13 @@ impl Walk<'_> {
                 }
                 continue;
             };
-            let value = next.z[n].exp();
+            let value = self.value(next.z[n]);
             let faded = (n / 2..n).any(|k| next.z[k] <= 0.0);
             if faded || value < self.low || value > self.high {
-                // The end is where an impulse is zero or the frequency at its bound.
+                // The end is where an impulse is zero or the value at its bound.
                 let bound = if value < self.low { self.low } else { self.high };
                 let distance = |spot: &Spot| {
-                    if faded { spot.z.rows(n / 2, n / 2).min() } else { spot.z[n] - bound.ln() }
+                    if faded { spot.z.rows(n / 2, n / 2).min() } else { spot.z[n] - self.coordinate(bound) }
                 };
                 way.end = if faded { End::Grazing } else { End::Range };
                 if let Some(last) = self.locate(&here, s, &distance) {
@@ -226,6 +267,9 @@ impl Walk<'_> {
         for (kind, spot) in found {
             let orbit = self.orbit(&spot.z)?;
             if confirmed(kind, &orbit) {
+                // At a motion of half the period, too, it turns back, and goes on with the impacts of the other half.
+                let halves = kind == Loss::Fold && orbit.repeats_within(HALVES);
+                let kind = if halves { Loss::Flip } else { kind };
                 way.marks.push(Mark { kind, orbit, after });
             }
         }
@@ -241,8 +285,10 @@ impl Walk<'_> {
             // False position, every third time the middle.
             let share = at_low / (at_low - at_high);
             let share = if k % 3 == 2 || !share.is_finite() { 0.5 } else { share.clamp(0.01, 0.99) };
-            let middle = low + share * (high - low);
-            let spot = self.ahead(here, middle)?.0;
+            // Where branches cross, the equations are singular: look beside it.
+            let places = [share, 0.45, 0.6].map(|part| low + part * (high - low));
+            let near = places.into_iter().find_map(|place| Some((place, self.ahead(here, place)?.0)));
+            let Some((middle, spot)) = near else { return best };
             let value = test(&spot);
             if !value.is_finite() {
                 return best;

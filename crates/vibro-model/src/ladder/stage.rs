@@ -253,7 +253,7 @@ impl Stage<'_> {
         let buffer = self.scene.buffer.ok_or_else(|| Finding::note("buffer-missing"))?;
         let (rig, rest) = (self.rig(), Simulation::at_rest(self.rig()));
         let law = stiffness.map(|k| self.scene.spring(k)).transpose()?;
-        let mut motion = Compliant::loose(rig, self.excitation, buffer.gap, law, rest, 0.0)?;
+        let mut motion = Compliant::loose(rig, self.excitation, buffer, law, rest, 0.0)?;
         let (reading, cost) = timed(|| self.reader().read(&mut motion));
         let mut reasons = vec![Finding::note("spring-only-pushes").number("gap", buffer.gap)];
         if self.question.history.is_some() {

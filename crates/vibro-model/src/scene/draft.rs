@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn a_scene_of_every_part() {
         let text = "m1 = 1\nrestitution = 0.2\n[excitation]\nkind = \"pulse\"\nforce = 0.5\nwidth = 0.01\nfrequency = 5\n\
-                    [contact]\nstiffness = 1e5\ndamping = 0\n[buffer]\ngap = 2e-3\n";
+                    [contact]\nstiffness = 1e5\ndamping = 0\n[buffer]\ngap = 2e-3\ndamper_always = true\n";
         let scene = Scene::from_toml(text).unwrap();
         assert_eq!(scene.rig, Rig { m1: 1.0, restitution: 0.2, ..Rig::thesis() });
         assert_eq!(
@@ -283,7 +283,10 @@ mod tests {
             Some(Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency: 5.0 }))
         );
         let contact = ContactKeys { stiffness: Some(1e5), damping: Some(0.0), exponent: None };
-        assert_eq!((scene.contact, scene.buffer), (Some(contact), Some(Buffer { gap: 2e-3 })));
+        assert_eq!(
+            (scene.contact, scene.buffer),
+            (Some(contact), Some(Buffer { gap: 2e-3, damper_always: true }))
+        );
         assert_eq!(Draft::from_toml(text).unwrap().left_out(), ["m2", "k1", "k2", "c1", "c2", "gap"]);
         let json = serde_json::to_value(&scene).unwrap();
         assert_eq!((&json["m1"], &json["excitation"]["kind"]), (&1.0.into(), &"pulse".into()));

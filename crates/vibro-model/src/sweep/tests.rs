@@ -1,4 +1,5 @@
 use super::*;
+use crate::Buffer;
 use crate::{Compliant, Excitation, Law, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
 
 fn both<M: Motion + Clone + Sync>(
@@ -43,7 +44,7 @@ fn the_thesis_sweep_has_its_peaks() {
 }
 
 /// An independent simulation of the thesis' sweeps (continuous, 0.02 Hz/s, running RMS) gave: sine 0.1 N 5.58 and 10.59 Hz up, only 5.44 Hz down; pulse 0.5 N of
-/// 10 ms 5.58 and 10.71 Hz up with a sub-harmonic peak near 2.81 Hz, 5.42 Hz down; loose mass under 0.1 N 4.63 Hz up.
+/// 10 ms 5.58 and 10.71 Hz up with a sub-harmonic peak near 2.81 Hz, 5.42 Hz down; loose mass under 0.1 N (spring and damper in compression only, beyond 1 mm) 4.66 and 10.23 Hz up.
 #[test]
 fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     let rig = Rig::thesis();
@@ -82,10 +83,13 @@ fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     let [grazing, clapping, down] = tops(&swept);
     assert!((grazing - 5.58).abs() < 0.05 && (clapping - 10.71).abs() < 0.1 && (down - 5.42).abs() < 0.1);
     assert!((below - 2.81).abs() < 0.05, "{below}");
-    let mut loose = Compliant::loose(&rig, &sine(3.0), 0.0, Some(law), State::REST, 0.0).unwrap();
+    let mut loose =
+        Compliant::loose(&rig, &sine(3.0), Buffer::thesis(), Some(law), State::REST, 0.0).unwrap();
     let up = plan(3.0).frequency(&mut loose, 0.1, Direction::Up).unwrap();
-    println!("loose: {}", highest(&up, 3.0, 14.0).frequency);
-    assert!((highest(&up, 3.0, 14.0).frequency - 4.63).abs() < 0.1);
+    let [grazing, clapping] = [highest(&up, 3.0, 8.0), highest(&up, 8.0, 14.0)];
+    println!("loose: {grazing:?} {clapping:?}");
+    // Irregular about the lower peak: two starts of the independent one differ by 0.04 Hz there.
+    assert!((grazing.frequency - 4.66).abs() < 0.1 && (clapping.frequency - 10.23).abs() < 0.05);
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Response curves with all branches.
 
-use crate::model::{ChangeKind, Orbit, Response, ResponsePoint};
+use crate::model::{
+    Branch, ChangeKind, Loss, Orbit, Parameter, PeriodicOrbit, Response, ResponsePoint, Validity,
+};
 use crate::report::layout::{lettered, line, points};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 
@@ -12,8 +14,7 @@ enum Look {
     Impossible,
 }
 
-fn look(orbit: &Orbit) -> Option<Look> {
-    let v = &orbit.validity;
+fn look(v: &Validity) -> Option<Look> {
     match (v.exists, v.admissible, v.stable) {
         (false, ..) => None,
         (_, false, _) => Some(Look::Impossible),
@@ -57,7 +58,7 @@ pub fn branches(title: &str, response: &Response) -> Figure {
 }
 
 fn panel(response: &Response, mass: usize) -> Plot {
-    let seen = |o: &&Orbit| look(o).is_some_and(|l| l != Look::Impossible);
+    let seen = |o: &&Orbit| look(&o.validity).is_some_and(|l| l != Look::Impossible);
     let orbits = response.points.iter().flat_map(|p| p.orbits.iter().filter(seen));
     let free = response.points.iter().filter_map(|p| p.no_impact.filter(|n| n.possible && mass == 0));
     let heights = orbits.map(|o| o.peak_to_peak[mass] / 2.0).chain(free.map(|n| n.amplitude));
@@ -76,7 +77,7 @@ fn panel(response: &Response, mass: usize) -> Plot {
         let [a, b] = pair else { continue };
         for orbit in &a.orbits {
             let Some(next) = orbit.continued(&b.orbits) else { continue };
-            if let (Some(_), Some(seen)) = (look(orbit), look(next)) {
+            if let (Some(_), Some(seen)) = (look(&orbit.validity), look(&next.validity)) {
                 lines[seen as usize].join(place(orbit), place(next));
             }
         }
@@ -115,6 +116,49 @@ fn panel(response: &Response, mass: usize) -> Plot {
         plot = points(plot, name, at.map(|c| (c.frequency, 1e3 * c.amplitude[mass])), Ink::Nth(3), marker);
     }
     plot
+}
+
+/// Half the peak-to-peak values of both masses along branches over a value, those with one impact a cycle `beside` them.
+pub fn continued(over: Parameter, branches: &[Branch], beside: &[Branch]) -> Figure {
+    let mut figure = Figure::double("Branches").height(150.0).shared_x();
+    for (mass, label) in ["Amplitude of x₁", "Amplitude of x₂"].into_iter().enumerate() {
+        let place = |o: &PeriodicOrbit| (over.of(&o.rig, &o.sine), 1e3 * o.peak_to_peak[mass] / 2.0);
+        let axis = match over {
+            Parameter::Frequency => AxisSpec::frequency(),
+            Parameter::Restitution => AxisSpec::new("Restitution", "1"),
+            Parameter::Gap => AxisSpec::new("Gap", "m"),
+            _ => AxisSpec::new("Force", "N"),
+        };
+        let mut plot = Plot::new(axis, AxisSpec::new(label, "mm").log());
+        for (all, ink, stable, unstable) in
+            [(beside, Ink::Nth(1), "one impact a cycle", ""), (branches, Ink::Nth(0), "stable", "unstable")]
+        {
+            let mut lines: [Pieces; 3] = Default::default();
+            for pair in all.iter().flat_map(|b| b.points.windows(2)) {
+                if let (Some(_), Some(seen)) = (look(&pair[0].validity), look(&pair[1].validity)) {
+                    lines[seen as usize].join(place(&pair[0]), place(&pair[1]));
+                }
+            }
+            let [real, dashed, impossible] = lines;
+            plot = line(plot, "", impossible.places(), Ink::Grey, Stroke::Thin);
+            plot = line(plot, unstable, dashed.places(), ink, Stroke::Dashed);
+            plot = line(plot, stable, real.places(), ink, Stroke::Solid);
+        }
+        for (kind, marker) in [
+            (Loss::Fold, Marker::FilledSquare),
+            (Loss::Flip, Marker::Diamond),
+            (Loss::NeimarkSacker, Marker::Triangle),
+            (Loss::Grazing, Marker::OpenCircle),
+        ] {
+            let marks = branches.iter().chain(beside).flat_map(|b| &b.marks).filter(|m| m.kind == kind);
+            plot = points(plot, kind.name(), marks.map(|m| place(&m.orbit)), Ink::Nth(3), marker);
+        }
+        figure = figure.panel(plot.title(["excited mass", "passive mass"][mass]));
+    }
+    lettered(figure.caption(
+        "Half the peak-to-peak displacement along each branch. Solid: stable; dashed: unstable; thin and grey: the masses would pass through \
+         each other.",
+    ))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A simulated motion: traces of both masses, the phase plane, and Poincaré sections; one periodic motion.
 
 use crate::model::portrait::Portrait;
-use crate::model::{Orbit, Rig, State};
+use crate::model::{Orbit, PeriodicOrbit, Rig, State};
 use crate::report::layout::{lettered, line, points};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Stroke};
 
@@ -30,6 +30,35 @@ pub fn traces(title: &str, portrait: &Portrait, gap: f64) -> Figure {
         Figure::double(title).height(120.0).shared_x().panel(displacement).panel(velocity).caption(
             "(a) Displacements, that of the passive mass moved by the gap: the masses meet where the lines do. (b) Velocities.",
         ),
+    )
+}
+
+/// Force between the masses over the last cycles where contacts last, and the impulse of each impact.
+pub fn reaction(title: &str, portrait: &Portrait) -> Figure {
+    let from = portrait.time.first().copied().unwrap_or(f64::NEG_INFINITY);
+    let time = || AxisSpec::new("Time", "s");
+    let mut figure = Figure::double(title).height(if portrait.force.is_empty() { 70.0 } else { 120.0 });
+    if let [first, .., last] = portrait.force[..] {
+        // From contact to contact the force is zero.
+        let mut whole = vec![(from.min(first.0), 0.0)];
+        for pair in portrait.force.windows(2) {
+            whole.push(pair[0]);
+            let step = portrait.time.get(1).map_or(0.0, |t| t - from);
+            if pair[1].0 - pair[0].0 > step {
+                whole.extend([(pair[0].0, 0.0), (pair[1].0, 0.0)]);
+            }
+        }
+        whole.push(last);
+        let plot = Plot::new(time(), AxisSpec::new("Force", "N")).legend(Legend::Hidden);
+        figure = figure.shared_x().panel(line(plot, "", whole, Ink::Nth(0), Stroke::Solid));
+    }
+    let struck = portrait.impacts.iter().filter(|i| i.time >= from).map(|i| (i.time, i.impulse));
+    let plot = Plot::new(time(), AxisSpec::new("Impulse", "N s")).legend(Legend::Hidden);
+    let plot = points(plot, "", struck, Ink::Nth(0), Marker::Circle);
+    lettered(
+        figure
+            .panel(plot)
+            .caption("Force between the masses where contacts last, and impulse of each impact."),
     )
 }
 
@@ -142,4 +171,31 @@ pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
          the impact. {verdict}",
         orbit.frequency, orbit.approach_velocity
     )))
+}
+
+/// Both masses over a period with several impacts, x₂ counted from the rest of x₁'s contact face.
+pub fn pattern(title: &str, orbit: &PeriodicOrbit) -> Figure {
+    let at = |i: usize| orbit.period() * i as f64 / POINTS as f64;
+    let states: Vec<(f64, State)> = (0..=POINTS).map(|i| (at(i), orbit.state(at(i)))).collect();
+    let plot =
+        Plot::new(AxisSpec::new("Time after the first impact", "s"), AxisSpec::new("Displacement", "mm"));
+    let second = states.iter().map(|(t, s)| (*t, 1e3 * (s.x2 + orbit.rig.gap)));
+    let plot = line(plot, "gap + x₂", second, Ink::Nth(1), Stroke::Solid);
+    let plot = line(plot, "x₁", states.iter().map(|(t, s)| (*t, 1e3 * s.x1)), Ink::Nth(0), Stroke::Solid);
+    let first = orbit.beats.first().map_or(0.0, |b| b.phase);
+    let impacts = orbit.beats.iter().map(|b| (b.phase - first) / orbit.sine.omega());
+    let met: Vec<_> = impacts.map(|t| (t, 1e3 * orbit.state(t).x1)).collect();
+    let plot = points(plot, "impact", met, Ink::Black, Marker::OpenCircle);
+    let v = &orbit.validity;
+    let verdict = match (v.admissible, v.instability) {
+        (false, _) => "impossible: the masses would pass through each other".to_owned(),
+        (_, Some(loss)) => format!("unstable ({})", loss.name()),
+        _ => v.stability().to_owned(),
+    };
+    Figure::double(title).panel(plot).caption(format!(
+        "Motion with {} impacts in {} cycles at {:.4} Hz: {verdict}.",
+        orbit.beats.len(),
+        orbit.cycles,
+        orbit.sine.frequency
+    ))
 }

@@ -3,6 +3,7 @@
 use crate::compare::Named;
 use crate::measure::jump::Jump;
 use crate::measure::resonance::{Resonance, ResonanceKind};
+use crate::model::Reaction;
 use crate::model::sweep::{Observable, Point, Swept};
 use crate::record::Direction;
 use crate::report::layout::{lettered, line, points};
@@ -49,5 +50,32 @@ pub fn sweep(
     }
     lettered(
         figure.caption("Motion of the model with its state carried on from step to step; crosses are jumps."),
+    )
+}
+
+/// The force between the masses over frequency or force: peak and RMS where contacts last, and the impulse a cycle.
+pub fn forces(swept: &Swept, over_force: bool) -> Figure {
+    let (over, unit) = if over_force { ("Force", "N") } else { ("Excitation frequency", "Hz") };
+    let lasting = swept.up.iter().chain(&swept.down).any(|p| p.reaction.peak.is_some());
+    let mut figure =
+        Figure::double("Force between the masses").height(if lasting { 170.0 } else { 70.0 }).shared_x();
+    for (i, (label, size)) in [("Peak force", "N"), ("RMS force", "N"), ("Impulse a cycle", "N s")]
+        .into_iter()
+        .enumerate()
+        .skip(if lasting { 0 } else { 2 })
+    {
+        let value = |r: &Reaction| [r.peak, r.rms, r.impulse][i];
+        let mut plot = Plot::new(AxisSpec::new(over, unit), AxisSpec::new(label, size));
+        for (name, points, ink, stroke) in [
+            ("sweeping up", &swept.up, Ink::Nth(0), Stroke::Solid),
+            ("sweeping down", &swept.down, Ink::Nth(1), Stroke::Dashed),
+        ] {
+            let at = |p: &Point| Some((if over_force { p.force } else { p.frequency }, value(&p.reaction)?));
+            plot = line(plot, name, points.iter().filter_map(at), ink, stroke);
+        }
+        figure = figure.panel(plot);
+    }
+    lettered(
+        figure.caption("Force with which the masses push each other, over the cycles read at each point."),
     )
 }

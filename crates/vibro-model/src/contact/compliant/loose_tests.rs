@@ -6,12 +6,41 @@ fn sine(force: f64, frequency: f64) -> Excitation {
     Excitation::Sine(Sine { force, frequency })
 }
 
+/// The damper acts always.
+const ALWAYS: Buffer = Buffer { gap: 2e-3, damper_always: true };
+
+#[test]
+fn a_loose_mass_drifts_freely_and_swings_back_by_half_a_period() {
+    // 1 mm at 10 mm/s until it meets mass 2, and the same to the buffer of the thesis.
+    let rig = Rig::thesis();
+    for (v1, event) in [(0.01, "Impact"), (-0.01, "Switch")] {
+        let start = State { v1, ..State::REST };
+        let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), Buffer::thesis(), None, start, 0.0).unwrap();
+        let mut times = Vec::new();
+        motion
+            .advance(0.2, &mut |piece| {
+                if format!("{:?}", piece.event).starts_with(event) {
+                    times.push(piece.start + piece.duration);
+                }
+            })
+            .unwrap();
+        assert!((times[0] - 0.1).abs() < 1e-15, "{times:?}");
+        if event == "Switch" {
+            let b = rig.c1 / (2.0 * rig.m1);
+            let half = std::f64::consts::PI / (rig.k1 / rig.m1 - b * b).sqrt();
+            assert!((times[1] - times[0] - half).abs() < 1e-15, "{times:?}");
+            // Its speed back is that of the damped half swing, and stays so: nothing holds it.
+            assert!((motion.state().v1 - 0.01 * (-b * half).exp()).abs() < 1e-16, "{:?}", motion.state());
+        }
+    }
+}
+
 #[test]
 fn a_loose_mass_drifts_with_its_damper_only() {
     // x = vτ(1 − e^{−t/τ}), τ = m₁/c₁, until it meets mass 2 at 1 mm.
     let rig = Rig::thesis();
     let start = State { v1: 0.01, ..State::REST };
-    let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), 2e-3, None, start, 0.0).unwrap();
+    let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), ALWAYS, None, start, 0.0).unwrap();
     let mut met = None;
     motion
         .advance(0.2, &mut |piece| {
@@ -25,7 +54,7 @@ fn a_loose_mass_drifts_with_its_damper_only() {
     assert!((met.unwrap() - expected).abs() < 1e-15, "{met:?} {expected}");
     // The other way it meets its spring after 2 mm.
     let start = State { v1: -0.01, ..State::REST };
-    let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), 2e-3, None, start, 0.0).unwrap();
+    let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), ALWAYS, None, start, 0.0).unwrap();
     let mut switches = Vec::new();
     motion
         .advance(0.5, &mut |piece| {
@@ -45,8 +74,14 @@ fn a_loose_mass_drifts_with_its_damper_only() {
 
 #[test]
 fn all_four_modes_agree_with_a_plain_integration() {
+    for damper_always in [false, true] {
+        agrees(Buffer { gap: 5e-4, damper_always });
+    }
+}
+
+fn agrees(buffer: Buffer) {
     let rig = Rig::thesis();
-    let (k3, c3, buffer, force, omega) = (1e4, 5.0, 5e-4, 0.3, std::f64::consts::TAU * 5.0);
+    let (k3, c3, force, omega) = (1e4, 5.0, 0.3, std::f64::consts::TAU * 5.0);
     let law = Law::KelvinVoigt { stiffness: k3, damping: c3 };
     let mut motion = Compliant::loose(&rig, &sine(force, 5.0), buffer, Some(law), State::REST, 0.3).unwrap();
     let (mut touches, mut switches) = (0, 0);
@@ -59,11 +94,13 @@ fn all_four_modes_agree_with_a_plain_integration() {
     assert!(touches > 3 && switches > 3, "{touches} contacts, {switches} switches");
     let f = |t: f64, y: &[f64; 4]| {
         let push = law.force(y[0] - y[2] - rig.gap, y[1] - y[3]);
-        let spring = rig.k1 * (y[0] + buffer).min(0.0);
+        let compressed = y[0] < -buffer.gap;
+        let spring = if compressed { rig.k1 * (y[0] + buffer.gap) } else { 0.0 };
+        let damper = if compressed || buffer.damper_always { rig.c1 * y[1] } else { 0.0 };
         let drive = force * (omega * t + 0.3).cos();
         [
             y[1],
-            (drive - spring - rig.c1 * y[1] - push) / rig.m1,
+            (drive - spring - damper - push) / rig.m1,
             y[3],
             (push - rig.k2 * y[2] - rig.c2 * y[3]) / rig.m2,
         ]
@@ -82,11 +119,12 @@ fn all_four_modes_agree_with_a_plain_integration() {
 
 #[test]
 fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
-    // The thesis' contact: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. Its running RMS through a
-    // 10 rad/s low-pass peaks at 4.63 Hz.
+    // The thesis' contact: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. An independent integration (Runge–Kutta of
+    // fourth order, 10 µs) has its highest running RMS through a 10 rad/s low-pass at 4.62 to 4.66 Hz: irregular there, so by its start.
     let law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
     let mut motion =
-        Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), 0.0, Some(law), State::REST, 0.0).unwrap();
+        Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), Buffer::thesis(), Some(law), State::REST, 0.0)
+            .unwrap();
     let (mut square, mut peak) = (0.0, (0.0, 0.0));
     let steps = 150_000;
     for i in 0..steps {
@@ -98,14 +136,15 @@ fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
             peak = (square, hz);
         }
     }
-    assert!((peak.1 - 4.63).abs() < 0.05, "peak at {} Hz", peak.1);
+    assert!((peak.1 - 4.64).abs() < 0.07, "peak at {} Hz", peak.1);
 }
 
 #[test]
 fn chatter_and_cuts_do_not_stop_a_loose_mass() {
     // Cut every millisecond, with a frequency that moves: rests against mass 2 begin and end many times.
     let rig = Rig { restitution: 0.2, ..Rig::thesis() };
-    let mut motion = Compliant::loose(&rig, &sine(0.1, 3.0), 0.0, None, State::REST, 0.0).unwrap();
+    let mut motion =
+        Compliant::loose(&rig, &sine(0.1, 3.0), Buffer::thesis(), None, State::REST, 0.0).unwrap();
     let (mut sticks, mut releases) = (0, 0);
     for i in 0..20_000 {
         motion.set_frequency(3.0 + f64::from(i) * 2e-5).unwrap();
@@ -124,7 +163,10 @@ fn chatter_and_cuts_do_not_stop_a_loose_mass() {
 #[test]
 fn impossible_ones_are_refused() {
     let rig = Rig::thesis();
-    let new = |rig: &Rig, gap, state| Compliant::loose(rig, &sine(0.1, 5.0), gap, None, state, 0.0);
+    let new = |rig: &Rig, gap, state| {
+        let buffer = Buffer { gap, ..Buffer::thesis() };
+        Compliant::loose(rig, &sine(0.1, 5.0), buffer, None, state, 0.0)
+    };
     for gap in [-1e-3, f64::NAN, f64::INFINITY] {
         let text = new(&rig, gap, State::REST).unwrap_err().to_string();
         assert!(text.starts_with("buffer gap is"), "{text}");
@@ -132,5 +174,7 @@ fn impossible_ones_are_refused() {
     assert!(new(&rig, 0.0, State { x1: 2e-3, ..State::REST }).is_err());
     assert!(new(&Rig { m1: 0.0, ..rig }, 0.0, State::REST).is_err());
     let hertz = Law::Hertz { stiffness: 1e8 };
-    assert!(Compliant::loose(&rig, &sine(0.1, 5.0), 0.0, Some(hertz), State::REST, 0.0).is_err());
+    assert!(
+        Compliant::loose(&rig, &sine(0.1, 5.0), Buffer::thesis(), Some(hertz), State::REST, 0.0).is_err()
+    );
 }

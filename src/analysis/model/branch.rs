@@ -1,0 +1,207 @@
+//! Motions followed over a value through folds, flips and grazing: `vibro model continue`.
+
+use super::{Driven, SceneKeys, figures, pattern};
+use crate::analysis::Answer;
+use crate::error::{Error, Result};
+use crate::model::{Branch, Parameter, PeriodicOrbit, Rig, Sine, follow, orbits, search};
+use crate::record::Finding;
+use crate::report::layout::table;
+use crate::report::{Cell, Table};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+/// What is asked.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+pub struct Keys {
+    /// The scene.
+    #[cfg_attr(feature = "cli", command(flatten))]
+    pub scene: SceneKeys,
+    /// What is varied: frequency, force, gap, restitution
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
+    pub over: Over,
+    /// Lower end, in Hz, N, m or 1
+    pub from: f64,
+    /// Upper end, in the same unit
+    pub to: f64,
+    /// Excitation frequency in Hz; over the frequency, where the search for motions starts [default: the middle]
+    pub frequency: Option<f64>,
+    /// Impacts in a period
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
+    pub impacts: u32,
+    /// Excitation cycles in a period
+    #[cfg_attr(feature = "cli", arg(default_value_t = 1))]
+    pub cycles: u32,
+    /// Longest step along a branch, in rad of the impacts' phases
+    #[cfg_attr(feature = "cli", arg(default_value_t = 0.05))]
+    pub step: f64,
+}
+
+/// What is varied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Over {
+    /// The excitation frequency.
+    Frequency,
+    /// The amplitude of the force.
+    Force,
+    /// The gap at rest.
+    Gap,
+    /// The restitution.
+    Restitution,
+}
+
+impl From<Over> for Parameter {
+    fn from(over: Over) -> Parameter {
+        match over {
+            Over::Frequency => Parameter::Frequency,
+            Over::Force => Parameter::Force,
+            Over::Gap => Parameter::Gap,
+            Over::Restitution => Parameter::Restitution,
+        }
+    }
+}
+
+impl Keys {
+    /// The branches, with their marks and ends.
+    ///
+    /// # Errors
+    /// If the scene or a key cannot be, nothing drives the rig, or no motion is found to start from.
+    pub fn answer(&self) -> Result<Answer> {
+        let over = Parameter::from(self.over);
+        let middle = Some(f64::midpoint(self.from, self.to)).filter(|_| self.over == Over::Frequency);
+        let Driven { scene, excitation, finding } = self.scene.driven(self.frequency.or(middle))?;
+        let (rig, sine) = (scene.rig, pattern::sine(&excitation)?);
+        let one = ones(&rig, &sine)?;
+        let wanted = match (self.impacts, self.cycles) {
+            (1, 1) => one.clone(),
+            _ => search(&rig, &sine, self.impacts, self.cycles)?,
+        };
+        if wanted.is_empty() {
+            let (value, unit) = (over.of(&rig, &sine), over.unit());
+            let found = format!(
+                "no motion with {} impacts in {} cycles was found at {} {value} {unit}",
+                self.impacts,
+                self.cycles,
+                over.name()
+            );
+            return Err(Error::refused(found)
+                .hint("start elsewhere: `vibro model map` shows where a pattern is settled on"));
+        }
+        let branches = self.branches(&wanted)?;
+        let beside = if (self.impacts, self.cycles) == (1, 1) { Vec::new() } else { self.branches(&one)? };
+        let mut answer = Answer::of(&json!({
+            "scene": scene,
+            "over": over,
+            "branches": branches.iter().map(|b| told(over, b)).collect::<Vec<Value>>(),
+            "one_impact": beside.iter().map(|b| told(over, b)).collect::<Vec<Value>>(),
+        }))?;
+        answer.add("", finding);
+        if self.impacts > 1 || self.cycles > 1 {
+            answer.add("", [Finding::note("orbits-perhaps-more")]);
+        }
+        answer.table("branches", summary(over, &branches));
+        answer.table("marks", marks(over, &branches));
+        answer.csv("points", &points(over, &branches));
+        answer.figure("branches", figures::continued(over, &branches, &beside));
+        Ok(answer)
+    }
+
+    /// The branches of these motions, each once.
+    fn branches(&self, starts: &[PeriodicOrbit]) -> Result<Vec<Branch>> {
+        let over = Parameter::from(self.over);
+        let mut found: Vec<Branch> = Vec::new();
+        for start in starts {
+            let passed = |branch: &Branch| {
+                let value = over.of(&start.rig, &start.sine);
+                branch.points.windows(2).any(|pair| {
+                    let [a, b] = [0, 1].map(|i| over.of(&pair[i].rig, &pair[i].sine) - value);
+                    let nearer = &pair[usize::from(a.abs() > b.abs())];
+                    let guess: Vec<_> = nearer.beats.iter().map(|b| (b.phase, b.impulse)).collect();
+                    a * b <= 0.0
+                        && PeriodicOrbit::near(&start.rig, &start.sine, start.cycles, &guess)
+                            .is_ok_and(|there| there.is(start))
+                })
+            };
+            if !found.iter().any(passed) {
+                found.push(follow(start, over, self.from, self.to, self.step)?);
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// All motions with one impact a cycle.
+fn ones(rig: &Rig, sine: &Sine) -> Result<Vec<PeriodicOrbit>> {
+    let closed = orbits(rig, sine.force, sine.frequency)?.orbits;
+    let real = closed.iter().filter(|o| o.validity.exists);
+    Ok(real.filter_map(|o| PeriodicOrbit::near(rig, sine, 1, &[(o.force_phase, o.impulse)]).ok()).collect())
+}
+
+fn told(over: Parameter, branch: &Branch) -> Value {
+    let with = |orbit: &PeriodicOrbit| {
+        let mut all = pattern::told(orbit, None);
+        all["value"] = json!(over.of(&orbit.rig, &orbit.sine));
+        all
+    };
+    let mark = |m: &crate::model::continuation::Mark| json!({ "kind": m.kind, "after": m.after, "orbit": with(&m.orbit) });
+    json!({
+        "points": branch.points.iter().map(with).collect::<Vec<Value>>(),
+        "marks": branch.marks.iter().map(mark).collect::<Vec<Value>>(),
+        "ends": branch.ends,
+    })
+}
+
+fn summary(over: Parameter, branches: &[Branch]) -> Table {
+    let value = |o: &PeriodicOrbit| over.of(&o.rig, &o.sine);
+    let end = |b: &Branch, i: usize| json!(b.ends[i]).as_str().unwrap_or_default().to_owned();
+    table(
+        "Branches",
+        branches.iter().enumerate(),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("points", "", &|(_, b)| b.points.len().into()),
+            ("lowest", over.unit(), &|(_, b)| {
+                b.points.iter().map(value).fold(f64::INFINITY, f64::min).into()
+            }),
+            ("highest", over.unit(), &|(_, b)| {
+                b.points.iter().map(value).fold(f64::NEG_INFINITY, f64::max).into()
+            }),
+            ("real points", "", &|(_, b)| b.points.iter().filter(|o| o.validity.real()).count().into()),
+            ("begins at", "", &|(_, b)| Cell::from(end(b, 0))),
+            ("ends at", "", &|(_, b)| Cell::from(end(b, 1))),
+        ],
+    )
+    .note("Real: admissible and stable.")
+}
+
+fn marks(over: Parameter, branches: &[Branch]) -> Table {
+    table(
+        "Changes along the branches",
+        branches.iter().enumerate().flat_map(|(i, b)| b.marks.iter().map(move |m| (i, m))),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("change", "", &|(_, m)| Cell::from(m.kind.name())),
+            (over.name(), over.unit(), &|(_, m)| over.of(&m.orbit.rig, &m.orbit.sine).into()),
+            ("x1 amplitude", "m", &|(_, m)| (m.orbit.peak_to_peak[0] / 2.0).into()),
+            ("x2 amplitude", "m", &|(_, m)| (m.orbit.peak_to_peak[1] / 2.0).into()),
+        ],
+    )
+}
+
+fn points(over: Parameter, branches: &[Branch]) -> Table {
+    table(
+        "Points of the branches",
+        branches.iter().enumerate().flat_map(|(i, b)| b.points.iter().map(move |o| (i, o))),
+        &[
+            ("branch", "", &|(i, _)| Cell::from(i + 1)),
+            (over.name(), over.unit(), &|(_, o)| over.of(&o.rig, &o.sine).into()),
+            ("impulse a period", "N s", &|(_, o)| o.beats.iter().map(|b| b.impulse).sum::<f64>().into()),
+            ("x1 peak to peak", "m", &|(_, o)| o.peak_to_peak[0].into()),
+            ("x2 peak to peak", "m", &|(_, o)| o.peak_to_peak[1].into()),
+            ("admissible", "", &|(_, o)| o.validity.admissible.into()),
+            ("stability", "", &|(_, o)| Cell::from(o.validity.stability())),
+            ("largest multiplier", "", &|(_, o)| Cell::from(o.spectral_radius())),
+        ],
+    )
+}

@@ -1,0 +1,96 @@
+//! Motions with several impacts a period as they are told: keys, rows.
+
+use crate::error::{Error, Result};
+use crate::model::{Excitation, PeriodicOrbit, Sine};
+use crate::report::layout::table;
+use crate::report::{Cell, Table};
+use num_complex::Complex64;
+use serde_json::{Value, json};
+
+/// The sine force that such motions are known for.
+///
+/// # Errors
+/// If it is another excitation.
+pub(super) fn sine(excitation: &Excitation) -> Result<Sine> {
+    match excitation {
+        Excitation::Sine(sine) => Ok(*sine),
+        _ => Err(Error::usage(
+            "an excitation that is no sine",
+            "a sine force: only of it several impacts a period are solved",
+        )
+        .setting("force")),
+    }
+}
+
+/// The keys of a motion: those of one impact a period, and its impacts; `gap_std` is the standard uncertainty of the gap in m.
+pub(super) fn told(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
+    let v = &orbit.validity;
+    json!({
+        "frequency": orbit.sine.frequency,
+        "cycles": orbit.cycles,
+        "impacts": orbit.beats,
+        "impulse": orbit.beats.iter().map(|b| b.impulse).sum::<f64>(),
+        "min_gap": v.min_gap,
+        "clearance": v.clearance,
+        "multipliers": orbit.multipliers.map(|all| all.map(|z| [z.re, z.im])),
+        "spectral_radius": orbit.spectral_radius(),
+        "exists": v.exists,
+        "admissible": v.admissible,
+        "stable": v.stable == Some(true),
+        "stability": v.stability(),
+        "instability": v.instability,
+        "energy_rule": v.energy_rule,
+        "robust": gap_std.map(|std| v.real() && v.grazing_distance > std),
+        "near_grazing": gap_std.map(|std| v.grazing_distance <= std),
+        "grazing_distance": v.grazing_distance,
+        "peak_to_peak": orbit.peak_to_peak,
+        "fundamental": orbit.fundamental.map(Complex64::norm),
+        "fundamental_phase": orbit.fundamental.map(Complex64::arg),
+    })
+}
+
+/// What each motion does and is worth.
+pub(super) fn motions(orbits: &[PeriodicOrbit], gap_std: Option<f64>) -> Table {
+    table(
+        "Motions with several impacts a period",
+        orbits.iter().enumerate(),
+        &[
+            ("no.", "", &|(i, _)| Cell::from(i + 1)),
+            ("impulse a period", "N s", &|(_, o)| Cell::from(o.beats.iter().map(|b| b.impulse).sum::<f64>())),
+            ("slowest impact", "m/s", &|(_, o)| {
+                Cell::from(o.beats.iter().map(|b| b.approach_velocity).fold(f64::INFINITY, f64::min))
+            }),
+            ("x1 peak to peak", "m", &|(_, o)| Cell::from(o.peak_to_peak[0])),
+            ("x2 peak to peak", "m", &|(_, o)| Cell::from(o.peak_to_peak[1])),
+            ("admissible", "", &|(_, o)| o.validity.admissible.into()),
+            ("stability", "", &|(_, o)| match o.validity.instability {
+                Some(loss) => Cell::from(format!("{}: {}", o.validity.stability(), loss.name())),
+                None => Cell::from(o.validity.stability()),
+            }),
+            ("robust", "", &|(_, o)| {
+                gap_std.map(|std| o.validity.real() && o.validity.grazing_distance > std).into()
+            }),
+            ("largest multiplier", "", &|(_, o)| Cell::from(o.spectral_radius())),
+            ("least gap", "m", &|(_, o)| Cell::from(o.validity.min_gap)),
+            ("grazing distance, first order", "m", &|(_, o)| Cell::from(o.validity.grazing_distance)),
+        ],
+    )
+    .note("Admissible: the masses do not pass through each other. Robust: farther from grazing than the gap is uncertain.")
+}
+
+/// The impacts of each motion.
+pub(super) fn impacts(orbits: &[PeriodicOrbit]) -> Table {
+    let all = orbits.iter().enumerate();
+    table(
+        "Impacts of each motion",
+        all.flat_map(|(i, o)| o.beats.iter().enumerate().map(move |(k, beat)| (i, k, beat))),
+        &[
+            ("no.", "", &|(i, ..)| Cell::from(i + 1)),
+            ("impact", "", &|(_, k, _)| Cell::from(k + 1)),
+            ("phase of the force", "rad", &|(.., b)| Cell::from(b.phase)),
+            ("impulse", "N s", &|(.., b)| Cell::from(b.impulse)),
+            ("approach speed", "m/s", &|(.., b)| Cell::from(b.approach_velocity)),
+            ("time to the next", "s", &|(.., b)| Cell::from(b.interval)),
+        ],
+    )
+}
