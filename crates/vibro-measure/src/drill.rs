@@ -29,6 +29,7 @@ mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
 pub use floor::NoiseFloor;
+use groups::Offset;
 pub use groups::{Group, Impact};
 pub use options::{Beam, Corner, DrillOptions, From, Smoothing};
 pub use result::{Displacement, Drill, Pulses};
@@ -42,7 +43,7 @@ use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
 use jumps::Jumps;
-use survey::{State, Survey, median};
+use survey::{Survey, median};
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result};
 
@@ -100,29 +101,21 @@ pub fn drill_each(
     let smooth = smoothing.map(|corner| corner.smooth(&velocity, rate)).transpose()?;
     let smooth = smooth.as_deref().unwrap_or(&velocity);
     let mut cycles = Cycles::new(rate, options.points);
-    for (number, &turn) in whole.iter().enumerate() {
-        let inside = turn.start as usize..=turn.end.ceil() as usize;
-        if !states[inside].contains(&State::Lost) {
-            cycles.differentiate(&velocity, &states, turn);
-            cycles.integrate(smooth, turn);
-            each(&cycles.average(smooth, &states, number, turn))?;
-        }
+    for (number, &turn) in whole.iter().enumerate().filter(|(_, turn)| turn.is_measured(&states)) {
+        cycles.differentiate(&velocity, &states, turn);
+        cycles.integrate(smooth, turn);
+        each(&cycles.average(smooth, &states, number, turn))?;
     }
     let [stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let period = 1.0 / speed.value;
-    let offset = groups::Offset { value: drift.value / period, std: drift.std.map(|std| std / period) };
+    let offset = Offset::of(&stroke, &drift, period);
     let around: Vec<f64> = velocity.iter().map(|v| v - offset.value).collect();
-    let mut jumps = Jumps::new(&around, &states, options.contact * rate, options.fit * rate);
-    for (number, &turn) in whole.iter().enumerate() {
-        if !states[turn.start as usize..=turn.end.ceil() as usize].contains(&State::Lost) {
-            jumps.push(number, turn);
-        }
-    }
+    let jumps = Jumps::of(&around, &states, (options.contact * rate, options.fit * rate), whole);
     let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
     let (mut impacts, residuals) = jumps.finish(rate, edge);
-    let mut groups = groups::groups(&mut impacts, &residuals, gap, averaged, options);
-    groups.iter_mut().for_each(|group| group.allow(&offset));
+    let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options);
+    let groups: Vec<Group> = groups.into_iter().map(|group| group.allowing(&offset)).collect();
     let strongest = groups.first();
     let average = cycles.phases();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();

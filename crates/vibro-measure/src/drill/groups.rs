@@ -2,6 +2,7 @@
 
 use super::DrillOptions;
 use super::jumps::LackOfFit;
+use super::result::DRIFTING;
 use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
@@ -44,11 +45,21 @@ pub struct Impact {
 }
 
 /// Mean velocity over turns in m/s, which velocities at impacts are counted from: a mass that comes back each turn has none, so it is an offset of
-/// the instrument, or the machine moves as a whole.
+/// the instrument, or the machine moves as a whole. None where it is more than such an offset can be.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offset {
     pub value: f64,
     pub std: Option<f64>,
+}
+
+impl Offset {
+    /// From stroke and drift over a turn, in m, and its time in s.
+    pub fn of(stroke: &Mean, drift: &Mean, period: f64) -> Offset {
+        if drift.value.abs() > DRIFTING * stroke.value || !drift.value.is_finite() {
+            return Offset { value: 0.0, std: None };
+        }
+        Offset { value: drift.value / period, std: drift.std.map(|std| std / period) }
+    }
 }
 
 /// Impacts of one direction, by the sign of the jump of the velocity, and their means.
@@ -118,14 +129,15 @@ pub(super) fn groups(
 
 impl Group {
     /// Adds what is not known of the offset, which all impacts share.
-    pub(super) fn allow(&mut self, offset: &Offset) {
-        let Some(unknown) = offset.std else { return };
+    pub(super) fn allowing(mut self, offset: &Offset) -> Group {
+        let Some(unknown) = offset.std else { return self };
         let add = |estimate: &mut Estimate, by: f64| estimate.std = estimate.std.map(|std| std.hypot(by));
         add(&mut self.before, unknown);
         add(&mut self.after, unknown);
         if let Some(r) = &mut self.restitution {
             add(r, (1.0 + r.value) * unknown / self.before.value.abs());
         }
+        self
     }
 
     /// Means over impacts with the residuals of their fits; `front`: they go towards the struck mass.

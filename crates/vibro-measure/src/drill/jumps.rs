@@ -61,6 +61,20 @@ impl<'a> Jumps<'a> {
         Jumps { values, states, gap, length, found: Vec::new(), largest: Vec::new(), hidden: 0 }
     }
 
+    /// Jumps in those of the turns in which no sample is lost; contact and fit in samples.
+    pub fn of(
+        values: &'a [f64],
+        states: &'a [State],
+        (contact, fit): (f64, f64),
+        turns: &[Turn],
+    ) -> Jumps<'a> {
+        let mut jumps = Jumps::new(values, states, contact, fit);
+        for (cycle, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.is_measured(states)) {
+            jumps.push(cycle, *turn);
+        }
+        jumps
+    }
+
     /// Looks at turn number `cycle`.
     pub fn push(&mut self, cycle: usize, turn: Turn) {
         let (from, to) = (turn.start.ceil() as usize, turn.end.ceil() as usize);

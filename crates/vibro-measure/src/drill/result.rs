@@ -106,7 +106,7 @@ pub struct Displacement {
 }
 
 /// A displacement that drifts by more than this part of the stroke in a turn has an offset, or the machine moves.
-const DRIFTING: f64 = 0.1;
+pub(super) const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
 const STEEP: f64 = 0.005;
 

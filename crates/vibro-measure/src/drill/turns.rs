@@ -1,6 +1,6 @@
 //! Where a sampled signal crosses a level; edges of a reference signal; the turns between them: which are whole, how fast, how evenly.
 
-use super::survey::median;
+use super::survey::{State, median};
 use crate::Estimate;
 use crate::mean::Mean;
 use crate::noise::border;
@@ -21,6 +21,13 @@ pub(super) struct Turn {
     pub start: f64,
     /// Last edge.
     pub end: f64,
+}
+
+impl Turn {
+    /// Whether no sample of it is lost.
+    pub fn is_measured(self, states: &[State]) -> bool {
+        !states[self.start as usize..=self.end.ceil() as usize].contains(&State::Lost)
+    }
 }
 
 /// Edges with their places in an even series: a pick-up misses pulses and catches sparks.
