@@ -29,7 +29,8 @@ impl SweepReader {
         let one = |file: &Path, force: &str, response: &str| {
             let recording = reader.from_path(file)?;
             let force = self.force(recording.trace(Some(force), None)?)?;
-            let response = self.response(recording.trace(Some(response), None)?)?;
+            let mut response = self.response(recording.trace(Some(response), None)?)?;
+            response.meta.findings.extend(recording.findings);
             Ok(StepTraces { path: file.to_owned(), force, response })
         };
         let one = |file: &Path, force: &str, response: &str| {

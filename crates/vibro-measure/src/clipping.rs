@@ -5,15 +5,19 @@ use std::f64::consts::PI;
 /// Samples at either end of the range of the values, where some stay there longer than any crest of this period in samples stays within a
 /// step of the converter, or where more lie at the end than a crest lets lie there beside those a step away.
 pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let at = |end: f64| values.iter().filter(|v| **v == end).count();
+    let repeated: Vec<f64> = [low, high].into_iter().filter(|end| at(*end) > 1).collect();
+    if low == high || repeated.is_empty() {
+        return Vec::new();
+    }
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let steps = sorted.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0);
     let step = steps.clone().fold(f64::INFINITY, f64::min);
     // Values that do not repeat were not rounded.
     let rounded = (steps.count() as f64) < UNROUNDED * values.len() as f64;
-    let (Some(low), Some(high)) = (sorted.first().copied(), sorted.last().copied()) else {
-        return Vec::new();
-    };
     let crest = |run: usize| 0.5 * (high - low) * (1.0 - (PI * (run as f64 / period).min(0.5)).cos());
     let rests = |end: f64| {
         let runs = values.chunk_by(|a, b| a == b).filter(|run| run[0] == end && run.len() > 1);
@@ -21,13 +25,13 @@ pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
     };
     let crowds = |end: f64| {
         let near = |v: &&f64| (**v - end).abs() <= 1.5 * step;
-        let (at, near) = (values.iter().filter(|v| **v == end).count(), values.iter().filter(near).count());
-        let (at, beside) = (at as f64, (near - at) as f64);
+        let (at, near) = (at(end) as f64, values.iter().filter(near).count() as f64);
+        let beside = near - at;
         // Under the crest of a sine of rounded values 2.4 times as many lie in the last step as in the one before, and chance adds to that.
         if rounded { at > 3.0 * beside + 4.0 * (at + 9.0 * beside).sqrt() } else { at > 2.0 }
     };
-    let ends: Vec<f64> = [low, high].into_iter().filter(|end| rests(*end) || crowds(*end)).collect();
-    if low == high { Vec::new() } else { (0..values.len()).filter(|i| ends.contains(&values[*i])).collect() }
+    let ends: Vec<f64> = repeated.into_iter().filter(|end| rests(*end) || crowds(*end)).collect();
+    (0..values.len()).filter(|i| ends.contains(&values[*i])).collect()
 }
 
 /// Of values that were not rounded more than this part differ.

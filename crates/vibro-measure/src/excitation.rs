@@ -119,3 +119,94 @@ pub(crate) fn bent(line: SubLine, magnitudes: &[f64], k: usize, seen: Option<(Wi
         ..line
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vibro_signal::window::line_shape;
+
+    fn sine(position: f64, offset: f64) -> Vec<f64> {
+        (0..401)
+            .map(|k| {
+                let k = f64::from(k);
+                line_shape(Window::Hann, k - position).abs() + offset * line_shape(Window::Hann, k).abs()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_line_on_the_flank_of_a_sine_too_near_to_zero_is_not_the_excitation() {
+        let mut force: Vec<f64> =
+            (0..401).map(|k| line_shape(Window::Hann, f64::from(k) - 0.5).abs()).collect();
+        force[6] = 1.5 * force[5];
+        assert!(force[6] < force[3]);
+        assert!(largest(&force, Some(Window::Hann), 0).unwrap_err().contains("below line 3"));
+        // Whoever has cut that off wants the other.
+        assert!(largest(&force, Some(Window::Hann), 5).is_ok());
+    }
+
+    #[test]
+    fn a_line_before_the_last_may_be_moved_by_its_image() {
+        for (position, last) in [(399.0, "last but one"), (399.9, "last one")] {
+            let image = |k: f64| line_shape(Window::Hann, k - (800.0 - position)).abs();
+            let force: Vec<f64> = (0..401)
+                .map(f64::from)
+                .map(|k| line_shape(Window::Hann, k - position).abs() + 0.3 * image(k))
+                .collect();
+            let said = largest(&force, Some(Window::Hann), 0).unwrap_err();
+            assert!(said.contains(last) && said.contains("above the base band"), "{position}: {said}");
+        }
+        assert!(largest(&sine(398.3, 0.0), Some(Window::Hann), 0).is_ok());
+    }
+
+    #[test]
+    fn an_offset_larger_than_the_sine_does_no_harm() {
+        for window in Window::ALL {
+            for offset in [2.0, 20.0, 150.0] {
+                let lines: Vec<f64> = (0..401)
+                    .map(|k| {
+                        let k = f64::from(k);
+                        line_shape(window, k - 110.4).abs() + offset * line_shape(window, k).abs()
+                    })
+                    .collect();
+                let found = largest(&lines, Some(window), 0).unwrap();
+                // An offset falls on a line, where no window has side lobes: only rounding of the shape is left.
+                assert!((found.position - 110.4).abs() < 1e-9, "{window:?} {offset}: {}", found.position);
+            }
+        }
+    }
+
+    /// Lines of the ripple of a floor, a sine, and another of half its height `apart` lines beside it, in phase.
+    fn pair(apart: f64) -> Vec<f64> {
+        (0..401)
+            .map(|k| {
+                let k = f64::from(k);
+                let sines =
+                    line_shape(Window::Hann, k - 110.4) + 0.5 * line_shape(Window::Hann, k - 110.4 - apart);
+                sines.abs() + 1e-5 * (2.0 + (k * k * 0.7).sin())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_stands_beside_the_excitation_is_in_its_uncertainty_or_leaves_none() {
+        for apart in [1.0, 2.0, 3.0] {
+            let found = largest(&pair(apart), Some(Window::Hann), 0).unwrap();
+            assert_eq!((found.position_std, found.amplitude_std), (None, None), "{apart}: {found:?}");
+        }
+        let found = largest(&pair(6.0), Some(Window::Hann), 0).unwrap();
+        assert!((found.position - 110.4).abs() < 3.0 * found.position_std.unwrap(), "{found:?}");
+        assert!(found.position_std.unwrap() < 0.02, "{found:?}");
+        let alone = largest(&pair(200.0), Some(Window::Hann), 0).unwrap();
+        assert!(alone.position_std.unwrap() < 1e-4, "{alone:?}");
+    }
+
+    #[test]
+    fn what_is_no_excitation_is_refused() {
+        assert!(largest(&[0.0; 401], Some(Window::Hann), 0).unwrap_err().contains("zero"));
+        let noise: Vec<f64> = (0..401).map(|k| 1.0 + f64::from((k * 37) % 11) * 0.1).collect();
+        assert!(largest(&noise, Some(Window::Hann), 0).unwrap_err().contains("noise"));
+        assert!(largest(&sine(400.0, 0.0), Some(Window::Hann), 0).unwrap_err().contains("base band"));
+        assert!(largest(&[1.0; 3], Some(Window::Hann), 0).unwrap_err().contains("too few"));
+    }
+}

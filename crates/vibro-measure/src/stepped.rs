@@ -54,7 +54,12 @@ pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) ->
     let points =
         steps.iter().zip(&taken).map(|(step, taken)| taken.spectra(step, n)).collect::<Result<Vec<_>>>()?;
     let axis = points.first().map_or_else(|| Axis::index(0), |p| p.response.axis.clone());
-    let sweep = Sweep { axis, points, ..named };
+    let mut sweep = Sweep { axis, points, ..named };
+    for found in steps.iter().flat_map(|s| s.force.meta.findings.iter().chain(&s.response.meta.findings)) {
+        if !sweep.findings.contains(found) {
+            sweep.findings.push(found.clone());
+        }
+    }
     let excitations: Vec<Excitation> =
         taken.iter().zip(steps).map(|(taken, step)| taken.excitation(step)).collect();
     let mut found = read(&sweep, options, &excitations)?;
@@ -129,12 +134,12 @@ impl Step {
         match settled {
             Settled::Yes => {}
             Settled::Nearly(left) => {
-                response.allow(left);
-                ratio.allow(left / force.0);
+                response.allow(left * force.0);
+                ratio.allow(left);
             }
             Settled::No(left) => {
                 findings.push(
-                    about(Finding::doubt, "step-not-settled").number("left", left / response.value.norm()),
+                    about(Finding::doubt, "step-not-settled").number("left", left / ratio.value.norm()),
                 );
                 (response, ratio) = (response.doubted(), ratio.doubted());
             }

@@ -58,8 +58,7 @@ pub struct Orbit {
 
 impl Serialize for Orbit {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let v = &self.validity;
-        json!({
+        let mut told = json!({
             "frequency": self.frequency,
             "cycles": self.cycles,
             "impulse": self.impulse,
@@ -67,22 +66,16 @@ impl Serialize for Orbit {
             "timing_unit": self.timing_unit(),
             "force_phase": self.force_phase,
             "approach_velocity": self.approach_velocity,
-            "min_gap": v.min_gap,
-            "clearance": v.clearance,
             "multipliers": self.multipliers.map(|all| all.map(|z| [z.re, z.im])),
             "spectral_radius": self.spectral_radius(),
-            "exists": v.exists,
-            "admissible": v.admissible,
-            "stable": v.stable == Some(true),
-            "stability": v.stability(),
-            "instability": v.instability,
-            "energy_rule": v.energy_rule,
-            "grazing_distance": v.grazing_distance,
             "peak_to_peak": self.peak_to_peak,
             "fundamental": self.fundamental.map(Complex64::norm),
             "fundamental_phase": self.fundamental.map(Complex64::arg),
-        })
-        .serialize(serializer)
+        });
+        for (key, verdict) in self.validity.keys() {
+            told[key] = verdict;
+        }
+        told.serialize(serializer)
     }
 }
 

@@ -5,6 +5,7 @@ use super::{Rig, floquet};
 use nalgebra::Matrix4;
 use num_complex::Complex64;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 /// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`; how far it is from
 /// losing one of them is in `grazing_distance`.
@@ -66,6 +67,21 @@ impl Loss {
 }
 
 impl Validity {
+    /// The verdicts by the keys under which programs read them.
+    pub fn keys(&self) -> [(&'static str, Value); 9] {
+        [
+            ("min_gap", json!(self.min_gap)),
+            ("clearance", json!(self.clearance)),
+            ("exists", json!(self.exists)),
+            ("admissible", json!(self.admissible)),
+            ("stable", json!(self.stable == Some(true))),
+            ("stability", json!(self.stability())),
+            ("instability", json!(self.instability)),
+            ("energy_rule", json!(self.energy_rule)),
+            ("grazing_distance", json!(self.grazing_distance)),
+        ]
+    }
+
     /// Whether disturbances die away (`stable`), grow (`unstable`), or neither, as in a rig without losses or at the border of
     /// stability (`neutral`).
     pub fn stability(&self) -> &'static str {

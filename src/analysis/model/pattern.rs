@@ -25,28 +25,23 @@ pub(super) fn sine(excitation: &Excitation) -> Result<Sine> {
 /// The keys of a motion: those of one impact a period, and its impacts; `gap_std` is the standard uncertainty of the gap in m.
 pub(super) fn told(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
     let v = &orbit.validity;
-    json!({
+    let mut told = json!({
         "frequency": orbit.sine.frequency,
         "cycles": orbit.cycles,
         "impacts": orbit.beats,
         "impulse": orbit.beats.iter().map(|b| b.impulse).sum::<f64>(),
-        "min_gap": v.min_gap,
-        "clearance": v.clearance,
         "multipliers": orbit.multipliers.map(|all| all.map(|z| [z.re, z.im])),
         "spectral_radius": orbit.spectral_radius(),
-        "exists": v.exists,
-        "admissible": v.admissible,
-        "stable": v.stable == Some(true),
-        "stability": v.stability(),
-        "instability": v.instability,
-        "energy_rule": v.energy_rule,
         "robust": gap_std.map(|std| v.real() && v.grazing_distance > std),
         "near_grazing": gap_std.map(|std| v.grazing_distance <= std),
-        "grazing_distance": v.grazing_distance,
         "peak_to_peak": orbit.peak_to_peak,
         "fundamental": orbit.fundamental.map(Complex64::norm),
         "fundamental_phase": orbit.fundamental.map(Complex64::arg),
-    })
+    });
+    for (key, verdict) in v.keys() {
+        told[key] = verdict;
+    }
+    told
 }
 
 /// What each motion does and is worth.
