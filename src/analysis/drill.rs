@@ -24,7 +24,7 @@ pub struct Keys {
     /// Velocity channel, by name or by number from 1
     #[serde(deserialize_with = "channel")]
     pub velocity: Option<String>,
-    /// Channel with the pulses of the crank
+    /// Channel with the pulses of the crank [default: none, the turns come from the impacts]
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
     /// Velocity along the beam in m/s for one unit of the channel [default: 1 where the file says it is a velocity]
@@ -81,7 +81,6 @@ pub struct Keys {
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     let expected = match key {
         "velocity" => "the channel of the velocity, by name or number",
-        "reference" => "the channel of the crank pulse, by name or number",
         "beam_angle" => "the angle of the laser beam in degrees",
         "from" => "normal or axis: what the beam angle is counted from",
         "pulses_per_turn" => "the number of reference pulses in a turn of the crank",
@@ -115,7 +114,6 @@ impl Keys {
     /// With the key at fault.
     pub fn usable(&self) -> Result<()> {
         needed("velocity", self.velocity.as_ref())?;
-        needed("reference", self.reference.as_ref())?;
         needed("beam_angle", self.beam_angle)?;
         needed("from", self.from)?;
         // A beam from which nothing is seen leaves its own record out.
@@ -128,9 +126,23 @@ impl Keys {
 
     /// Without a sensitivity the file must say that the channel is a velocity.
     fn options(&self, beam: Beam) -> Result<DrillOptions> {
-        let pulses = needed("pulses_per_turn", self.pulses_per_turn)?;
         let sensitivity = self.sensitivity.unwrap_or(1.0);
-        let plain = DrillOptions::new(sensitivity, beam, pulses, needed("edge", self.edge)?);
+        let plain = if self.reference.is_some() {
+            let pulses = needed("pulses_per_turn", self.pulses_per_turn)?;
+            DrillOptions::new(sensitivity, beam, pulses, needed("edge", self.edge)?)
+        } else {
+            let of_reference = [
+                ("pulses_per_turn", self.pulses_per_turn.is_some()),
+                ("edge", self.edge.is_some()),
+                ("level", self.level.is_some()),
+                ("delay", self.delay.is_some()),
+            ];
+            if let Some((key, _)) = of_reference.into_iter().find(|(_, stated)| *stated) {
+                let found = format!("{} is stated without a reference", key.replace('_', " "));
+                return Err(Error::usage(found, "both or neither").setting(key).setting("reference"));
+            }
+            DrillOptions::of_impacts(sensitivity, beam)
+        };
         Ok(DrillOptions {
             level: self.level,
             mass: self.mass,
@@ -167,7 +179,9 @@ impl Keys {
         let options =
             self.options(Beam::new(needed("beam_angle", self.beam_angle)?, needed("from", self.from)?)?)?;
         let velocity = needed("velocity", self.velocity.as_deref())?;
-        let mut names = vec![velocity, needed("reference", self.reference.as_deref())?];
+        let mut names = vec![velocity];
+        names.extend(self.reference.as_deref());
+        let own = names.len();
         names.extend(self.handle.iter().map(String::as_str));
         let mut channels = Channels::read(source.reader()?, source.path, &names, source.progress)?;
         if !channels.is(0, Quantity::Velocity) {
@@ -176,10 +190,10 @@ impl Keys {
             let found = Finding::doubt("drill-velocity-scaled-twice");
             channels.findings.push(found.number("sensitivity", options.sensitivity));
         }
-        if (2..names.len()).any(|channel| !channels.is(channel, Quantity::Acceleration)) {
+        if (own..names.len()).any(|channel| !channels.is(channel, Quantity::Acceleration)) {
             needed("handle_sensitivity", self.handle_sensitivity)?;
         }
-        channels.scale(2, self.handle_sensitivity.unwrap_or(1.0));
+        channels.scale(own, self.handle_sensitivity.unwrap_or(1.0));
         let still = source.further("noise", self.noise.as_ref())?;
         let still =
             still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &())).transpose()?;

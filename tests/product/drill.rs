@@ -235,6 +235,50 @@ fn what_allows_no_answer_says_why() {
 }
 
 #[test]
+fn without_a_reference_the_turns_come_from_the_impacts() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = record::record(2.0);
+    let channels = [volts("striker", made.striker.clone()), volts("pulse", made.pulse)];
+    let file = wav(folder.path(), "drill.wav", &channels);
+    let out = folder.path().join("out");
+    let masses = ["--mass", "0.14", "--struck-mass", "0.43", "--out", out.to_str().unwrap()];
+    let plain = ["--velocity", "striker", "--sensitivity", "2", "--beam-angle", "30", "--from", "normal"];
+    let own = json(&drill(&file, &[&plain[..], &masses].concat()));
+    let with = json(&with(&file, &masses[..4]));
+    for key in ["before", "after", "restitution"] {
+        let part = |found: &Value, what: &str| found[key][what].as_f64().unwrap();
+        assert!((part(&own, "value") - part(&with, "value")).abs() < part(&with, "std"), "{key}");
+    }
+    // From the first impact of a turn to the last.
+    let n = own["cycles"].as_f64().unwrap();
+    let times: Vec<f64> = made.impacts.iter().map(|i| i.time).collect();
+    let truth = (times.len() - 1) as f64 / (times[times.len() - 1] - times[0]);
+    let speed = |what: &str| own["speed"][what].as_f64().unwrap();
+    assert!((speed("value") - truth).abs() < 1.96 * speed("std") && n > 85.0, "{} {truth}", own["speed"]);
+    assert_eq!((&own["turns_from"], &with["turns_from"]), (&"impacts".into(), &"reference".into()));
+    let said = finding(&own, "drill-turns-from-impacts");
+    assert!((said["numbers"]["rpm"].as_f64().unwrap() / 60.0 / speed("value") - 1.0).abs() < 1e-12);
+    assert!(finding(&with, "drill-turns-from-impacts").is_null());
+    // The average begins in the middle of the impact.
+    assert!((own["average"]["mean"][0].as_f64().unwrap() - 0.5 * (7.5 - 0.7)).abs() < 1.5);
+    assert!(out.join("drill_trace.svg").exists());
+    // A crank without impacts, and a key of the reference alone.
+    let sine = csv(folder.path(), "sine.csv", |i| ((i as f64 * 0.03).sin(), 0.0));
+    let mut noise = noise::Noise::new(3);
+    let rows: Vec<f64> = (0..6000).map(|i| (f64::from(i) * 0.03).sin() + 0.01 * noise.normal()).collect();
+    for file in [&sine, &csv(folder.path(), "noisy.csv", |i| (rows[i], 0.0))] {
+        let refused = drill(file, &plain);
+        let text = String::from_utf8_lossy(&refused.stderr);
+        assert!(refused.status.code() == Some(1) && text.contains("impacts"), "{text}");
+    }
+    let contradicted = drill(&file, &[&plain[..], &["--edge", "rising"]].concat());
+    assert_eq!(contradicted.status.code(), Some(2));
+    let table =
+        Command::new(env!("CARGO_BIN_EXE_vibro")).arg("drill").arg(&file).args(plain).output().unwrap();
+    assert!(String::from_utf8_lossy(&table.stdout).contains("rpm"));
+}
+
+#[test]
 fn channels_of_different_rates_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let made = record::record(0.3);

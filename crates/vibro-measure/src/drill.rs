@@ -2,7 +2,8 @@
 //!
 //! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and motion. Edges of the
 //! reference cut the record into turns; phases are parts of a turn after the edge, which for a pulse at the upper end of
-//! the piston's stroke is the phase after top dead centre. Beside the channels a record takes 17 bytes a sample.
+//! the piston's stroke is the phase after top dead centre. Without a reference the turns run from impact
+//! to impact. Beside the channels a record takes 17 bytes a sample.
 //!
 //! ```
 //! use vibro_measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
@@ -25,13 +26,14 @@ mod jumps;
 mod options;
 mod result;
 mod survey;
+mod train;
 mod turns;
 
 pub use cycles::{Bandwidth, Cycle, Phases};
 pub use floor::NoiseFloor;
 use groups::Offset;
 pub use groups::{Group, Impact};
-pub use options::{Beam, Corner, DrillOptions, From, Smoothing};
+pub use options::{Beam, Corner, DrillOptions, From, Smoothing, TurnsFrom};
 pub use result::{Displacement, Drill, Pulses};
 pub use survey::FaultCount;
 pub(crate) use survey::levels;
@@ -43,7 +45,8 @@ use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
 use jumps::Jumps;
-use survey::{Survey, median};
+use survey::{State, Survey, median};
+use train::Train;
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result};
 
@@ -55,7 +58,7 @@ const DRAWN: usize = 3;
 pub struct Slices<'a> {
     /// Sampling rate in Hz.
     pub rate: f64,
-    /// Velocity, reference, then up to three axes of a handle, in m/s²; missing samples are NaN.
+    /// Velocity, reference where the turns come from one, then up to three axes of a handle, in m/s²; missing samples are NaN.
     pub channels: Vec<&'a [f64]>,
 }
 
@@ -63,7 +66,7 @@ pub struct Slices<'a> {
 ///
 /// # Errors
 /// If the parameters cannot be; if the velocity is constant or missing, or the same as the reference; if the reference has no whole turn
-/// between its edges; if a handle allows no exposure.
+/// between its edges, or without a reference the impacts no common period; if a handle allows no exposure.
 pub fn drill(record: &Slices<'_>, options: &DrillOptions, still: Option<&[f64]>) -> Result<Drill> {
     drill_each(record, options, still, &mut |_| Ok(()))
 }
@@ -79,8 +82,8 @@ pub fn drill_each(
     each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
 ) -> Result<Drill> {
     options.check()?;
-    check(record)?;
-    let (rate, reference, handles) = (record.rate, record.channels[1], &record.channels[2..]);
+    let (rate, reference) = (record.rate, check(record, options)?);
+    let handles = &record.channels[1 + usize::from(reference.is_some())..];
     let scaled = |volts: &[f64]| -> Vec<f64> {
         volts.iter().map(|v| v * (options.sensitivity * options.beam.factor)).collect()
     };
@@ -90,13 +93,17 @@ pub fn drill_each(
         let error = Error::refused("the velocity is constant, or missing");
         return Err(error.hint("check that the laser sees the target").setting("velocity"));
     }
-    let (edges, turns) = turns(reference, &velocity, options, options.delay * rate)?;
-    let edge = edges.std(survey::noise(reference));
+    let (states, faults) = survey::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
+    let marks = match reference {
+        Some(reference) => Marks::of_reference(reference, record.channels[0], options, options.delay * rate)?,
+        None => Marks::of_impacts(&velocity, &states, options, rate)?,
+    };
+    let (turns, edge) = (Turns::new(&marks.at, options.pulses_per_turn)?, marks.std);
     let whole = &turns.whole;
     let typical = median(whole.iter().map(|t| (t.end - t.start) / rate));
     options.check_turn(typical)?;
-    let (drawn, excerpt, excerpt_reference) = excerpt(whole, &velocity, reference, options.delay * rate);
-    let (states, faults) = survey::repair(&mut velocity, &survey, (options.longest_dropout * rate) as usize);
+    let (drawn, excerpt, excerpt_reference) =
+        excerpt(whole, record.channels[0], reference.unwrap_or_default(), options.delay * rate);
     let smoothing = options.smoothing.corner(options.points, typical, rate);
     let smooth = smoothing.map(|corner| corner.smooth(&velocity, rate)).transpose()?;
     let smooth = smooth.as_deref().unwrap_or(&velocity);
@@ -109,13 +116,13 @@ pub fn drill_each(
     let [stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let period = 1.0 / speed.value;
-    let offset = Offset::of(&stroke, &drift, period);
+    let offset = Offset::of(&drift, period);
     let around: Vec<f64> = velocity.iter().map(|v| v - offset.value).collect();
-    let jumps = Jumps::of(&around, &states, (options.contact * rate, options.fit * rate), whole);
+    let jumps =
+        Jumps::of(&around, &states, (options.contact * rate, options.fit * rate), whole, options.turns_from);
     let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
     let (mut impacts, residuals) = jumps.finish(rate, edge);
-    let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options);
-    let groups: Vec<Group> = groups.into_iter().map(|group| group.allowing(&offset)).collect();
+    let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options, &offset);
     let strongest = groups.first();
     let average = cycles.phases();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
@@ -136,13 +143,8 @@ pub fn drill_each(
         speed_variation: scatter(&speeds),
         cycles: whole.len(),
         averaged,
-        reference: Pulses {
-            edges: edges.at.len(),
-            missing: turns.missing,
-            extra: turns.extra,
-            pauses: turns.pauses,
-            std: edge / rate,
-        },
+        turns_from: options.turns_from,
+        reference: marks.count(&turns, rate),
         before: strongest.map(|g| g.before.clone()),
         after: strongest.map(|g| g.after.clone()),
         phase: strongest.map(|g| g.phase.clone()),
@@ -169,48 +171,82 @@ pub fn drill_each(
         speeds,
         times: whole.iter().map(|t| t.start / rate).collect(),
         excerpt_time: (drawn as f64 / rate, 1.0 / rate),
-        excerpt,
+        excerpt: scaled(&excerpt),
         excerpt_reference,
         findings: Vec::new(),
     };
-    result.findings = result::findings(&result, options, &edges, &survey, still.is_some());
+    result.findings = result::findings(&result, options, marks.sharp, &survey, still.is_some());
     let changes = Finding::caution("drill-slow-changes").name("quantities", slow.join(", "));
     result.findings.extend((!slow.is_empty()).then_some(changes));
     Ok(result)
 }
 
-/// Whether there are a rate, and a velocity and a reference that differ.
-fn check(record: &Slices<'_>) -> Result<()> {
+/// The reference, where the turns come from one; if there are a rate, and a velocity and a reference that differ.
+fn check<'a>(record: &Slices<'a>, options: &DrillOptions) -> Result<Option<&'a [f64]>> {
     let rate = record.rate;
     if !(rate.is_finite() && rate > 0.0) {
         let found = format!("a sampling rate of {rate} Hz");
         return Err(Error::usage(found, "a finite number above 0").setting("rate"));
     }
-    match record.channels.as_slice() {
-        [velocity, reference, ..] if velocity == reference => {
+    match (record.channels.as_slice(), options.turns_from) {
+        ([_, ..], TurnsFrom::Impacts) => Ok(None),
+        ([velocity, reference, ..], _) if velocity == reference => {
             Err(Error::refused("velocity and reference are the same channel")
                 .hint("name two channels; `vibro info` lists them")
                 .setting("velocity")
                 .setting("reference"))
         }
-        [_, _, ..] => Ok(()),
-        few => Err(Error::usage(format!("{} channels", few.len()), "a velocity and a reference")),
+        ([_, reference, ..], _) => Ok(Some(reference)),
+        (few, _) => Err(Error::usage(format!("{} channels", few.len()), "a velocity and a reference")),
     }
 }
 
-/// Edges and turns in the clock of the velocity, which comes `delay` samples late.
-fn turns(reference: &[f64], velocity: &[f64], options: &DrillOptions, delay: f64) -> Result<(Edges, Turns)> {
-    let (low, high) = levels(reference).unwrap_or((f64::NAN, f64::NAN));
-    // A stated level stands in the middle; the nearer of both levels gives the height.
-    let middle = options.level.unwrap_or(0.5 * (low + high));
-    let half = (middle - low).min(high - middle);
-    let mut edges = Edges::of(reference, (middle - half, middle + half), options.edge);
-    survey::check_pulses(velocity, (reference, (low, high)), &edges.at)?;
-    let last = velocity.len().saturating_sub(1) as f64;
-    edges.at.iter_mut().for_each(|edge| *edge += delay);
-    edges.at.retain(|edge| (0.0..=last).contains(edge));
-    let turns = Turns::new(&edges.at, options.pulses_per_turn)?;
-    Ok((edges, turns))
+/// What tells the turns, in samples of the velocity.
+struct Marks {
+    at: Vec<f64>,
+    /// Standard uncertainty of each.
+    std: f64,
+    /// Whether edges rise within one sample.
+    sharp: bool,
+    /// Impacts that begin no turn.
+    others: usize,
+}
+
+impl Marks {
+    /// What became of them.
+    fn count(&self, turns: &Turns, rate: f64) -> Pulses {
+        let (edges, extra) = (self.at.len(), turns.extra + self.others);
+        Pulses { edges, missing: turns.missing, extra, pauses: turns.pauses, std: self.std / rate }
+    }
+
+    /// Edges of a reference in the clock of the velocity, which comes `delay` samples late.
+    fn of_reference(
+        reference: &[f64],
+        velocity: &[f64],
+        options: &DrillOptions,
+        delay: f64,
+    ) -> Result<Marks> {
+        let (low, high) = levels(reference).unwrap_or((f64::NAN, f64::NAN));
+        // A stated level stands in the middle; the nearer of both levels gives the height.
+        let middle = options.level.unwrap_or(0.5 * (low + high));
+        let half = (middle - low).min(high - middle);
+        let mut edges = Edges::of(reference, (middle - half, middle + half), options.edge);
+        survey::check_pulses(velocity, (reference, (low, high)), &edges.at)?;
+        let last = velocity.len().saturating_sub(1) as f64;
+        edges.at.iter_mut().for_each(|edge| *edge += delay);
+        edges.at.retain(|edge| (0.0..=last).contains(edge));
+        let std = edges.std(survey::noise(reference));
+        Ok(Marks { std, sharp: edges.sharp, others: 0, at: edges.at })
+    }
+
+    /// The impacts that follow each other by the period of their pattern.
+    fn of_impacts(velocity: &[f64], states: &[State], options: &DrillOptions, rate: f64) -> Result<Marks> {
+        // A turn is half the record at most.
+        options.check_turn(0.5 * velocity.len() as f64 / rate)?;
+        let jumps = Jumps::everywhere(velocity, states, (options.contact * rate, options.fit * rate));
+        let Train { at, std, others } = Train::of(&jumps.finish(rate, 0.0).0, rate)?;
+        Ok(Marks { at, std, sharp: false, others })
+    }
 }
 
 /// Some turns in the middle as they were measured: their first sample, velocity and reference, which is earlier by `delay` samples.

@@ -72,16 +72,17 @@ pub fn still(seconds: f64) -> Vec<f64> {
     (0..(seconds * RATE) as usize).map(|_| NOISE * laser.normal()).collect()
 }
 
-/// The bit takes what momentum the striker loses and comes to rest within 1.5 ms.
+/// The bit takes what momentum the striker loses, and comes back to its place with a time constant of 2 ms.
 fn bit(impacts: &[Struck], count: usize, contact: f64) -> Vec<f64> {
     let mut velocity = vec![0.0; count];
     for impact in impacts {
         let gained = STRIKER * (impact.before - impact.after) / BIT;
         let first = ((impact.time - 0.5 * contact) * RATE).ceil().max(0.0) as usize;
-        for (i, v) in velocity.iter_mut().enumerate().skip(first).take((0.01 * RATE) as usize) {
+        for (i, v) in velocity.iter_mut().enumerate().skip(first).take((0.02 * RATE) as usize) {
             let t = i as f64 / RATE - impact.time;
             let mix = 0.5 + 0.5 * (std::f64::consts::PI * (t / contact).min(0.5)).sin();
-            *v += gained * mix * (-t.max(0.0) / 1.5e-3).exp();
+            let back = t.max(0.0) / 2e-3;
+            *v += gained * mix * (1.0 - back) * (-back).exp();
         }
     }
     velocity

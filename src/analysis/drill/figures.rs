@@ -1,6 +1,6 @@
 //! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
 
-use crate::measure::drill::{Corner, Drill, Impact};
+use crate::measure::drill::{Corner, Drill, Impact, TurnsFrom};
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 
@@ -36,7 +36,11 @@ fn average(name: &str, drill: &Drill) -> Figure {
     };
     let degrees: Vec<f64> = a.phase.iter().map(|p| 360.0 * p).chain([360.0]).collect();
     let edge = |sign: f64| closed(a.mean.iter().zip(&a.std).map(|(m, s)| m + sign * s).collect());
-    let x = || AxisSpec::new("Crank angle after the pulse", "°").limits(0.0, 360.0);
+    let from = match drill.turns_from {
+        TurnsFrom::Reference => "Crank angle after the pulse",
+        TurnsFrom::Impacts => "Part of the turn after the impact",
+    };
+    let x = || AxisSpec::new(from, "°").limits(0.0, 360.0);
     let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
         .with(Series::line("mean", degrees.clone(), closed(a.mean.clone())).ink(Ink::Nth(0)));
@@ -93,6 +97,11 @@ fn trace(name: &str, drill: &Drill) -> Figure {
     let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::line("measured", time(n), drill.excerpt.clone()).ink(Ink::Grey).stroke(Stroke::Thin));
     let (above, _) = marks(above, drill, |i| i.time, |i| i.time >= start && i.time <= end);
+    let figure = Figure::double(format!("Trace, {name}"));
+    if drill.turns_from == TurnsFrom::Impacts {
+        let caption = "A few turns in the middle of the record, as measured: drop-outs are not bridged here.";
+        return figure.height(70.0).panel(above).caption(caption);
+    }
     let reference = drill.excerpt_reference.clone();
     let mut below = Plot::new(x(), AxisSpec::new("Reference, as recorded", ""))
         .with(Series::line("", time(reference.len()), reference).ink(Ink::Black).stroke(Stroke::Thin));
@@ -100,8 +109,7 @@ fn trace(name: &str, drill: &Drill) -> Figure {
         below = below.with(Series::vertical("", *edge));
     }
     let caption = "A few turns in the middle of the record, as measured: drop-outs are not bridged here. Vertical lines are the edges of the reference that begin a turn.";
-    lettered(Figure::double(format!("Trace, {name}")).height(110.0).shared_x().panel(above).panel(below))
-        .caption(caption)
+    lettered(figure.height(110.0).shared_x().panel(above).panel(below)).caption(caption)
 }
 
 fn speed(name: &str, drill: &Drill) -> Figure {

@@ -13,6 +13,8 @@ pub fn drill(name: &str, d: &Drill) -> Table {
         table.push([Cell::from(name), Cell::from(what), value, Cell::from(unit), Cell::from(n)]);
     };
     row("speed", Cell::from(&d.speed), "Hz", d.speed.n);
+    let minute = Cell::Estimate { value: 60.0 * d.speed.value, std: d.speed.std.map(|std| 60.0 * std) };
+    row("speed", minute, "rpm", d.speed.n);
     for (number, group) in d.groups.iter().enumerate() {
         let of = if d.groups.len() > 1 { format!("group {number}: ") } else { String::new() };
         for (what, e) in means(group) {

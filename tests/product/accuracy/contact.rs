@@ -12,7 +12,8 @@ const CASES: u64 = 200;
 const BEFORE: f64 = 6.0;
 const AFTER: f64 = -1.0;
 
-/// What happens to a velocity that rises in a straight line from −1 to 6 m/s and falls back at phase 0.6.
+/// What happens to a velocity that goes from −1 to 6 m/s, by a straight line and the half sine that brings the mass back, and falls back at
+/// phase 0.6.
 #[derive(Clone, Copy)]
 enum Spoilt {
     /// Nothing but noise of 0.02 m/s, each value this part of the one before.
@@ -54,7 +55,8 @@ fn case(spoilt: Spoilt, seed: u64) -> Drill {
                 }
                 _ => 0.0,
             };
-            after + (before - after) * behind + ring
+            let back = 0.25 * std::f64::consts::PI * (after + before) * (std::f64::consts::PI * behind).sin();
+            after + (before - after) * behind - back + ring
         })
         .collect();
     match spoilt {

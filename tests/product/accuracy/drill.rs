@@ -4,7 +4,7 @@ use super::draws::{Draws, none_far};
 use crate::drill::noise::Noise;
 use crate::drill::stroke::{Machine, Run, Struck};
 use vibroimpact::measure::Estimate;
-use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, drill};
+use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, TurnsFrom, drill};
 
 const CASES: u64 = 240;
 /// Whole records: ten parts are checked one by one, each scatters by 0.75 % of this many, and none may be below 92 % by chance.
@@ -77,6 +77,8 @@ struct Case {
     run: Run,
     dropouts: usize,
     found: Drill,
+    /// Without the reference.
+    own: Drill,
 }
 
 /// A machine that turns `slowest` to `slowest` + 20 times a second.
@@ -122,7 +124,9 @@ fn case(seed: u64) -> Case {
     let mut options = DrillOptions::new(2.0, Beam::new(30.0, From::Normal).unwrap(), 1, Edge::Rising);
     (options.mass, options.struck_mass) = (Some(MASS), Some(STRUCK));
     let found = drill(&Slices { rate: RATE, channels: vec![&volts, &pulse] }, &options, None).unwrap();
-    Case { machine, run, dropouts, found }
+    let options = DrillOptions { turns_from: TurnsFrom::Impacts, ..options };
+    let own = drill(&Slices { rate: RATE, channels: vec![&volts] }, &options, None).unwrap();
+    Case { machine, run, dropouts, found, own }
 }
 
 /// Mean stroke of the turns within the record: sums of the true velocity, what a turn gains taken away.
@@ -146,12 +150,23 @@ fn stroke(run: &Run) -> f64 {
 
 fn uncertainties_of_a_drill_are_true(draws: Draws) {
     let mut speed = Coverage::new("speed");
+    let mut own_speed = Coverage::new("speed without reference");
     let names = ["before", "after", "phase", "energy", "energy given", "restitution"];
     let mut means = names.map(Coverage::new);
     let mut single = ["each before", "each after", "each phase"].map(Coverage::new);
     let (mut impacts, mut found_impacts, mut worst) = (0, 0, 0.0f64);
     for seed in 1..=draws.of(RECORDS) {
-        let Case { machine, run, dropouts, found } = case(seed);
+        let Case { machine, run, dropouts, found, own } = case(seed);
+        // The same impacts but one or two at the ends and beside each that is hidden.
+        assert!(own.impacts.len() + 3 * (1 + found.hidden) >= found.impacts.len(), "seed {seed}");
+        let both = |d: &Drill| [d.before.clone(), d.after.clone(), d.restitution.clone()].map(Option::unwrap);
+        for (a, b) in both(&own).into_iter().zip(both(&found)) {
+            assert!(
+                (a.value - b.value).abs() < a.std.unwrap().max(b.std.unwrap()),
+                "seed {seed}: {a:?} {b:?}"
+            );
+        }
+        own_speed.estimate(&own.speed, machine.speed);
         assert_eq!(found.dropouts, dropouts, "seed {seed}");
         assert_eq!((found.faults.spikes, found.faults.clipped, found.faults.lost), (0, 0, 0), "seed {seed}");
         speed.estimate(&found.speed, machine.speed);
@@ -208,6 +223,7 @@ fn uncertainties_of_a_drill_are_true(draws: Draws) {
     // Faults beside a contact may leave too few samples for a fit: those are not reported.
     assert!(found_impacts as f64 > 0.98 * impacts as f64);
     speed.check(draws);
+    own_speed.check(draws);
     means.iter().chain(&single).for_each(|c| c.check(draws));
 }
 

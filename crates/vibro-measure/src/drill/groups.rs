@@ -2,7 +2,6 @@
 
 use super::DrillOptions;
 use super::jumps::LackOfFit;
-use super::result::DRIFTING;
 use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
@@ -16,6 +15,8 @@ const BIAS: f64 = 0.3;
 const DIRECTED: f64 = 3.0;
 /// A velocity of approach is known from 0 by this many times its uncertainty.
 const CLEAR: f64 = 6.0;
+/// Part of the speed at an impact that an offset of the velocity may be.
+const LARGEST: f64 = 0.1;
 /// Standard uncertainties beyond which a restitution outside 0 to 1 is no chance.
 const BEYOND: f64 = 2.0;
 
@@ -28,7 +29,9 @@ pub struct Impact {
     pub group: usize,
     /// Time from the first sample, in s.
     pub time: f64,
-    /// Part of the turn after its first edge, 0 to 1.
+    /// Its standard uncertainty.
+    pub time_std: f64,
+    /// Part of the turn after its beginning, 0 to 1.
     pub phase: f64,
     /// Standard uncertainty of the phase.
     pub phase_std: f64,
@@ -45,7 +48,7 @@ pub struct Impact {
 }
 
 /// Mean velocity over turns in m/s, which velocities at impacts are counted from: a mass that comes back each turn has none, so it is an offset of
-/// the instrument, or the machine moves as a whole. None where it is more than such an offset can be.
+/// the instrument, or the machine moves as a whole.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offset {
     pub value: f64,
@@ -53,9 +56,9 @@ pub(super) struct Offset {
 }
 
 impl Offset {
-    /// From stroke and drift over a turn, in m, and its time in s.
-    pub fn of(stroke: &Mean, drift: &Mean, period: f64) -> Offset {
-        if drift.value.abs() > DRIFTING * stroke.value || !drift.value.is_finite() {
+    /// From the drift over a turn, in m, and its time in s.
+    pub fn of(drift: &Mean, period: f64) -> Offset {
+        if !drift.value.is_finite() {
             return Offset { value: 0.0, std: None };
         }
         Offset { value: drift.value / period, std: drift.std.map(|std| std / period) }
@@ -95,7 +98,7 @@ pub struct Group {
     pub(super) wanders: bool,
 }
 
-/// Groups of impacts found in `turns` turns, the strongest first; each impact gets its group. `residuals` are those of their fits, which end
+/// Groups of impacts found in `turns` turns, the strongest first; each impact gets its group. Velocities are counted from the `offset`. `residuals` are those of their fits, which end
 /// `gap` samples from the middle of the contact.
 pub(super) fn groups(
     impacts: &mut [Impact],
@@ -103,6 +106,7 @@ pub(super) fn groups(
     gap: usize,
     turns: usize,
     options: &DrillOptions,
+    offset: &Offset,
 ) -> Vec<Group> {
     let rises = |i: &Impact| i.after > i.before;
     let strength = |up: bool| {
@@ -117,7 +121,7 @@ pub(super) fn groups(
     let count = if impacts.is_empty() { 0 } else { 1 + usize::from(both) };
     let group = |number| {
         let members = impacts.iter().zip(residuals).filter(|(i, _)| i.group == number);
-        let mut group = Group::new(&members.collect::<Vec<_>>(), number == 0, gap, options);
+        let mut group = Group::new(&members.collect::<Vec<_>>(), number == 0, gap, options).allowing(offset);
         group.share = group.n as f64 / turns as f64;
         if both {
             group.findings = group.findings.into_iter().map(|found| found.count("group", number)).collect();
@@ -128,15 +132,23 @@ pub(super) fn groups(
 }
 
 impl Group {
-    /// Adds what is not known of the offset, which all impacts share.
-    pub(super) fn allowing(mut self, offset: &Offset) -> Group {
-        let Some(unknown) = offset.std else { return self };
-        let add = |estimate: &mut Estimate, by: f64| estimate.std = estimate.std.map(|std| std.hypot(by));
+    /// Adds what is not known of the offset, which all impacts share; nothing is known where it is more than an instrument has.
+    fn allowing(mut self, offset: &Offset) -> Group {
+        let (before, after) = (self.before.value, self.after.value);
+        let doubted = offset.value.abs() > LARGEST * before.abs().max(after.abs());
+        let Some(unknown) = offset.std.or(doubted.then_some(f64::INFINITY)) else { return self };
+        let add = |estimate: &mut Estimate, by: f64| {
+            estimate.std = estimate.std.filter(|_| !doubted).map(|std| std.hypot(by));
+        };
+        // m v of the energy ½ m v².
+        let momentum = self.energy.as_ref().map_or(0.0, |e| 2.0 * e.value / before);
+        self.energy.iter_mut().for_each(|e| add(e, momentum * unknown));
+        self.energy_given.iter_mut().for_each(|e| add(e, momentum * (1.0 - after / before) * unknown));
+        self.restitution.iter_mut().for_each(|r| add(r, (1.0 + r.value) * unknown / before.abs()));
         add(&mut self.before, unknown);
         add(&mut self.after, unknown);
-        if let Some(r) = &mut self.restitution {
-            add(r, (1.0 + r.value) * unknown / self.before.value.abs());
-        }
+        let found = Finding::doubt("drill-mean-velocity").number("mean", offset.value);
+        self.findings.extend(doubted.then_some(found));
         self
     }
 
@@ -185,7 +197,7 @@ impl Group {
             n: members.len(),
             clipped,
             share: f64::NAN,
-            phase: estimate(phase, undirected, "1", "turns after the edge, mean over impacts on the circle"),
+            phase: estimate(phase, undirected, "1", "part of the turn, mean over impacts on the circle"),
             before: estimate(before, open_before, "m/s", "parabola up to the contact, mean over impacts"),
             after: estimate(after, open_after, "m/s", "parabola from the contact on, mean over impacts"),
             energy: energy(&|i| i.before * i.before, open_before, "½ m v² before, mean over impacts"),

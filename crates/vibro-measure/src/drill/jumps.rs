@@ -7,13 +7,15 @@
 
 use super::survey::{State, median};
 use super::turns::Turn;
-use super::{Impact, turns};
+use super::{Impact, TurnsFrom, turns};
 use crate::residuals::Whiteness;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::RangeInclusive;
 
 /// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
 const MOST: usize = 4;
+/// Parts of a record whose turns are not known.
+const PARTS: usize = 16;
 /// Smaller jumps count down to this part of the largest of a turn, and of the median turn.
 const PART: f64 = 0.25;
 /// A jump must be this many times its own uncertainty: of some thousand places a turn none is one by chance.
@@ -47,6 +49,8 @@ pub(super) struct Jumps<'a> {
     /// Samples from the end of a fit to the middle of the contact.
     pub gap: usize,
     length: usize,
+    /// Samples before the beginning of a turn in which an impact belongs to it.
+    lead: f64,
     found: Vec<Jump>,
     largest: Vec<f64>,
     /// Turns whose impact lies in a fault of the velocity.
@@ -58,17 +62,29 @@ impl<'a> Jumps<'a> {
     pub fn new(values: &'a [f64], states: &'a [State], contact: f64, fit: f64) -> Jumps<'a> {
         let gap = ((0.5 * contact).ceil() as usize).max(1);
         let length = (fit.round() as usize).max(FEWEST);
-        Jumps { values, states, gap, length, found: Vec::new(), largest: Vec::new(), hidden: 0 }
+        Jumps { values, states, gap, length, lead: 0.0, found: Vec::new(), largest: Vec::new(), hidden: 0 }
     }
 
-    /// Jumps in those of the turns in which no sample is lost; contact and fit in samples.
+    /// Jumps of a record whose turns are not known: the largest of each of its parts decides which others count there.
+    pub fn everywhere(values: &'a [f64], states: &'a [State], (contact, fit): (f64, f64)) -> Jumps<'a> {
+        let mut jumps = Jumps::new(values, states, contact, fit);
+        let part = values.len() as f64 / PARTS as f64;
+        for k in 0..PARTS {
+            jumps.search(k, Turn { start: part * k as f64, end: part * (k + 1) as f64 }, usize::MAX);
+        }
+        jumps
+    }
+
+    /// Jumps in those of the turns in which no sample is lost; contact and fit in samples. Where the `turns_from` impacts, one begins each.
     pub fn of(
         values: &'a [f64],
         states: &'a [State],
         (contact, fit): (f64, f64),
         turns: &[Turn],
+        turns_from: TurnsFrom,
     ) -> Jumps<'a> {
         let mut jumps = Jumps::new(values, states, contact, fit);
+        jumps.lead = if turns_from == TurnsFrom::Impacts { jumps.gap as f64 } else { 0.0 };
         for (cycle, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.is_measured(states)) {
             jumps.push(cycle, *turn);
         }
@@ -77,21 +93,32 @@ impl<'a> Jumps<'a> {
 
     /// Looks at turn number `cycle`.
     pub fn push(&mut self, cycle: usize, turn: Turn) {
-        let (from, to) = (turn.start.ceil() as usize, turn.end.ceil() as usize);
+        self.search(cycle, turn, MOST);
+    }
+
+    /// Looks for so many jumps at most.
+    fn search(&mut self, cycle: usize, turn: Turn, most: usize) {
+        let (start, end) = (turn.start - self.lead, turn.end - self.lead);
+        let (from, to) = (start.ceil() as usize, end.ceil() as usize);
         let steps: Vec<f64> = (from..to).map(|i| self.step(i)).collect();
         let mut open = vec![true; steps.len()];
         let top = steps.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let (mut largest, mut disturbed) = (None, false);
-        for _ in 0..MOST {
-            let high = steps.iter().enumerate().filter(|(k, s)| open[*k] && s.abs() > PART * top);
-            let Some((k, _)) = high.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { break };
+        let mut high: Vec<usize> = (0..steps.len()).filter(|k| steps[*k].abs() > PART * top).collect();
+        high.sort_by(|a, b| steps[*a].abs().total_cmp(&steps[*b].abs()));
+        let mut tried = 0;
+        while let Some(k) = high.pop().filter(|_| tried < most) {
+            if !open[k] {
+                continue;
+            }
+            tried += 1;
             let reach = 2 * self.gap + self.averaged();
             open[k.saturating_sub(reach)..(k + reach).min(steps.len())].fill(false);
             let Some(jump) = self.refine(cycle, turn, from + k) else {
                 disturbed = disturbed || self.disturbed(from + k);
                 continue;
             };
-            if (turn.start..turn.end).contains(&jump.at) {
+            if (start..end).contains(&jump.at) {
                 largest = largest.or(Some(jump.height()));
                 self.found.push(jump);
             }
@@ -169,7 +196,8 @@ impl<'a> Jumps<'a> {
         let impact = |j: &Jump| {
             let [before, after] = [0, 1].map(|k| noise[k].1 * j.sides[k].leverage);
             let length = j.turn.end - j.turn.start;
-            let phase = (j.at - j.turn.start) / length;
+            // Before the turn begins there is only the impact that begins it.
+            let phase = ((j.at - j.turn.start) / length).max(0.0);
             // The crossing lies between two samples; the level that is crossed is the mean of both values.
             let weight = (1.0 - j.share).powi(2) + j.share * j.share;
             let crossed = 0.5 * (noise[0].0 + noise[1].0) * weight + 0.25 * (before + after);
@@ -181,6 +209,7 @@ impl<'a> Jumps<'a> {
                 cycle: j.cycle,
                 group: 0,
                 time: j.at / rate,
+                time_std: time.sqrt() / rate,
                 phase,
                 phase_std: (time + edges).sqrt() / length,
                 before: j.sides[0].value,

@@ -82,6 +82,16 @@ pub enum Smoothing {
     Exponential(f64),
 }
 
+/// What tells the turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TurnsFrom {
+    /// Pulses of a reference channel.
+    Reference,
+    /// The impacts themselves: a turn is the period of their pattern, which begins at the strongest.
+    Impacts,
+}
+
 /// A smoothing and its corner in Hz.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(tag = "kind", content = "corner", rename_all = "kebab-case")]
@@ -134,6 +144,8 @@ pub struct DrillOptions {
     pub sensitivity: f64,
     /// The beam.
     pub beam: Beam,
+    /// What tells the turns. Pulses, edge, level and delay are those of a reference.
+    pub turns_from: TurnsFrom,
     /// Pulses of the reference in a turn.
     pub pulses_per_turn: usize,
     /// Edge of the pulse that counts.
@@ -170,6 +182,7 @@ impl DrillOptions {
         DrillOptions {
             sensitivity,
             beam,
+            turns_from: TurnsFrom::Reference,
             pulses_per_turn,
             edge,
             level: None,
@@ -185,6 +198,12 @@ impl DrillOptions {
             margin: 10.0,
             hours: None,
         }
+    }
+
+    /// As [`DrillOptions::new`], of a record without a reference.
+    pub fn of_impacts(sensitivity: f64, beam: Beam) -> DrillOptions {
+        let turns_from = TurnsFrom::Impacts;
+        DrillOptions { turns_from, ..DrillOptions::new(sensitivity, beam, 1, Edge::Rising) }
     }
 
     /// Checks every number.

@@ -1,7 +1,7 @@
 //! What a drill's record gave, and what a person should know of it.
 
 use super::{
-    Bandwidth, Beam, Corner, DrillOptions, Edges, FaultCount, Group, Impact, NoiseFloor, Phases, Survey,
+    Bandwidth, Beam, Corner, DrillOptions, FaultCount, Group, Impact, NoiseFloor, Phases, Survey, TurnsFrom,
 };
 use crate::Estimate;
 use crate::exposure::Exposure;
@@ -20,7 +20,9 @@ pub struct Drill {
     pub cycles: usize,
     /// Turns in the average: whole, and with no part of the velocity lost.
     pub averaged: usize,
-    /// The reference.
+    /// What tells the turns.
+    pub turns_from: TurnsFrom,
+    /// The reference, or the impacts that begin the turns.
     pub reference: Pulses,
     /// Every impact.
     pub impacts: Vec<Impact>,
@@ -79,14 +81,14 @@ pub struct Drill {
     pub findings: Vec<Finding>,
 }
 
-/// Edges of the reference.
+/// Edges of the reference, or impacts in its place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pulses {
     /// Edges found.
     pub edges: usize,
     /// Missing edges.
     pub missing: usize,
-    /// False edges, which were ignored.
+    /// False edges, which were ignored; further impacts of the same direction.
     pub extra: usize,
     /// Stretches without edges.
     pub pauses: usize,
@@ -106,15 +108,15 @@ pub struct Displacement {
 }
 
 /// A displacement that drifts by more than this part of the stroke in a turn has an offset, or the machine moves.
-pub(super) const DRIFTING: f64 = 0.1;
+const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
 const STEEP: f64 = 0.005;
 
-/// Of a result, the edges of its reference and its velocity; `still`: a noise floor was asked for.
+/// Of a result and its velocity; `sharp`: edges of the reference rise within one sample; `still`: a noise floor was asked for.
 pub(super) fn findings(
     d: &Drill,
     options: &DrillOptions,
-    edges: &Edges,
+    sharp: bool,
     velocity: &Survey,
     still: bool,
 ) -> Vec<Finding> {
@@ -136,11 +138,16 @@ pub(super) fn findings(
     let limited = Finding::doubt("drill-instrument-limited").number("f2", bandwidth.f2);
     let [stroke, drift] = [d.displacement.stroke.value, d.displacement.drift.value];
     let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
+    let own = d.turns_from == TurnsFrom::Impacts;
+    let turned = Finding::caution("drill-turns-from-impacts").number("rpm", 60.0 * d.speed.value);
+    let turned = if r.extra > 0 { turned.count("others", r.extra) } else { turned };
+    let missing = if own { "drill-impacts-missing" } else { "drill-edges-missing" };
     let found = [
-        (r.missing > 0, Finding::caution("drill-edges-missing").count("n", r.missing)),
-        (r.extra > 0, Finding::caution("drill-edges-extra").count("n", r.extra)),
+        (own, turned),
+        (r.missing > 0, Finding::caution(missing).count("n", r.missing)),
+        (!own && r.extra > 0, Finding::caution("drill-edges-extra").count("n", r.extra)),
         (r.pauses > 0, Finding::caution("drill-reference-pauses").count("n", r.pauses)),
-        (edges.sharp, Finding::caution("drill-edges-sharp").number("std", r.std)),
+        (sharp, Finding::caution("drill-edges-sharp").number("std", r.std)),
         (pulses > 1, Finding::caution("drill-first-pulse-unknown").count("pulses", pulses)),
         (f.dropouts + f.spikes > 0, bridged),
         (f.lost > 0, lost.count("turns", d.cycles - d.averaged)),

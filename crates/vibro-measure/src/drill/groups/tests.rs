@@ -14,6 +14,7 @@ fn impacts(of: &[(f64, f64, f64)]) -> Vec<Impact> {
         cycle,
         group: 99,
         time: cycle as f64 + phase,
+        time_std: 0.0,
         phase: *phase,
         phase_std: 0.0,
         before: *before,
@@ -27,7 +28,7 @@ fn impacts(of: &[(f64, f64, f64)]) -> Vec<Impact> {
 
 fn grouped(impacts: &mut [Impact], turns: usize, options: &DrillOptions) -> Vec<Group> {
     let residuals = vec![[Vec::new(), Vec::new()]; impacts.len()];
-    groups(impacts, &residuals, 0, turns, options)
+    groups(impacts, &residuals, 0, turns, options, &Offset { value: 0.0, std: None })
 }
 
 #[test]
@@ -125,6 +126,7 @@ fn twenty(before: f64, after: f64, std: f64) -> Vec<Impact> {
             cycle: k,
             group: 0,
             time: k as f64,
+            time_std: 0.0,
             phase: 0.5,
             phase_std: 1e-3,
             before: speed(before, k),
@@ -172,4 +174,25 @@ fn a_striker_whose_speed_varies_by_half_still_strikes() {
     }
     let found = restitution(&all.iter().collect::<Vec<_>>(), true, &options(None));
     assert!((found.as_ref().unwrap().value - 0.3).abs() < 1e-12, "{found:?}");
+}
+
+#[test]
+fn what_is_not_known_of_an_offset_is_in_all_means_and_a_large_one_leaves_no_uncertainty() {
+    let group = |value| {
+        let found = grouped(&mut twenty(5.0, -1.0, 0.02), 20, &options(Some((0.1, 0.3))));
+        found.into_iter().next().unwrap().allowing(&Offset { value, std: Some(0.2) })
+    };
+    let small = group(0.4);
+    let std = |e: &Option<Estimate>| e.as_ref().unwrap().std.unwrap();
+    // Speeds scatter by 0.001: all is of the offset. Of R by (1 + R)/v, of the energies by m v and m (v − v′).
+    let r = small.restitution.as_ref().unwrap().value;
+    let expected = [0.2, 0.2, (1.0 + r) / 5.0 * 0.2, 0.1 * 5.0 * 0.2, 0.1 * 6.0 * 0.2];
+    let (before, after) = (small.before.std.unwrap(), small.after.std.unwrap());
+    let stated = [before, after, std(&small.restitution), std(&small.energy), std(&small.energy_given)];
+    for (stated, expected) in stated.into_iter().zip(expected) {
+        assert!((stated / expected - 1.0).abs() < 0.01, "{stated} {expected}");
+    }
+    let large = group(-0.6);
+    assert!(large.before.std.is_none() && large.energy_given.is_some_and(|e| e.std.is_none()));
+    assert_eq!(large.findings[0].code, "drill-mean-velocity");
 }
