@@ -259,6 +259,7 @@ fn without_a_reference_the_turns_come_from_the_impacts() {
     let said = finding(&own, "drill-turns-from-impacts");
     assert!((said["numbers"]["rpm"].as_f64().unwrap() / 60.0 / speed("value") - 1.0).abs() < 1e-12);
     assert!(finding(&with, "drill-turns-from-impacts").is_null());
+    assert_eq!((own["phase"]["value"].as_f64(), own["phase"]["std"].is_null()), (Some(0.0), true));
     // The average begins in the middle of the impact.
     assert!((own["average"]["mean"][0].as_f64().unwrap() - 0.5 * (7.5 - 0.7)).abs() < 1.5);
     assert!(out.join("drill_trace.svg").exists());

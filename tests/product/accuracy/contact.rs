@@ -12,7 +12,7 @@ const CASES: u64 = 200;
 const BEFORE: f64 = 6.0;
 const AFTER: f64 = -1.0;
 
-/// What happens to a velocity that goes from −1 to 6 m/s, by a straight line and the half sine that brings the mass back, and falls back at
+/// What happens to a velocity that goes from −1 to 6 m/s, by a straight line and the square of a sine that brings the mass back, and falls back at
 /// phase 0.6.
 #[derive(Clone, Copy)]
 enum Spoilt {
@@ -55,7 +55,7 @@ fn case(spoilt: Spoilt, seed: u64) -> Drill {
                 }
                 _ => 0.0,
             };
-            let back = 0.25 * std::f64::consts::PI * (after + before) * (std::f64::consts::PI * behind).sin();
+            let back = (after + before) * (std::f64::consts::PI * behind).sin().powi(2);
             after + (before - after) * behind - back + ring
         })
         .collect();

@@ -1,7 +1,7 @@
 //! Impacts that belong together, those of one direction: their means and their restitution.
 
-use super::DrillOptions;
 use super::jumps::LackOfFit;
+use super::{DrillOptions, TurnsFrom};
 use crate::Estimate;
 use crate::mean::Mean;
 use serde::Serialize;
@@ -15,6 +15,8 @@ const BIAS: f64 = 0.3;
 const DIRECTED: f64 = 3.0;
 /// A velocity of approach is known from 0 by this many times its uncertainty.
 const CLEAR: f64 = 6.0;
+/// Impacts that begin their turns are there but for rounding.
+const ROUNDING: f64 = 1e-6;
 /// Part of the speed at an impact that an offset of the velocity may be.
 const LARGEST: f64 = 0.1;
 /// Standard uncertainties beyond which a restitution outside 0 to 1 is no chance.
@@ -192,12 +194,17 @@ impl Group {
         let undirected = along.n > 3 && sin * sin + cos * cos < DIRECTED * along.n as f64;
         findings.extend(undirected.then(|| Finding::doubt("drill-phase-undirected")));
         let phase = Mean { value: (from + along.value).rem_euclid(1.0), ..along };
+        let phase = if options.turns_from == TurnsFrom::Impacts && own.iter().all(|i| i.phase < ROUNDING) {
+            Estimate::new(0.0, None, "1", own.len(), "turns begin at these impacts")
+        } else {
+            estimate(phase, undirected, "1", "part of the turn, mean over impacts on the circle")
+        };
         let restitution = restitution(&own, front, options).map_err(|found| findings.push(found)).ok();
         Group {
             n: members.len(),
             clipped,
             share: f64::NAN,
-            phase: estimate(phase, undirected, "1", "part of the turn, mean over impacts on the circle"),
+            phase,
             before: estimate(before, open_before, "m/s", "parabola up to the contact, mean over impacts"),
             after: estimate(after, open_after, "m/s", "parabola from the contact on, mean over impacts"),
             energy: energy(&|i| i.before * i.before, open_before, "½ m v² before, mean over impacts"),
