@@ -9,8 +9,9 @@
 //! use vibro_measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
 //! let rate = 20_000.0;
 //! let turn = |i: u32| f64::from(i) / 400.0; // 50 turns a second
-//! // A volt is 2 m/s; speeds up to 6 m/s, then an impact that leaves −1 m/s. The pulse comes at the beginning of a turn.
-//! let volts: Vec<f64> = (0..20_000).map(|i| 0.5 * (-1.0 + 7.0 * (turn(i) + 0.4).fract())).collect();
+//! // A volt is 2 m/s; 6 m/s before an impact that leaves −1 m/s, and back to the same place. The pulse begins a turn.
+//! let speed = |s: f64| -1.0 + 7.0 * s - 5.0 * (std::f64::consts::PI * s).sin().powi(2);
+//! let volts: Vec<f64> = (0..20_000).map(|i| 0.5 * speed((turn(i) + 0.4).fract())).collect();
 //! let pulse: Vec<f64> = (0..20_000).map(|i| if turn(i).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
 //! let options = DrillOptions::new(2.0, Beam::new(0.0, From::Axis)?, 1, Edge::Rising);
 //! let found = drill(&Slices { rate, channels: vec![&volts, &pulse] }, &options, None)?;
