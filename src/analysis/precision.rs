@@ -26,6 +26,7 @@ pub fn precision(scenes: &[Scene]) -> Table {
             ("method", "", &|(_, m)| m.method.as_str().into()),
             ("setting", "", &|(_, m)| m.setting.as_str().into()),
             ("own", "", &|(_, m)| yes(m.ours)),
+            ("other program", "", &|(_, m)| yes(m.other_program)),
             ("error", "", &|(_, m)| m.error.into()),
             ("time", "s", &|(_, m)| (1e-9 * m.time_ns).into()),
             ("front", "", &|(_, m)| yes(m.front)),
@@ -38,6 +39,9 @@ fn yes(yes: bool) -> Cell {
     if yes { "yes" } else { "" }.into()
 }
 
+/// Whose code a method is, by its group in the chart.
+const CODE: [&str; 3] = ["vibro", "vibro, a common method", "other program"];
+
 /// The methods of one scene, for a reader.
 pub fn scene(scene: &Scene) -> Table {
     table(
@@ -45,6 +49,7 @@ pub fn scene(scene: &Scene) -> Table {
         &scene.methods,
         &[
             ("method", "", &|m: &&Measured| m.method.as_str().into()),
+            ("code", "", &|m| CODE[chart::group(m)].into()),
             ("setting", "", &|m| m.setting.as_str().into()),
             ("error", "", &|m| m.error.map_or(Cell::Missing, |e| format!("{e:.1e}").into())),
             ("time", "", &|m| time(m.time_ns).into()),

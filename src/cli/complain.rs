@@ -38,17 +38,25 @@ pub fn usage(error: &clap::Error, json: bool) -> u8 {
 }
 
 /// What the standard library says of a value that is no number, and what a person needs to know.
-const NUMBERS: [(&str, &str); 3] = [
+const NUMBERS: [(&str, &str); 4] = [
     ("invalid float literal", "expected a number, such as 0.5 or 1e-3"),
     ("invalid digit found in string", "expected a whole number"),
+    (" is not in 0..=4294967295", " is not a whole number from 0 to 4294967295"),
     ("cannot parse integer from empty string", "expected a whole number"),
 ];
 
-/// A number with a decimal comma as it is to be typed.
+/// What to type: a number with a decimal comma with a point, in place of an unknown word the first that is known.
 fn advice(error: &clap::Error) -> Option<String> {
     let value = error.get(ContextKind::InvalidValue)?.to_string();
     let point = value.replacen(',', ".", 1);
-    (value != point && point.parse::<f64>().is_ok()).then(|| format!("a decimal point: {point}"))
+    if value != point && point.parse::<f64>().is_ok() {
+        return Some(format!("a decimal point: {point}"));
+    }
+    let argument = error.get(ContextKind::InvalidArg)?.to_string();
+    let option = argument.split(' ').next().filter(|o| o.starts_with("--"))?;
+    let text = error.to_string();
+    let word = text.split_once("expected one of `")?.1.split('`').next()?;
+    Some(format!("{option} {word}"))
 }
 
 /// What a program reads in place of an answer.

@@ -10,6 +10,7 @@ mod documents;
 mod impacts;
 mod model;
 mod modes;
+mod periodic;
 mod precision;
 mod rig;
 mod simulate;

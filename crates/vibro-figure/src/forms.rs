@@ -19,6 +19,7 @@ pub(super) fn forms(series: &Series, look: Look, place: &Place<'_>) -> Vec<Form>
     let frame = place.frame;
     let line = |from: Point, to: Point| vec![Form::Lines(clipped(&[from, to], frame), look.pen)];
     match series.shape {
+        Shape::Heading => Vec::new(),
         Shape::Line => vec![Form::Lines(curve(series, place), look.pen)],
         Shape::Points => {
             let joined = series.stroke.map(|_| Form::Lines(curve(series, place), look.pen));

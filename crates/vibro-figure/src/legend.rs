@@ -27,7 +27,7 @@ struct Entry {
 }
 
 impl KeyList {
-    /// Entries of all named series and classes; reference lines carry their names themselves.
+    /// Entries of all named series and classes; reference lines carry their names themselves. Headings have no sample.
     pub fn new(series: &[Series], looks: &[Look], map: Option<&Heatmap>) -> KeyList {
         let mut entries: Vec<Entry> = Vec::new();
         for (series, look) in series.iter().zip(looks) {
@@ -95,7 +95,8 @@ impl KeyList {
     }
 
     fn width(&self, entry: &Entry) -> f64 {
-        self.sample() + BESIDE + font::width(&entry.name, SMALL)
+        let before = if entry.shape == Shape::Heading { 0.0 } else { self.sample() + BESIDE };
+        before + font::width(&entry.name, SMALL)
     }
 
     /// Where each entry begins, and in which row.
@@ -126,10 +127,11 @@ impl Entry {
             Shape::Points => Form::Markers(vec![middle], marker, MARKER, colour).draw(canvas),
             Shape::Band => canvas.areas(&swatch(), fill, None),
             Shape::Bars => canvas.areas(&swatch(), fill, Some(Pen { width: OUTLINE, ..pen })),
-            Shape::Line | Shape::Vertical | Shape::Horizontal => {}
+            Shape::Line | Shape::Vertical | Shape::Horizontal | Shape::Heading => {}
         }
-        let name = font::fit(&self.name, SMALL, room - sample - BESIDE + 0.01);
-        let at = (x + sample + BESIDE, y + font::DIGIT_HEIGHT * SMALL / 2.0);
+        let before = if self.shape == Shape::Heading { 0.0 } else { sample + BESIDE };
+        let name = font::fit(&self.name, SMALL, room - before + 0.01);
+        let at = (x + before, y + font::DIGIT_HEIGHT * SMALL / 2.0);
         canvas.label(&name, at, SMALL, Anchor::Start);
     }
 }

@@ -145,7 +145,7 @@ impl<'a> Sheet<'a> {
         let layer = |shape: Shape, look: &Look| match shape {
             Shape::Band => 0,
             Shape::Bars => 1,
-            Shape::Vertical | Shape::Horizontal => 2,
+            Shape::Vertical | Shape::Horizontal | Shape::Heading => 2,
             Shape::Line => 3,
             Shape::Points if forms::is_open(look.marker) => 4,
             Shape::Points => 5,

@@ -44,6 +44,8 @@ pub enum Shape {
     Vertical,
     /// Horizontal reference line, named along itself.
     Horizontal,
+    /// No data: a heading in the legend, over the names of the series behind it.
+    Heading,
 }
 
 /// Colour of a series.
@@ -139,6 +141,11 @@ impl Series {
     /// Markers in the next form, without bars.
     pub fn points(name: impl Into<String>, x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Series {
         Series::new(name, Shape::Points, x, y)
+    }
+
+    /// A heading in the legend, over the names of the series behind it.
+    pub fn heading(words: impl Into<String>) -> Series {
+        Series::new(words, Shape::Heading, [], []).ink(Ink::Black)
     }
 
     /// Area between two curves.

@@ -55,7 +55,7 @@ pub(super) fn looks(series: &[Series]) -> Vec<Look> {
         next += usize::from(series.ink == Ink::Auto);
         let (stroke, white) = match series.shape {
             Shape::Line => (STROKES[turn % STROKES.len()], 0.0),
-            Shape::Points | Shape::Vertical | Shape::Horizontal => (Stroke::Thin, 0.0),
+            Shape::Points | Shape::Vertical | Shape::Horizontal | Shape::Heading => (Stroke::Thin, 0.0),
             Shape::Band => (Stroke::Solid, 0.72),
             Shape::Bars => (Stroke::Solid, 0.6),
         };

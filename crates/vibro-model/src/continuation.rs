@@ -4,6 +4,7 @@ mod walk;
 
 use super::{Loss, Parameter, PeriodicOrbit};
 use serde::Serialize;
+use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
 use walk::Walk;
 
@@ -57,20 +58,11 @@ pub struct Branch {
 /// If the range or the step is impossible or does not hold the start.
 pub fn follow(start: &PeriodicOrbit, over: Parameter, low: f64, high: f64, step: f64) -> Result<Branch> {
     let value = over.of(&start.rig, &start.sine);
-    let least = if over == Parameter::Gap { f64::NEG_INFINITY } else { 0.0 };
-    let positive = low > least || over == Parameter::Restitution && low == 0.0;
-    if !(positive && high.is_finite() && low < high && (low..=high).contains(&value)) {
-        let (name, unit) = (over.name(), over.unit());
-        return Err(Error::usage(
-            format!("a branch over the {name} from {value} within {low} to {high} {unit}"),
-            "a range that holds the start, the lower end first",
-        ));
-    }
-    over.check(high)?;
+    check_range(over, low, high, value)?;
     if !(step > 1e-6 && step <= 1.0) {
-        return Err(
-            Error::usage(format!("a branch by steps of {step}"), "a step from 1e-6 to 1").setting("step")
-        );
+        return Err(Error::usage(format!("a branch by steps of {step}"), "a step from 1e-6 to 1")
+            .hint("0.05")
+            .setting("step"));
     }
     let walk = Walk { start, over, low, high, step };
     let origin = walk.point(start)?;
@@ -86,6 +78,40 @@ pub fn follow(start: &PeriodicOrbit, over: Parameter, low: f64, high: f64, step:
     let beyond = |m: Mark| Mark { after: m.after + behind, ..m };
     let marks = back.marks.into_iter().rev().map(before).chain(forth.marks.into_iter().map(beyond)).collect();
     Ok(Branch { points, marks, ends: [back.end, forth.end] })
+}
+
+/// Checks a range of `over` that a branch is followed in from a start at `value`.
+///
+/// # Errors
+/// If an end is impossible, the upper end is not above the lower one, or the start lies outside.
+pub fn check_range(over: Parameter, low: f64, high: f64, value: f64) -> Result<()> {
+    let (name, unit) = (over.name(), if over.unit() == "1" { "" } else { over.unit() });
+    over.check(low).map_err(|e| e.hint("another lower end").setting("from"))?;
+    over.check(high).map_err(|e| e.hint("another upper end").setting("to"))?;
+    let written = |words: String| words.trim_end().to_owned();
+    if low >= high {
+        let found = written(format!("{name} from {low} to {high} {unit}"));
+        let hint = if low > high { "swap both ends" } else { "a higher upper end" };
+        return Err(Error::usage(found, "the lower end first, then a higher one")
+            .hint(hint)
+            .setting("from")
+            .setting("to"));
+    }
+    if over == Parameter::Force && low == 0.0 {
+        let hint = format!("a lower end of {}", significant(high / 100.0, 1));
+        return Err(Error::usage("force from 0 N", "a lower end above 0").hint(hint).setting("from"));
+    }
+    if !(low..=high).contains(&value) {
+        let found = written(format!("the start at {name} {value} {unit}")) + " is outside the range";
+        let expected = written(format!("a start from {low} to {high} {unit}"));
+        let start = match over {
+            Parameter::Frequency => "frequency",
+            Parameter::Force => "force",
+            _ => "set",
+        };
+        return Err(Error::usage(found, expected).hint("a start within the range").setting(start));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

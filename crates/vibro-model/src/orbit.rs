@@ -225,10 +225,10 @@ fn train(rig: &Rig, excitation: &Excitation) -> Result<Response> {
 }
 
 /// An excitation that drives.
-fn driven(size: f64) -> Result<()> {
+pub(super) fn driven(size: f64) -> Result<()> {
     if size == 0.0 {
         let expected = "a value other than 0: nothing moves the masses";
-        return Err(Error::usage("a force or impulse of 0", expected));
+        return Err(Error::usage("a force or impulse of 0", expected).setting("force").setting("impulse"));
     }
     Ok(())
 }

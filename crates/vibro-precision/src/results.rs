@@ -87,7 +87,8 @@ impl Results {
         let mut left = Vec::new();
         for Added { scene, method, setting, error, time_ns, why } in lines {
             let answer = error.ok_or_else(|| why.unwrap_or_else(|| "no answer".to_owned()));
-            let line = Measured::new((&method, false), setting, time_ns, answer);
+            let line =
+                Measured { other_program: true, ..Measured::new((&method, false), setting, time_ns, answer) };
             check(path, &scene, &line)?;
             if own.contains(&method) {
                 let found = format!("{}: {scene}, {method}: a method of this library", path.display());

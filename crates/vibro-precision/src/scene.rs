@@ -22,6 +22,8 @@ impl Family {
 }
 
 /// One method with one setting on one scene, measured.
+// Each is a key of the JSON that other programs read.
+#[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Name of the method.
@@ -30,6 +32,9 @@ pub struct Measured {
     pub setting: String,
     /// Whether it is one of this library's.
     pub ours: bool,
+    /// Whether another program or library computes it; else it is code of this project, be it a method that is common elsewhere.
+    #[serde(default)]
+    pub other_program: bool,
     /// Error, relative or in the unit that the scene names; the root mean square of an estimator's over all records. None where
     /// it gave no answer.
     pub error: Option<f64>,
@@ -44,7 +49,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// A method's error, or why it has none.
+    /// A method's error, or why it has none; coded in this project.
     pub(crate) fn new(
         (method, ours): (&str, bool),
         setting: String,
@@ -53,7 +58,7 @@ impl Measured {
     ) -> Measured {
         let (method, failed) = (method.to_owned(), answer.is_err());
         let (error, why) = (answer.as_ref().ok().copied(), answer.err());
-        Measured { method, setting, ours, error, time_ns, failed, why, front: false }
+        Measured { method, setting, ours, other_program: false, error, time_ns, failed, why, front: false }
     }
 }
 

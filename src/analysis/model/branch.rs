@@ -3,6 +3,7 @@
 use super::{Driven, SceneKeys, figures, pattern};
 use crate::analysis::Answer;
 use crate::error::{Error, Result};
+use crate::model::continuation::check_range;
 use crate::model::{Branch, Parameter, PeriodicOrbit, Rig, Sine, follow, orbits, search};
 use crate::record::Finding;
 use crate::report::layout::table;
@@ -69,24 +70,19 @@ impl Keys {
     /// If the scene or a key cannot be, nothing drives the rig, or no motion is found to start from.
     pub fn answer(&self) -> Result<Answer> {
         let over = Parameter::from(self.over);
+        // The ends first: the middle between them is a start.
+        check_range(over, self.from, self.to, self.from)?;
         let middle = Some(f64::midpoint(self.from, self.to)).filter(|_| self.over == Over::Frequency);
         let Driven { scene, excitation, finding } = self.scene.driven(self.frequency.or(middle))?;
         let (rig, sine) = (scene.rig, pattern::sine(&excitation)?);
+        check_range(over, self.from, self.to, over.of(&rig, &sine))?;
         let one = ones(&rig, &sine)?;
         let wanted = match (self.impacts, self.cycles) {
             (1, 1) => one.clone(),
             _ => search(&rig, &sine, self.impacts, self.cycles)?,
         };
         if wanted.is_empty() {
-            let (value, unit) = (over.of(&rig, &sine), over.unit());
-            let found = format!(
-                "no motion with {} impacts in {} cycles was found at {} {value} {unit}",
-                self.impacts,
-                self.cycles,
-                over.name()
-            );
-            return Err(Error::refused(found)
-                .hint("start elsewhere: `vibro model map` shows where a pattern is settled on"));
+            return Err(self.none_at(over.of(&rig, &sine)));
         }
         let branches = self.branches(&wanted)?;
         let beside = if (self.impacts, self.cycles) == (1, 1) { Vec::new() } else { self.branches(&one)? };
@@ -105,6 +101,29 @@ impl Keys {
         answer.csv("points", &points(over, &branches));
         answer.figure("branches", figures::continued(over, &branches, &beside));
         Ok(answer)
+    }
+
+    /// There is no motion to start from at this value.
+    fn none_at(&self, value: f64) -> Error {
+        let over = Parameter::from(self.over);
+        let of = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+        let found = format!(
+            "no motion with {} in {} at {} {value} {}",
+            of(self.impacts, "impact"),
+            of(self.cycles, "cycle"),
+            over.name(),
+            if over.unit() == "1" { "" } else { over.unit() }
+        );
+        let (where_from, setting) = match self.over {
+            Over::Frequency => ("start at another frequency", "frequency"),
+            Over::Force => ("start at another force", "force"),
+            Over::Gap | Over::Restitution => ("start at another value", "set"),
+        };
+        let shown = match (self.impacts, self.cycles) {
+            (1, 1) => "`vibro model response` shows where there are motions",
+            _ => "`vibro model map` shows where this pattern settles",
+        };
+        Error::refused(found.trim_end()).hint(format!("{where_from}; {shown}")).setting(setting)
     }
 
     /// The branches of these motions, each once.

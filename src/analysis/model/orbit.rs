@@ -86,7 +86,13 @@ impl Keys {
             "no_impact": crate::model::no_impact(&scene.rig, excitation).ok(),
         }))?;
         answer.add("", finding.clone());
-        answer.add("", [Finding::note("orbits-perhaps-more")]);
+        let searched = if found.is_empty() {
+            let none = Finding::note("no-orbit-found");
+            none.count("impacts", self.impacts as usize).count("cycles", self.cycles as usize)
+        } else {
+            Finding::note("orbits-perhaps-more")
+        };
+        answer.add("", [searched]);
         for (i, orbit) in (1..).zip(&found) {
             let distance = orbit.validity.grazing_distance;
             if let Some(std) = self.gap_std.filter(|std| distance <= *std) {

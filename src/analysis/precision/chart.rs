@@ -1,5 +1,6 @@
 //! Speed against accuracy.
 
+use crate::figure::Shape;
 use crate::precision::{Family, Measured, Scene};
 use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
@@ -27,6 +28,18 @@ const OFTEN: [&str; 10] = [
     "diffsol TSIT45, sign test",
     "diffsol BDF, sign test",
 ];
+
+/// Whose code methods are, over their names in the legend.
+const GROUPS: [&str; 3] = ["Methods of vibro", "Common methods, coded in vibro", "Other programs"];
+
+/// Whose code it is: its place in [`GROUPS`].
+pub fn group(m: &Measured) -> usize {
+    match m {
+        Measured { ours: true, .. } => 0,
+        Measured { other_program: false, .. } => 1,
+        _ => 2,
+    }
+}
 
 /// Room of a row of crosses in parts of the decades of the errors.
 const ROW: f64 = 0.05;
@@ -69,7 +82,8 @@ impl View {
 /// Error over time of every method of a scene, one line a method; what failed stands as crosses at the upper edge, each method in a
 /// row of its own. Points of models are their settings; those of estimators are kinds of records, which letters name.
 pub fn chart(scene: &Scene) -> Figure {
-    let lines: Vec<&[Measured]> = scene.methods.chunk_by(|a, b| a.method == b.method).collect();
+    let mut lines: Vec<&[Measured]> = scene.methods.chunk_by(|a, b| a.method == b.method).collect();
+    lines.sort_by_key(|line| group(&line[0]));
     let view = View::of(scene, lines.iter().filter(|l| l.iter().any(|m| error(m).is_none())).count());
     let power = |decades: f64| 10f64.powf(decades);
     let [first, last] = view.times.map(power);
@@ -86,10 +100,17 @@ pub fn chart(scene: &Scene) -> Figure {
         let (x, y) = stairs(scene, power(view.edge), last);
         plot = plot.with(Series::line("Pareto front", x, y).ink(Ink::Grey).stroke(Stroke::Dotted));
     }
-    // This library's methods are black, the others coloured: six colours, and another form when they come round.
+    // This library's methods are black, the others coloured, other programs dashed: six colours, and another form when they come round.
     let (mut own, mut others) = (0, OFTEN.len());
     let (mut crosses, mut named) = (Vec::new(), Vec::new());
+    let mut last_group = None;
     for line in lines {
+        let group = group(&line[0]);
+        if last_group.replace(group) != Some(group) {
+            let told = group == 2 && scene.methods.iter().any(|m| tolerance(m).is_some());
+            let with = if told { ", with tolerances" } else { "" };
+            plot = plot.with(Series::heading(format!("{}{with}", GROUPS[group])));
+        }
         let name = line[0].method.as_str();
         let often = OFTEN.iter().position(|known| *known == name);
         let count = if line[0].ours { &mut own } else { &mut others };
@@ -99,7 +120,8 @@ pub fn chart(scene: &Scene) -> Figure {
         let (ink, marker, cross, stroke) = if line[0].ours {
             (Ink::Black, turn, turn, Stroke::Solid)
         } else {
-            (Ink::Nth(turn % 6), turn + 1 + round, round, Stroke::Thin)
+            let stroke = if line[0].other_program { Stroke::Dashed } else { Stroke::Thin };
+            (Ink::Nth(turn % 6), turn + 1 + round, round, stroke)
         };
         let row = power(view.top + view.row * (crosses.len() as f64 + 0.5));
         let place = |m: &Measured| (seconds(m), error(m).unwrap_or(row));
@@ -116,13 +138,18 @@ pub fn chart(scene: &Scene) -> Figure {
         named.push(line.iter().map(|m| (place(m), m)).collect());
     }
     if !crosses.is_empty() {
-        plot = plot.with(Series::horizontal("above: failed", power(view.top)));
+        plot =
+            plot.with(Series::horizontal("above: failed", power(view.top))).with(Series::heading("Failed"));
     }
     // The legend names them from above as they stand.
     plot = crosses.into_iter().rev().fold(plot, Plot::with);
     let (points, front) = match scene.family {
         Family::Models => {
-            ("a model, each point one of its settings", "Dotted: nothing lies below and left of it.")
+            plot = toleranced(plot, named);
+            (
+                "a model, each point one of its settings",
+                "Dotted: nothing lies below and left of it. Numbers: tolerances of other programs.",
+            )
         }
         Family::Estimators => {
             plot = lettered(plot, scene, &view, named);
@@ -133,11 +160,26 @@ pub fn chart(scene: &Scene) -> Figure {
         }
     };
     let bound = if scene.bound.is_some() { " Level line: Cramér–Rao bound." } else { "" };
-    Figure::double(format!("Speed against accuracy: {}", typeset(&scene.name))).height(95.0).panel(plot).caption(format!(
-        "{} Each line is {points}, black those of this library: lower is more accurate, further left is faster. {front} Crosses at the upper edge \
-         have failed, each method in a row of its own, from above as in the list. Truth: {}.{bound}",
+    // Room for all names beside the frame.
+    let names = plot.series.iter().filter(|s| s.shape != Shape::Horizontal).count();
+    let height = (3.9 * names as f64 + 8.0).max(95.0);
+    Figure::double(format!("Speed against accuracy: {}", typeset(&scene.name))).height(height).panel(plot).caption(format!(
+        "{} Each line is {points}. Black: methods of this library. Thin: common methods, coded in this project. Dashed: other programs. Lower is \
+         more accurate, further left is faster. {front} Crosses at the upper edge have failed, each method in a row of its own, from above as in the list. Truth: {}.{bound}",
         scene.says, scene.truth
     ))
+}
+
+/// The tolerance of another program's answer, where it has one.
+fn tolerance(m: &Measured) -> Option<&str> {
+    let number = m.setting.strip_prefix("tolerance ")?;
+    (m.other_program && error(m).is_some() && number.parse::<f64>().is_ok()).then_some(number)
+}
+
+/// Writes their tolerance beside the points of other programs.
+fn toleranced(plot: Plot, lines: Vec<Vec<((f64, f64), &Measured)>>) -> Plot {
+    let told = lines.into_iter().flatten().filter_map(|(at, m)| Some((at, tolerance(m)?)));
+    told.fold(plot, |plot, ((x, y), number)| plot.note(typeset(number), x, y))
 }
 
 /// Names the record of each point by a letter, a capital on the front of that record.
@@ -165,6 +207,7 @@ fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f6
         }
         plot = named.into_iter().fold(plot, |plot, ((x, y), letters)| plot.note(letters, x, y));
     }
+    plot = plot.with(Series::heading("Records"));
     for (letter, says) in ('a'..).zip(records).chain([('A', "capital: Pareto front")]) {
         plot =
             plot.with(Series::points(typeset(says), [], []).marker(Marker::Letter(letter)).ink(Ink::Black));
@@ -200,7 +243,6 @@ fn stairs(scene: &Scene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::Shape;
     use crate::report::Panel;
 
     fn measured(method: &str, setting: &str, error: Option<f64>, front: bool) -> Measured {
@@ -208,6 +250,7 @@ mod tests {
             method: method.into(),
             setting: setting.into(),
             ours: false,
+            other_program: false,
             error,
             time_ns: 1e3,
             failed: error.is_none(),
@@ -247,9 +290,53 @@ mod tests {
         let notes: Vec<&str> = plot.notes.iter().map(|n| n.text.as_str()).collect();
         assert_eq!(notes, ["Ab", "C", "b"]);
         let names: Vec<&str> = plot.series.iter().map(|s| s.name.as_str()).collect();
-        let list =
-            ["one", "above: failed", "other: failed", "0 dB", "20 dB", "40 dB", "capital: Pareto front"];
+        let list = [
+            "Common methods, coded in vibro",
+            "one",
+            "above: failed",
+            "Failed",
+            "other: failed",
+            "Records",
+            "0 dB",
+            "20 dB",
+            "40 dB",
+            "capital: Pareto front",
+        ];
         assert_eq!(names, list);
+    }
+
+    #[test]
+    fn the_legend_says_whose_code_a_method_is() {
+        let methods = vec![
+            measured("RK45", "tolerance 1e-6", Some(1e-2), true),
+            Measured { ours: true, ..measured("exact", "", Some(1e-9), true) },
+            Measured { other_program: true, ..measured("Peer 1.0", "tolerance 1e-6", Some(1e-3), true) },
+            Measured { other_program: true, ..measured("Peer 1.0", "tolerance 1e-9", None, true) },
+            Measured { other_program: true, ..measured("Peer 2.0", "step 1 ms", Some(1e-4), true) },
+        ];
+        let Panel::Plot(plot) = chart(&scene(Family::Models, methods)).panels.remove(0) else {
+            panic!("a plot")
+        };
+        let names: Vec<&str> = plot.series.iter().map(|s| s.name.as_str()).collect();
+        let list = [
+            "Pareto front",
+            "Methods of vibro",
+            "exact",
+            "Common methods, coded in vibro",
+            "RK45",
+            "Other programs, with tolerances",
+            "Peer 1.0",
+            "Peer 2.0",
+            "above: failed",
+            "Failed",
+            "Peer 1.0: failed",
+        ];
+        assert_eq!(names, list);
+        let dashed = |s: &&Series| s.stroke == Some(Stroke::Dashed);
+        assert_eq!(plot.series.iter().filter(dashed).count(), 2);
+        // Of what other programs reached, each tolerance.
+        let notes: Vec<&str> = plot.notes.iter().map(|n| n.text.as_str()).collect();
+        assert_eq!(notes, ["10⁻⁶"]);
     }
 
     #[test]

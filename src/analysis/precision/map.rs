@@ -47,6 +47,6 @@ fn grid(map: &FailureMap, title: String) -> Figure {
     Figure::double(title).height(height).panel(grid).caption(
         "What each method did at the borders of what it can, decided by a check with the truth: right (+), refused with a reason (–), \
          wrong without a word on the cause (W), stalled (S), crashed (C). Not asked (·): the method has nothing to say to that scene, or its \
-         truth is not known.",
+         truth is not known. Common methods stand beside those of this library; they are coded in this project.",
     )
 }

@@ -49,7 +49,7 @@ impl Conditions {
     /// If `cycles` is 0, the period holds too many swings, or an undamped mass meets its own period.
     pub fn new(rig: &Rig, frequency: f64, cycles: u32, delay: f64) -> Result<Conditions> {
         if cycles == 0 {
-            return Err(Error::usage("0 cycles between impacts", "at least one cycle"));
+            return Err(Error::usage("0 cycles in a period", "1 or more").hint("1").setting("cycles"));
         }
         let period = f64::from(cycles) / frequency;
         scales::check_swings(rig, 1.0 / period, MOST_SWINGS)?;

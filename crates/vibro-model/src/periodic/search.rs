@@ -2,6 +2,7 @@
 
 use super::PeriodicOrbit;
 use crate::ladder::starts;
+use crate::orbit::driven;
 use crate::{Event, Excitation, Impact, Motion, Rig, Simulation, Sine};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
@@ -21,12 +22,16 @@ const SAME: f64 = 1e-6;
 /// D. Auerbach et al. 1987), and Newton's method goes on from there. That finds unstable motions, too, but proves of none that there are no more.
 ///
 /// # Errors
-/// If a parameter is impossible, or more than 32 impacts or cycles are asked for.
+/// If a parameter is impossible, nothing drives the rig, or no or more than 32 impacts or cycles are asked for.
 pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<PeriodicOrbit>> {
-    if !(1..=MOST).contains(&impacts) || !(1..=MOST).contains(&cycles) {
-        let found = format!("{impacts} impacts in {cycles} cycles");
-        return Err(Error::usage(found, format!("1 to {MOST} of each")));
+    for (key, count) in [("impacts", impacts), ("cycles", cycles)] {
+        if !(1..=MOST).contains(&count) {
+            let hint = if count == 0 { 1 } else { MOST };
+            let error = Error::usage(format!("{count} {key} in a period"), format!("1 to {MOST}"));
+            return Err(error.hint(hint.to_string()).setting(key));
+        }
     }
+    driven(sine.force)?;
     let excitation = Excitation::Sine(*sine);
     let rest = (Simulation::at_rest(rig), 0.0);
     let mut found: Vec<PeriodicOrbit> = Vec::new();

@@ -1,4 +1,4 @@
-//! Ways to follow a motion: the library's own, and what else is done, each written as it usually is, and correctly.
+//! Ways to follow a motion: the library's own, and what else is done, each written here as it usually is, and correctly.
 
 #[cfg(feature = "diffsol")]
 mod diffsol;
@@ -28,6 +28,8 @@ pub struct Method {
     pub name: &'static str,
     /// Whether it is one of this library's.
     pub ours: bool,
+    /// Whether another library computes it; else it is code of this project.
+    pub other_program: bool,
     /// Words before and after a value of its setting; none where it has no setting.
     pub setting: Setting,
     /// The motion of a task by a setting.
@@ -43,11 +45,16 @@ const STIFFNESS: Setting = Some(["k₃ ", " N/m"]);
 
 impl Method {
     const fn own(name: &'static str, setting: Setting, follow: Follow) -> Method {
-        Method { name, ours: true, setting, follow }
+        Method { name, ours: true, other_program: false, setting, follow }
     }
 
     const fn rival(name: &'static str, setting: Setting, follow: Follow) -> Method {
-        Method { name, ours: false, setting, follow }
+        Method { name, ours: false, other_program: false, setting, follow }
+    }
+
+    #[cfg(feature = "diffsol")]
+    const fn other(name: &'static str, follow: Follow) -> Method {
+        Method { name, ours: false, other_program: true, setting: TOLERANCE, follow }
     }
 
     /// A value of its setting in words.
@@ -89,17 +96,15 @@ pub const RK45_TOUCH: Method = Method::rival("RK45, touch to parting", TOLERANCE
 pub const DOP853_TOUCH: Method =
     Method::rival("DOP853, touch to parting", TOLERANCE, |t, r| touch(t, Dop853(r)));
 #[cfg(feature = "diffsol")]
-pub const TSIT45: Method =
-    Method::rival("diffsol TSIT45, sign test", TOLERANCE, |t, r| followed(t, None, Tsit45(r)));
+pub const TSIT45: Method = Method::other("diffsol TSIT45, sign test", |t, r| followed(t, None, Tsit45(r)));
 #[cfg(feature = "diffsol")]
-pub const TSIT45_RESTS: Method = Method::rival("diffsol TSIT45, rule for rest", TOLERANCE, |t, r| {
-    followed(&rests(t, true), None, Tsit45(r))
-});
+pub const TSIT45_RESTS: Method =
+    Method::other("diffsol TSIT45, rule for rest", |t, r| followed(&rests(t, true), None, Tsit45(r)));
 #[cfg(feature = "diffsol")]
 pub const TSIT45_TOUCH: Method = Method { follow: |t, r| followed(t, Some(t.spring()), Tsit45(r)), ..TSIT45 };
 #[cfg(feature = "diffsol")]
 pub const BDF_TOUCH: Method =
-    Method::rival("diffsol BDF, sign test", TOLERANCE, |t, r| followed(t, Some(t.spring()), Bdf(r)));
+    Method::other("diffsol BDF, sign test", |t, r| followed(t, Some(t.spring()), Bdf(r)));
 
 fn ends(task: &Task, kind: Kind) -> Result<Log, Found> {
     events(task, None, kind, Locate::Ends)

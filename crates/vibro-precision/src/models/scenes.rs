@@ -39,7 +39,8 @@ impl Setup {
             let log: std::result::Result<Vec<_>, Found> = log;
             let answer = log.map_err(fault).and_then(|log| (self.judge)(&log));
             let (name, setting) = ((method.name, method.ours), method.words(setting));
-            Measured::new(name, setting, time / self.tasks.len() as f64, answer)
+            let measured = Measured::new(name, setting, time / self.tasks.len() as f64, answer);
+            Measured { other_program: method.other_program, ..measured }
         };
         let of = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
         let methods = self.methods.iter().flat_map(|(m, all)| all[..of(all)].iter().map(|s| one(m, *s)));
