@@ -1,6 +1,6 @@
 //! Contact pulses: damping ratio and contact frequency from two instants, or from fits to the whole pulse.
 //!
-//! The model of spring and damper (Kelvin–Voigt) gives the answer; those of Hertz and of Hunt and Crossley are fitted beside it,
+//! The model of spring and damper (Kelvin–Voigt) gives the answer; those of Hertz, of Hunt and Crossley, of any exponents, and of a spring that yields are fitted beside it,
 //! to see whether the record prefers them. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
@@ -15,8 +15,8 @@ pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, 
 
 use super::Estimate;
 
-use contact::HuntCrossley;
-use fit::Fitted;
+use contact::Rebound;
+use fit::{Fitted, Samples};
 use normalised::{Normalised, locate};
 use result::contact_estimates;
 use vibro_record::units::Quantity;
@@ -128,7 +128,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let scale = Normalised::new(trace, rate, &located, filter)?;
     let (samples, level) = scale.window(&mut found, unlike)?;
     known = known && level;
-    let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
+    let main = samples.fit(ContactModel::KelvinVoigt, 0.0).map_err(unlike)?;
 
     let n = samples.times.len();
     let through = |f: &LowPass| {
@@ -151,10 +151,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     });
     // Beyond rounding a contact gives back no more than it took.
     let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
-    if gains {
-        let gained = Finding::doubt("pulse-gains-energy").number("xi", result.xi.value);
-        found.push(gained.number("restitution", result.restitution.value));
-    }
+    found.extend(gains.then(|| gained(&result)));
     if gains || widening.is_none() {
         result = result.refused();
     }
@@ -175,20 +172,36 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
         say(duration * filter.corner < 2.0, near.number("corner", filter.corner));
     }
-    let rivals = [ContactModel::Hertz, ContactModel::HuntCrossley];
-    let fits: Vec<Fitted> =
-        std::iter::once(main).chain(rivals.into_iter().filter_map(|m| samples.fit(m).ok())).collect();
+    let fits = rivals(&samples, main);
     let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let unexplained = best.is_some_and(|best| samples.unexplained(best));
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    found.extend(result.led_by_best());
-    if unexplained {
+    found.extend(result.led_by_best(best.map_or(1.0, |best| best.whiteness.inflation.max(1.0))));
+    let restitution = &result.restitution;
+    let more = !gains && restitution.std.is_some_and(|std| restitution.value - 2.0 * std > 1.0);
+    found.extend(more.then(|| gained(&result)));
+    found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained")));
+    if more || unexplained {
         result = result.doubted();
-        found.push(Finding::doubt("pulse-unexplained"));
     }
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)
+}
+
+/// All models fitted to the samples, that of spring and damper first.
+fn rivals(samples: &Samples<'_>, main: Fitted) -> Vec<Fitted> {
+    let mut fits = vec![main];
+    for rival in ContactModel::RIVALS {
+        let noise = fits.iter().map(|fit| fit.fit.variance()).fold(f64::INFINITY, f64::min).sqrt();
+        fits.extend(samples.fit(rival, noise));
+    }
+    fits
+}
+
+fn gained(result: &PulseResult) -> Finding {
+    let gained = Finding::doubt("pulse-gains-energy").number("xi", result.xi.value);
+    gained.number("restitution", result.restitution.value)
 }
 
 /// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.

@@ -54,6 +54,8 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
             ContactModel::KelvinVoigt => format!("spring and damper{rejected}"),
             ContactModel::Hertz => "Hertz".to_owned(),
             ContactModel::HuntCrossley => "Hunt and Crossley".to_owned(),
+            ContactModel::PowerLaw => "any exponents".to_owned(),
+            ContactModel::Yielding => "yielding spring".to_owned(),
         };
         let (t, v) = shifted(&curve.points);
         above = above.with(Series::line(name, t, v).ink(Ink::Nth(i)).stroke(stroke));

@@ -7,7 +7,7 @@ use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use vibro_math::{Fit, least_squares};
+use vibro_math::{Fit, least_squares, minimise};
 use vibro_record::{Error, Result};
 
 /// Modes fitted together.
@@ -84,6 +84,9 @@ impl<'a> Scaled<'a> {
         }
     }
 }
+
+/// Part of the sum of squares that another step gains, below which the search over the shapes ends: all parameters are then fitted together.
+const NEAR_ENOUGH: f64 = 1e-6;
 
 impl Scaled<'_> {
     /// Frequency and damping of mode `m` from its parameters: in units of the first guess of its half bandwidth and damping.
@@ -166,7 +169,29 @@ impl Scaled<'_> {
         Some(p)
     }
 
+    /// Nearer to the minimum: frequency and damping of the modes alone, with all else by linear least squares for each (Golub & Pereyra 1973).
+    fn nearer(&self, start: &[f64], weight: &[f64]) -> Option<Vec<f64>> {
+        let modes = self.starts.len();
+        let whole = |q: &[f64]| {
+            let mut p = start.to_vec();
+            q.chunks(2).enumerate().for_each(|(m, shape)| p[4 * m..4 * m + 2].copy_from_slice(shape));
+            self.linear(&mut p, weight).map(|_| p)
+        };
+        let n = self.x.len();
+        let residuals = |q: &[f64], out: &mut [f64]| match whole(q) {
+            Some(p) => (0..n).for_each(|i| {
+                let left = self.left(&p, i) / weight[i];
+                (out[i], out[n + i]) = (left.re, left.im);
+            }),
+            None => out.fill(f64::NAN),
+        };
+        let q: Vec<f64> = (0..modes).flat_map(|m| [start[4 * m], start[4 * m + 1]]).collect();
+        whole(&minimise(residuals, self.rows(), &q, &vec![1.0; q.len()], Some(NEAR_ENOUGH)).ok()?.parameters)
+    }
+
     fn fit(&self, start: &[f64], weight: &[f64]) -> Result<Fit> {
+        let nearer = if self.magnitude_only { None } else { self.nearer(start, weight) };
+        let start = nearer.as_deref().unwrap_or(start);
         let free = self.free();
         let expand = |q: &[f64]| {
             let mut p = start.to_vec();

@@ -69,11 +69,9 @@ impl KelvinVoigt {
     }
 }
 
-/// Contact of force k δ^{3/2}(1 + λ δ̇) (Hunt & Crossley 1975), met at unit velocity; without losses (λ = 0) that of Hertz.
-///
-/// In the scales of time T and length VT with V² = k (VT)^{5/2}/m it depends on α = λV alone: z″ = −z^{3/2}(1 + α z′).
+/// A contact met at unit velocity, in scales of time T and length VT in which mass and stiffness are 1.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HuntCrossley {
+pub struct Rebound {
     /// −z″ at multiples of [`STEP`], up to the end of the contact.
     deceleration: Vec<f64>,
     /// In units of T.
@@ -89,19 +87,31 @@ const STEP: f64 = 1.0 / 128.0;
 /// Steps after which a contact is given up.
 const LONGEST: usize = 128 * 200;
 
-impl HuntCrossley {
-    /// Integrates a contact of losses α = λV by the classical Runge–Kutta formula, good to 1e-5 of the largest value. `None` for
-    /// α outside −0.5…100, and where the contact does not end within 200 T.
-    pub fn new(alpha: f64) -> Option<HuntCrossley> {
-        if !(-0.5..=100.0).contains(&alpha) {
+impl Rebound {
+    /// Force k δ^{3/2}(1 + λ δ̇), α = λV (Hunt & Crossley 1975); without losses that of Hertz. See [`Rebound::power_law`].
+    pub fn hunt_crossley(alpha: f64) -> Option<Rebound> {
+        Rebound::power_law(alpha, 1.5, 1.5)
+    }
+
+    /// Force k δⁿ + c δˢ δ̇ that does not pull, α the loss at unit velocity: z″ = −zⁿ − α zˢ z′. By the classical Runge–Kutta formula, for exponents of 3/2 good to
+    /// 1e-5 of the largest value. `None` for α outside −0.5…100, n outside 1…4, s outside 0…4, and where the contact does not end within 200 T.
+    pub fn power_law(alpha: f64, n: f64, s: f64) -> Option<Rebound> {
+        let possible =
+            (-0.5..=100.0).contains(&alpha) && (1.0..=4.0).contains(&n) && (0.0..=4.0).contains(&s);
+        if !possible {
             return None;
         }
+        let hertz = n == 1.5 && s == 1.5;
         let force = |z: f64, v: f64| {
-            let z = z.max(0.0);
-            z * z.sqrt() * (1.0 + alpha * v)
+            if hertz {
+                let z = z.max(0.0);
+                return z * z.sqrt() * (1.0 + alpha * v);
+            }
+            let exponent = z.max(f64::MIN_POSITIVE).ln();
+            (n * exponent).exp() + alpha * (s * exponent).exp() * v
         };
         let (mut z, mut v) = (0.0_f64, 1.0_f64);
-        let mut deceleration = vec![0.0];
+        let mut deceleration = vec![force(0.0, 1.0)];
         let h = STEP;
         for _ in 0..LONGEST {
             let a1 = -force(z, v);
@@ -112,17 +122,32 @@ impl HuntCrossley {
             let v4 = v + h * a3;
             let a4 = -force(z + h * v3, v4);
             let next = z + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
-            if next <= 0.0 {
-                // Over a part of a step the force is below h^{3/2}, and the velocity as good as constant.
-                let duration = (deceleration.len() - 1) as f64 * h + z / -v;
+            let (before, faster) = (force(z, v), v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4));
+            let after = force(next, faster);
+            // Left where the bodies part, or where the loss would pull them.
+            if next <= 0.0 || after <= 0.0 && faster < 0.0 {
+                // Over a part of a step the force is small, and the velocity as good as constant.
+                let part = if next <= 0.0 { z / -v } else { h * before / (before - after) };
+                let duration = (deceleration.len() - 1) as f64 * h + part;
                 deceleration.push(0.0);
-                return Some(HuntCrossley { deceleration, duration, restitution: -v });
+                return Some(Rebound { deceleration, duration, restitution: 0.5 * before * part - v });
             }
-            v += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-            z = next;
-            deceleration.push(force(z, v));
+            (z, v) = (next, faster);
+            deceleration.push(after);
         }
         None
+    }
+
+    /// A spring that yields and is 1/R² times as stiff on the way back (Walton & Braun 1986): a quarter of a sine, and a shorter one of a cosine. `None` for R outside 0.05…2.
+    pub fn yielding(restitution: f64) -> Option<Rebound> {
+        if !(0.05..=2.0).contains(&restitution) {
+            return None;
+        }
+        let (turn, duration) = (0.5 * PI, 0.5 * PI * (1.0 + restitution));
+        let force = |t: f64| if t < turn { t.sin() } else { ((t - turn) / restitution).cos() };
+        let steps = (duration / STEP) as usize;
+        let deceleration = (0..=steps).map(|i| force(i as f64 * STEP)).chain([0.0]).collect();
+        Some(Rebound { deceleration, duration, restitution })
     }
 
     /// Deceleration at each of the rising `times` in s, in m/s² for each m/s of approach, of a contact that lasts `duration`
@@ -221,7 +246,7 @@ mod curved {
     /// Hertz: deepest at (5/4)^{2/5} VT, largest force there, duration 2.9432 times that over V (Johnson 1985, 11.22 to 11.24).
     #[test]
     fn hertz_has_its_closed_form() {
-        let hertz = HuntCrossley::new(0.0).unwrap();
+        let hertz = Rebound::hunt_crossley(0.0).unwrap();
         let deepest = f64::powf(1.25, 0.4);
         // Sampled at h, the crest of curvature a is missed by at most a h²/8.
         let largest = hertz.deceleration.iter().copied().fold(0.0, f64::max);
@@ -236,19 +261,19 @@ mod curved {
     #[test]
     fn the_restitution_balances_the_energy() {
         for alpha in [0.1, 0.5, 1.0, 3.0, 20.0] {
-            let contact = HuntCrossley::new(alpha).unwrap();
+            let contact = Rebound::hunt_crossley(alpha).unwrap();
             let level = |v: f64| v / alpha - (alpha * v).ln_1p() / (alpha * alpha);
             let (before, after) = (level(1.0), level(-contact.restitution));
             // As above.
             assert!((before - after).abs() < 1e-5 * before, "{alpha} {before} {after}");
         }
-        assert!(HuntCrossley::new(101.0).is_none() && HuntCrossley::new(f64::NAN).is_none());
+        assert!(Rebound::hunt_crossley(101.0).is_none() && Rebound::hunt_crossley(f64::NAN).is_none());
     }
 
     /// The impulse is the change of velocity, 1 + R, whatever low-pass stands between, since its gain at 0 Hz is one.
     #[test]
     fn a_low_pass_keeps_the_impulse() {
-        let contact = HuntCrossley::new(0.6).unwrap();
+        let contact = Rebound::hunt_crossley(0.6).unwrap();
         let filter = LowPass::new(30e3, 3).unwrap();
         let step = 1e-8;
         let times: Vec<f64> = (0..40_000).map(|i| f64::from(i) * step).collect();

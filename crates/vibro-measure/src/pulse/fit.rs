@@ -1,8 +1,9 @@
 //! Models of a contact fitted to the samples of a pulse.
 
-use super::{ContactModel, HuntCrossley, KelvinVoigt, LowPass};
+use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::mean::average;
 use crate::residuals::{Whiteness, aicc, student};
+use std::f64::consts::PI;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
@@ -11,7 +12,7 @@ pub(super) struct Seen {
     /// Distance of two samples.
     pub step: f64,
     pub filter: Option<LowPass>,
-    pub hertz: HuntCrossley,
+    pub hertz: Rebound,
 }
 
 impl Seen {
@@ -28,10 +29,12 @@ pub(super) struct Samples<'a> {
     pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
+    /// Root mean square of what rings on behind the pulse, and so within it, too; 0 where nothing does.
+    pub rings: f64,
 }
 
-/// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and f, duration, or
-/// duration and α.
+/// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and f, duration,
+/// duration and α or R, or duration, α, and both exponents.
 pub(super) struct Fitted {
     pub model: ContactModel,
     pub fit: Fit,
@@ -43,6 +46,9 @@ pub(super) struct Fitted {
     first: Option<usize>,
 }
 
+/// A swing within the contact larger than this, in units of what is left there, would show in it.
+const SHOWS: f64 = 1.2;
+
 /// Samples that the search for a first guess uses.
 const COARSE: usize = 48;
 
@@ -51,6 +57,10 @@ const FAST: f64 = 0.1;
 
 /// Part of the pulse's length around the onset in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
+
+/// What the exponents of spring and loss are likely to be, and by how much they differ: those of plane to pointed bodies (Johnson 1985, 5.3), and of
+/// losses that hardly depend on the indentation to such that grow like its square. Without losses nothing else tells the second.
+const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 
 impl Samples<'_> {
     /// The model at these rising times; `first` is the first time inside the contact where that is settled.
@@ -79,21 +89,23 @@ impl Samples<'_> {
             ContactModel::Hertz if p[3] > 0.0 => {
                 self.seen.hertz.decelerations(p[3], filter, &since.collect::<Vec<_>>())
             }
-            ContactModel::HuntCrossley if p[3] > 0.0 => {
-                HuntCrossley::new(p[4])?.decelerations(p[3], filter, &since.collect::<Vec<_>>())
+            ContactModel::HuntCrossley | ContactModel::PowerLaw | ContactModel::Yielding if p[3] > 0.0 => {
+                model.rebound(&p[4..])?.decelerations(p[3], filter, &since.collect::<Vec<_>>())
             }
             _ => return None,
         };
         Some(shape.into_iter().map(|s| p[1] + p[2] * s).collect())
     }
 
-    /// The best fit of a model, from a coarse search over onset and shape.
-    pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
+    /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts as much as samples of this `noise`.
+    pub fn fit(&self, model: ContactModel, noise: f64) -> Result<Fitted> {
         let starts = self.starts(model)?;
         let corner = self.seen.filter.as_ref().map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
-            from.extend(starts.iter().take(3).map(|p| (p.clone(), None)));
+            // The motion between free exponents takes long, and starts between those of the others.
+            let several = if model == ContactModel::PowerLaw { 2 } else { 3 };
+            from.extend(starts.iter().take(several).map(|p| (p.clone(), None)));
         }
         // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
         // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken. The
@@ -121,7 +133,7 @@ impl Samples<'_> {
             let free = fit.fit.degrees_of_freedom() as f64;
             (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
-        let fits = from.into_iter().filter_map(|(start, first)| self.from(model, &start, first));
+        let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first));
         let fits = fits.map(|fit| (held(&fit), fit));
         let Some(((outside, _), mut best)) =
             fits.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
@@ -132,7 +144,12 @@ impl Samples<'_> {
         if !(outside || best.whiteness.rejected() && self.more_left_at_onset(&best.fit)) {
             // At least nine samples leave four degrees of freedom.
             let student = student(best.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-            best.widening = Some(best.whiteness.inflation * student);
+            // Of a swing that lasts as long as the contact a half adds up, 2/π of its crest: √2/π of n samples of its root mean square, where noise adds up
+            // to √n. One larger than what is left would show in it.
+            let inside = (best.end() - best.fit.parameters[0]) / self.seen.step;
+            let rings = (self.rings.powi(2) / best.fit.variance()).min(SHOWS * SHOWS);
+            let rings = 1.0 + 2.0 / PI.powi(2) * inside * rings;
+            best.widening = Some(best.whiteness.inflation * student * rings.sqrt());
         }
         Ok(best)
     }
@@ -168,15 +185,19 @@ impl Samples<'_> {
     }
 
     /// `None` where the fit does not converge.
-    fn from(&self, model: ContactModel, start: &[f64], first: Option<usize>) -> Option<Fitted> {
+    fn from(&self, model: ContactModel, noise: f64, start: &[f64], first: Option<usize>) -> Option<Fitted> {
         let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
+        let (n, likely) = (self.times.len(), if model == ContactModel::PowerLaw { &LIKELY[..] } else { &[] });
         let residuals = |p: &[f64], out: &mut [f64]| match self.model(model, p, &self.times, first) {
             Some(values) => {
                 out.iter_mut().zip(&self.values).zip(values).for_each(|((r, v), m)| *r = v - m);
+                let exponents = likely.iter().zip(p.iter().skip(5));
+                out[n..].iter_mut().zip(exponents).for_each(|(r, (l, p))| *r = noise * (p - l.0) / l.1);
             }
             None => out.fill(f64::NAN),
         };
-        let fit = least_squares(residuals, self.times.len(), start, &scale).ok()?;
+        let mut fit = least_squares(residuals, n + likely.len(), start, &scale).ok()?;
+        fit.residuals.truncate(n);
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
         fit.converged.then_some(Fitted { model, fit, whiteness, widening: None, first })
     }
@@ -216,7 +237,8 @@ impl Samples<'_> {
         let shapes: &[f64] = match model {
             ContactModel::KelvinVoigt => &[0.03, 0.15, 0.3, 0.5, 0.75],
             ContactModel::Hertz => &[0.0],
-            ContactModel::HuntCrossley => &[0.1, 0.6, 2.0],
+            ContactModel::HuntCrossley | ContactModel::PowerLaw => &[0.1, 0.6, 2.0],
+            ContactModel::Yielding => &[0.4, 0.7, 0.95],
         };
         let guess = |shape: f64, duration: f64, lead: i32| {
             let mut p = vec![-delay - 0.08 * f64::from(lead) * duration, 0.0, 1.0];
@@ -225,7 +247,8 @@ impl Samples<'_> {
                     p.extend([shape, KelvinVoigt::lasting(duration, shape)?.frequency()]);
                 }
                 ContactModel::Hertz => p.push(duration),
-                ContactModel::HuntCrossley => p.extend([duration, shape]),
+                ContactModel::HuntCrossley | ContactModel::Yielding => p.extend([duration, shape]),
+                ContactModel::PowerLaw => p.extend([duration, shape, 1.5, 1.5]),
             }
             self.levelled(model, p, (&times, &values))
         };

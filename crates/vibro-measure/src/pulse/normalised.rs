@@ -2,7 +2,7 @@
 
 use super::fit::{Fitted, Samples, Seen};
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
-use super::{ContactModel, HuntCrossley, LowPass};
+use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::Estimate;
 use crate::mean::{average, upper_median};
 use std::collections::BTreeMap;
@@ -43,7 +43,8 @@ impl<'a> Normalised<'a> {
         // A half sine is above half its height for two thirds of its length.
         let length = 1.5 * (found.flanks.1 - found.flanks.0) * step;
         let filter = filter.map(|f| LowPass::new(f.corner * length, f.order)).transpose()?;
-        let hertz = HuntCrossley::new(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?;
+        let hertz =
+            Rebound::hunt_crossley(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?;
         let seen = Seen { step: step / length, filter, hertz };
         Ok(Normalised { trace, found, step, length, height: found.height.abs(), seen })
     }
@@ -68,7 +69,7 @@ impl<'a> Normalised<'a> {
         let places: Vec<usize> = range.filter(usable).collect();
         let times = places.iter().map(|i| self.time(*i)).collect();
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
-        Samples { seen: &self.seen, places, times, values }
+        Samples { seen: &self.seen, places, times, values, rings: 0.0 }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it;
@@ -92,7 +93,7 @@ impl<'a> Normalised<'a> {
             return Err(Error::refused(why).hint(hint));
         }
         self.faults(from..self.found.low, findings);
-        let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
+        let fitted = first.fit(ContactModel::KelvinVoigt, 0.0).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
         let after = self.samples(settled..far);
@@ -109,7 +110,7 @@ impl<'a> Normalised<'a> {
             findings.push(if level { caution } else { Finding::doubt("pulse-level-changes") });
         }
         let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
-        Ok((self.samples(from..end), level))
+        Ok((Samples { rings: if restless { rms } else { 0.0 }, ..self.samples(from..end) }, level))
     }
 
     /// What is wrong with the record around the pulse.
@@ -158,21 +159,37 @@ impl<'a> Normalised<'a> {
         if let Some(factor) = self.to_velocity(mass) {
             put("initial_velocity", 2, factor * self.found.height.signum(), 0.0, "m/s");
         }
-        match model {
-            ContactModel::KelvinVoigt => {
-                put("xi", 3, 1.0, 0.0, "1");
-                put("frequency", 4, 1.0 / self.length, 0.0, "Hz");
+        let names: &[(&'static str, f64, &'static str)] = match model {
+            ContactModel::KelvinVoigt => &[("xi", 1.0, "1"), ("frequency", 1.0 / self.length, "Hz")],
+            ContactModel::Hertz => &[("duration", self.length, "s")],
+            ContactModel::HuntCrossley => &[("duration", self.length, "s"), ("alpha", 1.0, "1")],
+            ContactModel::Yielding => &[("duration", self.length, "s"), ("restitution", 1.0, "1")],
+            ContactModel::PowerLaw => &[
+                ("duration", self.length, "s"),
+                ("alpha", 1.0, "1"),
+                ("exponent", 1.0, "1"),
+                ("loss_exponent", 1.0, "1"),
+            ],
+        };
+        for (i, (name, factor, unit)) in names.iter().enumerate() {
+            put(name, 3 + i, *factor, 0.0, unit);
+        }
+        let shape = &fit.parameters[3..];
+        let variance = |i: usize, j: usize| fit.covariance(3 + i, 3 + j) * widened.powi(2);
+        let kelvin_voigt = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
+        // Those of curved bodies are integrated, and no smoother than to 1e-5.
+        let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e3 }; shape.len()];
+        let follows = |of: &dyn Fn(&[f64]) -> Option<f64>| propagated(shape, &scale, variance, of);
+        let mut follow = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
+            if let Some((value, std)) = follows(of) {
+                parameters.insert(name, estimate(factor * value, factor * std, unit));
             }
-            ContactModel::Hertz => put("duration", 3, self.length, 0.0, "s"),
-            ContactModel::HuntCrossley => {
-                put("duration", 3, self.length, 0.0, "s");
-                put("alpha", 4, 1.0, 0.0, "1");
-                let restitution = |p: &[f64]| HuntCrossley::new(p[0]).map(|c| c.restitution);
-                let variance = |_, _| (fit.std(4) * widened).powi(2);
-                if let Some((r, std)) = propagated(&fit.parameters[4..], &[1e3], variance, restitution) {
-                    parameters.insert("restitution", estimate(r, std, "1"));
-                }
-            }
+        };
+        if *model == ContactModel::KelvinVoigt {
+            follow("restitution", 1.0, "1", &|p| kelvin_voigt(p).map(|c| c.restitution()));
+            follow("duration", self.length, "s", &|p| kelvin_voigt(p).map(|c| c.duration()));
+        } else if *model != ContactModel::Yielding {
+            follow("restitution", 1.0, "1", &|p| model.rebound(&p[1..]).map(|c| c.restitution));
         }
         PulseFit {
             model: *model,

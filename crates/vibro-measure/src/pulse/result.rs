@@ -1,6 +1,6 @@
 //! What a contact pulse says.
 
-use super::KelvinVoigt;
+use super::{KelvinVoigt, Rebound};
 use crate::Estimate;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -17,12 +17,31 @@ pub enum ContactModel {
     Hertz,
     /// Two curved bodies with losses that grow with the indentation.
     HuntCrossley,
+    /// Any exponents of spring and loss.
+    PowerLaw,
+    /// A spring that yields, and is stiffer on the way back.
+    Yielding,
 }
 
 impl ContactModel {
+    /// All but that of spring and damper.
+    pub(super) const RIVALS: [ContactModel; 4] =
+        [ContactModel::Hertz, ContactModel::HuntCrossley, ContactModel::Yielding, ContactModel::PowerLaw];
+
     /// Its name, as in JSON.
     pub fn name(self) -> &'static str {
-        ["kelvin-voigt", "hertz", "hunt-crossley"][self as usize]
+        ["kelvin-voigt", "hertz", "hunt-crossley", "power-law", "yielding"][self as usize]
+    }
+
+    /// The contact of its parameters after the duration: the loss α, and both exponents where they are free.
+    pub(super) fn rebound(self, shape: &[f64]) -> Option<Rebound> {
+        match (self, shape) {
+            (ContactModel::Hertz, []) => Rebound::hunt_crossley(0.0),
+            (ContactModel::HuntCrossley, &[alpha]) => Rebound::hunt_crossley(alpha),
+            (ContactModel::PowerLaw, &[alpha, n, s]) => Rebound::power_law(alpha, n, s),
+            (ContactModel::Yielding, &[restitution]) => Rebound::yielding(restitution),
+            _ => None,
+        }
     }
 }
 
@@ -76,24 +95,50 @@ impl PulseResult {
     }
 
     /// Leads with the model that the record prefers, where that is not the one of spring and damper: what it states takes the place of what that
-    /// states, which loses its uncertainty.
-    pub(super) fn led_by_best(&mut self) -> Option<Finding> {
-        let other = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?.clone();
-        let ahead = self.fits[0].aicc - other.aicc;
-        if ahead <= NO_SUPPORT {
-            return None;
-        }
-        self.estimates().for_each(|estimate| estimate.std = None);
-        let stated = |name: &str| {
-            let estimate = other.parameters.get(name)?.clone();
-            Some(Estimate { method: format!("{}, {}", estimate.method, other.model.name()), ..estimate })
+    /// states, which loses its uncertainty. What all models state has the spread between them in its uncertainty. `inflation` is that of
+    /// the best model's residuals: what they repeat counts once (Burnham & Anderson 2002, 2.5).
+    pub(super) fn led_by_best(&mut self, inflation: f64) -> Option<Finding> {
+        let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
+        let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
+        let ahead = behind(&self.fits[0]);
+        let other = ahead > NO_SUPPORT;
+        let lead = if other { best } else { &self.fits[0] };
+        // Burnham & Anderson 2002, eq. 4.9, in squares: the weights are exp(−Δ/2).
+        let weights: Vec<f64> = self.fits.iter().map(|fit| (-0.5 * behind(fit)).exp()).collect();
+        let stated = |name: &str, own: Option<&Estimate>| {
+            let led = lead.parameters.get(name)?;
+            let (mut sum, mut variance) = (0.0, 0.0);
+            for (fit, weight) in self.fits.iter().zip(&weights).filter(|(_, weight)| **weight > NEGLIGIBLE) {
+                let fitted = fit.parameters.get(name)?;
+                // A model that cannot begin as the record does says nothing.
+                if fitted.value.is_nan() {
+                    continue;
+                }
+                sum += weight;
+                let std = fitted.std.unwrap_or(f64::NAN);
+                variance += weight * (std.powi(2) + (fitted.value - led.value).powi(2));
+            }
+            let std = (variance / sum).sqrt();
+            let own = own.filter(|_| !other).map(|own| own.method.clone());
+            let method = own.unwrap_or_else(|| format!("{}, {}", led.method, lead.model.name()));
+            Some(Estimate::new(led.value, Some(std), led.unit, led.n, method))
         };
-        self.restitution = stated("restitution").unwrap_or_else(|| self.restitution.clone());
-        self.duration = stated("duration").unwrap_or_else(|| self.duration.clone());
-        self.initial_velocity = stated("initial_velocity").or(self.initial_velocity.take());
-        Some(Finding::doubt("pulse-other-model").name("model", other.model.name()).number("ahead", ahead))
+        let restitution = stated("restitution", Some(&self.restitution));
+        let duration = stated("duration", Some(&self.duration));
+        let velocity = stated("initial_velocity", self.initial_velocity.as_ref());
+        let model = lead.model.name();
+        if other {
+            self.estimates().for_each(|estimate| estimate.std = None);
+        }
+        self.restitution = restitution.unwrap_or_else(|| self.restitution.clone());
+        self.duration = duration.unwrap_or_else(|| self.duration.clone());
+        self.initial_velocity = velocity.or(self.initial_velocity.take());
+        other.then(|| Finding::doubt("pulse-other-model").name("model", model).number("ahead", ahead))
     }
 }
+
+/// Weight of a model beside the best that counts no more.
+const NEGLIGIBLE: f64 = 1e-6;
 
 /// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
 /// Inference, 2002, section 2.6).

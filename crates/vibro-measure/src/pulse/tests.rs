@@ -47,7 +47,7 @@ fn all_that_follows_from_a_pulse() {
     let k = result.stiffness.as_ref().unwrap().value;
     assert!((k / (0.4 * (std::f64::consts::TAU * result.frequency.value).powi(2)) - 1.0).abs() < 1e-12);
     let models: Vec<&str> = result.fits.iter().map(|f| f.model.name()).collect();
-    assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
+    assert_eq!(models[..3], ["kelvin-voigt", "hertz", "hunt-crossley"]);
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
 }
 
@@ -143,7 +143,7 @@ fn a_sensor_that_droops_leaves_no_uncertainty() {
 
 #[test]
 fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
-    let contact = HuntCrossley::new(0.3).unwrap();
+    let contact = Rebound::hunt_crossley(0.3).unwrap();
     let times: Vec<f64> = (0..200).map(|i| f64::from(i) * DT - 80.4e-6).collect();
     let shape = contact.decelerations(45e-6, None, &times);
     let values = shape
