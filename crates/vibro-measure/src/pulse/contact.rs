@@ -270,6 +270,34 @@ mod curved {
         assert!(Rebound::hunt_crossley(101.0).is_none() && Rebound::hunt_crossley(f64::NAN).is_none());
     }
 
+    /// With both exponents alike the same balance holds for any; with those of spring and damper the contact is that of [`KelvinVoigt`]; a spring that yields
+    /// keeps the part R² of its energy.
+    #[test]
+    fn other_exponents_and_a_yielding_spring_balance_the_energy() {
+        for n in [1.0, 2.0, 3.0] {
+            let contact = Rebound::power_law(0.4, n, n).unwrap();
+            let level = |v: f64| v / 0.4 - (0.4 * v).ln_1p() / 0.16;
+            let (before, after) = (level(1.0), level(-contact.restitution));
+            // The last step is flown with the force at its beginning: h² of the velocity.
+            assert!((before - after).abs() < STEP * STEP, "{n} {before} {after}");
+        }
+        for xi in [0.02, 0.2, 0.45] {
+            let (found, exact) =
+                (Rebound::power_law(2.0 * xi, 1.0, 0.0).unwrap(), KelvinVoigt::new(xi, 1.0 / TAU).unwrap());
+            assert!((found.restitution - exact.restitution()).abs() < STEP * STEP, "{xi}");
+            assert!(
+                (found.duration - exact.duration()).abs() < STEP * STEP,
+                "{xi} {} {}",
+                found.duration,
+                exact.duration()
+            );
+        }
+        let yielding = Rebound::yielding(0.6).unwrap();
+        let impulse = yielding.deceleration.iter().sum::<f64>() * STEP;
+        // Steps that do not meet the end of the contact leave half a step's force out.
+        assert!((impulse - 1.6).abs() < STEP, "{impulse}");
+    }
+
     /// The impulse is the change of velocity, 1 + R, whatever low-pass stands between, since its gain at 0 Hz is one.
     #[test]
     fn a_low_pass_keeps_the_impulse() {

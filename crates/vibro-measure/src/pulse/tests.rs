@@ -33,6 +33,15 @@ fn found(values: Vec<f64>) -> PulseResult {
     result
 }
 
+/// What is found of a contact of 45 µs and 3 m/s, with the ripple of [`record`].
+fn follows(contact: &Rebound) -> PulseResult {
+    let times: Vec<f64> = (0..200).map(|i| f64::from(i) * DT - 80.4e-6).collect();
+    let shape = contact.decelerations(45e-6, None, &times);
+    let values =
+        shape.iter().enumerate().map(|(i, v)| 3.0 * v + 200.0 * ((i * i) as f64 * 0.7).sin()).collect();
+    pulse(&trace(values, "m/s²"), &PulseOptions { instrument: Instrument::Flat, mass: None }).unwrap()
+}
+
 fn says(result: &PulseResult, code: &str) -> bool {
     result.findings.iter().any(|f| f.code == code)
 }
@@ -144,15 +153,7 @@ fn a_sensor_that_droops_leaves_no_uncertainty() {
 #[test]
 fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     let contact = Rebound::hunt_crossley(0.3).unwrap();
-    let times: Vec<f64> = (0..200).map(|i| f64::from(i) * DT - 80.4e-6).collect();
-    let shape = contact.decelerations(45e-6, None, &times);
-    let values = shape
-        .iter()
-        .zip(record())
-        .enumerate()
-        .map(|(i, (v, _))| 3.0 * v + 200.0 * ((i * i) as f64 * 0.7).sin());
-    let options = PulseOptions { instrument: Instrument::Flat, mass: None };
-    let result = pulse(&trace(values.collect(), "m/s²"), &options).unwrap();
+    let result = follows(&contact);
     assert!(says(&result, "pulse-other-model"), "{:?}", result.findings);
     let alpha = &result.fits[2].parameters["alpha"];
     assert!((alpha.value - 0.3).abs() < 5.0 * alpha.std.unwrap(), "{alpha:?}");
@@ -164,6 +165,18 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
         "{restitution:?}"
     );
     assert!(result.xi.std.is_none() && result.frequency.std.is_none(), "{result:?}");
+}
+
+/// Neither is one of spring and damper, or of Hunt and Crossley: its restitution comes out, and nothing is said that is no longer so.
+#[test]
+fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution() {
+    for contact in [Rebound::yielding(0.7).unwrap(), Rebound::power_law(0.4, 2.0, 1.0).unwrap()] {
+        let result = follows(&contact);
+        let restitution = &result.restitution;
+        let std = restitution.std.unwrap();
+        assert!((restitution.value - contact.restitution).abs() < 5.0 * std && std < 0.05, "{restitution:?}");
+        assert!(says(&result, "pulse-other-model") && !says(&result, "pulse-unexplained"));
+    }
 }
 
 /// A contact through a low-pass of 30 kHz, fitted without.
