@@ -169,9 +169,11 @@ impl Scaled<'_> {
         Some(p)
     }
 
-    /// Nearer to the minimum: frequency and damping of the modes alone, with all else by linear least squares for each (Golub & Pereyra 1973).
-    fn nearer(&self, start: &[f64], weight: &[f64]) -> Option<Vec<f64>> {
-        let modes = self.starts.len();
+    /// The minimum, nearly: frequency and damping of the modes alone, with all else by linear least squares for each (Golub & Pereyra 1973).
+    fn nearer(&self, start: &[f64], weight: &[f64]) -> Result<Vec<f64>> {
+        if self.magnitude_only {
+            return Ok(self.fit(start, weight)?.parameters);
+        }
         let whole = |q: &[f64]| {
             let mut p = start.to_vec();
             q.chunks(2).enumerate().for_each(|(m, shape)| p[4 * m..4 * m + 2].copy_from_slice(shape));
@@ -185,13 +187,13 @@ impl Scaled<'_> {
             }),
             None => out.fill(f64::NAN),
         };
-        let q: Vec<f64> = (0..modes).flat_map(|m| [start[4 * m], start[4 * m + 1]]).collect();
-        whole(&minimise(residuals, self.rows(), &q, &vec![1.0; q.len()], Some(NEAR_ENOUGH)).ok()?.parameters)
+        let q: Vec<f64> = (0..self.starts.len()).flat_map(|m| [start[4 * m], start[4 * m + 1]]).collect();
+        let found = minimise(residuals, self.rows(), &q, &vec![1.0; q.len()], Some(NEAR_ENOUGH))?;
+        whole(&found.parameters)
+            .ok_or_else(|| Error::refused("the modes of a fit do not determine their constants"))
     }
 
     fn fit(&self, start: &[f64], weight: &[f64]) -> Result<Fit> {
-        let nearer = if self.magnitude_only { None } else { self.nearer(start, weight) };
-        let start = nearer.as_deref().unwrap_or(start);
         let free = self.free();
         let expand = |q: &[f64]| {
             let mut p = start.to_vec();
@@ -268,22 +270,15 @@ pub(super) fn with_known(
     } else {
         scaled.start(known, width, &equal).ok_or_else(refuse)?
     };
-    let first = scaled.fit(&start, &equal)?;
-    let at = first.parameters.clone();
+    let at = scaled.nearer(&start, &equal)?;
     let height = |i: usize| scaled.at(&at, i).norm();
-    let unlikely = |(fit, weight, _): &(Fit, Vec<f64>, &str)| {
-        let n = fit.residuals.len() as f64;
-        n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
-    };
-    let (mut best, rivals) = match (&measured.std, &measured.coherence) {
+    let weights = match (&measured.std, &measured.coherence) {
         (Some(std), _) => {
-            let weight = std[part].iter().map(|s| s / scaled.height).collect();
-            (None, vec![(weight, "noise as stated")])
+            vec![(std[part].iter().map(|s| s / scaled.height).collect(), "noise as stated")]
         }
         (None, None) => {
             let relative = (0..lines).map(|i| height(i).max(1e-2)).collect();
-            let rivals = vec![(relative, "noise proportional to the response")];
-            (Some((first, equal, "equal noise on all lines")), rivals)
+            vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
         }
         (None, Some(coherence)) => {
             // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
@@ -294,22 +289,35 @@ pub(super) fn with_known(
             let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
             let relative: Vec<f64> =
                 smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-            (None, [level, relative].map(|weight| (weight, "noise by the coherence")).to_vec())
+            [level, relative].map(|weight| (weight, "noise by the coherence")).to_vec()
         }
     };
-    let mut failed = None;
-    for (weight, noise) in rivals {
-        match scaled.fit(&at, &weight) {
-            Ok(fit) => {
-                let rival = (fit, weight, noise);
-                if best.as_ref().is_none_or(|best| unlikely(&rival) < unlikely(best)) {
-                    best = Some(rival);
-                }
-            }
-            Err(error) => failed = Some(error),
+    // Minus twice the logarithm of the likelihood.
+    let unlikely = |p: &[f64], weight: &[f64]| {
+        let n = scaled.rows() as f64;
+        let sum: f64 = (0..lines).map(|i| (scaled.left(p, i) / weight[i]).norm_sqr()).sum();
+        n * (sum / n).ln() + spread(weight, scaled.rows())
+    };
+    let mut failed = Error::refused("no first guess of the modes fits the lines");
+    let mut rivals = Vec::new();
+    for (weight, noise) in weights {
+        match scaled.nearer(&at, &weight) {
+            Ok(p) => rivals.push((unlikely(&p, &weight), p, weight, noise)),
+            Err(error) => failed = error,
         }
     }
-    let (fit, weight, noise) = best.ok_or_else(|| failed.unwrap_or_else(refuse))?;
+    rivals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut fitted = None;
+    for (_, p, weight, noise) in rivals {
+        match scaled.fit(&p, &weight) {
+            Ok(fit) => {
+                fitted = Some((fit, weight, noise));
+                break;
+            }
+            Err(error) => failed = error,
+        }
+    }
+    let (fit, weight, noise) = fitted.ok_or(failed)?;
     let mut result = scaled.result(&fit, noise, &weight);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
