@@ -18,7 +18,7 @@ use super::Estimate;
 use contact::Rebound;
 use fit::{Fitted, Samples};
 use normalised::{Normalised, locate};
-use result::contact_estimates;
+use result::{NO_SUPPORT, contact_estimates};
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};
@@ -189,10 +189,14 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     Ok(result)
 }
 
-/// All models fitted to the samples, that of spring and damper first.
+/// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the others more, exponents are not asked for.
 fn rivals(samples: &Samples<'_>, main: Fitted) -> Vec<Fitted> {
     let mut fits = vec![main];
     for rival in ContactModel::RIVALS {
+        let behind = fits[1..].iter().all(|fit| fit.aicc() - fits[0].aicc() > NO_SUPPORT);
+        if rival == ContactModel::PowerLaw && behind && !fits[0].whiteness.rejected() {
+            continue;
+        }
         let noise = fits.iter().map(|fit| fit.fit.variance()).fold(f64::INFINITY, f64::min).sqrt();
         fits.extend(samples.fit(rival, noise));
     }

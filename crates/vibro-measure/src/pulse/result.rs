@@ -142,7 +142,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 
 /// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
 /// Inference, 2002, section 2.6).
-const NO_SUPPORT: f64 = 10.0;
+pub(super) const NO_SUPPORT: f64 = 10.0;
 
 /// A model fitted to a pulse.
 #[derive(Debug, Clone, PartialEq, Serialize)]
