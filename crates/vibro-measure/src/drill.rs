@@ -3,7 +3,7 @@
 //! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and motion. Edges of the
 //! reference cut the record into turns; phases are parts of a turn after the edge, which for a pulse at the upper end of
 //! the piston's stroke is the phase after top dead centre. Without a reference the turns run from impact
-//! to impact. Beside the channels a record takes 17 bytes a sample.
+//! to impact. Beside the channels a record takes 25 bytes a sample.
 //!
 //! ```
 //! use vibro_measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
@@ -117,7 +117,9 @@ pub fn drill_each(
     let [stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let period = 1.0 / speed.value;
-    let offset = Offset::of(&drift, period);
+    // What lies beyond the range is missing from the mean.
+    let beyond = faults.clipped as f64 / velocity.len() as f64 * (survey.high - survey.low);
+    let offset = Offset::of(&drift, period, beyond);
     let around: Vec<f64> = velocity.iter().map(|v| v - offset.value).collect();
     let jumps =
         Jumps::of(&around, &states, (options.contact * rate, options.fit * rate), whole, options.turns_from);

@@ -1,6 +1,6 @@
 //! Contact pulses: damping ratio and contact frequency from two instants, or from fits to the whole pulse.
 //!
-//! The model of spring and damper (Kelvin–Voigt) gives the answer; those of Hertz, of Hunt and Crossley, of any exponents, and of a spring that yields are fitted beside it,
+//! The model of spring and damper (Kelvin–Voigt) gives the answer, if the record prefers no other; those of Hertz, of Hunt and Crossley, of any exponents, and of a spring that yields are fitted beside it,
 //! to see whether the record prefers them. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
@@ -128,7 +128,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let scale = Normalised::new(trace, rate, &located, filter)?;
     let (samples, level) = scale.window(&mut found, unlike)?;
     known = known && level;
-    let main = samples.fit(ContactModel::KelvinVoigt, 0.0).map_err(unlike)?;
+    let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
 
     let n = samples.times.len();
     let through = |f: &LowPass| {
@@ -151,7 +151,9 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     });
     // Beyond rounding a contact gives back no more than it took.
     let gains = result.xi.value + 2.0 * result.xi.std.unwrap_or(UNKNOWN) < 0.0;
-    found.extend(gains.then(|| gained(&result)));
+    let onset = if filter.is_none() { "pulse-low-pass-missing" } else { "pulse-onset-unlike" };
+    // What spring and damper cannot be; it says nothing of a contact that follows another law.
+    let impossible = [gains.then(|| gained(&result)), widening.is_none().then(|| Finding::doubt(onset))];
     if gains || widening.is_none() {
         result = result.refused();
     }
@@ -161,8 +163,6 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let mut say = |holds: bool, finding: Finding| found.extend(holds.then_some(finding));
     say(xi + spread >= 0.5, Finding::caution("pulse-no-inner-peak").number("xi", xi));
     say(xi - spread < 0.0, Finding::caution("pulse-no-damping").number("xi", xi));
-    say(widening.is_none() && filter.is_none(), Finding::doubt("pulse-low-pass-missing"));
-    say(widening.is_none() && filter.is_some(), Finding::doubt("pulse-onset-unlike"));
     let coloured = Finding::caution("pulse-residuals-coloured");
     // A factor of 1.00 is none.
     let enlarged = coloured.clone().number("factor", whiteness.inflation);
@@ -176,20 +176,22 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let unexplained = best.is_some_and(|best| samples.unexplained(best));
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    found.extend(result.led_by_best(best.map_or(1.0, |best| best.whiteness.inflation.max(1.0))));
+    let led = result.led_by_best(best.map_or(1.0, |best| best.whiteness.inflation.max(1.0)));
+    if led.is_none() || result.restitution.value.is_nan() {
+        found.extend(impossible.into_iter().flatten());
+    }
+    found.extend(led);
     let restitution = &result.restitution;
-    let more = !gains && restitution.std.is_some_and(|std| restitution.value - 2.0 * std > 1.0);
+    let more = restitution.std.is_some_and(|std| restitution.value - 2.0 * std > 1.0);
     found.extend(more.then(|| gained(&result)));
     found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained")));
-    if more || unexplained {
-        result = result.doubted();
-    }
+    result = if more || unexplained { result.doubted() } else { result };
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)
 }
 
-/// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the others more, exponents are not asked for.
+/// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the others more, no exponents are fitted.
 fn rivals(samples: &Samples<'_>, main: Fitted) -> Vec<Fitted> {
     let mut fits = vec![main];
     for rival in ContactModel::RIVALS {
@@ -197,15 +199,14 @@ fn rivals(samples: &Samples<'_>, main: Fitted) -> Vec<Fitted> {
         if rival == ContactModel::PowerLaw && behind && !fits[0].whiteness.rejected() {
             continue;
         }
-        let noise = fits.iter().map(|fit| fit.fit.variance()).fold(f64::INFINITY, f64::min).sqrt();
-        fits.extend(samples.fit(rival, noise));
+        fits.extend(samples.fit(rival));
     }
     fits
 }
 
 fn gained(result: &PulseResult) -> Finding {
-    let gained = Finding::doubt("pulse-gains-energy").number("xi", result.xi.value);
-    gained.number("restitution", result.restitution.value)
+    let gained = Finding::doubt("pulse-gains-energy").number("restitution", result.restitution.value);
+    if result.xi.value.is_nan() { gained } else { gained.number("xi", result.xi.value) }
 }
 
 /// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.

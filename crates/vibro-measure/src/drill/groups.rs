@@ -58,12 +58,12 @@ pub(super) struct Offset {
 }
 
 impl Offset {
-    /// From the drift over a turn, in m, and its time in s.
-    pub fn of(drift: &Mean, period: f64) -> Offset {
+    /// From the drift over a turn, in m, and its time in s; `beyond` is what over-range may have taken from the mean, in m/s.
+    pub fn of(drift: &Mean, period: f64, beyond: f64) -> Offset {
         if !drift.value.is_finite() {
             return Offset { value: 0.0, std: None };
         }
-        Offset { value: drift.value / period, std: drift.std.map(|std| std / period) }
+        Offset { value: drift.value / period, std: drift.std.map(|std| (std / period).hypot(beyond)) }
     }
 }
 

@@ -95,7 +95,9 @@ fn agreement(events: &[(f64, f64)], lag: f64) -> (f64, f64) {
 fn period(events: &[(f64, f64)]) -> Option<f64> {
     let steps = || events.windows(2).map(|e| e[1].0 - e[0].0).filter(|step| *step > 0.0);
     let shortest = steps().fold(f64::INFINITY, f64::min);
-    let longest = (PATTERN * median(steps())).min(0.5 * (events[events.len() - 1].0 - events[0].0));
+    // The mean: of bursts the median is that within them.
+    let mean = (events[events.len() - 1].0 - events[0].0) / (events.len() - 1) as f64;
+    let longest = (PATTERN * mean).min(0.5 * (events[events.len() - 1].0 - events[0].0));
     let grid = std::iter::successors(Some(shortest), |lag| Some(lag * (1.0 + 0.5 * NEAR)));
     let tried: Vec<(f64, f64)> =
         grid.take_while(|lag| *lag < longest * (1.0 + NEAR)).map(|lag| agreement(events, lag)).collect();

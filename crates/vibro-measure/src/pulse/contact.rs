@@ -80,8 +80,7 @@ pub struct Rebound {
     pub restitution: f64,
 }
 
-/// Step of the integration, about 1/400 of the contact. The last part of a step is flown freely, which leaves out a change of
-/// velocity of h^{5/2} = 5e-6; all other errors are smaller.
+/// Step of the integration, about 1/400 of the contact. Over the last part of a step the force falls along a straight line.
 const STEP: f64 = 1.0 / 128.0;
 
 /// Steps after which a contact is given up.
@@ -126,7 +125,7 @@ impl Rebound {
             let after = force(next, faster);
             // Left where the bodies part, or where the loss would pull them.
             if next <= 0.0 || after <= 0.0 && faster < 0.0 {
-                // Over a part of a step the force is small, and the velocity as good as constant.
+                // Over a part of a step the force falls along a straight line.
                 let part = if next <= 0.0 { z / -v } else { h * before / (before - after) };
                 let duration = (deceleration.len() - 1) as f64 * h + part;
                 deceleration.push(0.0);
@@ -138,9 +137,9 @@ impl Rebound {
         None
     }
 
-    /// A spring that yields and is 1/R² times as stiff on the way back (Walton & Braun 1986): a quarter of a sine, and a shorter one of a cosine. `None` for R outside 0.05…2.
+    /// A spring that yields and is 1/R² times as stiff on the way back (Walton & Braun 1986): a quarter of a sine, and a shorter one of a cosine. `None` for R outside 0.05…1.05, as much above 1 as noise may ask for.
     pub fn yielding(restitution: f64) -> Option<Rebound> {
-        if !(0.05..=2.0).contains(&restitution) {
+        if !(0.05..=1.05).contains(&restitution) {
             return None;
         }
         let (turn, duration) = (0.5 * PI, 0.5 * PI * (1.0 + restitution));
@@ -278,7 +277,7 @@ mod curved {
             let contact = Rebound::power_law(0.4, n, n).unwrap();
             let level = |v: f64| v / 0.4 - (0.4 * v).ln_1p() / 0.16;
             let (before, after) = (level(1.0), level(-contact.restitution));
-            // The last step is flown with the force at its beginning: h² of the velocity.
+            // Over the last part of a step the force is taken for a straight line: below h² of the velocity.
             assert!((before - after).abs() < STEP * STEP, "{n} {before} {after}");
         }
         for xi in [0.02, 0.2, 0.45] {

@@ -29,8 +29,41 @@ pub(super) struct Samples<'a> {
     pub places: Vec<usize>,
     pub times: Vec<f64>,
     pub values: Vec<f64>,
-    /// Root mean square of what rings on behind the pulse, and so within it, too; 0 where nothing does.
-    pub rings: f64,
+    /// What rings on behind the pulse, and so within it, too.
+    pub rings: Option<Ringing>,
+}
+
+/// What a record does behind its pulse.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ringing {
+    pub rms: f64,
+    /// Samples of half a swing.
+    pub half: f64,
+}
+
+impl Ringing {
+    /// From what is left behind the pulse: half a swing lasts from one side of the root of the mean square to the other, without end where it stays on one.
+    pub fn of(left: &[f64], mean: f64, rms: f64) -> Ringing {
+        let (mut side, mut turns) = (0.0, Vec::new());
+        for (i, v) in left.iter().map(|v| v - mean).enumerate().filter(|(_, v)| v.abs() > rms) {
+            if v.signum() != side {
+                side = v.signum();
+                turns.push(i);
+            }
+        }
+        let half = match turns[..] {
+            [first, .., last] => (last - first) as f64 / (turns.len() - 1) as f64,
+            _ => f64::INFINITY,
+        };
+        Ringing { rms, half }
+    }
+
+    /// Factor of the variance of what `n` samples in a contact state, of which noise leaves this `variance`. Half a swing adds up to 2√2/π of its root mean square, noise to the
+    /// root of n; a swing that is larger than what is left would show in it.
+    fn widening(&self, n: f64, variance: f64) -> f64 {
+        let sum = 2.0 * f64::sqrt(2.0) / PI * self.half.min(0.5 * n);
+        1.0 + sum * sum / n * (self.rms * self.rms / variance).min(SHOWS * SHOWS)
+    }
 }
 
 /// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and f, duration,
@@ -46,8 +79,11 @@ pub(super) struct Fitted {
     first: Option<usize>,
 }
 
+/// Least noise, in parts of the height.
+const DIGITS: f64 = 3e-4;
+
 /// A swing within the contact larger than this, in units of what is left there, would show in it.
-const SHOWS: f64 = 1.2;
+const SHOWS: f64 = 1.6;
 
 /// Samples that the search for a first guess uses.
 const COARSE: usize = 48;
@@ -97,9 +133,9 @@ impl Samples<'_> {
         Some(shape.into_iter().map(|s| p[1] + p[2] * s).collect())
     }
 
-    /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts as much as samples of this `noise`.
-    pub fn fit(&self, model: ContactModel, noise: f64) -> Result<Fitted> {
-        let starts = self.starts(model)?;
+    /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts as much as a sample each.
+    pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
+        let (starts, noise) = (self.starts(model)?, self.noise());
         let corner = self.seen.filter.as_ref().map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
@@ -144,14 +180,20 @@ impl Samples<'_> {
         if !(outside || best.whiteness.rejected() && self.more_left_at_onset(&best.fit)) {
             // At least nine samples leave four degrees of freedom.
             let student = student(best.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-            // Of a swing that lasts as long as the contact a half adds up, 2/π of its crest: √2/π of n samples of its root mean square, where noise adds up
-            // to √n. One larger than what is left would show in it.
             let inside = (best.end() - best.fit.parameters[0]) / self.seen.step;
-            let rings = (self.rings.powi(2) / best.fit.variance()).min(SHOWS * SHOWS);
-            let rings = 1.0 + 2.0 / PI.powi(2) * inside * rings;
+            let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, best.fit.variance()));
             best.widening = Some(best.whiteness.inflation * student * rings.sqrt());
         }
         Ok(best)
+    }
+
+    /// Root mean square of the record well before the pulse, about its mean there; no less than the digits of a converter leave.
+    fn noise(&self) -> f64 {
+        let begins = -0.5 - self.seen.delay();
+        let before = &self.values[..self.times.partition_point(|t| *t < begins)];
+        let mean = average(before);
+        let square = before.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / before.len() as f64;
+        if before.len() < 8 { DIGITS } else { square.sqrt().max(DIGITS) }
     }
 
     /// Whether more is left within the contact than before it, by more than chance: then the contact follows another law, or something else moved.

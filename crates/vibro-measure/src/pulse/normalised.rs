@@ -1,6 +1,6 @@
 //! Where in a record the pulse is; the record in units of its pulse, and the way back.
 
-use super::fit::{Fitted, Samples, Seen};
+use super::fit::{Fitted, Ringing, Samples, Seen};
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::Estimate;
@@ -69,7 +69,7 @@ impl<'a> Normalised<'a> {
         let places: Vec<usize> = range.filter(usable).collect();
         let times = places.iter().map(|i| self.time(*i)).collect();
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
-        Samples { seen: &self.seen, places, times, values, rings: 0.0 }
+        Samples { seen: &self.seen, places, times, values, rings: None }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it;
@@ -93,7 +93,7 @@ impl<'a> Normalised<'a> {
             return Err(Error::refused(why).hint(hint));
         }
         self.faults(from..self.found.low, findings);
-        let fitted = first.fit(ContactModel::KelvinVoigt, 0.0).map_err(unlike)?;
+        let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
         let settled = self.index(fitted.end() + 3.0 * delay);
         let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
         let after = self.samples(settled..far);
@@ -110,7 +110,8 @@ impl<'a> Normalised<'a> {
             findings.push(if level { caution } else { Finding::doubt("pulse-level-changes") });
         }
         let end = if restless { self.index(fitted.end()).max(self.found.low) } else { far };
-        Ok((Samples { rings: if restless { rms } else { 0.0 }, ..self.samples(from..end) }, level))
+        let rings = restless.then(|| Ringing::of(&left, mean, rms));
+        Ok((Samples { rings, ..self.samples(from..end) }, level))
     }
 
     /// What is wrong with the record around the pulse.

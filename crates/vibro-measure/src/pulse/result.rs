@@ -63,7 +63,7 @@ pub struct PulseResult {
     pub initial_velocity: Option<Estimate>,
     /// Duration of the contact in s.
     pub duration: Estimate,
-    /// Every model fitted to the whole pulse; the first is the one of spring and damper.
+    /// The models fitted to the whole pulse; the first is the one of spring and damper.
     pub fits: Vec<PulseFit>,
     /// What was assumed, and what the record leaves open.
     pub findings: Vec<Finding>,
@@ -101,7 +101,7 @@ impl PulseResult {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
         let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
         let ahead = behind(&self.fits[0]);
-        let other = ahead > NO_SUPPORT;
+        let (other, lower) = (ahead > NO_SUPPORT, self.fits[0].aicc - best.aicc);
         let lead = if other { best } else { &self.fits[0] };
         // Burnham & Anderson 2002, eq. 4.9, in squares: the weights are exp(−Δ/2).
         let weights: Vec<f64> = self.fits.iter().map(|fit| (-0.5 * behind(fit)).exp()).collect();
@@ -109,16 +109,13 @@ impl PulseResult {
             let led = lead.parameters.get(name)?;
             let (mut sum, mut variance) = (0.0, 0.0);
             for (fit, weight) in self.fits.iter().zip(&weights).filter(|(_, weight)| **weight > NEGLIGIBLE) {
-                let fitted = fit.parameters.get(name)?;
                 // A model that cannot begin as the record does says nothing.
-                if fitted.value.is_nan() {
-                    continue;
-                }
+                let Some(fitted) = fit.parameters.get(name).filter(|p| !p.value.is_nan()) else { continue };
                 sum += weight;
                 let std = fitted.std.unwrap_or(f64::NAN);
                 variance += weight * (std.powi(2) + (fitted.value - led.value).powi(2));
             }
-            let std = (variance / sum).sqrt();
+            let std = (variance / sum).sqrt().max(led.std.unwrap_or(f64::NAN));
             let own = own.filter(|_| !other).map(|own| own.method.clone());
             let method = own.unwrap_or_else(|| format!("{}, {}", led.method, lead.model.name()));
             Some(Estimate::new(led.value, Some(std), led.unit, led.n, method))
@@ -133,7 +130,7 @@ impl PulseResult {
         self.restitution = restitution.unwrap_or_else(|| self.restitution.clone());
         self.duration = duration.unwrap_or_else(|| self.duration.clone());
         self.initial_velocity = velocity.or(self.initial_velocity.take());
-        other.then(|| Finding::doubt("pulse-other-model").name("model", model).number("ahead", ahead))
+        other.then(|| Finding::doubt("pulse-other-model").name("model", model).number("ahead", lower))
     }
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Meta};
+use vibro_record::{Axis, Meta, Severity};
 
 const DT: f64 = 1e-6;
 
@@ -56,7 +56,8 @@ fn all_that_follows_from_a_pulse() {
     let k = result.stiffness.as_ref().unwrap().value;
     assert!((k / (0.4 * (std::f64::consts::TAU * result.frequency.value).powi(2)) - 1.0).abs() < 1e-12);
     let models: Vec<&str> = result.fits.iter().map(|f| f.model.name()).collect();
-    assert_eq!(models[..3], ["kelvin-voigt", "hertz", "hunt-crossley"]);
+    // A spring that yields finds no minimum, and spring and damper leave nothing to the exponents.
+    assert_eq!(models, ["kelvin-voigt", "hertz", "hunt-crossley"]);
     assert!(result.fits[1..].iter().all(|f| f.aicc > result.fits[0].aicc + 10.0), "{:?}", result.fits);
 }
 
@@ -174,8 +175,10 @@ fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution()
         let result = follows(&contact);
         let restitution = &result.restitution;
         let std = restitution.std.unwrap();
-        assert!((restitution.value - contact.restitution).abs() < 5.0 * std && std < 0.05, "{restitution:?}");
-        assert!(says(&result, "pulse-other-model") && !says(&result, "pulse-unexplained"));
+        assert!((restitution.value - contact.restitution).abs() < 5.0 * std && std < 0.03, "{restitution:?}");
+        let doubts: Vec<&str> =
+            result.findings.iter().filter(|f| f.severity == Severity::Doubt).map(|f| f.code).collect();
+        assert_eq!(doubts, ["pulse-other-model"]);
     }
 }
 
