@@ -396,6 +396,8 @@ impl Fit {
         let (rest, unit) = (self.rest(trace), trace.meta.unit.quantity().symbol());
         let lines = if self.is_exact() { None } else { Lines::of(&rest).ok() };
         let other = lines.as_ref().and_then(|lines| lines.strongest(None).ok());
+        // Samples that are cut off have less noise in what is left: lines are compared with white noise of its own size.
+        let rms = (rest.values.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt();
         // The first sample, in the time of the fit.
         let first = time(0, n);
         let clipped = self.cut.iter().filter(|side| **side != 0.0).count();
@@ -404,8 +406,7 @@ impl Fit {
         let tone = |(k, (omega, p)): (usize, (&f64, &[f64]))| {
             let (a, b) = (p[0], p[1]);
             let (amplitude, frequency) = (a.hypot(b), omega / (TAU * self.half));
-            let widening =
-                lines.as_ref().map_or(1.0, |lines| lines.colour(frequency, self.noise, other.is_none()));
+            let widening = lines.as_ref().map_or(1.0, |lines| lines.colour(frequency, rms, other.is_none()));
             let estimate = |value, gradient: [f64; 3], unit| {
                 let gradient = RowVector3::from(gradient);
                 let part = self.inverse.fixed_view::<3, 3>(3 * k, 3 * k);
