@@ -29,6 +29,7 @@ pub mod resonance;
 pub mod response;
 pub mod restitution;
 pub mod spectral;
+mod stands_out;
 pub mod stepped;
 #[cfg(test)]
 #[path = "tests/synthetic.rs"]

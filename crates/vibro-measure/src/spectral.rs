@@ -6,11 +6,12 @@ mod result;
 pub use options::{Method, SpectralOptions};
 pub use result::{Lines, Response, SpectralResult};
 
+use super::stands_out::{FALSE_ALARMS, REACH, floor};
 use super::tones;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Meta, Result, Scaling, Trace, Traces};
+use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Traces};
 use vibro_signal::impact::{Blows, from_blows};
 use vibro_signal::integrate::in_frequency;
 use vibro_signal::segment::Segments;
@@ -68,29 +69,53 @@ fn lines(
 ) -> Result<SpectralResult> {
     let (scaling, window) = (options.scaling.unwrap_or(Scaling::Peak), options.window());
     let mut tones = None;
-    let (spectrum, averages, mut scatter) = if options.method() == Method::Welch {
+    let (spectrum, averages, independent, mut scatter) = if options.method() == Method::Welch {
         let averages = averages(traces, options, progress)?;
         let meta = traces.channels().first().cloned().unwrap_or_else(|| Meta::new("", Unit::opaque("")));
         let scatter = spectrum::scatter(&averages, scaling);
-        (spectrum::averaged(&averages, 0, &meta, window, scaling)?, averages.count, scatter)
+        (
+            spectrum::averaged(&averages, 0, &meta, window, scaling)?,
+            averages.count,
+            averages.effective,
+            scatter,
+        )
     } else {
         let [trace] = whole(traces, progress)?;
         let spectrum = spectrum::plain(&trace, window, scaling, options.detrended())?;
         tones = options.tones.map(|count| tones::tones(&trace, count)).transpose()?;
         let unknown = vec![f64::NAN; spectrum.axis.len()];
-        (spectrum, 1, unknown)
+        (spectrum, 1, 1.0, unknown)
     };
     let fmin = options.lowest(spectrum.axis.step().unwrap_or(0.0));
+    let mut clear = clear(&spectrum, independent);
     let spectrum = in_frequency(&spectrum, options.integrate, fmin)?;
-    scatter.drain(..scatter.len() - spectrum.axis.len());
+    let left_out = scatter.len() - spectrum.axis.len();
+    scatter.drain(..left_out);
+    clear.drain(..left_out);
     let mut found = SpectralResult::of(Lines::Spectrum(spectrum), options, fmin, traces.findings());
     found.averages = averages;
+    (found.clear, found.false_alarms) = (clear, Some(FALSE_ALARMS));
     found.value_std = found.value.iter().zip(scatter).map(|(v, part)| v * part).collect();
     if let Some(tones) = tones {
         found.findings.extend(tones.findings);
         found.tones = tones.tones;
     }
     Ok(found)
+}
+
+/// Lines that stand out of the noise of averages over so many independent segments.
+fn clear(spectrum: &Spectrum, independent: f64) -> Vec<bool> {
+    let mut powers = spectrum.values.magnitudes();
+    if matches!(spectrum.scaling, Scaling::Peak | Scaling::Rms) {
+        for v in &mut powers {
+            *v *= *v;
+        }
+    }
+    let stands = |(k, power): (usize, &f64)| {
+        let noise = floor(&powers, k, REACH, independent, spectrum.window);
+        noise.is_none_or(|noise| noise.is_below(*power, independent, powers.len()))
+    };
+    powers.iter().enumerate().map(stands).collect()
 }
 
 fn response(

@@ -4,13 +4,13 @@
 //! Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 7.8), for one sine the four-parameter fit of IEEE
 //! Std 1057, which reaches the Cramér–Rao bound var(f) ≥ 12/((2πΔt)² η N(N²−1)), η = A²/(2σ²) (Kay, eq. 3.41). Uncertainties come
 //! from the inverse of the whole normal matrix: what two close sines take from each other is in them. A sine sees the noise around its
-//! own line only: where that is stronger than white noise of the same variance, uncertainties grow by it (P. Whittle, Ark. Mat. 2
-//! (1953) 423).
+//! own line only: uncertainties are those of white noise as strong as there (P. Whittle, Ark. Mat. 2 (1953) 423).
 
+use super::Estimate;
 use super::clipping::clipped;
 use super::line::interpolate;
 use super::residuals::student;
-use super::{Estimate, noise};
+use super::stands_out::{self, floor};
 use nalgebra::{DMatrix, DVector, RowVector3};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
@@ -22,10 +22,12 @@ use vibro_signal::spectrum;
 pub const MOST: usize = 10;
 /// Sines nearer than this part of 1/T shake each other so much that a fit of white noise finds two where there is one.
 const NEAREST: f64 = 0.5;
-/// How often the largest line of pure noise may pass for a sine.
-const BY_CHANCE: f64 = 1e-4;
 /// A frequency that is given may be off by so many lines.
 const NEAR: f64 = 2.0;
+/// So many standard deviations of their mean below the sines, samples at the end of the range are cut off.
+const SHORT: f64 = 4.0;
+/// Below this weight a sample that is cut off tells nothing.
+const LEAST: f64 = 1e-9;
 /// Gauss–Newton steps.
 const STEPS: usize = 40;
 /// Part of the standard uncertainty of a frequency below which a step ends the fit: large residuals, as coloured noise leaves, slow
@@ -37,8 +39,8 @@ const ROUNDING: f64 = 1e-12;
 const IMAGE: f64 = 0.25;
 /// Noise around a line is coloured where it is this much stronger than white noise of its variance.
 const COLOURED: f64 = 1.5;
-/// Lines on either side over which noise is as strong as at a sine.
-const AROUND: usize = 12;
+/// Lines on either side that tell the noise at a sine.
+const AROUND: usize = 40;
 /// From so many lines on the uncertainty in coloured noise holds what another sine does.
 const FAR: f64 = 3.5;
 /// Up to this part of the amplitude, what stands beside a sine moves it by a small and known part.
@@ -116,6 +118,7 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
 /// Lines of a record under a Hann window, without its mean.
 struct Lines {
     magnitudes: Vec<f64>,
+    powers: Vec<f64>,
     /// Distance of two lines in Hz.
     spacing: f64,
 }
@@ -123,7 +126,9 @@ struct Lines {
 impl Lines {
     fn of(trace: &Trace) -> Result<Lines> {
         let lines = spectrum::plain(trace, Window::Hann, Scaling::Peak, true)?;
-        Ok(Lines { magnitudes: lines.values.magnitudes(), spacing: lines.axis.step().unwrap_or(0.0) })
+        let magnitudes = lines.values.magnitudes();
+        let powers = magnitudes.iter().map(|m| m * m).collect();
+        Ok(Lines { magnitudes, powers, spacing: lines.axis.step().unwrap_or(0.0) })
     }
 
     /// Height of the line nearest to `frequency` in Hz.
@@ -131,42 +136,36 @@ impl Lines {
         self.magnitudes.get((frequency / self.spacing).round() as usize).copied().unwrap_or(0.0)
     }
 
-    /// How much stronger noise is around `frequency` than white noise of standard deviation `sigma`; 1 where it is no more than
-    /// [`COLOURED`], as by chance.
-    fn colour(&self, frequency: f64, sigma: f64) -> f64 {
+    /// How strong noise is around `frequency` as a part of white noise of standard deviation `sigma`: not below 1 unless the sine is
+    /// `alone` with noise, since other lines reach farther.
+    fn colour(&self, frequency: f64, sigma: f64, alone: bool) -> f64 {
         let centre = (frequency / self.spacing).round() as usize;
-        let floor = noise::around(&self.magnitudes, centre, AROUND, Some(Window::Hann));
-        // Half of the samples, with the power of a one-sided line.
-        let white = sigma * (Window::Hann.enbw() / (self.magnitudes.len() - 1) as f64).sqrt();
-        // The median of so many lines, of two degrees of freedom each, knows it as the mean of half as many.
-        let known = student(2 * AROUND).unwrap_or(1.0);
-        floor
-            .map(|floor| floor / white)
-            .filter(|factor| *factor > COLOURED)
-            .map_or(1.0, |factor| known * factor)
+        let Some(floor) = floor(&self.powers, centre, AROUND, 1.0, Some(Window::Hann)) else { return 1.0 };
+        // Half of the samples, with the power of a one-sided line: two components.
+        let white = 2.0 * sigma * sigma * Window::Hann.enbw() / (self.magnitudes.len() - 1) as f64;
+        let factor = student(2 * floor.lines).unwrap_or(1.0) * (floor.power / white).sqrt();
+        if alone { factor } else { factor.max(1.0) }
     }
 
     /// The frequency of the strongest line that stands out of the noise, or of those within two lines of `near` Hz, interpolated
     /// between lines.
     fn strongest(&self, near: Option<f64>) -> Result<f64> {
-        let Lines { magnitudes, spacing } = self;
+        let Lines { magnitudes, powers, spacing } = self;
         let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / spacing).abs() <= NEAR);
-        let largest = (1..magnitudes.len().saturating_sub(1))
-            .filter(within)
-            .max_by(|a, b| magnitudes[*a].total_cmp(&magnitudes[*b]))
-            .ok_or_else(|| Error::refused("no line of the spectrum lies there"))?;
-        // Rayleigh: one of n lines of noise passes t standard deviations with a chance of n e^(−t²/2).
-        let visible = (2.0 * (magnitudes.len() as f64 / BY_CHANCE).ln()).sqrt();
-        let floor = noise::around(magnitudes, largest, noise::REACH, Some(Window::Hann));
-        if let Some(floor) = floor.filter(|n| magnitudes[largest] < visible * n) {
+        let mut lines: Vec<usize> = (1..magnitudes.len().saturating_sub(1)).filter(within).collect();
+        lines.sort_by(|a, b| magnitudes[*b].total_cmp(&magnitudes[*a]));
+        let first = *lines.first().ok_or_else(|| Error::refused("no line of the spectrum lies there"))?;
+        let noise = |k: usize| floor(powers, k, stands_out::REACH, 1.0, Some(Window::Hann));
+        let visible = |k: &usize| noise(*k).is_none_or(|n| n.is_below(powers[*k], 1.0, lines.len()));
+        let Some(largest) = lines.iter().copied().find(visible) else {
             let why = format!(
                 "no sine stands out of the noise: the largest line, {:.6} Hz, has {}, the noise of a line is {}",
-                largest as f64 * spacing,
-                quantity(magnitudes[largest], "1", 3),
-                quantity(floor, "1", 3)
+                first as f64 * spacing,
+                quantity(magnitudes[first], "1", 3),
+                quantity(noise(first).map_or(0.0, |n| n.power.sqrt()), "1", 3)
             );
             return Err(Error::refused(why).hint("take a longer record, or state the frequency"));
-        }
+        };
         let line = interpolate(magnitudes, largest, Some(Window::Hann), None);
         let position = line.map_or(largest as f64, |l| l.position);
         if position < 1.5 {
@@ -190,13 +189,52 @@ struct Fit {
     noise: f64,
     /// Half of the record in s.
     half: f64,
-    /// Samples that are clipped and left out.
-    clipped: Vec<usize>,
+    /// 1 and −1 for samples that are cut off above and below, 0 for all others.
+    cut: Vec<f64>,
 }
 
 /// Time of a sample from the middle of the record, in parts of half of it.
 fn time(i: usize, n: usize) -> f64 {
     (2 * i + 1) as f64 / n as f64 - 1.0
+}
+
+/// What a sample tells of a fit. What lies beyond an end of the range is only known to be beyond it (J. Tobin, Econometrica 26 (1958)
+/// 24): it counts by the curvature of its likelihood.
+struct Left {
+    /// Weight in the normal matrix, 1 for a whole sample.
+    weight: f64,
+    /// Expected value without the sines.
+    mean: f64,
+    /// Part in the sum of squares of the noise, and in its degrees of freedom.
+    square: f64,
+    known: f64,
+}
+
+impl Left {
+    /// From what is left of the value, the side on which it is cut off (0 for none), and the standard deviation of the noise.
+    fn of(left: f64, side: f64, noise: f64) -> Left {
+        if side == 0.0 {
+            return Left { weight: 1.0, mean: left, square: left * left, known: 1.0 };
+        }
+        let a = (side * left / noise.max(f64::MIN_POSITIVE)).clamp(-40.0, 1e6);
+        let beyond = mills(a);
+        let (square, known) =
+            if a < 0.0 { (0.0, -a * beyond) } else { (noise * noise * (1.0 + a * beyond), 1.0) };
+        Left { weight: (beyond * (beyond - a)).min(1.0), mean: side * noise * beyond, square, known }
+    }
+}
+
+/// Mean of a normal variable that is known to lie beyond `a`: its density over the probability (Abramowitz & Stegun 26.2.17; from 3 on
+/// by the continued fraction 26.2.14).
+fn mills(a: f64) -> f64 {
+    if a > 3.0 {
+        return (1..60).rev().fold(a, |tail, k| a + f64::from(k) / tail);
+    }
+    let density = (-0.5 * a * a).exp() / TAU.sqrt();
+    let t = 1.0 / (1.0 + 0.231_641_9 * a.abs());
+    let series = [1.330_274_429, -1.821_255_978, 1.781_477_937, -0.356_563_782, 0.319_381_53];
+    let tail = density * series.iter().fold(0.0, |sum, c| (sum + c) * t);
+    density / if a < 0.0 { 1.0 - tail } else { tail }
 }
 
 impl Fit {
@@ -206,57 +244,63 @@ impl Fit {
         // Of the slowest sine the crests are the flattest.
         let slowest = start.iter().copied().fold(f64::INFINITY, f64::min);
         let clipped = clipped(&trace.values, rate / slowest);
-        let fit = Fit::of(trace, start, clipped)?;
-        if fit.clipped.is_empty() {
-            return Ok(fit);
-        }
-        // Beside the cut those samples are left that noise has lowered: what the sine has within it is left out on both sides.
-        let rest = fit.rest(trace);
-        let cut = |end: f64| fit.clipped.iter().any(|i| trace.values[*i] == end);
         let low = trace.values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = trace.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let (low_cut, high_cut) = (cut(low), cut(high));
-        let near = |i: &usize| {
-            let sine = trace.values[*i] - rest.values[*i];
-            let beside = |room: f64| room < 3.0 * fit.noise;
-            fit.clipped.binary_search(i).is_ok()
-                || low_cut && beside(sine - low)
-                || high_cut && beside(high - sine)
-        };
-        Fit::of(trace, start, (0..n).filter(near).collect())
+        let mut cut = vec![0.0; n];
+        for i in clipped {
+            cut[i] = if trace.values[i] == low { -1.0 } else { 1.0 };
+        }
+        let fit = Fit::of(trace, start, cut)?;
+        // Noise lifts the highest samples of a whole record above the sines; where they lie below, they are cut off.
+        let (rest, mut cut) = (fit.rest(trace), fit.cut.clone());
+        for (end, side) in [(low, -1.0), (high, 1.0)] {
+            let at: Vec<usize> = (0..n).filter(|i| trace.values[*i] == end && fit.cut[*i] == 0.0).collect();
+            let short: f64 = at.iter().map(|i| -side * rest.values[*i]).sum();
+            if at.len() > 1 && short > SHORT * fit.noise * (at.len() as f64).sqrt() {
+                for i in at {
+                    cut[i] = side;
+                }
+            }
+        }
+        if cut == fit.cut { Ok(fit) } else { Fit::of(trace, start, cut) }
     }
 
-    /// Without the samples `clipped`.
-    fn of(trace: &Trace, start: &[f64], clipped: Vec<usize>) -> Result<Fit> {
+    /// With samples that are cut off.
+    fn of(trace: &Trace, start: &[f64], cut: Vec<f64>) -> Result<Fit> {
         let (n, count) = (trace.values.len(), start.len());
         let half = 0.5 * n as f64 / trace.rate().unwrap_or(1.0);
         let size = 3 * count + 1;
-        let mut used = vec![true; n];
-        for i in &clipped {
-            used[*i] = false;
-        }
-        let free = (n - clipped.len()).saturating_sub(size);
+        let free = cut.iter().filter(|side| **side == 0.0).count().saturating_sub(size);
         if free == 0 {
             return Err(Error::refused(format!("{n} samples do not determine {count} sines")));
         }
-        let samples = || trace.values.iter().enumerate().filter(|(i, _)| used[*i]);
         let mut omega: Vec<f64> = start.iter().map(|f| TAU * f * half).collect();
         let mut linear = vec![0.0; 2 * count + 1];
         let mut row = DVector::<f64>::zeros(size);
-        let all: f64 = samples().map(|(_, v)| v * v).sum();
+        let mut noise = 0.0;
         for step in 0..STEPS {
             let (mut normal, mut right) = (DMatrix::<f64>::zeros(size, size), DVector::<f64>::zeros(size));
-            for (i, v) in samples() {
-                let t = time(i, n);
+            let (mut all, mut squares, mut known) = (0.0, 0.0, -(size as f64));
+            for (i, v) in trace.values.iter().enumerate() {
+                let (t, mut model) = (time(i, n), linear[2 * count]);
                 for (k, w) in omega.iter().enumerate() {
                     let (sin, cos) = (w * t).sin_cos();
                     let (a, b) = (linear[2 * k], linear[2 * k + 1]);
                     let slope = if step == 0 { 0.0 } else { t * (b * cos - a * sin) / a.hypot(b) };
                     row.as_mut_slice()[3 * k..3 * k + 3].copy_from_slice(&[cos, sin, slope]);
+                    model += a * cos + b * sin;
                 }
                 row[size - 1] = 1.0;
-                normal.syger(1.0, &row, &row, 1.0);
-                right.axpy(*v, &row, 1.0);
+                let left = Left::of(v - model, if step == 0 { 0.0 } else { cut[i] }, noise);
+                squares += left.square;
+                known += left.known;
+                if left.weight < LEAST {
+                    continue;
+                }
+                let v = model + left.mean / left.weight;
+                all += left.weight * v * v;
+                normal.syger(left.weight, &row, &row, 1.0);
+                right.axpy(left.weight * v, &row, 1.0);
             }
             normal.fill_upper_triangle_with_lower_triangle();
             if step == 0 {
@@ -268,6 +312,7 @@ impl Fit {
             let p = &inverse * &right;
             // Variance of what is left, to first order: the steps end far below what it lets be known.
             let left = (all - p.dot(&right)).max(0.0) / free as f64;
+            noise = if step == 0 { left.sqrt() } else { (squares / known).sqrt() };
             let mut settled = step > 0;
             for (k, w) in omega.iter_mut().enumerate() {
                 let (a, b) = (p[3 * k], p[3 * k + 1]);
@@ -291,9 +336,12 @@ impl Fit {
                     );
                     return Err(Error::refused(why).hint("sample faster"));
                 }
-                let mut fit = Fit { omega, linear, inverse, noise: 0.0, half, clipped };
-                let squares: f64 = fit.rest(trace).values.iter().map(|v| v * v).sum();
-                fit.noise = (squares / free as f64).sqrt();
+                let mut fit = Fit { omega, linear, inverse, noise, half, cut };
+                let (squares, known) = fit
+                    .left(trace)
+                    .iter()
+                    .fold((0.0, 0.0), |(squares, known), left| (squares + left.square, known + left.known));
+                fit.noise = (squares / (known - size as f64)).sqrt();
                 return Ok(fit);
             }
         }
@@ -324,20 +372,21 @@ impl Fit {
         self.noise <= ROUNDING * largest
     }
 
-    /// The record without the sines and the mean.
-    fn rest(&self, trace: &Trace) -> Trace {
+    /// What each sample is without the sines and the mean.
+    fn left(&self, trace: &Trace) -> Vec<Left> {
         let n = trace.values.len();
         let mean = self.linear.last().copied().unwrap_or(0.0);
         let sum = |t: f64| -> f64 {
             let each = self.omega.iter().zip(self.linear.chunks_exact(2));
             each.map(|(w, p)| p[0] * (w * t).cos() + p[1] * (w * t).sin()).sum()
         };
-        let mut values: Vec<f64> =
-            trace.values.iter().enumerate().map(|(i, v)| v - mean - sum(time(i, n))).collect();
-        // What was cut off is not known.
-        for i in &self.clipped {
-            values[*i] = 0.0;
-        }
+        let each = trace.values.iter().zip(&self.cut).enumerate();
+        each.map(|(i, (v, cut))| Left::of(v - mean - sum(time(i, n)), *cut, self.noise)).collect()
+    }
+
+    /// The record without the sines and the mean; what was cut off has its most likely place.
+    fn rest(&self, trace: &Trace) -> Trace {
+        let values = self.left(trace).iter().map(|left| left.mean).collect();
         Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values }
     }
 
@@ -346,14 +395,18 @@ impl Fit {
         let n = trace.values.len();
         let (rest, unit) = (self.rest(trace), trace.meta.unit.quantity().symbol());
         let lines = if self.is_exact() { None } else { Lines::of(&rest).ok() };
+        let other = lines.as_ref().and_then(|lines| lines.strongest(None).ok());
+        // Samples that are cut off have less noise in what is left: lines are compared with white noise of its own size.
+        let rms = (rest.values.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt();
         // The first sample, in the time of the fit.
         let first = time(0, n);
-        let lost = Finding::caution("sine-clipped").count("n", self.clipped.len()).count("all", n);
-        let mut findings: Vec<Finding> = (!self.clipped.is_empty()).then_some(lost).into_iter().collect();
+        let clipped = self.cut.iter().filter(|side| **side != 0.0).count();
+        let lost = Finding::caution("sine-clipped").count("n", clipped).count("all", n);
+        let mut findings: Vec<Finding> = (clipped > 0).then_some(lost).into_iter().collect();
         let tone = |(k, (omega, p)): (usize, (&f64, &[f64]))| {
             let (a, b) = (p[0], p[1]);
             let (amplitude, frequency) = (a.hypot(b), omega / (TAU * self.half));
-            let widening = lines.as_ref().map_or(1.0, |lines| lines.colour(frequency, self.noise));
+            let widening = lines.as_ref().map_or(1.0, |lines| lines.colour(frequency, rms, other.is_none()));
             let estimate = |value, gradient: [f64; 3], unit| {
                 let gradient = RowVector3::from(gradient);
                 let part = self.inverse.fixed_view::<3, 3>(3 * k, 3 * k);
@@ -370,8 +423,8 @@ impl Fit {
             };
             if let Some(lines) = &lines {
                 let coloured = Finding::caution("sine-noise-coloured").number("frequency", frequency);
-                findings.extend((widening > 1.0).then(|| coloured.number("factor", widening)));
-                findings.extend(tone.widened(lines));
+                findings.extend((widening > COLOURED).then(|| coloured.number("factor", widening)));
+                findings.extend(tone.widened(lines, other));
             }
             tone
         };
@@ -387,10 +440,10 @@ impl Tone {
     /// A sine of a part r of the amplitude moves the frequency of a least-squares fit over T by up to
     /// 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T, amplitude and phase in the middle by up to r, so the phase at the first sample by 2.3 r;
     /// the fit may have taken up half of it.
-    fn widened(&mut self, left: &Lines) -> Option<Finding> {
+    fn widened(&mut self, left: &Lines, strongest: Option<f64>) -> Option<Finding> {
         let at = self.frequency.value;
         let other = left.strongest(Some(at)).ok()?;
-        let strongest = left.strongest(None).ok()?;
+        let strongest = strongest.unwrap_or(other);
         // A sine so far off that was not fitted, which the noise around this one holds, leaves a line here of up to that part of itself.
         let away = (strongest - at).abs() / left.spacing;
         if away >= FAR && left.height(other) * away < left.height(strongest) {

@@ -43,6 +43,11 @@ pub struct SpectralResult {
     pub response: Option<Response>,
     /// Sines fitted to the whole record, the strongest first; empty where none were asked for.
     pub tones: Vec<Tone>,
+    /// Probability that noise alone shows a peak or a tone; null for functions.
+    pub false_alarms: Option<f64>,
+    /// Whether each line stands out of the noise; empty for functions.
+    #[serde(skip)]
+    pub clear: Vec<bool>,
     /// What was left out, and what limits the lines.
     pub findings: Vec<Finding>,
     /// The lines as they were found.
@@ -116,6 +121,8 @@ impl SpectralResult {
             averages: function.map_or(0, |found| found.averages),
             response: function.map(response),
             tones: Vec::new(),
+            false_alarms: None,
+            clear: Vec::new(),
             findings,
             found,
         }
@@ -167,11 +174,12 @@ impl SpectralResult {
         }
     }
 
-    /// Indices of the largest peaks, at most so many, in order of frequency.
+    /// Indices of the largest peaks, at most so many, in order of frequency; of a spectrum those that stand out of the noise.
     pub fn peaks(&self, most: usize) -> Vec<usize> {
         let height = |k: usize| self.value.get(k).copied().filter(|v| v.is_finite()).unwrap_or(0.0);
         let is_peak = |k: &usize| height(*k) > height(k.wrapping_sub(1)) && height(*k) >= height(k + 1);
-        let mut largest: Vec<usize> = (0..self.value.len()).filter(is_peak).collect();
+        let stands = |k: &usize| self.clear.get(*k).is_none_or(|clear| *clear);
+        let mut largest: Vec<usize> = (0..self.value.len()).filter(is_peak).filter(stands).collect();
         largest.sort_by(|a, b| height(*b).total_cmp(&height(*a)));
         largest.truncate(most);
         largest.sort_unstable();

@@ -69,3 +69,16 @@ pub fn spectrum(window: Window, sines: &[(f64, Complex64)], sigma: f64, normal: 
         })
         .collect()
 }
+
+/// 1/f noise of standard deviation 1 down to one period of `n` samples: first-order processes an octave apart.
+pub(crate) fn pink(noise: &mut vibro_math::Noise, n: usize) -> Vec<f64> {
+    let keep: Vec<f64> = (0..n.ilog2()).map(|k| (-2.0 * 2f64.powi(-(k as i32))).exp()).collect();
+    let mut states: Vec<f64> = keep.iter().map(|_| noise.normal()).collect();
+    let mut next = || {
+        for (state, keep) in states.iter_mut().zip(&keep) {
+            *state = keep * *state + (1.0 - keep * keep).sqrt() * noise.normal();
+        }
+        states.iter().sum::<f64>() / (keep.len() as f64).sqrt()
+    };
+    (0..n).map(|_| next()).collect()
+}

@@ -1,5 +1,5 @@
 use super::*;
-use crate::synthetic::trace;
+use crate::synthetic::{pink, trace};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 #[test]
@@ -171,4 +171,72 @@ fn the_amplitude_of_a_clipped_sine_is_covered() {
     }
     // χ² of 20: 45.3 is passed by one in a thousand.
     assert!(far.iter().all(|sum| *sum < 45.3), "{far:?}");
+}
+
+/// Root mean square of error over uncertainty of frequency, amplitude and phase of a sine in 1/f noise, near a line and over `records`.
+fn spread_in_pink_noise(line: f64, records: u64) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for seed in 0..records {
+        let mut noise = Noise::new(seed);
+        let (f, p) = (0.5 * (line + noise.between(-0.5, 0.5)), noise.between(0.0, TAU));
+        let slow = pink(&mut noise, 2000);
+        let value = |(i, v): (usize, &f64)| (TAU * f * i as f64 * 1e-3 + p).cos() + 0.1 * v;
+        let found = sine(&trace(slow.iter().enumerate().map(value).collect()), Some(f)).unwrap();
+        let tone = &found.tones[0];
+        let turn = (tone.phase.value - p + PI).rem_euclid(TAU) - PI;
+        let off = [tone.frequency.value - f, tone.amplitude.value - 1.0, turn];
+        for (sum, (off, own)) in
+            sums.iter_mut().zip(off.iter().zip([&tone.frequency, &tone.amplitude, &tone.phase]))
+        {
+            *sum += (off / own.std.unwrap()).powi(2) / records as f64;
+        }
+    }
+    sums.map(f64::sqrt)
+}
+
+#[test]
+fn uncertainties_in_pink_noise_are_those_of_the_noise_around_the_sine() {
+    for line in [5.0, 20.0, 100.0, 400.0, 800.0] {
+        let spread = spread_in_pink_noise(line, 150);
+        println!("line {line}: {spread:.2?}");
+        // A standard deviation of 150 scatters by 6 %, four times that; near 0 Hz few lines tell the noise.
+        let least = if line < 10.0 { 0.6 } else { 0.75 };
+        assert!(spread.iter().all(|s| (least..1.25).contains(s)), "{line}: {spread:?}");
+    }
+}
+
+/// Sines of a record that is cut off are told from what the cut makes of them.
+#[test]
+fn sums_of_sines_that_are_clipped_are_found() {
+    let truth = [(33.5, 0.54), (122.0, 0.15), (157.2, 0.87)];
+    for level in [0.7, 0.85, 0.99] {
+        for seed in 0..10 {
+            let mut noise = Noise::new(seed);
+            let phases = truth.map(|_| noise.between(0.0, TAU));
+            let mut value = |i: i32| {
+                let sine = |((f, a), p): (&(f64, f64), &f64)| a * (TAU * f * f64::from(i) * 1e-3 + p).cos();
+                truth.iter().zip(&phases).map(sine).sum::<f64>() + 0.003 * noise.normal()
+            };
+            let whole: Vec<f64> = (0..1800).map(&mut value).collect();
+            let end = level * whole.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+            let found = tones(&trace(whole.iter().map(|v| v.clamp(-end, end)).collect()), 3).unwrap();
+            assert_eq!(found.tones.len(), 3, "{level}: {found:?}");
+            for (f, a) in truth {
+                let off = |t: &&Tone| (t.amplitude.value - a).abs() < 5.0 * t.amplitude.std.unwrap();
+                let own = found.tones.iter().find(|t| (t.frequency.value - f).abs() < 0.05);
+                assert!(own.is_some_and(|t| off(&t)), "{level} {f}: {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_mean_beyond_a_limit_is_that_of_tables() {
+    // φ(a)/Q(a), from tables of the normal distribution.
+    for (a, mean) in
+        [(-5.0, 1.486_720e-6), (-1.0, 0.287_600), (0.0, 0.797_885), (2.0, 2.373_216), (5.0, 5.186_504)]
+    {
+        // The tail is good to 7.5e-8, that of 2.0 is 0.0228.
+        assert!((mills(a) / mean - 1.0).abs() < 1e-5, "{a}: {}", mills(a));
+    }
 }
