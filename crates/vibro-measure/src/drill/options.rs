@@ -251,6 +251,10 @@ impl DrillOptions {
     pub(super) fn check_turn(&self, turn: f64) -> Result<()> {
         for (key, time) in [("contact", self.contact), ("fit", self.fit)] {
             if time > 0.5 * turn {
+                if self.turns_from == TurnsFrom::Impacts {
+                    let why = format!("a {key} time of {time} s leaves no two turns in the record");
+                    return Err(Error::refused(why).hint("state a shorter time in seconds").setting(key));
+                }
                 let why = format!("a {key} time of {time} s is longer than half a turn of {turn:.3e} s");
                 let hint = "state a shorter time in seconds; if it is right, check the pulses of a turn";
                 return Err(Error::refused(why).hint(hint).setting(key).setting("pulses_per_turn"));

@@ -180,7 +180,7 @@ mod tests {
             let found = train(with).unwrap();
             let same = found.at.iter().filter(|at| truth.contains(at)).count();
             // One where an impact is missing may stand for it, and the strong one for its neighbour.
-            assert!(same + 1 >= truth.len() && found.at.len() < 62 && found.std == 0.5);
+            assert!(same + 1 >= truth.len() && found.at.len() <= same + 2 && found.std == 0.5);
             // A catch behind, in the other direction; a second impact a turn as strong; one half a turn later and weaker.
             for (part, jump) in [(0.5, 6.0), (0.3, -7.0), (0.5, -4.5)] {
                 let second = whole.iter().map(|e| (e.0 + 1000.0 * part, jump));
