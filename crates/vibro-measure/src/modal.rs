@@ -8,6 +8,7 @@ mod classical;
 mod leakage;
 #[cfg(test)]
 mod neighbours;
+mod noise;
 mod rational;
 mod report;
 mod response;

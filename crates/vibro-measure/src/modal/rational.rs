@@ -1,6 +1,7 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
 use super::leakage::Leakage;
+use super::noise::{MARGIN, NEAR, Noise, STEPS, of_segments};
 use super::selection::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
@@ -8,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::{Fit, least_squares, minimise};
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, Window};
 
 /// Modes fitted together.
 pub(super) struct Rational {
@@ -189,8 +190,8 @@ impl Scaled<'_> {
         whole(&minimise(residuals, self.rows(), &q, &vec![1.0; q.len()], Some(NEAR_ENOUGH)).ok()?.parameters)
     }
 
-    fn fit(&self, start: &[f64], weight: &[f64]) -> Result<Fit> {
-        let nearer = if self.magnitude_only { None } else { self.nearer(start, weight) };
+    fn fit(&self, start: &[f64], noise: &Noise) -> Result<Fit> {
+        let nearer = if self.magnitude_only { None } else { self.nearer(start, &noise.each) };
         let start = nearer.as_deref().unwrap_or(start);
         let free = self.free();
         let expand = |q: &[f64]| {
@@ -202,12 +203,13 @@ impl Scaled<'_> {
         let residuals = |q: &[f64], out: &mut [f64]| {
             let p = expand(q);
             for i in 0..n {
-                let left = self.left(&p, i) / weight[i];
+                let left = self.left(&p, i);
                 out[i] = left.re;
                 if !self.magnitude_only {
                     out[n + i] = left.im;
                 }
             }
+            noise.whiten(out);
         };
         let q: Vec<f64> = free.iter().map(|i| start[*i]).collect();
         let largest = q.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
@@ -218,6 +220,24 @@ impl Scaled<'_> {
         }
         fit.parameters = expand(&fit.parameters);
         Ok(fit)
+    }
+
+    /// The noise of segments under a window, by the response of the model and the variance of each line; `None` for magnitudes, or lines that are not
+    /// evenly spaced.
+    fn of_segments(&self, window: Window, spacing: f64, p: &[f64], total: &[f64]) -> Option<Noise> {
+        let step = spacing / self.unit / STEPS as f64;
+        let at = |x: &f64| MARGIN + STEPS * ((x - self.x[0]) / step / STEPS as f64).round() as usize;
+        let at: Vec<usize> = self.x.iter().map(at).collect();
+        let last = at[at.len() - 1] + MARGIN;
+        if self.magnitude_only || last > 2 * (STEPS * at.len() + 2 * MARGIN) {
+            return None;
+        }
+        let first = self.x[0] - MARGIN as f64 * step;
+        let x: Vec<f64> = (0..=last).map(|k| (first + k as f64 * step).abs().max(step)).collect();
+        let factor = x.iter().map(|x| Complex64::new(0.0, *x).powi(self.power)).collect();
+        let plain = Scaled { x, factor, values: Vec::new(), leakage: None, ..*self };
+        let h: Vec<Complex64> = (0..=last).map(|k| plain.at(p, k)).collect();
+        of_segments(window, &h, &at, total)
     }
 
     /// Parameters that the values can determine: without phases no phase of the modes, no term from below, and no part of the
@@ -261,28 +281,28 @@ pub(super) fn with_known(
         return Err(Error::refused(why).hint("take a wider band").setting("band"));
     }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
-    let equal = vec![1.0; lines];
+    let equal = Noise::independent(vec![1.0; lines]);
     let refuse = || Error::refused("no first guess of the modes fits the lines");
     let start = if measured.magnitude_only {
         scaled.guess()
     } else {
-        scaled.start(known, width, &equal).ok_or_else(refuse)?
+        scaled.start(known, width, &equal.each).ok_or_else(refuse)?
     };
     let first = scaled.fit(&start, &equal)?;
     let at = first.parameters.clone();
     let height = |i: usize| scaled.at(&at, i).norm();
-    let unlikely = |(fit, weight, _): &(Fit, Vec<f64>, &str)| {
+    let unlikely = |(fit, noise, _): &(Fit, Noise, &str)| {
         let n = fit.residuals.len() as f64;
-        n * (fit.sum_of_squares() / n).ln() + spread(weight, fit.residuals.len())
+        n * (fit.sum_of_squares() / n).ln() + noise.spread(fit.residuals.len())
     };
     let (mut best, rivals) = match (&measured.std, &measured.coherence) {
         (Some(std), _) => {
             let weight = std[part].iter().map(|s| s / scaled.height).collect();
-            (None, vec![(weight, "noise as stated")])
+            (None, vec![(Noise::independent(weight), "noise as stated")])
         }
         (None, None) => {
             let relative = (0..lines).map(|i| height(i).max(1e-2)).collect();
-            let rivals = vec![(relative, "noise proportional to the response")];
+            let rivals = vec![(Noise::independent(relative), "noise proportional to the response")];
             (Some((first, equal, "equal noise on all lines")), rivals)
         }
         (None, Some(coherence)) => {
@@ -291,10 +311,22 @@ pub(super) fn with_known(
             let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
             let level: Vec<f64> =
                 share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
-            let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
-            let relative: Vec<f64> =
-                smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-            (None, [level, relative].map(|weight| (weight, "noise by the coherence")).to_vec())
+            let segments = |(window, spacing)| scaled.of_segments(window, spacing, &at, &level);
+            if let Some(noise) = measured.window.map(|window| (window, measured.spacing())).and_then(segments)
+            {
+                (None, vec![(noise, "noise by the coherence and the window")])
+            } else {
+                let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
+                let share = smoothed(&share);
+                let relative =
+                    share.iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
+                (
+                    None,
+                    [level, relative]
+                        .map(|each| (Noise::independent(each), "noise by the coherence"))
+                        .to_vec(),
+                )
+            }
         }
     };
     let mut failed = None;
@@ -315,19 +347,10 @@ pub(super) fn with_known(
     Ok(result)
 }
 
-/// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a line has 2 degrees of
-/// freedom, that of all 31 has 62, and a weight scatters by 9 %.
-const NEAR: usize = 15;
-
 /// Means over each value and those beside it.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let near = |i: usize| values.get(i.saturating_sub(NEAR)..(i + NEAR + 1).min(values.len())).unwrap_or(&[]);
     (0..values.len()).map(|i| near(i).iter().sum::<f64>() / near(i).len() as f64).collect()
-}
-
-/// What the weights of the lines add to minus twice the logarithm of the likelihood of `n` residuals: Σ ln w².
-fn spread(weight: &[f64], n: usize) -> f64 {
-    2.0 * weight.iter().map(|w| w.ln()).sum::<f64>() * n as f64 / weight.len() as f64
 }
 
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.
@@ -363,7 +386,7 @@ impl Scaled<'_> {
         p
     }
 
-    fn result(&self, fit: &Fit, noise: &'static str, weight: &[f64]) -> Rational {
+    fn result(&self, fit: &Fit, noise: &'static str, weight: &Noise) -> Rational {
         let n = self.x.len();
         let whiteness = Whiteness::of(&fit.residuals.chunks(n).collect::<Vec<_>>());
         let free = self.free();
@@ -403,7 +426,7 @@ impl Scaled<'_> {
             modes,
             std,
             aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len())
-                + spread(weight, fit.residuals.len()),
+                + weight.spread(fit.residuals.len()),
             fitted: (0..n).map(|i| self.at(p, i) * self.height).collect(),
             whiteness,
             noise,
