@@ -105,7 +105,7 @@ pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: 
         })
         .collect();
     let leakage: Vec<f64> =
-        leaked.iter().map(|e| e.iter().map(|e| e.norm_sqr()).sum::<f64>() / power).collect();
+        leaked.iter().map(|e| e.iter().map(Complex64::norm_sqr).sum::<f64>() / power).collect();
     let own: Vec<f64> = background(total, &leakage).into_iter().map(f64::sqrt).collect();
     // Covariance and pseudo-covariance of lines i ≥ j.
     let shared = |i: usize, j: usize| {
