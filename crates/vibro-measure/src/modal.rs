@@ -8,6 +8,7 @@ mod classical;
 mod leakage;
 #[cfg(test)]
 mod neighbours;
+mod noise;
 mod rational;
 mod report;
 mod response;
@@ -66,7 +67,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     refine(&lines, &mut fits);
     let mut modes = Vec::new();
     for at in 0..fits.len() {
-        let others = poles_beside(&fits, at);
+        let others = poles_beside(&lines, &fits, at);
         let (group, fit) = &mut fits[at];
         let sound = complete(&lines, group, fit, &others);
         for (m, sound) in sound.into_iter().enumerate() {
@@ -100,10 +101,13 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
 /// Most lines that a finding names.
 const NAMED: usize = 8;
 
-/// The modes of all groups but one.
-fn poles_beside(fits: &[Fitted], at: usize) -> Vec<Pole> {
-    let others = fits.iter().enumerate().filter(|(other, _)| *other != at);
-    others.flat_map(|(_, (_, fit))| fit.modes.iter().copied()).collect()
+/// The modes of all groups but one. What no peak of its group supports may be a mode of the one, and is left out.
+fn poles_beside(lines: &Measured, fits: &[Fitted], at: usize) -> Vec<Pole> {
+    let sound = |(group, fit): &Fitted| {
+        let modes = fit.modes.clone().into_iter().zip(fit.sound(lines, &group.peaks));
+        modes.filter(|(_, sound)| *sound).map(|(mode, _)| mode).collect::<Vec<_>>()
+    };
+    fits[..at].iter().chain(&fits[at + 1..]).flat_map(sound).collect()
 }
 
 /// Fits each group again with the modes of the others subtracted, twice.
@@ -111,7 +115,7 @@ fn refine(lines: &Measured, fits: &mut [Fitted]) {
     // Without phases nothing can be subtracted.
     let turns = if lines.magnitude_only { 0 } else { 2 * fits.len() };
     for at in (0..fits.len()).cycle().take(turns) {
-        let others = poles_beside(fits, at);
+        let others = poles_beside(lines, fits, at);
         let (group, fit) = &mut fits[at];
         let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
         if !others.is_empty()

@@ -1,6 +1,7 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
 use super::leakage::Leakage;
+use super::noise::{MARGIN, NEAR, Noise, STEPS, of_segments};
 use super::selection::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
@@ -8,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::{Fit, least_squares, minimise};
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, Window};
 
 /// Modes fitted together.
 pub(super) struct Rational {
@@ -170,10 +171,11 @@ impl Scaled<'_> {
     }
 
     /// The minimum, nearly: frequency and damping of the modes alone, with all else by linear least squares for each (Golub & Pereyra 1973).
-    fn nearer(&self, start: &[f64], weight: &[f64]) -> Result<Vec<f64>> {
+    fn nearer(&self, start: &[f64], noise: &Noise) -> Result<Vec<f64>> {
         if self.magnitude_only {
-            return Ok(self.fit(start, weight)?.parameters);
+            return Ok(self.fit(start, noise)?.parameters);
         }
+        let weight = &noise.each;
         let whole = |q: &[f64]| {
             let mut p = start.to_vec();
             q.chunks(2).enumerate().for_each(|(m, shape)| p[4 * m..4 * m + 2].copy_from_slice(shape));
@@ -193,24 +195,27 @@ impl Scaled<'_> {
             .ok_or_else(|| Error::refused("the modes of a fit do not determine their constants"))
     }
 
-    fn fit(&self, start: &[f64], weight: &[f64]) -> Result<Fit> {
+    /// What the model leaves, as white as the noise is known.
+    fn white(&self, p: &[f64], noise: &Noise, out: &mut [f64]) {
+        let n = self.x.len();
+        for i in 0..n {
+            let left = self.left(p, i);
+            out[i] = left.re;
+            if !self.magnitude_only {
+                out[n + i] = left.im;
+            }
+        }
+        noise.whiten(out);
+    }
+
+    fn fit(&self, start: &[f64], noise: &Noise) -> Result<Fit> {
         let free = self.free();
         let expand = |q: &[f64]| {
             let mut p = start.to_vec();
             free.iter().zip(q).for_each(|(i, v)| p[*i] = *v);
             p
         };
-        let n = self.x.len();
-        let residuals = |q: &[f64], out: &mut [f64]| {
-            let p = expand(q);
-            for i in 0..n {
-                let left = self.left(&p, i) / weight[i];
-                out[i] = left.re;
-                if !self.magnitude_only {
-                    out[n + i] = left.im;
-                }
-            }
-        };
+        let residuals = |q: &[f64], out: &mut [f64]| self.white(&expand(q), noise, out);
         let q: Vec<f64> = free.iter().map(|i| start[*i]).collect();
         let largest = q.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let scale: Vec<f64> = q.iter().map(|v| v.abs().max(1e-3 * largest.min(1.0))).collect();
@@ -220,6 +225,24 @@ impl Scaled<'_> {
         }
         fit.parameters = expand(&fit.parameters);
         Ok(fit)
+    }
+
+    /// The noise of segments under a window, by the response of the model and the variance of each line; `None` for magnitudes, or lines that are not
+    /// evenly spaced.
+    fn of_segments(&self, window: Window, spacing: f64, p: &[f64], total: &[f64]) -> Option<Noise> {
+        let step = spacing / self.unit / STEPS as f64;
+        let at = |x: &f64| MARGIN + STEPS * ((x - self.x[0]) / step / STEPS as f64).round() as usize;
+        let at: Vec<usize> = self.x.iter().map(at).collect();
+        let last = at[at.len() - 1] + MARGIN;
+        if self.magnitude_only || last > 2 * (STEPS * at.len() + 2 * MARGIN) {
+            return None;
+        }
+        let first = self.x[0] - MARGIN as f64 * step;
+        let x: Vec<f64> = (0..=last).map(|k| (first + k as f64 * step).abs().max(step)).collect();
+        let factor = x.iter().map(|x| Complex64::new(0.0, *x).powi(self.power)).collect();
+        let plain = Scaled { x, factor, values: Vec::new(), leakage: None, ..*self };
+        let h: Vec<Complex64> = (0..=last).map(|k| plain.at(p, k)).collect();
+        of_segments(window, &h, &at, total)
     }
 
     /// Parameters that the values can determine: without phases no phase of the modes, no term from below, and no part of the
@@ -263,21 +286,22 @@ pub(super) fn with_known(
         return Err(Error::refused(why).hint("take a wider band").setting("band"));
     }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
-    let equal = vec![1.0; lines];
+    let equal = Noise::independent(vec![1.0; lines]);
     let refuse = || Error::refused("no first guess of the modes fits the lines");
     let start = if measured.magnitude_only {
         scaled.guess()
     } else {
-        scaled.start(known, width, &equal).ok_or_else(refuse)?
+        scaled.start(known, width, &equal.each).ok_or_else(refuse)?
     };
     let at = scaled.nearer(&start, &equal)?;
     let height = |i: usize| scaled.at(&at, i).norm();
-    let weights = match (&measured.std, &measured.coherence) {
+    let rivals = match (&measured.std, &measured.coherence) {
         (Some(std), _) => {
-            vec![(std[part].iter().map(|s| s / scaled.height).collect(), "noise as stated")]
+            let weight = std[part].iter().map(|s| s / scaled.height).collect();
+            vec![(Noise::independent(weight), "noise as stated")]
         }
         (None, None) => {
-            let relative = (0..lines).map(|i| height(i).max(1e-2)).collect();
+            let relative = Noise::independent((0..lines).map(|i| height(i).max(1e-2)).collect());
             vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
         }
         (None, Some(coherence)) => {
@@ -286,56 +310,55 @@ pub(super) fn with_known(
             let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
             let level: Vec<f64> =
                 share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
-            let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
-            let relative: Vec<f64> =
-                smoothed(&share).iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-            [level, relative].map(|weight| (weight, "noise by the coherence")).to_vec()
+            let segments = |(window, spacing)| scaled.of_segments(window, spacing, &at, &level);
+            if let Some(noise) = measured.window.map(|window| (window, measured.spacing())).and_then(segments)
+            {
+                vec![(noise, "noise by the coherence and the window")]
+            } else {
+                let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
+                let share = smoothed(&share);
+                let relative =
+                    share.iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
+                [level, relative].map(|each| (Noise::independent(each), "noise by the coherence")).to_vec()
+            }
         }
     };
     // Minus twice the logarithm of the likelihood.
-    let unlikely = |p: &[f64], weight: &[f64]| {
-        let n = scaled.rows() as f64;
-        let sum: f64 = (0..lines).map(|i| (scaled.left(p, i) / weight[i]).norm_sqr()).sum();
-        n * (sum / n).ln() + spread(weight, scaled.rows())
+    let unlikely = |p: &[f64], noise: &Noise| {
+        let mut left = vec![0.0; scaled.rows()];
+        scaled.white(p, noise, &mut left);
+        let n = left.len() as f64;
+        n * (left.iter().map(|r| r * r).sum::<f64>() / n).ln() + noise.spread(left.len())
     };
-    let mut failed = Error::refused("no first guess of the modes fits the lines");
-    let mut rivals = Vec::new();
-    for (weight, noise) in weights {
-        match scaled.nearer(&at, &weight) {
-            Ok(p) => rivals.push((unlikely(&p, &weight), p, weight, noise)),
+    let mut failed = refuse();
+    let mut near = Vec::new();
+    for (noise, named) in rivals {
+        match scaled.nearer(&at, &noise) {
+            Ok(p) => near.push((unlikely(&p, &noise), p, noise, named)),
             Err(error) => failed = error,
         }
     }
-    rivals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut fitted = None;
-    for (_, p, weight, noise) in rivals {
-        match scaled.fit(&p, &weight) {
+    for (_, p, noise, named) in near {
+        match scaled.fit(&p, &noise) {
             Ok(fit) => {
-                fitted = Some((fit, weight, noise));
+                fitted = Some((fit, noise, named));
                 break;
             }
             Err(error) => failed = error,
         }
     }
-    let (fit, weight, noise) = fitted.ok_or(failed)?;
-    let mut result = scaled.result(&fit, noise, &weight);
+    let (fit, noise, named) = fitted.ok_or(failed)?;
+    let mut result = scaled.result(&fit, named, &noise);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
 }
-
-/// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a line has 2 degrees of
-/// freedom, that of all 31 has 62, and a weight scatters by 9 %.
-const NEAR: usize = 15;
 
 /// Means over each value and those beside it.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let near = |i: usize| values.get(i.saturating_sub(NEAR)..(i + NEAR + 1).min(values.len())).unwrap_or(&[]);
     (0..values.len()).map(|i| near(i).iter().sum::<f64>() / near(i).len() as f64).collect()
-}
-
-/// What the weights of the lines add to minus twice the logarithm of the likelihood of `n` residuals: Σ ln w².
-fn spread(weight: &[f64], n: usize) -> f64 {
-    2.0 * weight.iter().map(|w| w.ln()).sum::<f64>() * n as f64 / weight.len() as f64
 }
 
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.
@@ -371,7 +394,7 @@ impl Scaled<'_> {
         p
     }
 
-    fn result(&self, fit: &Fit, noise: &'static str, weight: &[f64]) -> Rational {
+    fn result(&self, fit: &Fit, noise: &'static str, weight: &Noise) -> Rational {
         let n = self.x.len();
         let whiteness = Whiteness::of(&fit.residuals.chunks(n).collect::<Vec<_>>());
         let free = self.free();
@@ -411,7 +434,7 @@ impl Scaled<'_> {
             modes,
             std,
             aicc: aicc(fit.sum_of_squares(), fit.residuals.len(), free.len())
-                + spread(weight, fit.residuals.len()),
+                + weight.spread(fit.residuals.len()),
             fitted: (0..n).map(|i| self.at(p, i) * self.height).collect(),
             whiteness,
             noise,

@@ -141,6 +141,9 @@ fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
 /// in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance in one of a thousand.
 const SPLIT: f64 = 20.0;
 
+/// Where no number of modes leaves white residuals, an additional mode must lower them to this part: what residual terms are short of is less than a mode.
+const HALVED: f64 = 0.5;
+
 /// Bandwidths from a mode at which another is looked for that shows no peak.
 const BESIDE_A_MODE: [f64; 6] = [-3.0, -1.5, -0.5, 0.5, 1.5, 3.0];
 
@@ -199,24 +202,23 @@ pub(super) fn complete(
     while fit.modes.len() < TOGETHER && fit.modes.iter().all(|m| m.zeta > 0.0) {
         let Some(more) = one_more(lines, group, fit, others) else { break };
         let better = fit.aicc - more.aicc;
-        if fit.whiteness.rejected() && more.whiteness.rejected() {
-            // Anything would explain residuals better that are not white.
+        let coloured = fit.whiteness.rejected() && more.whiteness.rejected();
+        if coloured && more.unexplained > HALVED * fit.unexplained {
+            // Anything would explain residuals somewhat better that are not white.
             break;
         }
         // What lies beyond the lines, or is much lower, is what the residual terms are for.
         let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
         let highest = more.modes.iter().map(height).fold(0.0, f64::max);
         let part = lines.frequency[group.lines.start]..lines.frequency[group.lines.end - 1];
-        if !more.modes.iter().all(|m| part.contains(&m.frequency)) {
-            return sound;
-        }
-        let low = more.modes.iter().any(|m| height(m) < LOW * highest);
+        let left_out = |m: &Pole| height(m) < LOW * highest || !part.contains(&m.frequency);
+        let left_out = more.modes.iter().any(left_out);
         let width = |pair: &[Pole]| pair[0].zeta * pair[0].frequency + pair[1].zeta * pair[1].frequency;
         let close = |w: &&[Pole]| w[1].frequency - w[0].frequency <= APART * width(w);
         let one = more.modes.windows(2).find(close).map(|w| w[0].frequency);
         let peaks: Vec<Peak> = more.modes.iter().map(|mode| lines.peak(mode)).collect();
         let its = more.sound(lines, &peaks);
-        if better > SPLIT && !low {
+        if better > SPLIT && !left_out {
             let unknown = its.iter().position(|sound| !sound).map(|at| more.modes[at].frequency);
             group.ahead = one.or(unknown).map(|at| (better, at));
             if group.ahead.is_some() {
@@ -225,14 +227,19 @@ pub(super) fn complete(
             (group.peaks, *fit, sound) = (peaks, more, its);
             continue;
         }
-        // What chance explains, or a mode that could be anything, moves no uncertainty.
-        if better <= 0.0 || its.contains(&false) {
+        // What chance explains moves no uncertainty.
+        if better <= 0.0 {
             break;
         }
         let weight = 1.0 / (1.0 + (-0.5 * better).exp());
         for (mode, std) in fit.modes.iter().zip(&mut fit.std) {
             let near = |i: &usize| (more.modes[*i].frequency - mode.frequency).abs();
             let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { continue };
+            // Nor does a mode that could be anything, but then this one may not be what it seems.
+            if !its[i] {
+                group.ahead = group.ahead.or((better > NEEDED).then_some((better, mode.frequency)));
+                continue;
+            }
             let (other, its) = (&more.modes[i], more.std[i]);
             let turned = (other.constant / mode.constant).arg();
             let apart = [
