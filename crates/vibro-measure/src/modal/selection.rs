@@ -141,9 +141,6 @@ fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
 /// in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance in one of a thousand.
 const SPLIT: f64 = 20.0;
 
-/// Where no number of modes leaves white residuals, an additional mode must lower them to this part: what residual terms are short of is less than a mode.
-const HALVED: f64 = 0.5;
-
 /// Bandwidths from a mode at which another is looked for that shows no peak.
 const BESIDE_A_MODE: [f64; 6] = [-3.0, -1.5, -0.5, 0.5, 1.5, 3.0];
 
@@ -202,12 +199,11 @@ pub(super) fn complete(
     while fit.modes.len() < TOGETHER && fit.modes.iter().all(|m| m.zeta > 0.0) {
         let Some(more) = one_more(lines, group, fit, others) else { break };
         let better = fit.aicc - more.aicc;
-        let coloured = fit.whiteness.rejected() && more.whiteness.rejected();
-        if coloured && more.unexplained > HALVED * fit.unexplained {
-            // Anything would explain residuals somewhat better that are not white.
+        if fit.whiteness.rejected() && more.whiteness.rejected() {
+            // Anything would explain residuals better that are not white.
             break;
         }
-        // What lies beyond the lines, or is much lower, is what the residual terms are for.
+        // What lies beyond the lines, or is much lower, is no mode of the group, and widens its uncertainties.
         let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
         let highest = more.modes.iter().map(height).fold(0.0, f64::max);
         let part = lines.frequency[group.lines.start]..lines.frequency[group.lines.end - 1];
