@@ -83,7 +83,7 @@ pub(super) struct Fitted {
 const DIGITS: f64 = 3e-4;
 
 /// A swing within the contact larger than this, in units of what is left there, would show in it.
-const SHOWS: f64 = 1.6;
+const SHOWS: f64 = 1.4;
 
 /// Samples that the search for a first guess uses.
 const COARSE: usize = 48;
