@@ -8,17 +8,19 @@ mod fit;
 mod low_pass;
 mod normalised;
 mod result;
+mod ringing;
 
 pub use contact::KelvinVoigt;
 pub use low_pass::LowPass;
 pub use result::{ContactModel, PulseCurve, PulseFit, PulsePicture, PulseResult, two_times};
 
 use super::Estimate;
+use super::residuals::NO_SUPPORT;
 
 use contact::Rebound;
 use fit::{Fitted, Samples};
 use normalised::{Normalised, locate};
-use result::{NO_SUPPORT, contact_estimates};
+use result::contact_estimates;
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};

@@ -77,6 +77,10 @@ pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
     n * (sum_of_squares / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
 }
 
+/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
+/// Inference, 2002, section 2.6).
+pub const NO_SUPPORT: f64 = 10.0;
+
 #[cfg(test)]
 mod tests {
     use super::*;

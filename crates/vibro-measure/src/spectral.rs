@@ -11,7 +11,7 @@ use super::tones;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Traces};
+use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Traces, Window};
 use vibro_signal::impact::{Blows, from_blows};
 use vibro_signal::integrate::in_frequency;
 use vibro_signal::segment::Segments;
@@ -87,14 +87,16 @@ fn lines(
         (spectrum, 1, 1.0, unknown)
     };
     let fmin = options.lowest(spectrum.axis.step().unwrap_or(0.0));
-    let mut clear = clear(&spectrum, independent);
+    let (powers, shown) = (powers(&spectrum), spectrum.window);
     let spectrum = in_frequency(&spectrum, options.integrate, fmin)?;
     let left_out = scatter.len() - spectrum.axis.len();
     scatter.drain(..left_out);
-    clear.drain(..left_out);
     let mut found = SpectralResult::of(Lines::Spectrum(spectrum), options, fmin, traces.findings());
     found.averages = averages;
-    (found.clear, found.false_alarms) = (clear, Some(FALSE_ALARMS));
+    // Only peaks are listed.
+    let clear = |k: usize| found.is_peak(k) && stands_out(&powers, k + left_out, independent, shown);
+    found.clear = (0..found.value.len()).map(clear).collect();
+    found.false_alarms = Some(FALSE_ALARMS);
     found.value_std = found.value.iter().zip(scatter).map(|(v, part)| v * part).collect();
     if let Some(tones) = tones {
         found.findings.extend(tones.findings);
@@ -103,19 +105,21 @@ fn lines(
     Ok(found)
 }
 
-/// Lines that stand out of the noise of averages over so many independent segments.
-fn clear(spectrum: &Spectrum, independent: f64) -> Vec<bool> {
+/// Powers of the lines.
+fn powers(spectrum: &Spectrum) -> Vec<f64> {
     let mut powers = spectrum.values.magnitudes();
     if matches!(spectrum.scaling, Scaling::Peak | Scaling::Rms) {
         for v in &mut powers {
             *v *= *v;
         }
     }
-    let stands = |(k, power): (usize, &f64)| {
-        let noise = floor(&powers, k, REACH, independent, spectrum.window);
-        noise.is_none_or(|noise| noise.is_below(*power, independent, powers.len()))
-    };
-    powers.iter().enumerate().map(stands).collect()
+    powers
+}
+
+/// Whether line `k` stands out of the noise of averages over so many `independent` segments.
+fn stands_out(powers: &[f64], k: usize, independent: f64, window: Option<Window>) -> bool {
+    let noise = floor(powers, k, REACH, independent, window);
+    noise.is_none_or(|noise| noise.is_below(powers[k], independent, powers.len()))
 }
 
 fn response(

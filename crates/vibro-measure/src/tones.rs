@@ -6,11 +6,14 @@
 //! from the inverse of the whole normal matrix: what two close sines take from each other is in them. A sine sees the noise around its
 //! own line only: uncertainties are those of white noise as strong as there (P. Whittle, Ark. Mat. 2 (1953) 423).
 
+mod left;
+
 use super::Estimate;
 use super::clipping::clipped;
 use super::line::interpolate;
 use super::residuals::student;
 use super::stands_out::{self, floor};
+use left::Left;
 use nalgebra::{DMatrix, DVector, RowVector3};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
@@ -196,45 +199,6 @@ struct Fit {
 /// Time of a sample from the middle of the record, in parts of half of it.
 fn time(i: usize, n: usize) -> f64 {
     (2 * i + 1) as f64 / n as f64 - 1.0
-}
-
-/// What a sample tells of a fit. What lies beyond an end of the range is only known to be beyond it (J. Tobin, Econometrica 26 (1958)
-/// 24): it counts by the curvature of its likelihood.
-struct Left {
-    /// Weight in the normal matrix, 1 for a whole sample.
-    weight: f64,
-    /// Expected value without the sines.
-    mean: f64,
-    /// Part in the sum of squares of the noise, and in its degrees of freedom.
-    square: f64,
-    known: f64,
-}
-
-impl Left {
-    /// From what is left of the value, the side on which it is cut off (0 for none), and the standard deviation of the noise.
-    fn of(left: f64, side: f64, noise: f64) -> Left {
-        if side == 0.0 {
-            return Left { weight: 1.0, mean: left, square: left * left, known: 1.0 };
-        }
-        let a = (side * left / noise.max(f64::MIN_POSITIVE)).clamp(-40.0, 1e6);
-        let beyond = mills(a);
-        let (square, known) =
-            if a < 0.0 { (0.0, -a * beyond) } else { (noise * noise * (1.0 + a * beyond), 1.0) };
-        Left { weight: (beyond * (beyond - a)).min(1.0), mean: side * noise * beyond, square, known }
-    }
-}
-
-/// Mean of a normal variable that is known to lie beyond `a`: its density over the probability (Abramowitz & Stegun 26.2.17; from 3 on
-/// by the continued fraction 26.2.14).
-fn mills(a: f64) -> f64 {
-    if a > 3.0 {
-        return (1..60).rev().fold(a, |tail, k| a + f64::from(k) / tail);
-    }
-    let density = (-0.5 * a * a).exp() / TAU.sqrt();
-    let t = 1.0 / (1.0 + 0.231_641_9 * a.abs());
-    let series = [1.330_274_429, -1.821_255_978, 1.781_477_937, -0.356_563_782, 0.319_381_53];
-    let tail = density * series.iter().fold(0.0, |sum, c| (sum + c) * t);
-    density / if a < 0.0 { 1.0 - tail } else { tail }
 }
 
 impl Fit {

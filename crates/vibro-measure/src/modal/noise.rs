@@ -7,9 +7,11 @@
 //! `E[eᵢ conj(Fⱼ)] E[eⱼ conj(Fᵢ)]` (Isserlis 1918), summed over segments that overlap by half. Leakage makes errors of neighbours
 //! opposite in the direction of a shift in frequency, and alike in that of damping: by independent lines ζ is 1.3 times less certain than stated.
 
+use crate::mean::average;
 use num_complex::Complex64;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use vibro_record::Window;
+use vibro_signal::window::line_shape;
 
 /// Noise of the lines, up to a common factor.
 #[derive(Debug, Clone)]
@@ -95,7 +97,9 @@ const LEAST: f64 = 0.02;
 /// Noise of H1 over segments under a window. The function without leakage is `h` on a grid, with lines at the steps `at` that have variances `total`.
 /// `None` where the covariance has no inverse.
 pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: &[f64]) -> Option<Noise> {
-    let kernel = kernel(window);
+    // The window's transform on the grid, real where time runs from its middle.
+    let offset = |k: usize| (k as f64 - MARGIN as f64) / STEPS as f64;
+    let kernel: Vec<f64> = (0..=2 * MARGIN).map(|k| line_shape(window, offset(k))).collect();
     let power: f64 = kernel.iter().map(|w| w * w).sum();
     let near = |i: usize| kernel.iter().zip(&h[at[i] - MARGIN..]);
     let leaked: Vec<Vec<Complex64>> = (0..at.len())
@@ -149,37 +153,33 @@ pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: 
     Some(Noise { each, factor: Some(factor) })
 }
 
-/// The window's transform on the grid, real where time runs from its middle.
-fn kernel(window: Window) -> Vec<f64> {
-    let a = window.coefficients();
-    let sinc = |x: f64| if x.abs() < 1e-9 { 1.0 } else { (PI * x).sin() / (PI * x) };
-    let at = |lines: f64| {
-        let pair = |(k, a): (usize, &f64)| 0.5 * a * (sinc(lines - k as f64) + sinc(lines + k as f64));
-        a.iter().enumerate().map(pair).sum::<f64>()
-    };
-    (0..=2 * MARGIN).map(|k| at((k as f64 - MARGIN as f64) / STEPS as f64)).collect()
-}
-
 /// Variance of the noise of the response at each line, which is smooth: what `total` has beyond the leakage, averaged over lines near with the weight of
 /// its own uncertainty.
 fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
-    let near = |i: usize| i.saturating_sub(NEAR)..(i + NEAR + 1).min(total.len());
-    let mean = |i: usize| total[near(i)].iter().sum::<f64>() / near(i).len() as f64;
-    let all = |i: usize| {
+    let all = |(i, mean): (usize, f64)| {
         let (mut sum, mut weights) = (0.0, 0.0);
-        for k in near(i) {
-            let weight = (mean(i) + leakage[k]).powi(-2);
+        for k in near(i, total.len()) {
+            let weight = (mean + leakage[k]).powi(-2);
             sum += weight * (total[k] - leakage[k]);
             weights += weight;
         }
         (sum / weights).max(LEAST * leakage[i])
     };
-    (0..total.len()).map(all).collect()
+    smoothed(total).into_iter().enumerate().map(all).collect()
 }
 
 /// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a line has 2 degrees of
 /// freedom, that of all 31 has 62, and a weight scatters by 9 %.
-pub(super) const NEAR: usize = 15;
+const NEAR: usize = 15;
+
+fn near(i: usize, n: usize) -> std::ops::Range<usize> {
+    i.saturating_sub(NEAR)..(i + NEAR + 1).min(n)
+}
+
+/// Means over each value and those beside it.
+pub(super) fn smoothed(values: &[f64]) -> Vec<f64> {
+    (0..values.len()).map(|i| average(&values[near(i, values.len())])).collect()
+}
 
 #[cfg(test)]
 mod tests {

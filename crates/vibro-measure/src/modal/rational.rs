@@ -1,7 +1,7 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
 use super::leakage::Leakage;
-use super::noise::{MARGIN, NEAR, Noise, STEPS, of_segments};
+use super::noise::{MARGIN, Noise, STEPS, of_segments, smoothed};
 use super::selection::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
@@ -353,12 +353,6 @@ pub(super) fn with_known(
     let mut result = scaled.result(&fit, named, &noise);
     result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
     Ok(result)
-}
-
-/// Means over each value and those beside it.
-fn smoothed(values: &[f64]) -> Vec<f64> {
-    let near = |i: usize| values.get(i.saturating_sub(NEAR)..(i + NEAR + 1).min(values.len())).unwrap_or(&[]);
-    (0..values.len()).map(|i| near(i).iter().sum::<f64>() / near(i).len() as f64).collect()
 }
 
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.

@@ -4,15 +4,13 @@ use super::rational::{Rational, left_by, rational, with_known};
 use super::{Measured, Pole};
 use crate::mean::upper_median;
 use crate::peaks::local_maxima;
+use crate::residuals::NO_SUPPORT;
 use std::ops::Range;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Result, Window};
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
 const TOGETHER: usize = 6;
-
-/// An additional mode must lower Akaike's criterion by this much (Burnham & Anderson 2002, 2.6).
-const NEEDED: f64 = 10.0;
 
 /// First guesses of frequency and damping ratio for `peaks`.
 fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
@@ -31,8 +29,8 @@ pub(super) fn averaging(lines: &mut Measured, groups: &[Group]) -> bool {
         fit.ok().map(|fit| fit.aicc)
     };
     let (Some(without), Some(with)) = (aicc(None), aicc(Some(Window::Hann))) else { return false };
-    lines.window = (with < without - NEEDED).then_some(Window::Hann);
-    (without - with).abs() > NEEDED
+    lines.window = (with < without - NO_SUPPORT).then_some(Window::Hann);
+    (without - with).abs() > NO_SUPPORT
 }
 
 /// Finds the peaks of a group that the lines need. The group keeps those; the others are added to `unsupported`.
@@ -74,7 +72,7 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &
             let less = rational(lines, group.lines.clone(), &guess, &[]).ok()?;
             // A mode that leaves its peak for the one taken away is not the other's.
             let needless =
-                less.aicc <= fit.aicc + NEEDED && less.sound(lines, &fewer).iter().all(|sound| *sound);
+                less.aicc <= fit.aicc + NO_SUPPORT && less.sound(lines, &fewer).iter().all(|sound| *sound);
             (lowest.is_some() || needless).then_some((less, fewer, at))
         };
         let less = match lowest {
@@ -233,7 +231,7 @@ pub(super) fn complete(
             let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { continue };
             // Nor does a mode that could be anything, but then this one may not be what it seems.
             if !its[i] {
-                group.ahead = group.ahead.or((better > NEEDED).then_some((better, mode.frequency)));
+                group.ahead = group.ahead.or((better > NO_SUPPORT).then_some((better, mode.frequency)));
                 continue;
             }
             let (other, its) = (&more.modes[i], more.std[i]);

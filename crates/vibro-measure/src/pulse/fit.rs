@@ -1,9 +1,9 @@
 //! Models of a contact fitted to the samples of a pulse.
 
+use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
-use crate::mean::average;
+use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
-use std::f64::consts::PI;
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
@@ -33,39 +33,6 @@ pub(super) struct Samples<'a> {
     pub rings: Option<Ringing>,
 }
 
-/// What a record does behind its pulse.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ringing {
-    pub rms: f64,
-    /// Samples of half a swing.
-    pub half: f64,
-}
-
-impl Ringing {
-    /// From what is left behind the pulse: half a swing lasts from one side of the root of the mean square to the other, without end where it stays on one.
-    pub fn of(left: &[f64], mean: f64, rms: f64) -> Ringing {
-        let (mut side, mut turns) = (0.0, Vec::new());
-        for (i, v) in left.iter().map(|v| v - mean).enumerate().filter(|(_, v)| v.abs() > rms) {
-            if v.signum() != side {
-                side = v.signum();
-                turns.push(i);
-            }
-        }
-        let half = match turns[..] {
-            [first, .., last] => (last - first) as f64 / (turns.len() - 1) as f64,
-            _ => f64::INFINITY,
-        };
-        Ringing { rms, half }
-    }
-
-    /// Factor of the variance of what `n` samples in a contact state, of which noise leaves this `variance`. Half a swing adds up to 2√2/π of its root mean square, noise to the
-    /// root of n; a swing that is larger than what is left would show in it.
-    fn widening(&self, n: f64, variance: f64) -> f64 {
-        let sum = 2.0 * f64::sqrt(2.0) / PI * self.half.min(0.5 * n);
-        1.0 + sum * sum / n * (self.rms * self.rms / variance).min(SHOWS * SHOWS)
-    }
-}
-
 /// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and f, duration,
 /// duration and α or R, or duration, α, and both exponents.
 pub(super) struct Fitted {
@@ -81,9 +48,6 @@ pub(super) struct Fitted {
 
 /// Least noise, in parts of the height.
 const DIGITS: f64 = 3e-4;
-
-/// A swing within the contact larger than this, in units of what is left there, would show in it.
-const SHOWS: f64 = 1.4;
 
 /// Samples that the search for a first guess uses.
 const COARSE: usize = 48;
@@ -187,13 +151,11 @@ impl Samples<'_> {
         Ok(best)
     }
 
-    /// Root mean square of the record well before the pulse, about its mean there; no less than the digits of a converter leave.
+    /// Standard deviation of the record well before the pulse; no less than the digits of a converter leave.
     fn noise(&self) -> f64 {
         let begins = -0.5 - self.seen.delay();
         let before = &self.values[..self.times.partition_point(|t| *t < begins)];
-        let mean = average(before);
-        let square = before.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / before.len() as f64;
-        if before.len() < 8 { DIGITS } else { square.sqrt().max(DIGITS) }
+        if before.len() < 8 { DIGITS } else { scatter(before).max(DIGITS) }
     }
 
     /// Whether more is left within the contact than before it, by more than chance: then the contact follows another law, or something else moved.

@@ -1,7 +1,8 @@
 //! Where in a record the pulse is; the record in units of its pulse, and the way back.
 
-use super::fit::{Fitted, Ringing, Samples, Seen};
+use super::fit::{Fitted, Samples, Seen};
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
+use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
 use crate::Estimate;
 use crate::mean::{average, upper_median};
@@ -180,9 +181,8 @@ impl<'a> Normalised<'a> {
         let kelvin_voigt = |p: &[f64]| KelvinVoigt::new(p[0], p[1]);
         // Those of curved bodies are integrated, and no smoother than to 1e-5.
         let scale = vec![if *model == ContactModel::KelvinVoigt { 1.0 } else { 1e3 }; shape.len()];
-        let follows = |of: &dyn Fn(&[f64]) -> Option<f64>| propagated(shape, &scale, variance, of);
         let mut follow = |name, factor: f64, unit, of: &dyn Fn(&[f64]) -> Option<f64>| {
-            if let Some((value, std)) = follows(of) {
+            if let Some((value, std)) = propagated(shape, &scale, variance, of) {
                 parameters.insert(name, estimate(factor * value, factor * std, unit));
             }
         };

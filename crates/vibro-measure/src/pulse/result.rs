@@ -2,6 +2,8 @@
 
 use super::{KelvinVoigt, Rebound};
 use crate::Estimate;
+use crate::mean::mixture;
+use crate::residuals::NO_SUPPORT;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -103,19 +105,17 @@ impl PulseResult {
         let ahead = behind(&self.fits[0]);
         let (other, lower) = (ahead > NO_SUPPORT, self.fits[0].aicc - best.aicc);
         let lead = if other { best } else { &self.fits[0] };
-        // Burnham & Anderson 2002, eq. 4.9, in squares: the weights are exp(−Δ/2).
-        let weights: Vec<f64> = self.fits.iter().map(|fit| (-0.5 * behind(fit)).exp()).collect();
+        // Burnham & Anderson 2002, eq. 4.9, in squares, about what leads; a model that cannot begin as the record does says nothing.
+        let supported: Vec<&PulseFit> =
+            self.fits.iter().filter(|fit| (-0.5 * behind(fit)).exp() > NEGLIGIBLE).collect();
         let stated = |name: &str, own: Option<&Estimate>| {
             let led = lead.parameters.get(name)?;
-            let (mut sum, mut variance) = (0.0, 0.0);
-            for (fit, weight) in self.fits.iter().zip(&weights).filter(|(_, weight)| **weight > NEGLIGIBLE) {
-                // A model that cannot begin as the record does says nothing.
-                let Some(fitted) = fit.parameters.get(name).filter(|p| !p.value.is_nan()) else { continue };
-                sum += weight;
-                let std = fitted.std.unwrap_or(f64::NAN);
-                variance += weight * (std.powi(2) + (fitted.value - led.value).powi(2));
-            }
-            let std = (variance / sum).sqrt().max(led.std.unwrap_or(f64::NAN));
+            let of = |fit: &&PulseFit| {
+                let fitted = fit.parameters.get(name).filter(|p| !p.value.is_nan())?;
+                Some((-0.5 * behind(fit), fitted.value, fitted.std.unwrap_or(f64::NAN).powi(2)))
+            };
+            let (mean, variance) = mixture(&supported.iter().filter_map(of).collect::<Vec<_>>());
+            let std = variance.sqrt().hypot(mean - led.value).max(led.std.unwrap_or(f64::NAN));
             let own = own.filter(|_| !other).map(|own| own.method.clone());
             let method = own.unwrap_or_else(|| format!("{}, {}", led.method, lead.model.name()));
             Some(Estimate::new(led.value, Some(std), led.unit, led.n, method))
@@ -136,10 +136,6 @@ impl PulseResult {
 
 /// Weight of a model beside the best that counts no more.
 const NEGLIGIBLE: f64 = 1e-6;
-
-/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
-/// Inference, 2002, section 2.6).
-pub(super) const NO_SUPPORT: f64 = 10.0;
 
 /// A model fitted to a pulse.
 #[derive(Debug, Clone, PartialEq, Serialize)]

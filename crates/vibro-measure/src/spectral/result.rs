@@ -45,7 +45,7 @@ pub struct SpectralResult {
     pub tones: Vec<Tone>,
     /// Probability that noise alone shows a peak or a tone; null for functions.
     pub false_alarms: Option<f64>,
-    /// Whether each line stands out of the noise; empty for functions.
+    /// Whether each line is a peak that stands out of the noise; empty for functions.
     #[serde(skip)]
     pub clear: Vec<bool>,
     /// What was left out, and what limits the lines.
@@ -174,13 +174,20 @@ impl SpectralResult {
         }
     }
 
+    fn height(&self, k: usize) -> f64 {
+        self.value.get(k).copied().filter(|v| v.is_finite()).unwrap_or(0.0)
+    }
+
+    pub(super) fn is_peak(&self, k: usize) -> bool {
+        let height = self.height(k);
+        height > self.height(k.wrapping_sub(1)) && height >= self.height(k + 1)
+    }
+
     /// Indices of the largest peaks, at most so many, in order of frequency; of a spectrum those that stand out of the noise.
     pub fn peaks(&self, most: usize) -> Vec<usize> {
-        let height = |k: usize| self.value.get(k).copied().filter(|v| v.is_finite()).unwrap_or(0.0);
-        let is_peak = |k: &usize| height(*k) > height(k.wrapping_sub(1)) && height(*k) >= height(k + 1);
-        let stands = |k: &usize| self.clear.get(*k).is_none_or(|clear| *clear);
-        let mut largest: Vec<usize> = (0..self.value.len()).filter(is_peak).filter(stands).collect();
-        largest.sort_by(|a, b| height(*b).total_cmp(&height(*a)));
+        let listed = |k: &usize| self.clear.get(*k).copied().unwrap_or_else(|| self.is_peak(*k));
+        let mut largest: Vec<usize> = (0..self.value.len()).filter(listed).collect();
+        largest.sort_by(|a, b| self.height(*b).total_cmp(&self.height(*a)));
         largest.truncate(most);
         largest.sort_unstable();
         largest

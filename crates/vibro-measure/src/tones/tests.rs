@@ -229,14 +229,3 @@ fn sums_of_sines_that_are_clipped_are_found() {
         }
     }
 }
-
-#[test]
-fn the_mean_beyond_a_limit_is_that_of_tables() {
-    // φ(a)/Q(a), from tables of the normal distribution.
-    for (a, mean) in
-        [(-5.0, 1.486_720e-6), (-1.0, 0.287_600), (0.0, 0.797_885), (2.0, 2.373_216), (5.0, 5.186_504)]
-    {
-        // The tail is good to 7.5e-8, that of 2.0 is 0.0228.
-        assert!((mills(a) / mean - 1.0).abs() < 1e-5, "{a}: {}", mills(a));
-    }
-}
