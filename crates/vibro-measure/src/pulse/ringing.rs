@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 /// A swing within the contact larger than this, in units of what is left there, would show in it.
-const SHOWS: f64 = 1.4;
+const SHOWS: f64 = 1.2;
 
 /// What a record does behind its pulse.
 #[derive(Debug, Clone, Copy)]
