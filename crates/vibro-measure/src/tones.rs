@@ -42,8 +42,9 @@ const ROUNDING: f64 = 1e-12;
 const IMAGE: f64 = 0.25;
 /// Noise around a line is coloured where it is this much stronger than white noise of its variance.
 const COLOURED: f64 = 1.5;
-/// Lines on either side that tell the noise at a sine.
-const AROUND: usize = 40;
+/// Lines on either side that tell the noise at a sine: those within half of its frequency, between which noise of any colour changes
+/// little beside the 1/f that is allowed for, but so many at least and at most.
+const AROUND: [usize; 2] = [15, 40];
 /// From so many lines on the uncertainty in coloured noise holds what another sine does.
 const FAR: f64 = 3.5;
 /// Up to this part of the amplitude, what stands beside a sine moves it by a small and known part.
@@ -143,7 +144,8 @@ impl Lines {
     /// `alone` with noise, since other lines reach farther.
     fn colour(&self, frequency: f64, sigma: f64, alone: bool) -> f64 {
         let centre = (frequency / self.spacing).round() as usize;
-        let Some(floor) = floor(&self.powers, centre, AROUND, 1.0, Some(Window::Hann)) else { return 1.0 };
+        let reach = (centre / 2).clamp(AROUND[0], AROUND[1]);
+        let Some(floor) = floor(&self.powers, centre, reach, 1.0, Some(Window::Hann)) else { return 1.0 };
         // Half of the samples, with the power of a one-sided line: two components.
         let white = 2.0 * sigma * sigma * Window::Hann.enbw() / (self.magnitudes.len() - 1) as f64;
         let factor = student(2 * floor.lines).unwrap_or(1.0) * (floor.power / white).sqrt();
