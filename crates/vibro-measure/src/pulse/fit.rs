@@ -103,9 +103,7 @@ impl Samples<'_> {
         let corner = self.seen.filter.as_ref().map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
-            // The motion between free exponents takes long, and starts between those of the others.
-            let several = if model == ContactModel::PowerLaw { 2 } else { 3 };
-            from.extend(starts.iter().take(several).map(|p| (p.clone(), None)));
+            from.extend(starts.iter().take(if model == ContactModel::PowerLaw { 4 } else { 3 }).map(|p| (p.clone(), None)));
         }
         // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
         // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken. The
@@ -238,13 +236,15 @@ impl Samples<'_> {
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
         let delay = self.seen.delay();
-        let shapes: &[f64] = match model {
-            ContactModel::KelvinVoigt => &[0.03, 0.15, 0.3, 0.5, 0.75],
-            ContactModel::Hertz => &[0.0],
-            ContactModel::HuntCrossley | ContactModel::PowerLaw => &[0.1, 0.6, 2.0],
-            ContactModel::Yielding => &[0.4, 0.7, 0.95],
+        // The loss of free exponents has a minimum to either side of the exponent where it makes the pulse neither steeper nor flatter at its end.
+        let shapes: &[[f64; 2]] = match model {
+            ContactModel::KelvinVoigt => &[[0.03, 0.0], [0.15, 0.0], [0.3, 0.0], [0.5, 0.0], [0.75, 0.0]],
+            ContactModel::Hertz => &[[0.0; 2]],
+            ContactModel::HuntCrossley => &[[0.1, 1.5], [0.6, 1.5], [2.0, 1.5]],
+            ContactModel::PowerLaw => &[[0.1, 0.4], [0.4, 0.4], [0.1, 1.5], [0.6, 1.5]],
+            ContactModel::Yielding => &[[0.4, 0.0], [0.7, 0.0], [0.95, 0.0]],
         };
-        let guess = |shape: f64, duration: f64, lead: i32| {
+        let guess = |[shape, loss]: [f64; 2], duration: f64, lead: i32| {
             let mut p = vec![-delay - 0.08 * f64::from(lead) * duration, 0.0, 1.0];
             match model {
                 ContactModel::KelvinVoigt => {
@@ -252,11 +252,11 @@ impl Samples<'_> {
                 }
                 ContactModel::Hertz => p.push(duration),
                 ContactModel::HuntCrossley | ContactModel::Yielding => p.extend([duration, shape]),
-                ContactModel::PowerLaw => p.extend([duration, shape, 1.5, 1.5]),
+                ContactModel::PowerLaw => p.extend([duration, shape, 1.5, loss]),
             }
             self.levelled(model, p, (&times, &values))
         };
-        let nearest = |shape: &f64| {
+        let nearest = |shape: &[f64; 2]| {
             let durations = [0.35, 0.6, 0.8, 1.0, 1.25, 1.6];
             let all = durations.into_iter().flat_map(|duration| (0..8).map(move |lead| (duration, lead)));
             let all = all.filter_map(|(duration, lead)| guess(*shape, duration, lead));
