@@ -122,12 +122,12 @@ impl Samples<'_> {
             }));
         }
         // Noise may take the onset beyond the two samples: what the sum of squares would be with the onset held between them, to first order. Farther
-        // beyond than noise takes it, or half a sample, the model follows a rise that it has not.
+        // beyond than noise takes it, or half a sample, or by half of the whole pulse, the model follows a rise that it has not.
         let held = |fit: &Fitted| {
             let (onset, std) = (fit.fit.parameters[0], fit.fit.std(0));
             let beyond =
                 fit.first.map_or(0.0, |k| (self.times[k - 1] - onset).max(onset - self.times[k]).max(0.0));
-            let outside = beyond > (self.seen.step / 2.0).max(3.0 * std);
+            let outside = beyond > (self.seen.step / 2.0).max(3.0 * std).min(0.5);
             let free = fit.fit.degrees_of_freedom() as f64;
             (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
