@@ -140,6 +140,8 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
 struct Sines {
     n: usize,
     rate: f64,
+    /// Lines at which modes are asked for; sines elsewhere are fitted, so that they do not pass for these.
+    band: Range<usize>,
     groups: Vec<Group>,
     /// Lines that stand out and are no mode beside those that are known.
     odd: Vec<usize>,
@@ -155,20 +157,26 @@ impl Sines {
         let all = 1..spectrum.len() - 1;
         let band =
             options.band.map_or(all.clone(), |(low, high)| line(low).max(1)..(line(high) + 1).min(all.end));
-        let mut sines = Sines { n, rate, groups: Vec::new(), odd: Vec::new() };
-        while sines.count() < MOST
-            && sines.odd.len() < ODD
-            && options.modes.is_none_or(|count| sines.decaying() < count)
+        let mut sines = Sines { n, rate, band: band.clone(), groups: Vec::new(), odd: Vec::new() };
+        let beside = [1..band.start, band.end..all.end];
+        for (range, wanted) in [(&band, options.modes), (&beside[0], None), (&beside[1], None)]
+            .into_iter()
+            .filter(|r| !r.0.is_empty())
         {
-            let rest = sines.rest(&spectrum, None);
-            let Some(top) = sines.next(&rest, band.clone()) else { break };
-            sines.add(&spectrum, &rest, top);
+            while sines.count() < MOST
+                && sines.odd.len() < ODD
+                && wanted.is_none_or(|count| sines.decaying() < count)
+            {
+                let rest = sines.rest(&spectrum, None);
+                let Some(top) = sines.next(&rest, range.clone()) else { break };
+                sines.add(&spectrum, &rest, top);
+            }
         }
         for at in (0..sines.groups.len()).cycle().take(2 * sines.groups.len()) {
             let rest = sines.rest(&spectrum, Some(at));
             let old = &sines.groups[at];
             let starts: Vec<(f64, f64)> = old.sines.iter().map(|s| (s.periods, s.decay)).collect();
-            if let Ok(better) = Group::fit(&rest, old.lines.clone(), n, &starts) {
+            if let Ok(better) = Group::fit(&rest, range(&old.sines, rest.len()), n, &starts) {
                 sines.groups[at] = better;
             }
         }
@@ -184,17 +192,23 @@ impl Sines {
         self.groups.iter().map(|group| group.sines.len()).sum()
     }
 
-    fn all(&self) -> impl Iterator<Item = (&Group, usize)> {
-        self.groups.iter().flat_map(|group| (0..group.sines.len()).map(move |m| (group, m)))
+    /// The sines within the band.
+    fn asked(&self) -> impl Iterator<Item = (&Group, usize)> {
+        let all = self.groups.iter().flat_map(|group| (0..group.sines.len()).map(move |m| (group, m)));
+        all.filter(|(group, m)| self.band.contains(&(group.sines[*m].periods.round() as usize)))
     }
 
     fn decaying(&self) -> usize {
-        self.all().filter(|(group, m)| decays(group, *m)).count()
+        self.asked().filter(|(group, m)| decays(group, *m)).count()
     }
 
+    /// The sine with the highest line: over the whole part it moves most.
     fn strongest(&self) -> Option<(&Group, usize)> {
-        let size = |(group, m): &(&Group, usize)| group.sines[*m].amplitude.norm();
-        self.all().max_by(|a, b| size(a).total_cmp(&size(b)))
+        let size = |(group, m): &(&Group, usize)| {
+            let sine = &group.sines[*m];
+            sine.amplitude.norm() / sine.decay.max(1.0)
+        };
+        self.asked().max_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
     /// What is left of the lines without the sines of all groups but one.
@@ -215,8 +229,12 @@ impl Sines {
         tops.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
         // Rayleigh: one of so many lines of noise passes t standard deviations with a chance of n e^(−t²/2).
         let visible = (2.0 * (band.len().max(1) as f64 / BY_CHANCE).ln()).sqrt();
+        // Of a mode that is over long before the others the lines nearby are its own.
         let seen = |k: &usize| {
-            noise::around(&sizes, *k, noise::REACH, None).is_none_or(|floor| sizes[*k] > visible * floor)
+            [noise::REACH, k / 2].iter().any(|reach| {
+                noise::around(&sizes, *k, *reach.max(&noise::REACH), None)
+                    .is_none_or(|floor| sizes[*k] > visible * floor)
+            })
         };
         let known = |k: &usize| self.odd.iter().any(|odd| odd.abs_diff(*k) < 2);
         tops.into_iter().filter(|k| !known(k)).take(MOST).find(seen)
@@ -243,11 +261,13 @@ impl Sines {
         let mut best: Option<Group> = None;
         for decay in [0.3 * decay, decay, 0.2] {
             let sines: Vec<Damped> = old.iter().copied().chain([Damped { decay, ..new }]).collect();
-            let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * s.reach());
-            let low = ends(-1.0).fold(f64::INFINITY, f64::min).max(1.0) as usize;
-            let high = ends(1.0).fold(0.0, f64::max) as usize + 1;
-            let lines = low..high.max(low + 2 * OWN * (sines.len() + 1)).min(rest.len() - 1);
-            let Ok(group) = fit(&sines, lines) else { continue };
+            let Ok(group) = fit(&sines, range(&sines, rest.len())) else { continue };
+            let wider = range(&group.sines, rest.len());
+            let group = if wider.len() > 2 * group.lines.len() {
+                fit(&group.sines, wider).unwrap_or(group)
+            } else {
+                group
+            };
             if best.as_ref().is_none_or(|best| group.noise() < best.noise()) {
                 best = Some(group);
             }
@@ -283,7 +303,8 @@ impl Sines {
 
     /// What the sines leave of a part.
     fn left(&self, part: &[f64]) -> Vec<f64> {
-        let sum = |i: usize| self.all().map(|(group, m)| group.sines[m].sample(i, self.n)).sum::<f64>();
+        let sines: Vec<&Damped> = self.groups.iter().flat_map(|group| &group.sines).collect();
+        let sum = |i: usize| sines.iter().map(|sine| sine.sample(i, self.n)).sum::<f64>();
         part.iter().enumerate().map(|(i, v)| v - sum(i)).collect()
     }
 
@@ -297,7 +318,7 @@ impl Sines {
         let unit = trace.meta.unit.quantity().symbol();
         let (mut modes, mut decaying) = (Vec::new(), Vec::new());
         let size = self.strongest().map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
-        for (group, m) in self.all() {
+        for (group, m) in self.asked() {
             let mode = mode(group, m, self.n, self.rate, unit);
             if decays(group, m) {
                 let doubted = self
@@ -381,9 +402,11 @@ impl Sines {
             let centre = starts[0].0 as usize;
             let range = centre.saturating_sub(LINES.0 as usize).max(1)
                 ..(centre + LINES.0 as usize + 2).min(spectrum.len() - 1);
-            let group = Group::fit(&spectrum, range, n, &starts).ok()?;
+            let group = Group::fit(&spectrum, range.clone(), n, &starts).ok()?;
             let mode = mode(&group, 0, n, self.rate, unit);
-            let known = mode.zeta.std.is_some_and(|std| std < 0.3 * mode.zeta.value);
+            // Another mode that is there when this is over is not this one.
+            let own = range.contains(&(group.sines[0].periods.max(0.0) as usize));
+            let known = own && mode.zeta.std.is_some_and(|std| std < 0.3 * mode.zeta.value);
             known.then(|| Level { start: start + (i * n) as f64 / self.rate, mode })
         });
         let levels: Vec<Level> = levels.collect();
@@ -398,6 +421,14 @@ impl Sines {
             });
         (levels, decrement)
     }
+}
+
+/// Lines to which sines are fitted together, of so many.
+fn range(sines: &[Damped], all: usize) -> Range<usize> {
+    let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * s.reach());
+    let low = ends(-1.0).fold(f64::INFINITY, f64::min).max(1.0) as usize;
+    let high = ends(1.0).fold(0.0, f64::max) as usize + 1;
+    low..high.max(low + 2 * OWN * (sines.len() + 1)).min(all - 1)
 }
 
 /// Whether a sine surely decays.

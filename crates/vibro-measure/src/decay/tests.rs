@@ -92,6 +92,24 @@ fn modes_near_and_far_are_parted() {
     }
 }
 
+/// The part is as long as the slow mode is seen, and the fast one ten and more lines wide in it.
+#[test]
+fn a_mode_that_is_over_long_before_another_is_found() {
+    let mut normal = Normal(4);
+    for zeta in [0.01, 0.02, 0.04] {
+        let modes = [(30.0, 0.004, 1.0, 0.5), (90.0, zeta, 2.0, -1.0)];
+        let values = record(6000, 700, &modes, 0.003, &mut normal);
+        println!("{zeta}");
+        check(&found(values.clone()).unwrap(), &modes);
+        // In a band around it, no level is that of the other.
+        let only = DecayOptions { band: Some((60.0, 120.0)), modes: None };
+        let only = decay(&trace(values), &only).unwrap();
+        check(&only, &modes[1..]);
+        assert!(only.levels.iter().all(|level| (level.mode.frequency.value - 90.0).abs() < 5.0), "{only:?}");
+        assert!(only.decrement.is_none_or(|d| off(&d, zeta).abs() < 4.0));
+    }
+}
+
 #[test]
 fn what_else_a_record_holds_is_left_out() {
     let slow = |i: usize| 0.3 * (i as f64 / 900.0).sin() + 1e-4 * i as f64;

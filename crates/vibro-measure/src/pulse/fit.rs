@@ -103,7 +103,12 @@ impl Samples<'_> {
         let corner = self.seen.filter.as_ref().map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
-            from.extend(starts.iter().take(if model == ContactModel::PowerLaw { 4 } else { 3 }).map(|p| (p.clone(), None)));
+            from.extend(
+                starts
+                    .iter()
+                    .take(if model == ContactModel::PowerLaw { 4 } else { 3 })
+                    .map(|p| (p.clone(), None)),
+            );
         }
         // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
         // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken. The
