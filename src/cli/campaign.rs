@@ -5,7 +5,7 @@ use crate::analysis::sweep::modelled;
 use crate::analysis::{self, JobOptions};
 use crate::campaign::FitEntry;
 use crate::error::Result;
-use crate::report::words::{Voice, sentences};
+use crate::report::words::{Voice, graded};
 use crate::report::{Output, Table};
 use serde_json::json;
 use std::path::PathBuf;
@@ -58,7 +58,7 @@ impl super::Run for Run {
                 "folder": folder.display().to_string(),
             }))?;
         } else {
-            complain::warn(&sentences(&found.findings, Voice::Campaign, true));
+            complain::warn(&graded(&found.findings, Voice::Campaign));
             let tables = found.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
             let n = files.len();
             print::text(&format!("{tables}\n{n} files in {}; open report.html there\n", folder.display()))?;

@@ -1,6 +1,7 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use crate::error::Error;
+use crate::record::Severity;
 use crate::report::words::Voice;
 use clap::error::ContextKind;
 use serde_json::json;
@@ -65,10 +66,10 @@ fn object(error: &str, exit_code: u8) {
     let _ = super::print::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
 }
 
-/// Prints a warning for a person; JSON carries warnings itself.
-pub(crate) fn warn(sentences: &[String]) {
-    for sentence in sentences {
-        line(&format!("note: {sentence}"));
+/// Prints findings for a person; JSON carries them itself.
+pub(crate) fn warn(findings: &[(Severity, String)]) {
+    for (severity, sentence) in findings {
+        line(&format!("{}: {sentence}", severity.name()));
     }
 }
 

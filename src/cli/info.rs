@@ -6,7 +6,7 @@ use crate::campaign::Reading;
 use crate::error::Result;
 use crate::read::Header;
 use crate::record::Finding;
-use crate::report::words::{Voice, put, sentences};
+use crate::report::words::{Voice, graded, put};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -60,7 +60,7 @@ impl Run for Info {
             put(&mut answer.result, &about, Voice::Command);
             print::object(answer.result)?;
         } else {
-            complain::warn(&sentences(&about, Voice::Command, true));
+            complain::warn(&graded(&about, Voice::Command));
             print::text(&text)?;
         }
         Ok(code)

@@ -3,7 +3,7 @@
 use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
-use crate::report::words::{Voice, put, sentences};
+use crate::report::words::{Voice, graded, put};
 use crate::report::{Output, Table, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
@@ -34,7 +34,7 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> 
         object(answer.result)?;
         return Ok(0);
     }
-    complain::warn(&sentences(&answer.findings, Voice::Command, true));
+    complain::warn(&graded(&answer.findings, Voice::Command));
     let shown = answer.tables.iter().chain(&answer.details).filter(|t| !t.rows.is_empty());
     let mut all = shown.map(Table::text).collect::<Vec<_>>().join("\n");
     for file in written {

@@ -60,6 +60,13 @@ pub type About = (String, Finding);
 
 /// The sentences of findings about records, doubts first. One that holds for several records stands once, behind their names.
 pub fn sentences(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
+    let all =
+        graded(findings, voice).into_iter().filter(|(severity, _)| notes || *severity != Severity::Note);
+    all.map(|(_, sentence)| sentence).collect()
+}
+
+/// As [`sentences`], each behind its severity.
+pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     let mut groups: Vec<(&Finding, Vec<&str>)> = Vec::new();
     for (record, finding) in findings {
         match groups.iter_mut().find(|(known, _)| *known == finding) {
@@ -71,11 +78,8 @@ pub fn sentences(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
     let mut all = Vec::new();
     for severity in [Severity::Doubt, Severity::Caution, Severity::Note] {
         for (finding, records) in groups.iter().filter(|g| g.0.severity == severity) {
-            let text = sentence(finding, voice);
-            if notes || severity != Severity::Note {
-                let whole = records.contains(&"");
-                all.push(if whole { text } else { format!("{}: {text}", records.join("; ")) });
-            }
+            let (text, whole) = (sentence(finding, voice), records.contains(&""));
+            all.push((severity, if whole { text } else { format!("{}: {text}", records.join("; ")) }));
         }
     }
     all

@@ -21,6 +21,8 @@ use vibro_signal::welch::{Averages, Welch};
 
 /// Samples of a segment where none is stated.
 const SEGMENT: usize = 8192;
+/// Half the span of a reference over its RMS from which on it rests but for blows: noise has 3 to 5, and blows of a duty of one in 200 have 10 at least.
+const BLOWS: f64 = 10.0;
 /// One part in so many of a hammer record stands before the blow.
 const BEFORE: usize = 50;
 
@@ -142,6 +144,12 @@ fn response(
         (found.transfer, traces.rate() / length as f64, Some(blows))
     } else {
         let averages = averages(traces, options, progress)?;
+        if let Some(crest) = averages.crest(0).filter(|crest| *crest > BLOWS) {
+            let why = format!(
+                "the force rests but for blows (half its span is {crest:.0} times its RMS): segments would cut their responses"
+            );
+            return Err(Error::refused(why).hint("take one segment a blow").setting("hammer"));
+        }
         if averages.count == 1 {
             return Err(Error::refused("one segment only; coherence needs two or more")
                 .hint("take a longer record or shorter segments, for ten averages or more")

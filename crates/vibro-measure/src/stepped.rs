@@ -126,12 +126,15 @@ impl Step {
         let blocks = Blocks::of(periods, rate / frequency.value, samples);
         let (f, x) = (blocks.phasors(force), blocks.phasors(response));
         let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
-        let (first, settled) = settled(&ratio);
+        let (begins, state) = settled(&ratio);
+        // A force that is still rising gives the right ratio, and another size.
+        let sizes: Vec<Complex64> = f.iter().map(|f| f.norm().into()).collect();
+        let first = begins.max(settled(&sizes).0);
         let turned: Vec<Complex64> = ratio.iter().zip(&f).map(|(r, f)| r * f.norm()).collect();
         let (mut response, mut ratio) = (Phasor::of(&turned[first..]), Phasor::of(&ratio[first..]));
         let force: Vec<f64> = f[first..].iter().map(|f| f.norm()).collect();
         let mut force = (mean::average(&force), scatter_of_mean(&force));
-        match settled {
+        match state {
             Settled::Yes => {}
             Settled::Nearly(left) => {
                 response.allow(left * force.0);

@@ -14,6 +14,13 @@ pub enum Severity {
     Doubt,
 }
 
+impl Severity {
+    /// Its name, as in JSON.
+    pub fn name(self) -> &'static str {
+        ["note", "caution", "doubt"][self as usize]
+    }
+}
+
 /// A fact of a finding: a number in SI units, several, or a name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]

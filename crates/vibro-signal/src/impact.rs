@@ -22,6 +22,8 @@ const TRIGGER: f64 = 0.2;
 /// A blow has ended below this part of its peak, or below so many standard deviations of the noise before it.
 const ENDED: f64 = 0.05;
 const SIGMAS: f64 = 3.0;
+/// A force that stands less than this factor (10 dB) above its noise tells nothing of the response to it.
+const AUDIBLE: f64 = 10.0;
 /// So many samples in a row at the very extreme are a clipped signal.
 const CLIPPED: usize = 3;
 /// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
@@ -120,11 +122,16 @@ pub fn from_blows(
     let transform = Transform::new(how.length);
     let mut work = [transform.workspace(), transform.workspace()];
     let mut sums = Sums::new(2, true, transform.lines());
+    let mut noise = 0.0;
     for start in &kept {
         for ((work, weights), trace) in work.iter_mut().zip(&weights).zip([force, response]) {
             let part = trace.values.get(*start..start + how.length).unwrap_or_default();
             // The level before the blow is the zero of this record.
             let level = part[..how.before].iter().sum::<f64>() / how.before.max(1) as f64;
+            if std::ptr::eq(trace, force) {
+                let squares: f64 = part[..how.before].iter().map(|v| (v - level).powi(2)).sum();
+                noise += squares / how.before.saturating_sub(1).max(1) as f64 / kept.len() as f64;
+            }
             work.load(part, level, weights);
             transform.run(work);
         }
@@ -135,6 +142,8 @@ pub fn from_blows(
     let metas: [Meta; 2] = [force.meta.clone(), response.meta.clone()];
     let mut transfer = transfer(&averages, 1, &metas, estimator)?;
     transfer.frf.meta.step("blows", &[("length", &how.length), ("before", &how.before)]);
+    let floor = AUDIBLE * noise * weights[0].iter().map(|w| w * w).sum::<f64>();
+    transfer.silence(&averages.auto[0], floor);
     transfer.findings.extend(left_out(&blows));
     transfer.findings.extend((kept.len() == 1).then(|| Finding::caution("frf-one-blow")));
     if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {

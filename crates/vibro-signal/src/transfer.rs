@@ -61,6 +61,20 @@ pub struct Transfer {
 }
 
 impl Transfer {
+    /// Leaves no function where the power of the excitation, from 0 Hz on, is not above a floor.
+    pub(super) fn silence(&mut self, excitation: &[f64], floor: f64) {
+        let mut silent = 0;
+        for (k, _) in excitation.iter().skip(1).enumerate().filter(|(_, power)| **power <= floor) {
+            silent += usize::from(self.frf.values[k].is_finite());
+            self.frf.values[k] = NOWHERE;
+            let beside = [&mut self.magnitude_std, &mut self.phase_std, &mut self.coherence];
+            beside.into_iter().filter_map(|of| of.get_mut(k)).for_each(|v| *v = f64::NAN);
+        }
+        let lines = self.frf.values.len();
+        let found = Finding::caution("frf-not-excited").count("n", silent).count("lines", lines);
+        self.findings.extend((silent > 0).then_some(found));
+    }
+
     /// The function of the response integrated `times` times (mobility becomes receptance with 1, accelerance with 2), from
     /// `fmin` Hz on; uncertainties and coherence go along.
     ///

@@ -47,12 +47,21 @@ pub struct Averages {
     pub auto: Vec<Vec<f64>>,
     /// Mean of conj(X₀) X for each channel behind the first, where products were asked for.
     pub cross: Vec<Vec<Complex64>>,
+    /// Smallest and largest sample of each channel; empty where they were not looked at.
+    pub extremes: Vec<(f64, f64)>,
 }
 
 impl Averages {
     /// Distance of lines in Hz.
     pub fn step(&self) -> f64 {
         self.rate / self.length as f64
+    }
+
+    /// Half of what a channel spans, over its root mean square without the mean, by Parseval's theorem.
+    pub fn crest(&self, channel: usize) -> Option<f64> {
+        let ((low, high), lines) = self.extremes.get(channel).zip(self.auto.get(channel))?;
+        let squares = 2.0 * lines.iter().skip(1).sum::<f64>() / (self.length as f64 * self.squares);
+        Some(0.5 * (high - low) / squares.sqrt())
     }
 }
 
@@ -98,7 +107,8 @@ impl Welch {
                 return Err(constant(name, range.low));
             }
         }
-        Ok(total.mean(&kernel.weights, self.segments, rate, self.detrend))
+        let extremes = batches.ranges.iter().map(|range| (range.low, range.high)).collect();
+        Ok(Averages { extremes, ..total.mean(&kernel.weights, self.segments, rate, self.detrend) })
     }
 }
 
@@ -166,6 +176,7 @@ impl Sums {
             squares: weights.iter().map(|w| w * w).sum(),
             auto: self.auto,
             cross: self.cross,
+            extremes: Vec::new(),
         }
     }
 }

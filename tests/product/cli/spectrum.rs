@@ -216,6 +216,11 @@ fn a_hammer_names_the_windows_applied() {
         );
         (value["window"].as_str().unwrap().to_owned(), value["enbw"].as_f64().unwrap())
     };
+    // Segments that know nothing of blows are refused, and what is advised is what was asked above.
+    assert!(
+        complaint(&hammer[..4], 1).contains("rests but for blows")
+            && complaint(&hammer[..4], 1).contains("--hammer")
+    );
     assert_eq!(ask(&[]), ("rectangular".to_owned(), 1.0));
     assert_eq!(ask(&["--force-window", "0.05"]), ("force".to_owned(), 1.0));
     let (window, enbw) = ask(&["--left-at-end", "0.01"]);

@@ -110,6 +110,38 @@ fn one_clean_blow_is_enough_and_has_no_coherence() {
     near(&found, 0.01);
 }
 
+/// A half-sine of 1.2 ms excites little beyond 1 kHz: noise of the force makes no function there.
+#[test]
+fn where_the_blow_is_below_its_noise_there_is_no_function() {
+    let [mut force, response] = bench(&[(9000, 100.0)], 30_000);
+    let mut noise = vibro_math::Noise::new(4);
+    force.values.iter_mut().for_each(|v| *v += 0.3 * noise.normal());
+    let how = Blows { length: 16_384, before: 500, force_window: None, left_at_end: None };
+    let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
+    assert!(has(&found, "frf-not-excited"));
+    // |X| of a half-sine of 5 samples and the power of 0.3 times white noise, 10 dB above it.
+    let pulse = |f: f64| {
+        let sample = |i: usize| {
+            100.0 * (PI * (i as f64 + 0.5) / 5.0).sin() * Complex64::cis(-2.0 * PI * f / RATE * i as f64)
+        };
+        (0..5).map(sample).sum::<Complex64>().norm_sqr()
+    };
+    let floor = 10.0 * 0.09 * 16_384.0;
+    let (mut loud, mut quiet, mut seen) = (0, 0, 0);
+    for (k, value) in found.transfer.frf.values.iter().enumerate() {
+        let power = pulse(found.transfer.frf.axis.at(k));
+        // Noise of a tenth of the floor takes less than half of four times the floor away.
+        assert!(power < 4.0 * floor || value.is_finite());
+        loud += usize::from(power >= 4.0 * floor);
+        if power < 0.01 * floor {
+            quiet += 1;
+            seen += usize::from(value.is_finite());
+        }
+    }
+    // Noise alone is ten times its mean at one of e^10 lines; that much and the blow's tenth of a part at one of e^8.
+    assert!(loud > 1000 && quiet > 500 && seen <= 3, "{loud} {quiet} {seen}");
+}
+
 #[test]
 fn records_longer_than_the_record_are_refused() {
     let [force, response] = bench(&[(500, 100.0), (2000, 80.0)], 4000);
