@@ -178,7 +178,9 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let unexplained = best.is_some_and(|best| samples.unexplained(best));
     result.fits = fits.iter().map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
-    let led = result.led_by_best(best.map_or(1.0, |best| best.whiteness.inflation.max(1.0)));
+    let also = fits.iter().flat_map(|f| &f.also);
+    let also: Vec<_> = also.map(|f| scale.report(f, options.mass, known && !unexplained)).collect();
+    let led = result.led_by_best(&also, best.map_or(1.0, |best| best.whiteness.inflation.max(1.0)));
     if led.is_none() || result.restitution.value.is_nan() {
         found.extend(impossible.into_iter().flatten());
     }

@@ -44,7 +44,12 @@ pub(super) struct Fitted {
     pub widening: Option<f64>,
     /// First sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
+    /// Other exponents of the loss at which the sum of squares is least, too.
+    pub also: Vec<Fitted>,
 }
+
+/// Exponents of the loss that are nearer are those of one minimum.
+const APART: f64 = 0.05;
 
 /// Least noise, in parts of the height.
 const DIGITS: f64 = 3e-4;
@@ -137,21 +142,30 @@ impl Samples<'_> {
             (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first));
-        let fits = fits.map(|fit| (held(&fit), fit));
-        let Some(((outside, _), mut best)) =
-            fits.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
-        else {
+        let mut fits: Vec<((bool, f64), Fitted)> = fits.map(|fit| (held(&fit), fit)).collect();
+        fits.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
+        let Some(mut best) = fits.next() else {
             return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
         };
-        best.whiteness = Whiteness::of(&[&best.fit.residuals]);
-        if !(outside || best.whiteness.rejected() && self.more_left_at_onset(&best.fit)) {
-            // At least nine samples leave four degrees of freedom.
-            let student = student(best.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-            let inside = (best.end() - best.fit.parameters[0]) / self.seen.step;
-            let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, best.fit.variance()));
-            best.widening = Some(best.whiteness.inflation * student * rings.sqrt());
+        if model == ContactModel::PowerLaw {
+            best.also =
+                fits.filter(|fit| (fit.loss_exponent() - best.loss_exponent()).abs() > APART).collect();
         }
         Ok(best)
+    }
+
+    /// A fit with the whiteness of what it leaves and the factor of its uncertainties, if its onset is not `outside` of where it may be.
+    fn judged(&self, mut fitted: Fitted, outside: bool) -> Fitted {
+        fitted.whiteness = Whiteness::of(&[&fitted.fit.residuals]);
+        if !(outside || fitted.whiteness.rejected() && self.more_left_at_onset(&fitted.fit)) {
+            // At least nine samples leave four degrees of freedom.
+            let student = student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
+            let inside = (fitted.end() - fitted.fit.parameters[0]) / self.seen.step;
+            let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, fitted.fit.variance()));
+            fitted.widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
+        }
+        fitted
     }
 
     /// Standard deviation of the record well before the pulse; no less than the digits of a converter leave.
@@ -206,7 +220,7 @@ impl Samples<'_> {
         let mut fit = least_squares(residuals, n + likely.len(), start, &scale).ok()?;
         fit.residuals.truncate(n);
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
-        fit.converged.then_some(Fitted { model, fit, whiteness, widening: None, first })
+        fit.converged.then_some(Fitted { model, fit, whiteness, widening: None, first, also: Vec::new() })
     }
 
     /// A contact of spring and damper nearer to the pulse, from a finer grid around a guess, on all samples.
@@ -294,6 +308,10 @@ impl Samples<'_> {
 }
 
 impl Fitted {
+    fn loss_exponent(&self) -> f64 {
+        self.fit.parameters.get(6).copied().unwrap_or(f64::NAN)
+    }
+
     /// The fitted model at any rising times.
     pub fn at(&self, samples: &Samples<'_>, times: &[f64]) -> Option<Vec<f64>> {
         let first = self.first.and_then(|f| samples.times.get(f)).map(|first| {

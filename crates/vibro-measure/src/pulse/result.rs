@@ -98,8 +98,8 @@ impl PulseResult {
 
     /// Leads with the model that the record prefers, where that is not the one of spring and damper: what it states takes the place of what that
     /// states, which loses its uncertainty. What all models state has the spread between them in its uncertainty. `inflation` is that of
-    /// the best model's residuals: what they repeat counts once (Burnham & Anderson 2002, 2.5).
-    pub(super) fn led_by_best(&mut self, inflation: f64) -> Option<Finding> {
+    /// the best model's residuals: what they repeat counts once (Burnham & Anderson 2002, 2.5). `also` are other minima of the models.
+    pub(super) fn led_by_best(&mut self, also: &[PulseFit], inflation: f64) -> Option<Finding> {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
         let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
         let ahead = behind(&self.fits[0]);
@@ -107,7 +107,7 @@ impl PulseResult {
         let lead = if other { best } else { &self.fits[0] };
         // Burnham & Anderson 2002, eq. 4.9, in squares, about what leads; a model that cannot begin as the record does says nothing.
         let supported: Vec<&PulseFit> =
-            self.fits.iter().filter(|fit| (-0.5 * behind(fit)).exp() > NEGLIGIBLE).collect();
+            self.fits.iter().chain(also).filter(|fit| (-0.5 * behind(fit)).exp() > NEGLIGIBLE).collect();
         let stated = |name: &str, own: Option<&Estimate>| {
             let led = lead.parameters.get(name)?;
             let of = |fit: &&PulseFit| {
