@@ -3,25 +3,34 @@
 use crate::measure::modal::{Measured, Mode};
 use crate::record::Meta;
 use crate::report::layout::{capital, lettered};
-use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
+use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// So many lines are shown as dots, more as a line.
+const DOTS: usize = 150;
+/// Points of a smooth curve.
+const SMOOTH: usize = 300;
 
 /// Magnitude (logarithmic) over phase in degrees, with the fitted response over the lines of each mode.
 pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Figure {
     let f = &measured.frequency;
     let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
     let y = AxisSpec::new(capital(meta.quantity.name()), meta.unit.symbol()).log();
-    let mut above = Plot::new(AxisSpec::frequency(), y)
-        .with(Series::line("measured", f.clone(), magnitude).ink(Ink::Grey).stroke(Stroke::Solid));
+    let lines = if f.len() <= DOTS {
+        Series::points("measured", f.clone(), magnitude).marker(Marker::Circle)
+    } else {
+        Series::line("measured", f.clone(), magnitude).stroke(Stroke::Solid)
+    };
+    let mut above = Plot::new(AxisSpec::frequency(), y).with(lines.ink(Ink::Grey));
     // Modes that were fitted together have one curve.
     let (mut x, mut y, mut angle) = (Vec::new(), Vec::new(), Vec::new());
-    let mut last = None;
-    for mode in modes.iter().filter(|m| last.replace(m.lines) != Some(m.lines)) {
-        let gap = [(f64::NAN, f64::NAN, f64::NAN)];
-        for (f, re, im) in mode.fitted.iter().copied().chain(gap) {
+    for together in modes.chunk_by(|a, b| a.lines == b.lines) {
+        for (f, value) in curve(measured, together).into_iter().chain([(f64::NAN, Complex64::from(f64::NAN))])
+        {
             x.push(f);
-            y.push(re.hypot(im));
-            angle.push(im.atan2(re).to_degrees());
+            y.push(value.norm());
+            angle.push(value.arg().to_degrees());
         }
     }
     if !x.is_empty() {
@@ -45,6 +54,37 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     lettered(figure.height(110.0).shared_x().panel(above).panel(below))
 }
 
+/// The fitted response at its lines and, where these are few, between them: the modes, and a straight line through what else was fitted.
+fn curve(measured: &Measured, modes: &[Mode]) -> Vec<(f64, Complex64)> {
+    let fitted = modes.first().map(|mode| mode.fitted.as_slice()).unwrap_or_default();
+    let at_lines = fitted.iter().map(|(f, re, im)| (*f, Complex64::new(*re, *im)));
+    if measured.magnitude_only || fitted.len() >= SMOOTH {
+        return at_lines.collect();
+    }
+    let alone = |f: f64| {
+        let omega = TAU * f;
+        let of = |mode: &Mode| {
+            let (own, angle) = (TAU * mode.frequency.value, mode.phase.as_ref().map_or(0.0, |p| p.value));
+            let constant = Complex64::from_polar(mode.modal_constant.value.abs(), angle.to_radians());
+            constant / Complex64::new(own * own - omega * omega, 2.0 * mode.zeta.value * own * omega)
+        };
+        Complex64::new(0.0, omega).powi(measured.power()) * modes.iter().map(of).sum::<Complex64>()
+    };
+    let between = SMOOTH / fitted.len().max(1) + 1;
+    let rest: Vec<(f64, Complex64)> = at_lines.map(|(f, value)| (f, value - alone(f))).collect();
+    let piece = |pair: &[(f64, Complex64)]| {
+        let ((a, from), (b, to)) = (pair[0], pair[1]);
+        let at = |k: usize| {
+            let part = k as f64 / between as f64;
+            let f = a + part * (b - a);
+            (f, alone(f) + from + (to - from) * part)
+        };
+        (0..between).map(at).collect::<Vec<_>>()
+    };
+    let last = rest.last().map(|(f, left)| (*f, alone(*f) + left));
+    rest.windows(2).flat_map(piece).chain(last).collect()
+}
+
 /// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below it only fills the frame.
 pub(crate) fn phase_plot(
     f: &[f64],
@@ -57,6 +97,10 @@ pub(crate) fn phase_plot(
         values.zip(known).map(|(v, known)| if known { v.arg().to_degrees() } else { f64::NAN }).collect();
     let some = phase.iter().any(|p| p.is_nan());
     let label = if some { "Phase where γ² ≥ 0.5" } else { "Phase" };
-    Plot::new(AxisSpec::frequency(), AxisSpec::new(label, "°").limits(-180.0, 180.0))
-        .with(Series::phase("", f, &phase).ink(ink).stroke(Stroke::Solid))
+    let shown = if f.len() <= DOTS {
+        Series::points("", f, phase).marker(Marker::Circle)
+    } else {
+        Series::phase("", f, &phase).stroke(Stroke::Solid)
+    };
+    Plot::new(AxisSpec::frequency(), AxisSpec::new(label, "°").limits(-180.0, 180.0)).with(shown.ink(ink))
 }

@@ -152,7 +152,7 @@ impl Measured {
     }
 
     /// How often iω multiplies a receptance to give the values.
-    pub(super) fn power(&self) -> i32 {
+    pub fn power(&self) -> i32 {
         match self.kind {
             FrfKind::Mobility => 1,
             FrfKind::Accelerance => 2,

@@ -1,8 +1,9 @@
 //! Receptance of sweeps: Bode and Nyquist.
 
+use super::response::{look, rank};
 use crate::measure::response::{Receptance, Response};
 use crate::report::layout::lettered;
-use crate::report::{AxisSpec, Figure, Ink, Plot, Series, Stroke};
+use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 use num_complex::Complex64;
 
 /// Points of a receptance in the order of frequency.
@@ -13,34 +14,59 @@ fn points(response: &Response) -> Vec<(f64, Receptance)> {
     known
 }
 
+/// Receptances in the plane are shown in µm/N on both axes.
+const MICRO: f64 = 1e6;
+/// Width of a panel over its height.
+const WIDE: f64 = 2.9;
+
+/// Limits of a plane that holds all points, a unit as long along both axes.
+fn level(points: &[(f64, f64)]) -> [(f64, f64); 2] {
+    let around = |of: fn(&(f64, f64)) -> f64| {
+        let ends =
+            points.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        (f64::midpoint(ends.0, ends.1), 0.55 * (ends.1 - ends.0))
+    };
+    let [(re, right), (im, up)] = [around(|p| p.0), around(|p| p.1)];
+    let half = up.max(right / WIDE).max(f64::MIN_POSITIVE);
+    [(re - WIDE * half, re + WIDE * half), (im - half, im + half)]
+}
+
 /// Magnitude (logarithmic) and phase of the receptances over frequency, and their imaginary over their real part; `None` where no
 /// sweep has a phase.
 pub fn receptance(title: &str, responses: &[Response]) -> Option<Figure> {
-    let known: Vec<(&Response, Vec<(f64, Receptance)>)> =
-        responses.iter().map(|r| (r, points(r))).filter(|(_, points)| !points.is_empty()).collect();
+    let all = responses.iter().enumerate().map(|(i, r)| (r, rank(responses, i), points(r)));
+    let known: Vec<(&Response, usize, Vec<(f64, Receptance)>)> =
+        all.filter(|(.., points)| !points.is_empty()).collect();
     if known.is_empty() {
         return None;
     }
     let frequency = || AxisSpec::new("Excitation frequency", "Hz");
     let mut above = Plot::new(frequency(), AxisSpec::new("Receptance", "m/N").log());
     let mut phase = Plot::new(frequency(), AxisSpec::new("Phase", "°").limits(-180.0, 180.0));
-    let mut nyquist = Plot::new(AxisSpec::new("Re", "m/N"), AxisSpec::new("Im", "m/N"));
-    for (i, (response, points)) in known.iter().enumerate() {
-        let ink = Ink::Nth(i);
+    let plane =
+        known.iter().flat_map(|(.., points)| points.iter().map(|(_, r)| (MICRO * r.re, MICRO * r.im)));
+    let [re, im] = level(&plane.collect::<Vec<_>>());
+    let mut nyquist = Plot::new(
+        AxisSpec::new("Re", "µm/N").limits(re.0, re.1),
+        AxisSpec::new("Im", "µm/N").limits(im.0, im.1),
+    );
+    for (response, rank, points) in &known {
+        let (marker, ink) = look(response, *rank);
+        let marked = |series: Series| Series { marker, ..series.ink(ink) };
         let values: Vec<Complex64> = points.iter().map(|(_, r)| Complex64::new(r.re, r.im)).collect();
         let std: Vec<f64> = points.iter().map(|(_, r)| r.std.unwrap_or(0.0)).collect();
         let f: Vec<f64> = points.iter().map(|(f, _)| *f).collect();
         let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
         let measured = Series::points(response.name.clone(), f.clone(), size).y_error(std);
-        above = above.with(measured.ink(ink).stroke(Stroke::Thin));
+        above = above.with(marked(measured).stroke(Stroke::Thin));
         let degrees: Vec<f64> = values.iter().map(|v| v.arg().to_degrees()).collect();
-        phase = phase.with(Series::points("", f, degrees).ink(ink));
-        let (re, im): (Vec<f64>, Vec<f64>) = values.iter().map(|v| (v.re, v.im)).unzip();
-        nyquist = nyquist.with(Series::points("", re, im).ink(ink).stroke(Stroke::Thin));
+        phase = phase.with(marked(Series::points("", f, degrees)));
+        let (re, im): (Vec<f64>, Vec<f64>) = values.iter().map(|v| (MICRO * v.re, MICRO * v.im)).unzip();
+        nyquist = nyquist.with(marked(Series::points("", re, im)).stroke(Stroke::Thin));
     }
     let caption = "Displacement over force at the excitation frequency, and its course in the complex plane. Bars: one standard \
         uncertainty, where larger than the marker.";
     Some(lettered(
-        Figure::double(title).height(170.0).panel(above).panel(phase).panel(nyquist).caption(caption),
+        Figure::double(title).height(220.0).panel(above).panel(phase).panel(nyquist).caption(caption),
     ))
 }

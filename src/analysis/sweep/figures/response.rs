@@ -106,6 +106,14 @@ pub(super) fn series(
             std.push(0.0);
         }
     }
+    let (marker, ink) = look(response, rank);
+    let measured = Series { marker, ..Series::points(response.name.clone(), x, y).y_error(std) };
+    let limits = Series::points("", at, limits).marker(Marker::Limit);
+    [measured, limits].map(|series| series.ink(ink))
+}
+
+/// Marker and ink of a sweep, the same in all figures; the marker is that of the ink where the mass is not known.
+pub(super) fn look(response: &Response, rank: usize) -> (Option<Marker>, Ink) {
     let down = response.direction == Some(Direction::Down);
     let marker = match (response.mass, down) {
         (Some(2), false) => Some(Marker::FilledSquare),
@@ -114,10 +122,7 @@ pub(super) fn series(
         (Some(_), true) => Some(Marker::OpenCircle),
         (None, _) => None,
     };
-    let measured = Series { marker, ..Series::points(response.name.clone(), x, y).y_error(std) };
-    let limits = Series::points("", at, limits).marker(Marker::Limit);
-    let ink = response.mass.map_or(2 * rank, |mass| 2 * rank + usize::from(mass.saturating_sub(1)));
-    [measured, limits].map(|series| series.ink(Ink::Nth(ink)))
+    (marker, Ink::Nth(response.mass.map_or(rank, |mass| 2 * rank + usize::from(mass.saturating_sub(1)))))
 }
 
 /// The unit in which motion is shown, and the factor from SI: the same on every axis.

@@ -12,7 +12,7 @@ const REFERENCE: f64 = 1e-6;
 /// Range of a map in dB: that of a 16-bit analyser.
 const RANGE: f64 = 90.0;
 
-/// Waterfall from the cut-off to `fmax` (Hz; the last line where it is `None`).
+/// Waterfall from the cut-off to `fmax` (Hz; to the last line that is to be seen where it is `None`).
 ///
 /// # Errors
 /// If the matrix and its axes do not fit.
@@ -21,7 +21,7 @@ pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let (low, high) = range(matrix, fmax)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
         .frequencies(low, high);
-    Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(caption(matrix)))
+    Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(caption(matrix, fmax, high)))
 }
 
 /// Level over frequency and excitation in dB, from the largest line down to the noise.
@@ -46,8 +46,8 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let top = (decibel(largest, REFERENCE) / 10.0).ceil() * 10.0;
     let key = key.limits(top - RANGE, top);
     let caption = format!(
-        "{} Colours span {RANGE:.0} dB below the highest level. White: not measured.",
-        caption(matrix)
+        "{} Colours span {RANGE:.0} dB below the highest level. White: no value.",
+        caption(matrix, fmax, high)
     );
     let heatmap = Heatmap::new(&x, &y, &values, key)?;
     let frequency = AxisSpec::frequency().limits(low, high);
@@ -59,7 +59,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
 
 fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
     let last = matrix.frequency.last().copied().unwrap_or(1.0);
-    let high = fmax.unwrap_or(last).min(last);
+    let high = fmax.unwrap_or_else(|| highest(matrix)).min(last);
     if high <= matrix.fmin {
         return Err(Error::usage(
             format!("a picture from {:.3} Hz (the cut-off) to {high:.3} Hz", matrix.fmin),
@@ -72,6 +72,30 @@ fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
     Ok((matrix.fmin, high))
 }
 
-fn caption(matrix: &Matrix) -> String {
-    if matrix.fmin > 0.0 { format!("Lines below {:.2} Hz are left out.", matrix.fmin) } else { String::new() }
+/// Lines beyond which none reaches this part of the largest are not shown, where no other end is asked for.
+const SEEN: f64 = 0.01;
+/// Part of the highest excitation that is always shown: its second harmonic is among it.
+const HARMONICS: f64 = 2.5;
+
+/// The end of what is to be seen, in Hz.
+fn highest(matrix: &Matrix) -> f64 {
+    let finite = |v: &&f64| v.is_finite();
+    let largest = matrix.magnitude.iter().filter(finite).copied().fold(0.0, f64::max);
+    let seen = |k: &usize| matrix.magnitude.column(*k).iter().any(|v| *v >= SEEN * largest);
+    let last = (0..matrix.frequency.len()).rev().find(seen).map_or(f64::INFINITY, |k| matrix.frequency[k]);
+    let excitation = matrix.excitation.iter().filter(finite).copied().fold(0.0, f64::max);
+    (1.1 * last).max(HARMONICS * excitation)
+}
+
+/// What is left out of a picture up to `high` Hz, unless that was asked for.
+fn caption(matrix: &Matrix, fmax: Option<f64>, high: f64) -> String {
+    let last = matrix.frequency.last().copied().unwrap_or(0.0);
+    let mut words = Vec::new();
+    if matrix.fmin > 0.0 {
+        words.push(format!("Lines below {:.2} Hz are left out.", matrix.fmin));
+    }
+    if fmax.is_none() && high < last {
+        words.push(format!("Lines above {high:.0} Hz are below 1 % of the largest."));
+    }
+    words.join(" ")
 }
