@@ -37,7 +37,9 @@ impl SweepReader {
             one(file, force, response).map_err(|e: Error| e.in_file(file))
         };
         match (steps.files.as_slice(), steps.force.as_slice(), steps.response.as_slice()) {
-            (files, [force], [response]) => files.par_iter().map(|file| one(file, force, response)).collect(),
+            (files, [force], [response]) => {
+                in_order(files.par_iter().map(|file| one(file, force, response)).collect())
+            }
             ([file], forces, responses) => {
                 let pairs = forces.par_iter().zip(responses.par_iter());
                 let pair = |(force, response): (&String, &String)| {
@@ -48,7 +50,7 @@ impl SweepReader {
                         ..step
                     })
                 };
-                pairs.map(pair).collect()
+                in_order(pairs.map(pair).collect())
             }
             (files, forces, _) => {
                 let found = format!("{} files and {} channels of force", files.len(), forces.len());
@@ -93,4 +95,9 @@ impl SweepReader {
         }
         Ok(trace)
     }
+}
+
+/// All of them, or the complaint about the first that has one, whichever was read first.
+fn in_order(all: Vec<Result<StepTraces>>) -> Result<Vec<StepTraces>> {
+    all.into_iter().collect()
 }

@@ -36,8 +36,8 @@ pub struct SweepList {
 const NAME: usize = 11;
 
 /// What stands in a list file.
-const HOLDS: &str = "a list holds: number of points, lines, base band in Hz, force names, response names, one a line; of a \
-                     measurement file `vibro info` says what is in it";
+const HOLDS: &str = "a list holds: number of points, lines, base band in Hz, force names, response names, one a line; \
+                     time traces, one file a step, go to a campaign: [[sweep]] with name, traces = \"step_*.csv\", force and response";
 
 impl SweepList {
     /// Reads a list file or a hand-over file. Names are taken relative to its folder.
@@ -46,6 +46,15 @@ impl SweepList {
     /// If a number or a name is missing or out of range, or a name leads outside the folder and `allow_outside` is not set.
     pub fn from_path(path: impl AsRef<Path>, allow_outside: bool) -> Result<SweepList> {
         let path = path.as_ref();
+        let several = path.is_dir() || !path.exists() && path.to_string_lossy().contains('*');
+        if several {
+            return Err(Error::input(
+                Place::file(path),
+                "several files",
+                "a list file, or campaign.toml#name",
+            )
+            .hint(HOLDS));
+        }
         let source = Source::file(path)?;
         if !encoding::is_text(source.head()) {
             return Err(Error::input(Place::file(path), "binary data", "a list file of text").hint(HOLDS));

@@ -165,11 +165,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let mut say = |holds: bool, finding: Finding| found.extend(holds.then_some(finding));
     say(xi + spread >= 0.5, Finding::caution("pulse-no-inner-peak").number("xi", xi));
     say(xi - spread < 0.0, Finding::caution("pulse-no-damping").number("xi", xi));
-    let coloured = Finding::caution("pulse-residuals-coloured");
-    // A factor of 1.00 is none.
-    let enlarged = coloured.clone().number("factor", whiteness.inflation);
-    let coloured = if whiteness.inflation < 1.005 { coloured } else { enlarged };
-    say(widening.is_some() && whiteness.rejected(), coloured);
+    say(widening.is_some() && whiteness.rejected(), whiteness.coloured("pulse-residuals-coloured"));
     if let Some(filter) = filter {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
         say(duration * filter.corner < 2.0, near.number("corner", filter.corner));

@@ -1,5 +1,7 @@
 //! Whether what a fit leaves is noise, and what it costs where it is not.
 
+use vibro_record::Finding;
+
 /// What residuals in a row say of the model that left them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Whiteness {
@@ -46,6 +48,12 @@ impl Whiteness {
     /// Whether white noise is rejected.
     pub fn rejected(&self) -> bool {
         self.p_value.is_some_and(|p| p < REJECTED)
+    }
+
+    /// That the residuals are not white, with the factor by which that enlarges uncertainties, unless it is 1.00.
+    pub fn coloured(&self, code: &'static str) -> Finding {
+        let found = Finding::caution(code);
+        if self.inflation < 1.005 { found } else { found.number("factor", self.inflation) }
     }
 }
 

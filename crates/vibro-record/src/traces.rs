@@ -221,7 +221,7 @@ impl Traces {
     }
 }
 
-/// Index of a channel by its name or by its number from 1; `path` is for the complaint.
+/// Index of a channel by its name, in any case where none has that of `wanted`, or by its number from 1; `path` is for the complaint.
 ///
 /// # Errors
 /// If there is none, or two have this name.
@@ -230,8 +230,14 @@ pub fn find_channel<'a>(
     wanted: &str,
     all: impl Iterator<Item = &'a Meta> + Clone,
 ) -> Result<usize> {
-    let same: Vec<usize> =
-        all.clone().enumerate().filter(|(_, m)| m.name == wanted).map(|(i, _)| i).collect();
+    let named = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        all.clone().enumerate().filter(|(_, m)| is(&m.name)).map(|(i, _)| i).collect()
+    };
+    let mut same = named(&|name| name == wanted);
+    if same.is_empty() {
+        let small = wanted.to_lowercase();
+        same = named(&|name| name.to_lowercase() == small);
+    }
     let n = all.clone().count();
     let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
     let list: Vec<String> =

@@ -70,7 +70,7 @@ fn curve(measured: &Measured, modes: &[Mode]) -> Vec<(f64, Complex64)> {
         };
         Complex64::new(0.0, omega).powi(measured.power()) * modes.iter().map(of).sum::<Complex64>()
     };
-    let between = SMOOTH / fitted.len().max(1) + 1;
+    let between = SMOOTH.div_ceil(fitted.len().saturating_sub(1).max(1));
     let rest: Vec<(f64, Complex64)> = at_lines.map(|(f, value)| (f, value - alone(f))).collect();
     let piece = |pair: &[(f64, Complex64)]| {
         let ((a, from), (b, to)) = (pair[0], pair[1]);
@@ -103,4 +103,34 @@ pub(crate) fn phase_plot(
         Series::phase("", f, &phase).stroke(Stroke::Solid)
     };
     Plot::new(AxisSpec::frequency(), AxisSpec::new(label, "°").limits(-180.0, 180.0)).with(shown.ink(ink))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::modal::{ModalOptions, modal};
+    use crate::record::FrfKind;
+
+    /// Two modes at twelve lines: the curve goes through them, and between them as the modes do.
+    #[test]
+    fn the_curve_of_few_lines_is_that_of_the_modes_between_them() {
+        let truth = |f: f64| -> Complex64 {
+            let of = |(own, zeta, a): (f64, f64, f64)| {
+                let (own, w) = (TAU * own, TAU * f);
+                a / Complex64::new(own * own - w * w, 2.0 * zeta * own * w)
+            };
+            [(12.0, 0.02, 0.5), (25.0, 0.03, 0.4)].into_iter().map(of).sum()
+        };
+        let f = [9.0, 11.0, 12.0, 12.6, 13.2, 14.5, 17.5, 22.0, 24.2, 25.3, 26.6, 30.0];
+        let measured = Measured::new(f.to_vec(), f.iter().map(|f| truth(*f)).collect(), FrfKind::Receptance);
+        let options = ModalOptions { band: Some((9.0, 30.0)), ..ModalOptions::default() };
+        let found = modal(&measured, &options).unwrap();
+        assert_eq!(found.modes.len(), 2);
+        let curve = curve(&measured, &found.modes);
+        assert!(curve.len() > SMOOTH && curve.windows(2).all(|w| w[0].0 < w[1].0));
+        for (f, value) in curve {
+            // Fits end where a step gains 1e-8 of what is left; that of exact lines is rounding.
+            assert!((value - truth(f)).norm() < 1e-5 * truth(f).norm(), "{f}: {value} {}", truth(f));
+        }
+    }
 }

@@ -483,7 +483,13 @@ fn a_spectrum_in_place_of_a_list_and_an_empty_campaign() {
     let folder = tempfile::tempdir().unwrap();
     sweep(folder.path(), &frequencies());
     let found = complaint(&["response", text(&folder.path().join("VUP0001.DAT"))], 2);
-    has(&found, &["a list holds: number of points", "of a measurement file `vibro info`"]);
+    has(&found, &["a list holds: number of points", "traces = \"step_*.csv\""]);
+    for several in [folder.path().to_owned(), folder.path().join("VUP*.DAT")] {
+        has(
+            &complaint(&["response", text(&several)], 2),
+            &["several files; expected a list file", "traces = "],
+        );
+    }
     let path = folder.path().join("campaign.toml");
     fs::write(&path, "").unwrap();
     has(&complaint(&["run", text(&path)], 2), &["the file is empty; expected a campaign", "[[sweep]]"]);

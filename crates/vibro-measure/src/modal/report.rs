@@ -47,8 +47,7 @@ impl Candidate<'_> {
             find(true, found.number("std", std[1]).number("unexplained", fit.unexplained));
             return None;
         };
-        let coloured = Finding::caution("modal-residuals-coloured").number("factor", fit.whiteness.inflation);
-        find(fit.whiteness.rejected(), coloured);
+        find(fit.whiteness.rejected(), fit.whiteness.coloured("modal-residuals-coloured"));
         let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
         let spacing = span / (group.lines.len() - 1) as f64;
         // Averaging segments multiplies the impulse response by the window's autocorrelation, 1 − 2π²t²/3T² for a Hann window; the

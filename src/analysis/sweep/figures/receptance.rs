@@ -35,8 +35,7 @@ fn level(points: &[(f64, f64)]) -> [(f64, f64); 2] {
 /// sweep has a phase.
 pub fn receptance(title: &str, responses: &[Response]) -> Option<Figure> {
     let all = responses.iter().enumerate().map(|(i, r)| (r, rank(responses, i), points(r)));
-    let known: Vec<(&Response, usize, Vec<(f64, Receptance)>)> =
-        all.filter(|(.., points)| !points.is_empty()).collect();
+    let known: Vec<(&Response, usize, Vec<_>)> = all.filter(|(.., points)| !points.is_empty()).collect();
     if known.is_empty() {
         return None;
     }
