@@ -53,7 +53,7 @@ pub struct Taken {
 pub struct Waterfall {
     #[command(flatten)]
     taken: Taken,
-    /// Highest frequency drawn, in Hz [default: the base band]
+    /// Highest frequency drawn, in Hz [default: the last line to be seen]
     fmax: Option<f64>,
 }
 

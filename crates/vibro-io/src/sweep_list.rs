@@ -57,7 +57,8 @@ impl SweepList {
         }
         let source = Source::file(path)?;
         if !encoding::is_text(source.head()) {
-            return Err(Error::input(Place::file(path), "binary data", "a list file of text").hint(HOLDS));
+            return Err(Error::input(Place::file(path), "binary data", "a list file of text")
+                .hint(format!("{HOLDS}; of a measurement file `vibro info` says what is in it")));
         }
         let mut list = parse(path, &encoding::decode(&source.all()?))?;
         let folder = path.parent().unwrap_or(Path::new(""));

@@ -7,7 +7,7 @@
 mod damped;
 mod usable;
 
-use super::mean::average;
+use super::mean::{average, upper_median};
 use super::residuals::chi_squared_above;
 use super::{Estimate, noise};
 use damped::{Damped, Group, LINES, OWN, lines};
@@ -90,6 +90,8 @@ const SEEN: f64 = 0.01;
 const STRETCHES: (usize, f64) = (5, 1.2);
 /// Fall of what is left from block to block where a contact ends.
 const FALL: f64 = 6.0;
+/// Lines on either side that belong to a broad mode.
+const BROAD: usize = 4;
 /// How often the levels of a steady mode may seem to change.
 const CHANGED: f64 = 1e-3;
 
@@ -195,18 +197,21 @@ impl Sines {
     /// The sines within the band.
     fn asked(&self) -> impl Iterator<Item = (&Group, usize)> {
         let all = self.groups.iter().flat_map(|group| (0..group.sines.len()).map(move |m| (group, m)));
-        all.filter(|(group, m)| self.band.contains(&(group.sines[*m].periods.round() as usize)))
+        // A mode whose largest line is in the band lies within a line of it.
+        let within =
+            |periods: f64| [0.0, 1.0].iter().any(|by| self.band.contains(&((periods + by) as usize)));
+        all.filter(move |(group, m)| within(group.sines[*m].periods))
     }
 
     fn decaying(&self) -> usize {
         self.asked().filter(|(group, m)| decays(group, *m)).count()
     }
 
-    /// The sine with the highest line: over the whole part it moves most.
+    /// The sine that moves most over the whole part; what does not decay counts as if it did.
     fn strongest(&self) -> Option<(&Group, usize)> {
         let size = |(group, m): &(&Group, usize)| {
             let sine = &group.sines[*m];
-            sine.amplitude.norm() / sine.decay.max(1.0)
+            sine.amplitude.norm() / if decays(group, *m) { sine.decay.max(1.0) } else { ENOUGH }
         };
         self.asked().max_by(|a, b| size(a).total_cmp(&size(b)))
     }
@@ -229,13 +234,15 @@ impl Sines {
         tops.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
         // Rayleigh: one of so many lines of noise passes t standard deviations with a chance of n e^(−t²/2).
         let visible = (2.0 * (band.len().max(1) as f64 / BY_CHANCE).ln()).sqrt();
-        // Of a mode that is over long before the others the lines nearby are its own.
-        let seen = |k: &usize| {
-            [noise::REACH, k / 2].iter().any(|reach| {
-                noise::around(&sizes, *k, *reach.max(&noise::REACH), None)
-                    .is_none_or(|floor| sizes[*k] > visible * floor)
-            })
+        let above = |k: usize, size: f64, reach: usize| {
+            noise::around(&sizes, k, reach, None).is_none_or(|floor| size > visible * floor)
         };
+        // Of a mode that is over long before the others the lines nearby are its own, and as high as it.
+        let wide = |k: usize| {
+            let near = &sizes[k.saturating_sub(BROAD)..(k + BROAD + 1).min(sizes.len())];
+            upper_median(near.iter().copied()).is_some_and(|size| above(k, size, noise::REACH.max(k / 2)))
+        };
+        let seen = |k: &usize| above(*k, sizes[*k], noise::REACH) || wide(*k);
         let known = |k: &usize| self.odd.iter().any(|odd| odd.abs_diff(*k) < 2);
         tops.into_iter().filter(|k| !known(k)).take(MOST).find(seen)
     }
@@ -262,16 +269,19 @@ impl Sines {
         for decay in [0.3 * decay, decay, 0.2] {
             let sines: Vec<Damped> = old.iter().copied().chain([Damped { decay, ..new }]).collect();
             let Ok(group) = fit(&sines, range(&sines, rest.len())) else { continue };
-            let wider = range(&group.sines, rest.len());
-            let group = if wider.len() > 2 * group.lines.len() {
-                fit(&group.sines, wider).unwrap_or(group)
-            } else {
-                group
-            };
             if best.as_ref().is_none_or(|best| group.noise() < best.noise()) {
                 best = Some(group);
             }
         }
+        // A mode that turns out broader is fitted to all of its lines.
+        let best = best.map(|group| {
+            let wider = range(&group.sines, rest.len());
+            if wider.len() > 2 * group.lines.len() {
+                fit(&group.sines, wider).unwrap_or(group)
+            } else {
+                group
+            }
+        });
         let good = best.filter(|group| {
             let added = group.sines[old.len()];
             let alone =

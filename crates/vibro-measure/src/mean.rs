@@ -59,8 +59,8 @@ pub(crate) fn mixture(estimates: &[(f64, f64, f64)]) -> (f64, f64) {
 /// Where values depend on the one before by ρ the density falls over the cosines, to the part (1 − ρ)²/(1 − 2ρ cos ω + ρ²) of that
 /// at frequency 0; the variance is divided by the mean of these parts (prewhitening with a first-order model, D. Andrews and J. Monahan,
 /// Econometrica 60 (1992) 953), ρ from the serial correlation r, whose bias −(1 + 3r)/n is added (M. Kendall, Biometrika 41 (1954) 403).
-/// The few cosines may be small by chance: values that cannot be told from independent ones have 0.6 of the variance that γ₀ and γ₁ give at
-/// least. ± 1.96 standard uncertainties hold the truth in 95 to 97 % of sequences that are independent, in 93 % of 20 values or more up to ρ = 0.6;
+/// The few cosines may be small by chance: unless values surely depend inversely on those beside them, the variance is no less than 0.6 of what
+/// γ₀ and a negative γ₁ give. ± 1.96 standard uncertainties hold the truth in 95 to 97 % of sequences that are independent, in 93 % of 20 values or more up to ρ = 0.6;
 /// at ρ = 0.9 in 83 % of 20, 89 % of 60 and 94 % of 300. `wanders` tells of sequences in which the uncertainty may be too small.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mean {

@@ -21,8 +21,8 @@ use vibro_signal::welch::{Averages, Welch};
 
 /// Samples of a segment where none is stated.
 const SEGMENT: usize = 8192;
-/// Half the span of a reference over its RMS from which on it rests but for blows: noise has 3 to 5, and blows of a duty of one in 200 have 10 at least.
-const BLOWS: f64 = 10.0;
+/// Half the span of a reference over its RMS from which on it rests but for blows: noise has 3 to 5, and the impacts of a machine at a duty of one in 200 have 10.
+const BLOWS: f64 = 15.0;
 /// One part in so many of a hammer record stands before the blow.
 const BEFORE: usize = 50;
 
@@ -148,7 +148,9 @@ fn response(
             let why = format!(
                 "the force rests but for blows (half its span is {crest:.0} times its RMS): segments would cut their responses"
             );
-            return Err(Error::refused(why).hint("take one segment a blow").setting("hammer"));
+            return Err(Error::refused(why)
+                .hint("for a hammer test take one segment a blow, else cut spikes out")
+                .setting("hammer"));
         }
         if averages.count == 1 {
             return Err(Error::refused("one segment only; coherence needs two or more")

@@ -129,11 +129,17 @@ impl Step {
         let (begins, state) = settled(&ratio);
         // A force that is still rising gives the right ratio, and another size.
         let sizes: Vec<Complex64> = f.iter().map(|f| f.norm().into()).collect();
-        let first = begins.max(settled(&sizes).0);
+        let (steady, drift) = settled(&sizes);
+        let first = begins.max(steady);
         let turned: Vec<Complex64> = ratio.iter().zip(&f).map(|(r, f)| r * f.norm()).collect();
-        let (mut response, mut ratio) = (Phasor::of(&turned[first..]), Phasor::of(&ratio[first..]));
+        let (mut response, mut ratio) = (Phasor::of(&turned[first..]), Phasor::of(&ratio[begins..]));
         let force: Vec<f64> = f[first..].iter().map(|f| f.norm()).collect();
         let mut force = (mean::average(&force), scatter_of_mean(&force));
+        // What it still changes by is in its uncertainty, and in that of the response to it.
+        if let Settled::Nearly(left) | Settled::No(left) = drift {
+            force.1 = force.1.map(|std| std.hypot(left));
+            response.allow(left * ratio.value.norm());
+        }
         match state {
             Settled::Yes => {}
             Settled::Nearly(left) => {
@@ -155,7 +161,7 @@ impl Step {
             (response, ratio) = (response.doubted(), ratio.doubted());
             force.1 = force.1.filter(|_| cut_force == 0);
         }
-        let begins = blocks.start(first);
+        let begins = blocks.start(begins);
         Ok(Step { rate, samples, begins, frequency, force, response, ratio, findings })
     }
 

@@ -42,8 +42,8 @@ const ROUNDING: f64 = 1e-12;
 const IMAGE: f64 = 0.25;
 /// Noise around a line is coloured where it is this much stronger than white noise of its variance.
 const COLOURED: f64 = 1.5;
-/// Lines on either side that tell the noise at a sine: those within half of its frequency, between which noise of any colour changes
-/// little beside the 1/f that is allowed for, but so many at least and at most.
+/// Lines on either side that tell the noise at a sine: those within half of its frequency, between which noise steeper than
+/// the 1/f that is allowed for changes threefold, but so many at least and at most.
 const AROUND: [usize; 2] = [15, 40];
 /// From so many lines on the uncertainty in coloured noise holds what another sine does.
 const FAR: f64 = 3.5;

@@ -124,14 +124,14 @@ pub fn from_blows(
     let mut sums = Sums::new(2, true, transform.lines());
     let mut noise = 0.0;
     for start in &kept {
+        // Steps from sample to sample: hum and drift before the blow are no noise of all lines.
+        let before = force.values.get(*start..start + how.before).unwrap_or_default();
+        let squares: f64 = before.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+        noise += 0.5 * squares / before.len().saturating_sub(1).max(1) as f64 / kept.len() as f64;
         for ((work, weights), trace) in work.iter_mut().zip(&weights).zip([force, response]) {
             let part = trace.values.get(*start..start + how.length).unwrap_or_default();
             // The level before the blow is the zero of this record.
             let level = part[..how.before].iter().sum::<f64>() / how.before.max(1) as f64;
-            if std::ptr::eq(trace, force) {
-                let squares: f64 = part[..how.before].iter().map(|v| (v - level).powi(2)).sum();
-                noise += squares / how.before.saturating_sub(1).max(1) as f64 / kept.len() as f64;
-            }
             work.load(part, level, weights);
             transform.run(work);
         }

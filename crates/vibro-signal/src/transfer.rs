@@ -71,6 +71,13 @@ impl Transfer {
             beside.into_iter().filter_map(|of| of.get_mut(k)).for_each(|v| *v = f64::NAN);
         }
         let lines = self.frf.values.len();
+        if silent > 0 {
+            // Lines without a function have no coherence to be low.
+            self.findings.retain(|found| found.code != "frf-low-coherence");
+            let poor = self.coherence.iter().filter(|c| **c < 0.5).count();
+            let low = Finding::caution("frf-low-coherence").count("n", poor).count("lines", lines - silent);
+            self.findings.extend((2 * poor > lines - silent).then_some(low));
+        }
         let found = Finding::caution("frf-not-excited").count("n", silent).count("lines", lines);
         self.findings.extend((silent > 0).then_some(found));
     }

@@ -26,7 +26,9 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     // Modes that were fitted together have one curve.
     let (mut x, mut y, mut angle) = (Vec::new(), Vec::new(), Vec::new());
     for together in modes.chunk_by(|a, b| a.lines == b.lines) {
-        for (f, value) in curve(measured, together).into_iter().chain([(f64::NAN, Complex64::from(f64::NAN))])
+        for (f, value) in curve(measured, together, meta.added_decay().is_some() || measured.window.is_some())
+            .into_iter()
+            .chain([(f64::NAN, Complex64::from(f64::NAN))])
         {
             x.push(f);
             y.push(value.norm());
@@ -54,11 +56,12 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     lettered(figure.height(110.0).shared_x().panel(above).panel(below))
 }
 
-/// The fitted response at its lines and, where these are few, between them: the modes, and a straight line through what else was fitted.
-fn curve(measured: &Measured, modes: &[Mode]) -> Vec<(f64, Complex64)> {
+/// The fitted response at its lines and, where these are few, between them: the modes, and a straight line through what else was fitted. What a
+/// window adds to the modes is known at the lines only.
+fn curve(measured: &Measured, modes: &[Mode], windowed: bool) -> Vec<(f64, Complex64)> {
     let fitted = modes.first().map(|mode| mode.fitted.as_slice()).unwrap_or_default();
     let at_lines = fitted.iter().map(|(f, re, im)| (*f, Complex64::new(*re, *im)));
-    if measured.magnitude_only || fitted.len() >= SMOOTH {
+    if windowed || measured.magnitude_only || fitted.len() >= SMOOTH {
         return at_lines.collect();
     }
     let alone = |f: f64| {
@@ -126,7 +129,7 @@ mod tests {
         let options = ModalOptions { band: Some((9.0, 30.0)), ..ModalOptions::default() };
         let found = modal(&measured, &options).unwrap();
         assert_eq!(found.modes.len(), 2);
-        let curve = curve(&measured, &found.modes);
+        let curve = curve(&measured, &found.modes, false);
         assert!(curve.len() > SMOOTH && curve.windows(2).all(|w| w[0].0 < w[1].0));
         for (f, value) in curve {
             // Fits end where a step gains 1e-8 of what is left; that of exact lines is rounding.

@@ -149,8 +149,12 @@ impl Samples<'_> {
             return Err(Error::refused(format!("the fit of the model {} does not converge", model.name())));
         };
         if model == ContactModel::PowerLaw {
-            best.also =
-                fits.filter(|fit| (fit.loss_exponent() - best.loss_exponent()).abs() > APART).collect();
+            for fit in fits {
+                let known = std::iter::once(&best).chain(&best.also);
+                if known.clone().all(|k| (fit.loss_exponent() - k.loss_exponent()).abs() > APART) {
+                    best.also.push(fit);
+                }
+            }
         }
         Ok(best)
     }
@@ -260,7 +264,7 @@ impl Samples<'_> {
             ContactModel::KelvinVoigt => &[[0.03, 0.0], [0.15, 0.0], [0.3, 0.0], [0.5, 0.0], [0.75, 0.0]],
             ContactModel::Hertz => &[[0.0; 2]],
             ContactModel::HuntCrossley => &[[0.1, 1.5], [0.6, 1.5], [2.0, 1.5]],
-            ContactModel::PowerLaw => &[[0.1, 0.4], [0.4, 0.4], [0.1, 1.5], [0.6, 1.5]],
+            ContactModel::PowerLaw => &[[0.1, 0.4], [0.4, 0.4], [0.1, 1.5], [0.6, 1.5], [2.0, 1.5]],
             ContactModel::Yielding => &[[0.4, 0.0], [0.7, 0.0], [0.95, 0.0]],
         };
         let guess = |[shape, loss]: [f64; 2], duration: f64, lead: i32| {

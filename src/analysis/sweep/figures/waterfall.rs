@@ -18,10 +18,13 @@ const RANGE: f64 = 90.0;
 /// If the matrix and its axes do not fit.
 pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
-    let (low, high) = range(matrix, fmax)?;
+    let (low, high) = range(matrix, fmax, SEEN)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
         .frequencies(low, high);
-    Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(caption(matrix, fmax, high)))
+    Ok(Figure::double(matrix.name.clone())
+        .height(120.0)
+        .panel(scene)
+        .caption(caption(matrix, fmax, high, SEEN)))
 }
 
 /// Level over frequency and excitation in dB, from the largest line down to the noise.
@@ -33,7 +36,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
     // A map has one row a position: of repeated excitations the first stays.
     order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
-    let (low, high) = range(matrix, fmax)?;
+    let (low, high) = range(matrix, fmax, SEEN_IN_COLOUR)?;
     let columns: Vec<usize> =
         (0..matrix.frequency.len()).filter(|k| (low..=high).contains(&matrix.frequency[*k])).collect();
     let x: Vec<f64> = columns.iter().map(|k| matrix.frequency[*k]).collect();
@@ -47,7 +50,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let key = key.limits(top - RANGE, top);
     let caption = format!(
         "{} Colours span {RANGE:.0} dB below the highest level. White: no value.",
-        caption(matrix, fmax, high)
+        caption(matrix, fmax, high, SEEN_IN_COLOUR)
     );
     let heatmap = Heatmap::new(&x, &y, &values, key)?;
     let frequency = AxisSpec::frequency().limits(low, high);
@@ -57,9 +60,9 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     Ok(Figure::double(matrix.name.clone()).height(100.0).panel(plot).caption(caption))
 }
 
-fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
+fn range(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<(f64, f64)> {
     let last = matrix.frequency.last().copied().unwrap_or(1.0);
-    let high = fmax.unwrap_or_else(|| highest(matrix)).min(last);
+    let high = fmax.unwrap_or_else(|| highest(matrix, part)).min(last);
     if high <= matrix.fmin {
         return Err(Error::usage(
             format!("a picture from {:.3} Hz (the cut-off) to {high:.3} Hz", matrix.fmin),
@@ -74,28 +77,33 @@ fn range(matrix: &Matrix, fmax: Option<f64>) -> Result<(f64, f64)> {
 
 /// Lines beyond which none reaches this part of the largest are not shown, where no other end is asked for.
 const SEEN: f64 = 0.01;
+/// The same for a map, whose colours show less.
+const SEEN_IN_COLOUR: f64 = 1e-3;
 /// Part of the highest excitation that is always shown: its second harmonic is among it.
 const HARMONICS: f64 = 2.5;
 
 /// The end of what is to be seen, in Hz.
-fn highest(matrix: &Matrix) -> f64 {
+fn highest(matrix: &Matrix, part: f64) -> f64 {
     let finite = |v: &&f64| v.is_finite();
-    let largest = matrix.magnitude.iter().filter(finite).copied().fold(0.0, f64::max);
-    let seen = |k: &usize| matrix.magnitude.column(*k).iter().any(|v| *v >= SEEN * largest);
-    let last = (0..matrix.frequency.len()).rev().find(seen).map_or(f64::INFINITY, |k| matrix.frequency[k]);
+    // The line of the mean is no motion.
+    let lines = || (0..matrix.frequency.len()).filter(|k| matrix.frequency[*k] > 0.0);
+    let top = |k: usize| matrix.magnitude.column(k).iter().filter(finite).copied().fold(0.0, f64::max);
+    let largest = lines().map(top).fold(0.0, f64::max);
+    let seen = |k: &usize| top(*k) >= part * largest;
+    let last = lines().rev().find(seen).map_or(f64::INFINITY, |k| matrix.frequency[k]);
     let excitation = matrix.excitation.iter().filter(finite).copied().fold(0.0, f64::max);
     (1.1 * last).max(HARMONICS * excitation)
 }
 
 /// What is left out of a picture up to `high` Hz, unless that was asked for.
-fn caption(matrix: &Matrix, fmax: Option<f64>, high: f64) -> String {
+fn caption(matrix: &Matrix, fmax: Option<f64>, high: f64, part: f64) -> String {
     let last = matrix.frequency.last().copied().unwrap_or(0.0);
     let mut words = Vec::new();
     if matrix.fmin > 0.0 {
         words.push(format!("Lines below {:.2} Hz are left out.", matrix.fmin));
     }
     if fmax.is_none() && high < last {
-        words.push(format!("Lines above {high:.0} Hz are below 1 % of the largest."));
+        words.push(format!("Lines above {high:.0} Hz are below {} % of the largest.", 100.0 * part));
     }
     words.join(" ")
 }
