@@ -5,6 +5,7 @@
 //! Signal Process. 44 (1996) 281, the method RELAX, for damped sines). Noise is that which is left of the lines beside a sine.
 
 mod damped;
+mod result;
 mod usable;
 
 use super::mean::{average, upper_median};
@@ -12,63 +13,11 @@ use super::residuals::chi_squared_above;
 use super::{Estimate, noise};
 use damped::{Damped, Group, LINES, OWN, lines};
 use num_complex::Complex64;
-use serde::Serialize;
+pub use result::{DecayMode, DecayOptions, DecayResult, Level};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use usable::{Usable, levels, usable};
 use vibro_record::{Error, Finding, Result, Trace};
-
-/// What is known of a decay beside its record.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct DecayOptions {
-    /// Band in Hz in which modes are looked for. Default: all lines.
-    pub band: Option<(f64, f64)>,
-    /// Number of modes. Default: all that stand out of the noise.
-    pub modes: Option<usize>,
-}
-
-/// A mode of a free decay, A e^(−ζω₀t) cos(ω₀√(1−ζ²) t + φ), with t from the start of the part.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DecayMode {
-    /// Undamped natural frequency ω₀/2π in Hz.
-    pub frequency: Estimate,
-    /// Damping ratio ζ.
-    pub zeta: Estimate,
-    /// Amplitude A at the start, in the unit of the record.
-    pub amplitude: Estimate,
-    /// Phase φ at the start in rad.
-    pub phase: Estimate,
-}
-
-/// The strongest mode in a stretch of the part.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Level {
-    /// Beginning of the stretch in s.
-    pub start: f64,
-    /// The mode as fitted to this stretch alone, its amplitude that at the beginning.
-    #[serde(flatten)]
-    pub mode: DecayMode,
-}
-
-/// Modes of a free decay.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DecayResult {
-    /// Beginning of the part that was used, in s.
-    pub start: f64,
-    /// Its end in s.
-    pub end: f64,
-    /// Modes by rising frequency.
-    pub modes: Vec<DecayMode>,
-    /// The strongest mode over falling amplitude, where the part is long enough.
-    pub levels: Vec<Level>,
-    /// Damping ratio of the strongest mode from the logarithmic decrement between the first and the last level.
-    pub decrement: Option<Estimate>,
-    /// What was left out, and what makes numbers doubtful.
-    pub findings: Vec<Finding>,
-    /// Time in s, record and modes together over the part, for a figure.
-    #[serde(skip)]
-    pub curves: [Vec<f64>; 3],
-}
 
 /// Most sines of one record, those that do not decay with them.
 const MOST: usize = 12;
@@ -477,15 +426,6 @@ fn mode(group: &Group, m: usize, n: usize, rate: f64, unit: &'static str) -> Dec
         ),
         amplitude: estimate(size, [0.0, 0.0, c.re / size, c.im / size], unit),
         phase: estimate(c.arg(), [0.0, 0.0, -c.im / (size * size), c.re / (size * size)], "rad"),
-    }
-}
-
-impl DecayMode {
-    fn without_uncertainty(mut self) -> DecayMode {
-        for estimate in [&mut self.frequency, &mut self.zeta, &mut self.amplitude, &mut self.phase] {
-            estimate.std = None;
-        }
-        self
     }
 }
 

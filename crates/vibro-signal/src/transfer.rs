@@ -73,10 +73,8 @@ impl Transfer {
         let lines = self.frf.values.len();
         if silent > 0 {
             // Lines without a function have no coherence to be low.
-            self.findings.retain(|found| found.code != "frf-low-coherence");
-            let poor = self.coherence.iter().filter(|c| **c < 0.5).count();
-            let low = Finding::caution("frf-low-coherence").count("n", poor).count("lines", lines - silent);
-            self.findings.extend((2 * poor > lines - silent).then_some(low));
+            self.findings.retain(|found| found.code != LOW);
+            self.findings.extend(low(&self.coherence, lines - silent));
         }
         let found = Finding::caution("frf-not-excited").count("n", silent).count("lines", lines);
         self.findings.extend((silent > 0).then_some(found));
@@ -112,6 +110,15 @@ impl Transfer {
         self.frf = Frf { meta: result.meta, axis: result.axis, values, kind };
         Ok(self)
     }
+}
+
+/// Code of a low coherence.
+const LOW: &str = "frf-low-coherence";
+
+/// That more than half of so many lines with a function have a coherence below 0.5.
+fn low(coherence: &[f64], lines: usize) -> Option<Finding> {
+    let poor = coherence.iter().filter(|c| **c < 0.5).count();
+    (2 * poor > lines).then(|| Finding::caution(LOW).count("n", poor).count("lines", lines))
 }
 
 /// The function from the first channel of `averages` to another.
@@ -168,12 +175,10 @@ pub fn transfer(
         |c: &f64| Some(((1.0 - c) / (2.0 * degrees * c)).sqrt()).filter(|e| *e < 1.0).unwrap_or(f64::NAN);
     let of_magnitude = |c: &f64| if estimator == Estimator::Hv { error(c) * c.sqrt() } else { error(c) };
     let silent = xx.iter().zip(yy).skip(1).filter(|(xx, yy)| empty(xx, yy)).count();
-    let poor = coherence.iter().filter(|c| **c < 0.5).count();
     let few = Finding::caution("frf-few-averages").count("averages", averages.count);
     let findings = [
         (silent > 0, Finding::caution("frf-lines-empty").count("n", silent).count("lines", lines)),
         (averages.effective < ENOUGH && !alone, few.number("independent", averages.effective)),
-        (2 * poor > lines, Finding::caution("frf-low-coherence").count("n", poor).count("lines", lines)),
     ];
     let mut meta = named(reference, response);
     meta.step(
@@ -190,7 +195,7 @@ pub fn transfer(
         magnitude_std: values.iter().zip(&coherence).map(|(h, c)| h.norm() * of_magnitude(c)).collect(),
         phase_std: coherence.iter().map(|c| error(c).asin()).collect(),
         averages: averages.count,
-        findings: findings.into_iter().filter(|f| f.0).map(|f| f.1).collect(),
+        findings: findings.into_iter().filter(|f| f.0).map(|f| f.1).chain(low(&coherence, lines)).collect(),
         frf: Frf { kind: FrfKind::of(meta.quantity), meta, axis, values },
         coherence: if alone { Vec::new() } else { coherence },
     })

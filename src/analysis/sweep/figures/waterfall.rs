@@ -18,13 +18,10 @@ const RANGE: f64 = 90.0;
 /// If the matrix and its axes do not fit.
 pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
-    let (low, high) = range(matrix, fmax, SEEN)?;
+    let Shown { low, high, left_out } = shown(matrix, fmax, SEEN)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
         .frequencies(low, high);
-    Ok(Figure::double(matrix.name.clone())
-        .height(120.0)
-        .panel(scene)
-        .caption(caption(matrix, fmax, high, SEEN)))
+    Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(left_out))
 }
 
 /// Level over frequency and excitation in dB, from the largest line down to the noise.
@@ -36,7 +33,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
     // A map has one row a position: of repeated excitations the first stays.
     order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
-    let (low, high) = range(matrix, fmax, SEEN_IN_COLOUR)?;
+    let Shown { low, high, left_out } = shown(matrix, fmax, SEEN_IN_COLOUR)?;
     let columns: Vec<usize> =
         (0..matrix.frequency.len()).filter(|k| (low..=high).contains(&matrix.frequency[*k])).collect();
     let x: Vec<f64> = columns.iter().map(|k| matrix.frequency[*k]).collect();
@@ -48,10 +45,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let largest = values.iter().copied().filter(|v| v.is_finite()).fold(REFERENCE, f64::max);
     let top = (decibel(largest, REFERENCE) / 10.0).ceil() * 10.0;
     let key = key.limits(top - RANGE, top);
-    let caption = format!(
-        "{} Colours span {RANGE:.0} dB below the highest level. White: no value.",
-        caption(matrix, fmax, high, SEEN_IN_COLOUR)
-    );
+    let caption = format!("{left_out} Colours span {RANGE:.0} dB below the highest level. White: no value.");
     let heatmap = Heatmap::new(&x, &y, &values, key)?;
     let frequency = AxisSpec::frequency().limits(low, high);
     let plot = Plot::new(frequency, AxisSpec::new("Excitation frequency", "Hz"))
@@ -60,7 +54,15 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     Ok(Figure::double(matrix.name.clone()).height(100.0).panel(plot).caption(caption))
 }
 
-fn range(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<(f64, f64)> {
+/// The range in Hz that a picture shows, and what it leaves out.
+struct Shown {
+    low: f64,
+    high: f64,
+    left_out: String,
+}
+
+/// Up to `fmax`, or to the last line of which a spectrum has this part of the largest.
+fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<Shown> {
     let last = matrix.frequency.last().copied().unwrap_or(1.0);
     let high = fmax.unwrap_or_else(|| highest(matrix, part)).min(last);
     if high <= matrix.fmin {
@@ -72,7 +74,14 @@ fn range(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<(f64, f64)> {
         .setting("fmax")
         .setting("fmin"));
     }
-    Ok((matrix.fmin, high))
+    let mut words = Vec::new();
+    if matrix.fmin > 0.0 {
+        words.push(format!("Lines below {:.2} Hz are left out.", matrix.fmin));
+    }
+    if fmax.is_none() && high < last {
+        words.push(format!("Lines above {high:.0} Hz are below {} % of the largest.", 100.0 * part));
+    }
+    Ok(Shown { low: matrix.fmin, high, left_out: words.join(" ") })
 }
 
 /// Lines beyond which none reaches this part of the largest are not shown, where no other end is asked for.
@@ -93,17 +102,4 @@ fn highest(matrix: &Matrix, part: f64) -> f64 {
     let last = lines().rev().find(seen).map_or(f64::INFINITY, |k| matrix.frequency[k]);
     let excitation = matrix.excitation.iter().filter(finite).copied().fold(0.0, f64::max);
     (1.1 * last).max(HARMONICS * excitation)
-}
-
-/// What is left out of a picture up to `high` Hz, unless that was asked for.
-fn caption(matrix: &Matrix, fmax: Option<f64>, high: f64, part: f64) -> String {
-    let last = matrix.frequency.last().copied().unwrap_or(0.0);
-    let mut words = Vec::new();
-    if matrix.fmin > 0.0 {
-        words.push(format!("Lines below {:.2} Hz are left out.", matrix.fmin));
-    }
-    if fmax.is_none() && high < last {
-        words.push(format!("Lines above {high:.0} Hz are below {} % of the largest.", 100.0 * part));
-    }
-    words.join(" ")
 }
