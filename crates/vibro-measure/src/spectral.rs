@@ -149,7 +149,7 @@ fn response(
                 "the force rests but for blows (half its span is {crest:.0} times its RMS): segments would cut their responses"
             );
             return Err(Error::refused(why)
-                .hint("for a hammer test take one segment a blow, else cut spikes out")
+                .hint("cut spikes out, or for a hammer test take one segment a blow")
                 .setting("hammer"));
         }
         if averages.count == 1 {

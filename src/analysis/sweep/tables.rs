@@ -79,7 +79,7 @@ fn imaginary(receptance: Receptance) -> f64 {
 }
 
 /// What the kinds of resonances mean, a line each.
-const KINDS: &str = "Grazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: a shallow one where the mass is not stated as 1, the excited one; phases tell whether it is an antiresonance.";
+const KINDS: &str = "Grazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: a shallow one of mass 2, or of a point whose mass is not stated. A phase that rises there by 180° means an antiresonance.";
 
 /// Resonances and antiresonances.
 pub fn resonances(responses: &[Response]) -> Table {
