@@ -95,6 +95,27 @@ impl Resonance {
     }
 }
 
+/// Differences fewer than this do not tell a scatter.
+const FEW: usize = 4;
+
+/// Points beyond this many from the highest may lie where the motion is another one.
+const REACH: usize = 4;
+
+/// Square of the divided difference of 1/a² over f² through all `points`, against its variance. Frequencies and heights are taken
+/// relative to `top`.
+fn squared_difference(points: &[Point], top: Point) -> f64 {
+    let x = |p: &Point| (p.0 / top.0).powi(2);
+    let (mut difference, mut variance) = (0.0, 0.0);
+    for p in points {
+        let others = points.iter().filter(|q| q.0 != p.0);
+        let weight: f64 = others.map(|q| x(p) - x(q)).product::<f64>().recip();
+        let inverse = (top.1 / p.1).powi(2);
+        difference += weight * inverse;
+        variance += (weight * 2.0 * inverse * p.2 / p.1).powi(2);
+    }
+    if variance > 0.0 { difference * difference / variance } else { 1.0 }
+}
+
 /// A response curve of rising frequency.
 struct Curve<'a> {
     points: &'a [Point],
@@ -125,8 +146,31 @@ impl Curve<'_> {
             |from: usize, to: usize| of[to].1 < of[from].1 && of[to].1 > 0.0 && !self.jump_between(from, to);
         let low = if i >= 2 && falls(i - 1, i - 2) { i - 2 } else { i - 1 };
         let high = if i + 2 < of.len() && falls(i + 1, i + 2) { i + 2 } else { i + 1 };
-        let rises = of.get(low..=high)?.windows(2).all(|p| p[0].0 < p[1].0);
-        if rises { apex(of, i, low..=high) } else { None }
+        let near = of.get(low..=high)?;
+        let widened = self.scatter(of, i);
+        let near: Vec<Point> = near.iter().map(|p| (p.0, p.1, p.2 * widened)).collect();
+        let rises = near.windows(2).all(|p| p[0].0 < p[1].0);
+        if rises { apex(&near, i - low, 0..=high - low) } else { None }
+    }
+
+    /// How many times more the points around the highest, `i`, scatter than their uncertainties say, at least 1. A force that changes
+    /// from step to step moves points that are each right.
+    ///
+    /// 1/a² of one mode is a parabola in f²; what contact and other modes add is smooth. So the third and higher divided differences of
+    /// the near points above half of the highest are noise, or fall from one order to the next: the least root mean square of three orders
+    /// against what the uncertainties give.
+    fn scatter(&self, of: &[Point], i: usize) -> f64 {
+        let joined = |from: usize, to: usize| 2.0 * of[to].1 > of[i].1 && !self.jump_between(from, to);
+        let low = (1..=i).rev().take(REACH).take_while(|k| joined(*k, k - 1)).last().map_or(i, |k| k - 1);
+        let high =
+            (i..of.len() - 1).take(REACH).take_while(|k| joined(*k, k + 1)).last().map_or(i, |k| k + 1);
+        let of_order = |order: usize| {
+            let windows = of[low..=high].windows(order + 1);
+            let count = windows.len();
+            let sum: f64 = windows.map(|points| squared_difference(points, of[i])).sum();
+            (count >= FEW).then(|| (sum / count as f64).sqrt())
+        };
+        (3..=5).filter_map(of_order).reduce(f64::min).unwrap_or(1.0).max(1.0)
     }
 
     fn maximum(&self, i: usize) -> Resonance {
