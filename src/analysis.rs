@@ -20,7 +20,7 @@ pub(crate) mod sweep;
 mod page;
 
 pub use answer::Answer;
-pub use job::{JobOptions, Progress, run};
+pub use job::{Heard, JobOptions, Progress, answers, run};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 
@@ -44,7 +44,7 @@ pub mod figures {
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use serde::de::DeserializeOwned;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The keys of a kind of record.
 pub(crate) trait Analysis: DeserializeOwned {
@@ -58,6 +58,15 @@ pub(crate) trait Analysis: DeserializeOwned {
     /// # Errors
     /// If keys contradict each other, are impossible, or one is missing.
     fn check(entry: &Entry<Self>, earlier: &[Entry<Self>]) -> Result<()>;
+
+    /// The files of a table.
+    ///
+    /// # Errors
+    /// If one leads outside the folder or does not exist.
+    fn files(campaign: &Campaign, entry: &Entry<Self>, allow_outside: bool) -> Result<Vec<PathBuf>> {
+        let file = entry.file.as_ref().map(|file| campaign.file(entry, "file", file, allow_outside));
+        Ok(Vec::from_iter(file.transpose()?))
+    }
 
     /// Measures the records of all tables.
     ///
@@ -80,12 +89,13 @@ pub(crate) trait OfFile {
 pub(crate) struct Kind {
     section: &'static str,
     check: fn(&Campaign) -> Result<()>,
+    files: fn(&Campaign, bool) -> Result<Vec<PathBuf>>,
     run: fn(&mut Job<'_>) -> Result<()>,
 }
 
 impl Kind {
     const fn of<A: Analysis>() -> Kind {
-        Kind { section: A::SECTION, check: check::<A>, run: run_all::<A> }
+        Kind { section: A::SECTION, check: check::<A>, files: files_of::<A>, run: run_all::<A> }
     }
 }
 
@@ -101,14 +111,39 @@ pub(crate) const KINDS: &[Kind] = &[
     Kind::of::<pulse::Keys>(),
 ];
 
+/// Names of the sections of a campaign, in the order in which they are measured and shown.
+pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|kind| kind.section)
+}
+
 /// Reads a campaign and checks all its records.
 ///
 /// # Errors
 /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
 pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
-    let campaign = Campaign::from_path(path, &KINDS.iter().map(|kind| kind.section).collect::<Vec<_>>())?;
+    checked(Campaign::from_path(path, &sections().collect::<Vec<_>>())?)
+}
+
+/// Checks the text of a campaign and all its records, as if it stood in a file.
+///
+/// # Errors
+/// As [`open`].
+pub fn parse(path: &Path, text: String) -> Result<Campaign> {
+    checked(Campaign::parse(path, text, &sections().collect::<Vec<_>>())?)
+}
+
+fn checked(campaign: Campaign) -> Result<Campaign> {
     KINDS.iter().try_for_each(|kind| (kind.check)(&campaign))?;
     Ok(campaign)
+}
+
+/// The recordings that a campaign names.
+///
+/// # Errors
+/// If one leads outside its folder or does not exist.
+pub fn files(campaign: &Campaign, allow_outside: bool) -> Result<Vec<PathBuf>> {
+    let files: Result<Vec<_>> = KINDS.iter().map(|kind| (kind.files)(campaign, allow_outside)).collect();
+    Ok(files?.concat())
 }
 
 /// The tables of a kind of record.
@@ -133,6 +168,12 @@ fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
         checked.map_err(|e| campaign.fault(entry, e))?;
     }
     Ok(())
+}
+
+fn files_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<Vec<PathBuf>> {
+    let files: Result<Vec<_>> =
+        entries::<A>(campaign)?.iter().map(|entry| A::files(campaign, entry, allow_outside)).collect();
+    Ok(files?.concat())
 }
 
 fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {

@@ -105,7 +105,11 @@ impl Campaign {
         Campaign::parse(path, text, sections)
     }
 
-    fn parse(path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
+    /// The text of a campaign, as if it stood in a file.
+    ///
+    /// # Errors
+    /// As [`Campaign::from_path`].
+    pub fn parse(path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
         let complaint = |e: &toml::de::Error| locate::toml_error(path, &text, e, sections);
         let table = DeTable::parse(&text).map_err(|e| complaint(&e))?.into_inner();
         let keys = || table.keys().map(|key| key.get_ref().as_ref());

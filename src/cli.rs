@@ -4,6 +4,7 @@ mod campaign;
 mod complain;
 mod convert;
 mod info;
+mod init;
 mod model;
 mod precision;
 mod print;
@@ -45,6 +46,8 @@ const COMMANDS: &[Row] = &[
         .about("Compare the measured responses of a campaign with the model; fit parameters of the rig"),
     Row::of::<precision::Precision>("precision")
         .about("Speed and accuracy of every method on scenes with a known truth"),
+    Row::of::<init::Init>("init").about("Write a campaign for what lies in a folder"),
+    Row::of::<init::Check>("check").about("Check a campaign without computing"),
     Row::of::<campaign::Run>("run").about("Run a campaign: results, tables, figures, report"),
 ];
 

@@ -30,6 +30,7 @@ pub mod campaign;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compare;
+pub mod proposal;
 pub mod report;
 
 pub use vibro_figure as figure;

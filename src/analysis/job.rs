@@ -5,7 +5,7 @@ use super::source::{Source, file_name, name_of};
 use super::{Analysis, Answer, KINDS, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::Result;
-use crate::record::{Finding, Step};
+use crate::record::{Fact, Finding, Severity, Step};
 use crate::report::words::{About, Voice, put};
 use crate::report::{Output, Table, files};
 use serde::Serialize;
@@ -221,6 +221,42 @@ pub struct Record {
     pub mark: String,
     /// What was found.
     pub answer: Answer,
+}
+
+/// What the records of a campaign answer.
+#[derive(Debug)]
+pub struct Heard {
+    /// The results.
+    pub result: Map<String, Value>,
+    /// What is said of them.
+    pub findings: Vec<Finding>,
+}
+
+impl Heard {
+    /// The worst that is said.
+    pub fn worst(&self) -> Option<Severity> {
+        self.findings.iter().map(|finding| finding.severity).max()
+    }
+}
+
+/// Measures the records of a campaign without a report; where none answers, the reason.
+///
+/// # Errors
+/// As [`run`].
+pub fn answers(campaign: &Campaign, progress: &dyn Progress) -> Result<std::result::Result<Heard, String>> {
+    let mut job = Job::new(campaign, JobOptions::default(), progress);
+    for kind in KINDS {
+        (kind.run)(&mut job)?;
+    }
+    let findings: Vec<Finding> = job.all.findings.into_iter().map(|(_, finding)| finding).collect();
+    if job.answers > 0 {
+        return Ok(Ok(Heard { result: job.all.result, findings }));
+    }
+    let why = findings.iter().find_map(|finding| match finding.fact("why") {
+        Some(Fact::Name(why)) => Some(why.clone()),
+        _ => None,
+    });
+    Ok(Err(why.unwrap_or_else(|| "no answer".to_owned())))
 }
 
 /// Does all that a campaign asks for, and writes it to `output`. Gives what was found, and whether any record was answered.

@@ -7,7 +7,7 @@ pub mod pairing;
 pub mod stored;
 pub mod tables;
 
-pub use listed::{Files, Listed};
+pub use listed::{Files, Listed, matching};
 pub use stored::Stored;
 
 use super::{Analysis, Answer, Job, JobOptions, Progress, entries};
@@ -264,6 +264,20 @@ impl Analysis for Keys {
             return Err(Error::usage(format!("two sweeps are named {name:?}"), expected).setting("name"));
         }
         entry.keys.usable()
+    }
+
+    fn files(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<Vec<PathBuf>> {
+        let files = match Listed::of(campaign, entry, allow_outside)?.files {
+            Files::Spectra(list) => [list.force, list.response].concat(),
+            Files::Traces(steps) => steps.files,
+        };
+        match files.iter().find(|file| !file.exists()) {
+            Some(file) => {
+                let error = Error::usage(format!("the file {} does not exist", file.display()), "");
+                Err(campaign.fault(entry, error.setting("list").setting("response")))
+            }
+            None => Ok(files),
+        }
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {

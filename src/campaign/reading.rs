@@ -4,10 +4,11 @@ use super::value::channel;
 use crate::error::{Error, Result};
 use crate::read::{Format, Reader};
 use crate::units::Unit;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// How a measurement file is to be read, where it does not say itself.
-#[derive(Debug, Clone, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
@@ -48,7 +49,7 @@ pub struct Channel {
 }
 
 /// Decimal mark of a text file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Decimal {
     /// 1,5
@@ -74,6 +75,13 @@ impl Reading {
     /// Its keys.
     pub const KEYS: [&str; 9] =
         ["format", "allow_missing", "rate", "base_band", "unit", "decimal", "complex", "wrapped", "columns"];
+
+    /// Keys that are stated, with their values.
+    pub fn stated(&self) -> Vec<(&'static str, Value)> {
+        let Ok(Value::Object(mut all)) = serde_json::to_value(self) else { return Vec::new() };
+        let stated = |key| Some((key, all.remove(key).filter(|v| !v.is_null() && *v != Value::Bool(false))?));
+        Reading::KEYS.into_iter().filter_map(stated).collect()
+    }
 
     /// A reader that knows what is stated.
     ///

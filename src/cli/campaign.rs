@@ -1,18 +1,19 @@
 //! `vibro run` and `vibro compare`: what a campaign asks for.
 
-use super::{complain, print};
+use super::{complain, init, print};
 use crate::analysis::sweep::modelled;
 use crate::analysis::{self, JobOptions};
-use crate::campaign::FitEntry;
+use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
+use crate::proposal::Proposal;
 use crate::report::words::{Voice, graded};
 use crate::report::{Output, Table};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 pub struct Run {
-    /// campaign.toml
+    /// campaign.toml, or a folder of recordings
     #[arg(index = 1)]
     campaign: PathBuf,
     /// Folder for results [default: `out` in the campaign, else `results` beside it]
@@ -38,12 +39,27 @@ pub struct Compare {
     out: Option<PathBuf>,
 }
 
+/// A campaign file, that of a folder, or one proposed for what lies there.
+fn opened(path: &Path, json: bool) -> Result<Campaign> {
+    let of_folder = path.join(Proposal::FILE);
+    if !path.is_dir() {
+        return analysis::open(path);
+    }
+    if of_folder.exists() {
+        return analysis::open(of_folder);
+    }
+    let proposal = print::busy(json, "looking at files", |bar| Proposal::of(path, &Reading::default(), bar))?;
+    init::tell(&proposal);
+    complain::line(&format!("to change any of it: vibro init {}", path.display()));
+    proposal.campaign()
+}
+
 impl super::Run for Run {
     const VOICE: Voice = Voice::Campaign;
 
     /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
     fn run(&self, json: bool) -> Result<u8> {
-        let campaign = analysis::open(&self.campaign)?;
+        let campaign = opened(&self.campaign, json)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let options = JobOptions { allow_outside: self.allow_outside };
         let mut output = Output::new(&folder)?;

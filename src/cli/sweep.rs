@@ -1,14 +1,15 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
 
 use super::convert::{apart, write_beside};
-use super::{Run, print};
-use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
+use super::{Run, init, print};
+use crate::analysis::sweep::{Files, Listed, Stored, figures, matching, named, tables};
 use crate::analysis::{self, Answer};
-use crate::campaign::above_zero;
+use crate::campaign::{Reading, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, ResponsePoint};
 use crate::measure::waterfall::{Waterfall as Matrix, gathered};
 use crate::measure::{Estimate, excitation, legacy};
+use crate::proposal::{Proposal, of_steps};
 use crate::read::{SweepList, SweepReader};
 use crate::record::{Finding, Sweep, SweepPoint};
 use crate::report::layout::{headed, pair, table};
@@ -20,9 +21,9 @@ use std::path::{Path, PathBuf};
 /// A stepped-sine sweep, and what its analyser stored.
 #[derive(Debug, clap::Args)]
 pub struct Source {
-    /// List file, hand-over file, or campaign.toml#name
-    #[arg(index = 1, value_name = "SWEEP")]
-    path: String,
+    /// List file, hand-over file, campaign.toml#name, a folder, or time traces: one file a step, or a pattern
+    #[arg(index = 1, value_name = "SWEEP", required = true)]
+    paths: Vec<String>,
     /// Repeat the thesis' script with its mistakes
     legacy: bool,
     /// Allow files outside the folder of the list
@@ -72,10 +73,33 @@ pub fn of_script(script: &str) -> Finding {
 }
 
 impl Source {
+    /// A sweep of the time traces that are named, or that lie in the folder that is.
+    fn proposed(&self) -> Result<Option<Proposal>> {
+        let typed: Vec<&Path> = self.paths.iter().map(Path::new).collect();
+        let is_pattern = |path: &Path| !path.exists() && path.to_string_lossy().contains(['*', '?']);
+        Ok(match typed.as_slice() {
+            [folder] if folder.is_dir() => {
+                let mut proposal = Proposal::of(folder, &Reading::default(), &())?;
+                proposal.tables.retain(|table| table.section == "sweep");
+                proposal.left.clear();
+                Some(proposal)
+            }
+            [one] if !is_pattern(one) => None,
+            all => {
+                let files: Result<Vec<_>> = all.iter().map(|path| matching(path)).collect();
+                Some(of_steps(&files?.concat(), &Reading::default())?)
+            }
+        })
+    }
+
     /// The files of the sweep, and how to read them.
     fn listed(&self) -> Result<Listed> {
-        let Place { path, name, campaign } = Place::of(&self.path);
-        let mut listed = if campaign {
+        let Place { path, name, campaign } = Place::of(&self.paths[0]);
+        let mut listed = if let Some(proposal) = self.proposed()? {
+            init::tell(&proposal);
+            // Whatever was typed is meant.
+            named(&proposal.campaign()?, None, true)?
+        } else if campaign {
             named(&analysis::open(path)?, name, self.allow_outside)?
         } else {
             let files = Files::Spectra(SweepList::from_path(path, self.allow_outside)?);
@@ -262,7 +286,7 @@ impl Excitation {
             let found = "hand-over files of a sweep without force names";
             return Err(Error::usage(found, "a list file with them").setting("write_lists"));
         }
-        let path = Path::new(Place::of(&self.sweep.path).path);
+        let path = Path::new(Place::of(&self.sweep.paths[0]).path);
         apart(force, response)?;
         apart(path, force)?;
         apart(path, response)?;

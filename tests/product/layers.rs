@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The flow, left to right.
-const FLOW: [&str; 5] = ["report", "campaign", "compare", "analysis", "cli"];
+const FLOW: [&str; 6] = ["report", "campaign", "compare", "analysis", "proposal", "cli"];
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder of sources") {
         let path = entry.expect("an entry").path();

@@ -96,7 +96,10 @@ impl Listed {
 }
 
 /// The files that a name or a pattern with `*`, `?` or `[…]` means, by their names, numbers in them by value.
-fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
+///
+/// # Errors
+/// If it is no pattern, or no file has such a name.
+pub fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
     if pattern.exists() {
         return Ok(vec![pattern.to_owned()]);
     }
