@@ -9,6 +9,7 @@ mod model;
 mod precision;
 mod print;
 mod record;
+mod shell;
 mod sweep;
 
 use crate::analysis::{decay, frf, spectrum};
@@ -18,38 +19,116 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// All commands, in the order of the help. A new one is a row.
-const COMMANDS: &[Row] = &[
-    Row::of::<info::Info>("info").about("List the records of a file: channels, units, sampling rate"),
-    Row::of::<convert::Convert>("convert")
-        .about("Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT"),
-    Row::of::<record::Measured<spectrum::Keys>>("spectrum")
-        .about("Spectrum of a channel, or frequency response function between two"),
-    Row::of::<sweep::Excitation>("excitation").about("Excitation frequency of every point of a sweep"),
-    Row::of::<sweep::Waterfall>("waterfall").about("Waterfall of all response spectra of a sweep"),
-    Row::of::<sweep::Taken>("response")
-        .about("Response of a sweep at the excitation frequency, with resonances and jumps"),
-    Row::of::<record::Drill>("drill").about("Speed, impacts and average turn of a hammer drill"),
-    Row::of::<record::Impacts>("impacts")
-        .about("Impacts in a contact signal: interval, frequency, impacts per cycle"),
-    Row::of::<record::Restitution>("restitution")
-        .about("Coefficient of restitution from drops, bounces or velocities, every method side by side"),
-    Row::of::<record::Measured<frf::Keys>>("modal")
-        .about("Natural frequency, damping and modal constant of the modes of a frequency response function"),
-    Row::of::<record::Measured<decay::Keys>>("decay")
-        .about("Natural frequency and damping of each mode of a free decay"),
-    Row::of::<record::Pulse>("pulse")
-        .about("Damping ratio, frequency and restitution of a contact from its pulse"),
-    Row::of::<model::Model>("model")
-        .about("Model of a rig: periodic motions, simulation, sweep, map, choice of a model"),
-    Row::of::<campaign::Compare>("compare")
-        .about("Compare the measured responses of a campaign with the model; fit parameters of the rig"),
-    Row::of::<precision::Precision>("precision")
-        .about("Speed and accuracy of every method on scenes with a known truth"),
-    Row::of::<init::Init>("init").about("Write a campaign for what lies in a folder"),
-    Row::of::<init::Check>("check").about("Check a campaign without computing"),
-    Row::of::<campaign::Run>("run").about("Run a campaign: results, tables, figures, report"),
+/// All commands by what they are for, in the order of the help. A new one is a row.
+const GROUPS: &[(&str, &[Row])] = &[
+    (
+        "Begin with a folder of recordings",
+        &[
+            Row::of::<init::Init>("init", "Write a campaign for what lies in a folder")
+                .example("init measurements")
+                .first(),
+            Row::of::<campaign::Run>("run", "Run a campaign or a folder: results, tables, figures, report")
+                .example("run measurements")
+                .first(),
+            Row::of::<init::Check>("check", "Check a campaign without computing")
+                .example("check campaign.toml"),
+        ],
+    ),
+    (
+        "Files",
+        &[
+            Row::of::<info::Info>("info", "List the records of a file: channels, units, sampling rate")
+                .example("info measurement.uff")
+                .first(),
+            Row::of::<convert::Convert>(
+                "convert",
+                "Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT",
+            )
+            .example("convert measurement.uff measurement.csv"),
+        ],
+    ),
+    (
+        "Measure",
+        &[
+            Row::of::<sweep::Taken>(
+                "response",
+                "Response of a sweep at the excitation frequency, with resonances and jumps",
+            )
+            .example("response step*.csv --out figures")
+            .first(),
+            Row::of::<sweep::Waterfall>("waterfall", "Waterfall of all response spectra of a sweep")
+                .example("waterfall LIST.TXT --unit mm/s --out figures"),
+            Row::of::<sweep::Excitation>("excitation", "Excitation frequency of every point of a sweep")
+                .example("excitation LIST.TXT"),
+            Row::of::<record::Measured<spectrum::Keys>>(
+                "spectrum",
+                "Spectrum of a channel, or frequency response function between two",
+            )
+            .example("spectrum trace.csv --channel velocity --out figures"),
+            Row::of::<record::Measured<frf::Keys>>(
+                "modal",
+                "Natural frequency, damping and modal constant of the modes of a frequency response function",
+            )
+            .example("modal blows.csv --reference force --hammer"),
+            Row::of::<record::Measured<decay::Keys>>(
+                "decay",
+                "Natural frequency and damping of each mode of a free decay",
+            )
+            .example("decay release.csv"),
+            Row::of::<record::Impacts>(
+                "impacts",
+                "Impacts in a contact signal: interval, frequency, impacts per cycle",
+            )
+            .example("impacts contact.csv --excitation 11.2"),
+            Row::of::<record::Restitution>(
+                "restitution",
+                "Coefficient of restitution from drops, bounces or velocities, every method side by side",
+            )
+            .example("restitution drop1.csv drop2.csv --height 0.57 --height-std 0.001")
+            .first(),
+            Row::of::<record::Pulse>(
+                "pulse",
+                "Damping ratio, frequency and restitution of a contact from its pulse",
+            )
+            .example("pulse contact.csv --low-pass none"),
+            Row::of::<record::Drill>("drill", "Speed, impacts and average turn of a hammer drill")
+                .example("drill drill.wav --velocity striker --beam-angle 0 --from axis --sensitivity 2"),
+        ],
+    ),
+    (
+        "Model",
+        &[
+            Row::of::<model::Model>(
+                "model",
+                "Model of a rig: periodic motions, simulation, sweep, map, choice of a model",
+            )
+            .example("model orbit --frequency 11.2 --force 0.5"),
+            Row::of::<campaign::Compare>(
+                "compare",
+                "Compare the measured responses of a campaign with the model; fit parameters of the rig",
+            )
+            .example("compare campaign.toml --fit gap,restitution"),
+            Row::of::<precision::Precision>(
+                "precision",
+                "Speed and accuracy of every method on scenes with a known truth",
+            )
+            .example("precision --quick"),
+        ],
+    ),
+    (
+        "Shell",
+        &[
+            Row::of::<shell::Completions>("completions", "Print the completions for a shell")
+                .example("completions bash > ~/.local/share/bash-completion/completions/vibro"),
+            Row::of::<shell::Man>("man", "Print the manual page").example("man > vibro.1"),
+        ],
+    ),
 ];
+
+/// All commands.
+fn rows() -> impl Iterator<Item = &'static Row> {
+    GROUPS.iter().flat_map(|(_, rows)| rows.iter())
+}
 
 /// What is typed behind the name of a command, and what it does.
 trait Run: Args {
@@ -64,34 +143,71 @@ trait Run: Args {
 struct Row {
     name: &'static str,
     about: &'static str,
+    /// What is typed behind `vibro`, for example.
+    example: &'static str,
+    /// Whether a newcomer needs it first.
+    first: bool,
     voice: Voice,
     options: fn(Typed) -> Typed,
     run: fn(&ArgMatches, bool) -> Result<u8>,
 }
 
 impl Row {
-    const fn of<T: Run>(name: &'static str) -> Row {
+    const fn of<T: Run>(name: &'static str, about: &'static str) -> Row {
         let run = |typed: &ArgMatches, json| match T::from_arg_matches(typed) {
             Ok(typed) => typed.run(json),
             Err(error) => Ok(complain::usage(&error, json)),
         };
-        Row { name, about: "", voice: T::VOICE, options: T::augment_args, run }
+        Row { name, about, example: "", first: false, voice: T::VOICE, options: T::augment_args, run }
     }
 
-    const fn about(self, about: &'static str) -> Row {
-        Row { about, ..self }
+    const fn example(self, example: &'static str) -> Row {
+        Row { example, ..self }
     }
+
+    const fn first(self) -> Row {
+        Row { first: true, ..self }
+    }
+
+    /// Its line in a list of commands.
+    fn line(&self) -> String {
+        format!("  {:12} {}\n", self.name, self.about)
+    }
+}
+
+/// What the program is for.
+const ABOUT: &str = "Measure impacting machines: from analyser files to answers, each with its uncertainty";
+
+/// The commands that a newcomer needs.
+fn short() -> String {
+    let lines: String = rows().filter(|row| row.first).map(Row::line).collect();
+    format!(
+        "{ABOUT}\n\nUsage: vibro COMMAND\n\n{lines}\nAll commands: vibro --help. Options and an example: vibro COMMAND --help\n"
+    )
+}
+
+/// All commands by what they are for.
+fn long() -> String {
+    let group = |(name, rows): &(&str, &[Row])| {
+        format!("{name}:\n{}\n", rows.iter().map(Row::line).collect::<String>())
+    };
+    let groups: String = GROUPS.iter().map(group).collect();
+    format!(
+        "{ABOUT}\n\nUsage: vibro COMMAND\n\n{groups}Options:\n  --json       Print one JSON object instead of a table\n  --version    Print the version\n\nOptions and an example of a command: vibro COMMAND --help\n"
+    )
 }
 
 fn command() -> Typed {
     let json = Arg::new("json").action(ArgAction::SetTrue).global(true);
-    let commands = COMMANDS.iter().map(|row| (row.options)(Typed::new(row.name)).about(row.about));
+    let commands = rows().map(|row| {
+        let example = format!("Example:\n  vibro {}", row.example);
+        (row.options)(Typed::new(row.name)).about(row.about).after_help(example)
+    });
     let all = Typed::new("vibro")
         .version(env!("CARGO_PKG_VERSION"))
-        .about("Measure impacting machines: from analyser files to answers, each with its uncertainty")
+        .about(ABOUT)
         .max_term_width(100)
-        .subcommand_required(true)
-        .arg_required_else_help(true)
+        .override_help(long())
         .arg(json.help("Print one JSON object instead of a table"));
     options(all.subcommands(commands))
 }
@@ -108,10 +224,11 @@ pub fn main() -> u8 {
         }
     };
     let json = typed.get_flag("json");
-    let row = |(name, typed)| Some((COMMANDS.iter().find(|row| row.name == name)?, typed));
-    typed.subcommand().and_then(row).map_or(2, |(row, typed)| {
-        (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
-    })
+    let row = |(name, typed)| Some((rows().find(|row| row.name == name)?, typed));
+    let Some((row, typed)) = typed.subcommand().and_then(row) else {
+        return complain::nothing(&short(), json);
+    };
+    (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
 }
 
 /// Makes options of the fields of all keys, in their order: each has the name of its field and, where it names no other, a value of the kind

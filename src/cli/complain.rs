@@ -17,6 +17,15 @@ pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
     error.exit_code()
 }
 
+/// Prints what can be typed where no command was, with `json` as an object on standard output as well.
+pub fn nothing(commands: &str, json: bool) -> u8 {
+    line(commands.trim_end());
+    if json {
+        object("no command", 2);
+    }
+    2
+}
+
 /// Prints what clap has to say: help and version are no error, anything else is wrong usage, with `json` as an object on standard
 /// output as well.
 pub fn usage(error: &clap::Error, json: bool) -> u8 {

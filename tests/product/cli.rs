@@ -8,6 +8,7 @@ mod contact;
 mod convert;
 mod documents;
 mod impacts;
+mod init;
 mod model;
 mod modes;
 mod periodic;

@@ -24,7 +24,7 @@ fn frequency(step: usize) -> f64 {
 }
 
 /// Files of 12 steps of 6 s: force in N with an offset, acceleration in m/s² with noise of a thousandth and a transient.
-fn steps(folder: &Path) {
+pub fn steps(folder: &Path) {
     let mut noise = Noise::new(1);
     for step in 1..=12 {
         let f = frequency(step);

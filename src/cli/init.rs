@@ -1,0 +1,114 @@
+//! `vibro init` and `vibro check`: a campaign for a folder, and whether it can run.
+
+use super::{complain, print};
+use crate::analysis;
+use crate::campaign::Reading;
+use crate::error::{Error, Place, Result};
+use crate::proposal::{Known, Proposal, Row, Table};
+use crate::report::words::Voice;
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Init {
+    /// Folder of recordings
+    #[arg(index = 1)]
+    folder: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Check {
+    /// campaign.toml
+    #[arg(index = 1)]
+    campaign: PathBuf,
+    /// Allow files outside the folder of the campaign
+    allow_outside: bool,
+}
+
+impl super::Run for Init {
+    /// Writes the campaign; never over one that is there.
+    fn run(&self, json: bool) -> Result<u8> {
+        let path = self.folder.join(Proposal::FILE);
+        if path.exists() {
+            let error =
+                Error::input(Place::file(&path), "there is a campaign already", "a folder without one");
+            return Err(error.hint(format!("`vibro run {}` runs it", path.display())));
+        }
+        let proposal =
+            print::busy(json, "looking at files", |bar| Proposal::of(&self.folder, &self.reading, bar))?;
+        let mut file = std::fs::File::create_new(&path).map_err(|e| Error::io("write", &path, e))?;
+        file.write_all(proposal.toml().as_bytes()).map_err(|e| Error::io("write", &path, e))?;
+        if json {
+            print::object(json!({
+                "written": path.display().to_string(),
+                "found": keys(&proposal, |known| known == Known::Found),
+                "guessed": keys(&proposal, |known| matches!(known, Known::Guessed(_))),
+                "missing": keys(&proposal, |known| matches!(known, Known::Open(_) | Known::Missing(_))),
+                "left": proposal.left,
+                "warnings": [],
+            }))?;
+        } else {
+            tell(&proposal);
+            print::text(&format!("wrote {0}\nnext: vibro run {0}\n", path.display()))?;
+        }
+        Ok(0)
+    }
+}
+
+/// The keys that are known in one way.
+fn keys(proposal: &Proposal, of: impl Fn(Known) -> bool) -> Vec<Value> {
+    let of = &of;
+    let rows = |table: &Table| -> Vec<Value> {
+        let known = table.rows.iter().filter(|row| of(row.known));
+        known.map(|Row { key, value, known }| json!({"section": table.section, "name": table.name(), "key": key, "value": value, "why": known.why()})).collect()
+    };
+    proposal.tables.iter().flat_map(rows).collect()
+}
+
+/// Tells what was found, guessed and is missing.
+pub fn tell(proposal: &Proposal) {
+    let mut series: Vec<(&str, &str)> = Vec::new();
+    for table in &proposal.tables {
+        if series.contains(&(table.section, table.name())) {
+            complain::line(&format!("{} -> [[{}]], as before", table.in_words(), table.section));
+            continue;
+        }
+        series.push((table.section, table.name()));
+        complain::line(&format!("{} -> [[{}]]", table.in_words(), table.section));
+        for Row { key, value, known } in &table.rows {
+            match known {
+                Known::Found | Known::Open(_) => {}
+                Known::Guessed(why) => complain::line(&format!("  guessed: {key} = {value} ({why})")),
+                Known::Missing(what) => {
+                    complain::line(&format!("  missing: {key}, {what}; left out until it is filled in"));
+                }
+            }
+        }
+    }
+    for (file, why) in &proposal.left {
+        complain::line(&format!("not used: {file}: {why}"));
+    }
+}
+
+impl super::Run for Check {
+    const VOICE: Voice = Voice::Campaign;
+
+    /// Checks keys, values and files.
+    fn run(&self, json: bool) -> Result<u8> {
+        let campaign = analysis::open(&self.campaign)?;
+        let files = analysis::files(&campaign, self.allow_outside)?;
+        if json {
+            print::object(json!({ "warnings": [], "files": files }))?;
+        } else {
+            print::text(&format!(
+                "{}: no fault, {} files are there\nnext: vibro run {0}\n",
+                self.campaign.display(),
+                files.len()
+            ))?;
+        }
+        Ok(0)
+    }
+}

@@ -1,0 +1,34 @@
+//! `vibro completions` and `vibro man`: from the same definition as the help.
+
+use super::print;
+use crate::error::{Error, Result};
+use clap_complete::Shell;
+
+#[derive(Debug, clap::Args)]
+pub struct Completions {
+    /// bash, zsh, fish, elvish or powershell
+    #[arg(index = 1)]
+    shell: Shell,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Man {}
+
+impl super::Run for Completions {
+    fn run(&self, _: bool) -> Result<u8> {
+        let mut text = Vec::new();
+        clap_complete::generate(self.shell, &mut super::command(), "vibro", &mut text);
+        print::text(&String::from_utf8_lossy(&text))?;
+        Ok(0)
+    }
+}
+
+impl super::Run for Man {
+    fn run(&self, _: bool) -> Result<u8> {
+        let mut text = Vec::new();
+        let page = clap_mangen::Man::new(super::command());
+        page.render(&mut text).map_err(|e| Error::io("write", "the manual page", e))?;
+        print::text(&String::from_utf8_lossy(&text))?;
+        Ok(0)
+    }
+}

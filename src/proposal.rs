@@ -1,0 +1,282 @@
+//! What the recordings of a folder can be measured for: a campaign that is proposed, with what was found, guessed and is missing.
+//!
+//! A record of unknown kind is tried: the first analysis that answers without a doubt is proposed.
+
+mod folder;
+mod trial;
+
+use folder::Series;
+
+use crate::analysis::{self, Progress};
+use crate::campaign::{Campaign, Reading};
+use crate::error::{Error, Place, Result};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// A campaign for a folder.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Proposal {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Its tables, in the order of a campaign.
+    pub tables: Vec<Table>,
+    /// Files that stand in no table, and why.
+    pub left: Vec<(String, String)>,
+}
+
+/// A table of a campaign.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Table {
+    /// `sweep` for `[[sweep]]`.
+    pub section: &'static str,
+    /// Its files in words.
+    pub files: String,
+    /// What they are.
+    pub about: &'static str,
+    /// Whether that is a guess.
+    pub guess: bool,
+    /// Its keys in order.
+    pub rows: Vec<Row>,
+}
+
+/// A key of a table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Its name.
+    pub key: &'static str,
+    /// Its value as TOML; empty where it is missing.
+    pub value: String,
+    /// How it is known.
+    pub known: Known,
+}
+
+/// How the value of a key is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Known {
+    /// The files say it.
+    Found,
+    /// It was concluded; the reason.
+    Guessed(&'static str),
+    /// A person can say it, and the answer then says more; what it is.
+    Open(&'static str),
+    /// A person must say it; what it is.
+    Missing(&'static str),
+}
+
+impl Known {
+    /// The reason of a guess, or what is missing.
+    pub fn why(self) -> Option<&'static str> {
+        match self {
+            Known::Found => None,
+            Known::Guessed(why) | Known::Open(why) | Known::Missing(why) => Some(why),
+        }
+    }
+}
+
+impl Table {
+    /// A table without keys.
+    fn new(section: &'static str, about: &'static str, files: &str) -> Table {
+        Table { section, about, files: files.to_owned(), guess: false, rows: Vec::new() }
+    }
+
+    /// The same, where what the files are is a guess.
+    fn surmised(self) -> Table {
+        Table { guess: true, ..self }
+    }
+
+    /// What it is, in words.
+    pub fn in_words(&self) -> String {
+        let guess = if self.guess { ", guessed" } else { "" };
+        format!("{}: {}{guess}", self.files, self.about)
+    }
+
+    fn with(mut self, key: &'static str, value: impl Serialize, known: Known) -> Table {
+        // A string of JSON is one of TOML, and so are its numbers, words and lists of these.
+        let value = serde_json::to_string(&value).unwrap_or_default();
+        self.rows.push(Row { key, value, known });
+        self
+    }
+
+    fn found(self, key: &'static str, value: impl Serialize) -> Table {
+        self.with(key, value, Known::Found)
+    }
+
+    fn guessed(self, key: &'static str, value: impl Serialize, why: &'static str) -> Table {
+        self.with(key, value, Known::Guessed(why))
+    }
+
+    /// A key that may be stated, and a value where the table is tried, or none.
+    fn open(self, key: &'static str, instead: &str, what: &'static str) -> Table {
+        self.without(key, instead, Known::Open(what))
+    }
+
+    /// A key that must be stated, and a value where the table is tried.
+    fn missing(self, key: &'static str, instead: &str, what: &'static str) -> Table {
+        self.without(key, instead, Known::Missing(what))
+    }
+
+    fn without(mut self, key: &'static str, instead: &str, known: Known) -> Table {
+        self.rows.push(Row { key, value: instead.to_owned(), known });
+        self
+    }
+
+    /// The same with what stands in for values that are not stated.
+    fn tried(mut self) -> Table {
+        for row in &mut self.rows {
+            if matches!(row.known, Known::Open(_) | Known::Missing(_)) && !row.value.is_empty() {
+                row.known = Known::Found;
+            }
+        }
+        self
+    }
+
+    /// With what is stated of the files.
+    fn stated(&self, reading: &Reading) -> Table {
+        let names = |key| self.rows.iter().any(|row| row.key == key);
+        let takes = |key: &str| names("file") || names("traces") && ["rate", "unit"].contains(&key);
+        let stated = reading.stated().into_iter().filter(|(key, _)| takes(key));
+        stated.fold(self.clone(), |table, (key, value)| table.found(key, value))
+    }
+
+    /// Whether a key is missing: it cannot run before that is filled in.
+    pub fn lacks(&self) -> bool {
+        self.rows.iter().any(|row| matches!(row.known, Known::Missing(_)))
+    }
+
+    /// Its name in the report.
+    pub fn name(&self) -> &str {
+        let of = |key| self.rows.iter().find(|row| row.key == key);
+        of("name").or_else(|| of("sweep")).map_or("", |row| row.value.trim_matches('"'))
+    }
+
+    /// As a campaign writes it. What lacks a key is a comment.
+    fn toml(&self) -> String {
+        let mut text = format!("[[{}]]\n", self.section);
+        let row = |row: &Row| match row.known {
+            Known::Open(_) => format!("# {} =", row.key),
+            Known::Missing(_) => format!("{} =", row.key),
+            _ => format!("{} = {}", row.key, row.value),
+        };
+        let commented = self.rows.iter().filter(|row| row.known.why().is_some());
+        let wide = commented.map(|r| row(r).chars().count()).max().unwrap_or(0);
+        for one in &self.rows {
+            let row = row(one);
+            let _ = match one.known {
+                Known::Found => writeln!(text, "{row}"),
+                Known::Guessed(why) => writeln!(text, "{row:wide$}   # guessed: {why}"),
+                Known::Open(what) => writeln!(text, "{row:wide$}   # open: {what}"),
+                Known::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}"),
+            };
+        }
+        let about = format!("# {}\n", self.in_words());
+        if !self.lacks() {
+            return about + &text;
+        }
+        let rows = text.trim_end().replace('\n', "\n#");
+        let rows = format!("#{}\n", rows.trim_end_matches('#').trim_end());
+        format!(
+            "{about}# Fill in what is missing and remove the # in front of the table and its keys.\n{rows}"
+        )
+    }
+}
+
+impl Proposal {
+    /// Name of the file of a campaign in a folder.
+    pub const FILE: &str = "campaign.toml";
+
+    /// A campaign for what lies in a folder and up to two levels below it.
+    ///
+    /// # Errors
+    /// If it is no folder, cannot be listed, or holds no recording.
+    pub fn of(folder: &Path, reading: &Reading, progress: &dyn Progress) -> Result<Proposal> {
+        if !folder.is_dir() {
+            let found = if folder.exists() { "this is a file" } else { "there is no such folder" };
+            return Err(Error::input(Place::file(folder), found, "a folder of recordings"));
+        }
+        let found = folder::Folder::of(folder, &reading.reader()?)?;
+        let mut proposal = Proposal { folder: folder.to_owned(), tables: Vec::new(), left: found.left };
+        let all = found.lists.len() + found.series.len();
+        progress.start("looking at files", all);
+        for (name, path) in found.lists {
+            let table =
+                Table::new("sweep", "the list of a sweep", &path).found("name", name).found("list", path);
+            let table = table.open("mass", "", "1 excited, 2 passive; names the resonances");
+            let table = table.open("quantity", "", "\"displacement\", \"velocity\" or \"acceleration\"");
+            let table = table.open("window", "", "\"hann\", \"flat-top\", ... as the analyser was set");
+            proposal.tables.push(table.open("scaling", "", "\"peak\" or \"rms\""));
+            progress.step();
+        }
+        let tried = trial::Trial::new(folder, reading, progress);
+        for series in &found.series {
+            tried.series(series, &mut proposal);
+            progress.step();
+        }
+        if proposal.tables.is_empty() {
+            let mut error = Error::input(
+                Place::file(folder),
+                "no recording that can be measured",
+                "files of an instrument",
+            );
+            if let Some((file, why)) = proposal.left.first() {
+                error = error.aside(format!("{file}: {why}"));
+            }
+            return Err(error.hint(format!("`vibro info {}/FILE` tells what is in a file", folder.display())));
+        }
+        for table in &mut proposal.tables {
+            *table = table.stated(reading);
+        }
+        let place = |table: &Table| analysis::sections().position(|section| section == table.section);
+        proposal.tables.sort_by_key(place);
+        Ok(proposal)
+    }
+
+    /// The campaign as a file has it.
+    pub fn toml(&self) -> String {
+        let folder = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
+        let name = folder.file_name().map_or_else(|| "Campaign".into(), |n| n.to_string_lossy());
+        let name = serde_json::to_string(&name).unwrap_or_default();
+        let mut text = format!(
+            "# Proposed by `vibro init`. Check what is guessed, fill in what is missing, then: vibro run {}\n# docs/campaign.md lists every key.\nname = {name}\n",
+            Proposal::FILE
+        );
+        for table in &self.tables {
+            text += "\n";
+            text += &table.toml();
+        }
+        if !self.left.is_empty() {
+            text += "\n# Not used:\n";
+        }
+        for (file, why) in &self.left {
+            let _ = writeln!(text, "# {file}: {why}");
+        }
+        text
+    }
+
+    /// The campaign, as if its file lay in the folder.
+    ///
+    /// # Errors
+    /// As [`analysis::parse`].
+    pub fn campaign(&self) -> Result<Campaign> {
+        analysis::parse(&self.folder.join(Proposal::FILE), self.toml())
+    }
+}
+
+/// Time traces that are one sweep, one file a step: a campaign of it alone.
+///
+/// # Errors
+/// If the first file cannot be read, or holds no force and response.
+pub fn of_steps(files: &[PathBuf], reading: &Reading) -> Result<Proposal> {
+    let first = files.first().ok_or_else(|| Error::usage("no file", "the files of a sweep"))?;
+    let (_, headers, _) = reading.reader()?.survey(first)?;
+    let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
+    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    let series = Series { name: folder::name(&names), files: names, headers, pattern: None };
+    let table = series.sweep().ok_or_else(|| {
+        let found = format!("the channels {}", channels.join(", "));
+        Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")
+            .hint("name them in a campaign: [[sweep]] with traces, force and response; docs/campaign.md shows one")
+    })?;
+    Ok(Proposal { folder: PathBuf::from("."), tables: vec![table.stated(reading)], left: Vec::new() })
+}

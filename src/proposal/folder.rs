@@ -1,0 +1,253 @@
+//! The recordings of a folder: lists of sweeps, and files in series.
+
+use super::{Known, Table};
+use crate::error::{Error, Result};
+use crate::read::{Header, Reader, SweepList};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What lies in a folder.
+#[derive(Debug, Default)]
+pub(super) struct Folder {
+    /// Names and paths of list files.
+    pub lists: Vec<(String, String)>,
+    /// Files that belong together, in order.
+    pub series: Vec<Series>,
+    /// Files that are no recordings, and why.
+    pub left: Vec<(String, String)>,
+}
+
+/// Files of the same channels whose names differ in one number; or one file.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// What their names have in common.
+    pub name: String,
+    /// Paths within the folder, numbers by value.
+    pub files: Vec<String>,
+    /// Channels of the first.
+    pub headers: Vec<Header>,
+    /// Pattern that means all of them and no other file.
+    pub pattern: Option<String>,
+}
+
+/// A file and its channels.
+type Member = (PathBuf, Vec<Header>);
+
+/// Levels below a folder that are looked into.
+const LEVELS: usize = 2;
+
+/// The file that marks a folder of results.
+const RESULTS: &str = "results.json";
+
+/// Files that nobody takes for recordings.
+const NO_RECORDINGS: [&str; 20] = [
+    "toml", "json", "md", "html", "pdf", "png", "jpg", "jpeg", "svg", "gif", "doc", "docx", "ppt", "pptx",
+    "py", "m", "rs", "zip", "exe", "bak",
+];
+
+impl Folder {
+    /// Lists and sorts the files of a folder. Hidden files, folders of results and what is no recording are passed over.
+    ///
+    /// # Errors
+    /// If a folder cannot be listed.
+    pub fn of(root: &Path, reader: &Reader) -> Result<Folder> {
+        let mut paths = Vec::new();
+        files(root, LEVELS, &mut paths)?;
+        paths.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+        let within = |path: &Path| {
+            let inside = path.strip_prefix(root).unwrap_or(path);
+            inside.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
+        };
+        let mut found = Folder::default();
+        let lists: Vec<(PathBuf, SweepList)> = paths
+            .iter()
+            .filter_map(|path| Some((path.clone(), SweepList::from_path(path, false).ok()?)))
+            .collect();
+        for (path, list) in &lists {
+            paths.retain(|other| {
+                other != path && !list.force.contains(other) && !list.response.contains(other)
+            });
+            found.lists.push((stem(path), within(path)));
+        }
+        let mut groups: BTreeMap<(String, String), Vec<Member>> = BTreeMap::new();
+        let mut order = Vec::new();
+        for path in &paths {
+            match reader.survey(path) {
+                Ok((_, headers, _)) if headers.is_empty() => {
+                    found.left.push((within(path), "no records".to_owned()));
+                }
+                Ok((_, headers, _)) if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none()) => {
+                    let why = "no sampling rate in it: state it with --rate HZ, for all files of the folder";
+                    found.left.push((within(path), why.to_owned()));
+                }
+                Ok((_, headers, _)) => {
+                    let key = (apart(&within(path)).join("*"), signature(&headers));
+                    if !groups.contains_key(&key) {
+                        order.push(key.clone());
+                    }
+                    groups.entry(key).or_default().push((path.clone(), headers));
+                }
+                Err(error) => found.left.push((within(path), short(&error))),
+            }
+        }
+        for key in order {
+            let Some(members) = groups.remove(&key) else { continue };
+            let files: Vec<String> = members.iter().map(|(path, _)| within(path)).collect();
+            let [before, after] = apart(&files[0]);
+            let name = name(&files);
+            let meant = |path: &&PathBuf| {
+                let own = within(path);
+                own.len() > before.len() + after.len() && own.starts_with(&before) && own.ends_with(&after)
+            };
+            let plain = !key.0.replacen('*', "", 1).contains(['*', '?', '[']);
+            let pattern = (plain && paths.iter().filter(meant).count() == files.len()).then(|| key.0.clone());
+            let headers = members.into_iter().next().map_or_else(Vec::new, |(_, headers)| headers);
+            found.series.push(Series { name, files, headers, pattern });
+        }
+        Ok(found)
+    }
+}
+
+impl Series {
+    /// The table of a stepped sweep, where each file holds a force and responses.
+    pub(super) fn sweep(&self) -> Option<Table> {
+        let (force, responses) = self.force_and_responses()?;
+        let table = Table::new("sweep", "a stepped sweep, one file a step", &self.in_words());
+        let table = table.found("name", &self.name);
+        let table = match &self.pattern {
+            Some(pattern) => table.found("traces", pattern),
+            None => table.found("traces", &self.files),
+        };
+        let table = table.with("force", self.channel(force), Known::Guessed("the channel in N"));
+        let responses: Vec<_> = responses.into_iter().map(|k| self.channel(k)).collect();
+        Some(match responses.as_slice() {
+            [one] => table.guessed("response", one, "the other channel"),
+            all => table.guessed("response", all, "the other channels; each is a sweep of its own"),
+        })
+    }
+
+    /// The channel of force and all others, where there is just one.
+    pub(super) fn force_and_responses(&self) -> Option<(usize, Vec<usize>)> {
+        let traces: Vec<usize> =
+            (0..self.headers.len()).filter(|k| self.headers[*k].kind == "trace").collect();
+        let is_force = |k: &usize| self.headers[*k].quantity == "force";
+        let motion =
+            |k: &usize| matches!(self.headers[*k].quantity, "displacement" | "velocity" | "acceleration");
+        let mut forces = traces.iter().copied().filter(is_force);
+        let force = forces.next().filter(|_| forces.next().is_none())?;
+        let responses: Vec<usize> = traces.into_iter().filter(motion).collect();
+        (!responses.is_empty()).then_some((force, responses))
+    }
+
+    /// A channel by its name, or by its number where that means no other.
+    pub(super) fn channel(&self, k: usize) -> serde_json::Value {
+        let name = &self.headers[k].name;
+        let same = self.headers.iter().filter(|h| h.name == *name).count();
+        if name.is_empty() || same > 1 { (k + 1).into() } else { name.as_str().into() }
+    }
+
+    /// Its files in words.
+    pub(super) fn in_words(&self) -> String {
+        match self.files.as_slice() {
+            [one] => one.clone(),
+            [first, .., last] => format!("{} files, {first} to {last}", self.files.len()),
+            [] => String::new(),
+        }
+    }
+}
+
+/// A file's name without folder and ending.
+pub(super) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+}
+
+/// The name of a series of files, or of one.
+pub(super) fn name(files: &[String]) -> String {
+    match files {
+        [one] => stem(Path::new(one)),
+        [first, ..] => common(&apart(first)[0]),
+        [] => String::new(),
+    }
+}
+
+/// What stands before and behind the last number in a name; a name without one is all before.
+fn apart(name: &str) -> [String; 2] {
+    let from = name.rfind('/').map_or(0, |at| at + 1);
+    let to = name[from..].rfind('.').map_or(name.len(), |at| from + at);
+    let Some(last) = name[from..to].rfind(|c: char| c.is_ascii_digit()) else {
+        return [name.to_owned(), String::new()];
+    };
+    let end = from + last + 1;
+    let begin = name[from..end]
+        .rfind(|c: char| !c.is_ascii_digit())
+        .map_or(from, |at| from + at + name[from + at..].chars().next().map_or(1, char::len_utf8));
+    [name[..begin].to_owned(), name[end..].to_owned()]
+}
+
+/// The name of a series: what stands before its numbers, without marks at its end.
+fn common(before: &str) -> String {
+    let name = before.trim_end_matches(|c: char| !c.is_alphanumeric());
+    let name = name.rsplit('/').next().unwrap_or(name);
+    if name.is_empty() { "series".to_owned() } else { name.to_owned() }
+}
+
+/// Channels that make files of one kind.
+fn signature(headers: &[Header]) -> String {
+    let one = |h: &Header| [h.name.as_str(), h.unit.as_str(), h.kind].join("|");
+    headers.iter().map(one).collect::<Vec<_>>().join("\n")
+}
+
+/// The first line of an error, without the file's own name.
+pub(super) fn short(error: &Error) -> String {
+    let text = error.to_string();
+    let line = text.lines().next().unwrap_or_default();
+    line.split_once(": ").map_or(line, |(_, rest)| rest).to_owned()
+}
+
+fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<()> {
+    if folder.join(RESULTS).exists() {
+        return Ok(());
+    }
+    let list = fs::read_dir(folder).map_err(|e| Error::io("list", folder, e))?;
+    let mut below = Vec::new();
+    for entry in list {
+        let entry = entry.map_err(|e| Error::io("list", folder, e))?;
+        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
+        if name.starts_with('.') {
+            continue;
+        }
+        if path.is_dir() {
+            below.push(path);
+        } else if path.is_file() {
+            let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+            if !NO_RECORDINGS.contains(&ending.as_str()) {
+                found.push(path);
+            }
+        }
+    }
+    for folder in below.iter().filter(|_| levels > 0) {
+        files(folder, levels - 1, found)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_come_apart_at_their_last_number() {
+        for (name, expected) in [
+            ("step_01.csv", ["step_", ".csv"]),
+            ("a1/run2_12 Hz.csv", ["a1/run2_", " Hz.csv"]),
+            ("µ7.txt", ["µ", ".txt"]),
+            ("7.txt", ["", ".txt"]),
+            ("record.mp3", ["record.mp3", ""]),
+            ("a5/plain", ["a5/plain", ""]),
+        ] {
+            assert_eq!(apart(name), expected, "{name}");
+        }
+        assert_eq!([common("x/step_"), common("")], ["step", "series"]);
+    }
+}

@@ -1,0 +1,272 @@
+//! Records of unknown kind, tried with one analysis after another.
+
+use super::folder::{Series, short};
+use super::{Proposal, Table};
+use crate::analysis::{self, Heard, Progress};
+use crate::campaign::Reading;
+use crate::read::Header;
+use crate::record::{Record, Severity};
+use serde_json::Value;
+use std::path::Path;
+use std::slice::from_ref;
+
+/// Channels of a file that are tried.
+const CHANNELS: usize = 8;
+
+/// What a fall is measured by.
+const HEIGHT: &str = "height of the fall in m";
+
+/// What is said where a pulse is not the only one.
+const ANOTHER: &str = "pulse-not-alone";
+
+/// Averages that a function should have, and samples of a segment that are enough.
+const AVERAGES: usize = 10;
+const LONG: usize = 8192;
+
+/// Files that may be steps of a sweep.
+const STEPS: usize = 5;
+
+/// Tries what a record can be measured for.
+pub(super) struct Trial<'a> {
+    folder: &'a Path,
+    reading: &'a Reading,
+    progress: &'a dyn Progress,
+}
+
+impl<'a> Trial<'a> {
+    pub fn new(folder: &'a Path, reading: &'a Reading, progress: &'a dyn Progress) -> Trial<'a> {
+        Trial { folder, reading, progress }
+    }
+
+    /// The answers of the records of tables; else why there is none.
+    fn answers(&self, tables: &[Table]) -> Result<Heard, String> {
+        let path = self.folder.join(Proposal::FILE);
+        let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml()).collect();
+        let answered = analysis::parse(&path, text).and_then(|c| analysis::answers(&c, self.progress));
+        answered.map_err(|error| short(&error))?
+    }
+
+    /// Whether it answers without a doubt.
+    fn surely(&self, table: &Table) -> bool {
+        self.answers(from_ref(table)).is_ok_and(|heard| heard.worst() < Some(Severity::Doubt))
+    }
+
+    /// The first of the tables that answers sensibly and without a doubt.
+    fn first(&self, tables: &[Table]) -> Option<Table> {
+        let sure = |table: &&Table| self.sensibly(from_ref(*table));
+        tables.iter().find(sure).cloned()
+    }
+
+    /// Whether the tables answer sensibly and without a doubt.
+    fn sensibly(&self, tables: &[Table]) -> bool {
+        let sure = |heard: Heard| heard.worst() < Some(Severity::Doubt) && sensible(tables, &heard);
+        self.answers(tables).is_ok_and(sure)
+    }
+
+    /// Adds the tables of a series.
+    pub fn series(&self, series: &Series, proposal: &mut Proposal) {
+        let table = series.sweep().filter(|_| series.files.len() >= STEPS);
+        if let Some(table) = table.filter(|table| self.surely(table)) {
+            let (_, responses) = series.force_and_responses().unwrap_or_default();
+            let name = |k: usize| match responses.len() {
+                1 => series.name.clone(),
+                _ => format!("{} {}", series.name, series.headers[k].name),
+            };
+            let modes = responses
+                .iter()
+                .map(|k| Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k)));
+            let modes: Vec<Table> = modes.collect();
+            proposal.tables.push(table);
+            proposal.tables.extend(modes);
+            return;
+        }
+        let drops = |table: &dyn Fn(&Series) -> Table| {
+            let one = |file: &String| table(&Series { files: vec![file.clone()], ..series.clone() });
+            series.files.iter().map(one).collect::<Vec<Table>>()
+        };
+        // Repeated drops of one body agree.
+        let tried = [drops(&|one| one.bounces(0, &series.name)), drops(&|one| one.fall(0, &series.name))];
+        if series.files.len() > 1
+            && series.headers.len() == 1
+            && let Some(drops) = tried.into_iter().find(|tables| self.sensibly(tables))
+        {
+            proposal.tables.extend(drops);
+            return;
+        }
+        for file in &series.files {
+            let one = Series { files: vec![file.clone()], ..series.clone() };
+            let name = if series.files.len() > 1 { file.clone() } else { series.name.clone() };
+            self.file(&one, &name, proposal);
+        }
+    }
+
+    /// Adds the tables of one file.
+    fn file(&self, series: &Series, name: &str, proposal: &mut Proposal) {
+        let file = &series.files[0];
+        let spectra: Vec<&Header> = series.headers.iter().filter(|h| h.kind != "trace").collect();
+        if !spectra.is_empty() {
+            if spectra.iter().all(|h| h.kind != "frf") {
+                let why = "a spectrum; those of a sweep stand in a list file, or in [[sweep]] as force and response";
+                proposal.left.push((file.clone(), why.to_owned()));
+                return;
+            }
+            let table = Table::new("frf", "a frequency response function", file);
+            return self.add(table.found("name", name).found("file", file), file, proposal);
+        }
+        if let Some((force, responses)) = series.force_and_responses() {
+            for response in responses {
+                self.function(series, name, [force, response], proposal);
+            }
+            return;
+        }
+        let drills = self.drill(series, name);
+        if !drills.is_empty() {
+            proposal.tables.extend(drills);
+            return;
+        }
+        for k in 0..series.headers.len().min(CHANNELS) {
+            let [pulse, others @ ..] = series.of_channel(k, name);
+            // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
+            let alone = |heard: Heard| heard.findings.iter().all(|finding| finding.code != ANOTHER);
+            if self.answers(from_ref(&pulse)).is_ok_and(alone) {
+                proposal.tables.push(pulse);
+                continue;
+            }
+            match self.first(&others) {
+                Some(table) => proposal.tables.push(table),
+                None => self.add(series.channel_table(k, name, "spectrum", "a time record"), file, proposal),
+            }
+        }
+    }
+
+    /// Adds a table that answers; else says of its file why not.
+    fn add(&self, table: Table, file: &str, proposal: &mut Proposal) {
+        match self.answers(from_ref(&table)) {
+            Ok(_) => proposal.tables.push(table),
+            Err(why) => proposal.left.push((file.to_owned(), why)),
+        }
+    }
+
+    /// The function between two channels: of noise, else of blows.
+    fn function(&self, series: &Series, name: &str, [force, response]: [usize; 2], proposal: &mut Proposal) {
+        let file = &series.files[0];
+        let called = format!("{name} {}", series.headers[response].name);
+        let table = |about| {
+            let table = Table::new("frf", about, file).found("name", &called).found("file", file);
+            let table = table.found("channel", series.channel(response));
+            table.guessed("reference", series.channel(force), "the channel in N")
+        };
+        let steady = table("force and response");
+        let steady = match series.headers[response].n / AVERAGES {
+            few if few < LONG => steady.guessed("segment", 1 << few.max(1).ilog2(), "ten averages or more"),
+            _ => steady,
+        };
+        let blows = table("a hammer test").guessed("hammer", true, "the force rests but for blows");
+        match self.first(&[steady.clone(), blows]) {
+            Some(table) => proposal.tables.push(table),
+            None => self.add(steady, file, proposal),
+        }
+    }
+
+    /// Velocities beside a channel of two levels: a drill and the pulses of its crank.
+    fn drill(&self, series: &Series, name: &str) -> Vec<Table> {
+        let file = &series.files[0];
+        let is_velocity = |h: &Header| h.quantity == "velocity" || h.unit == "V";
+        let velocities = (0..series.headers.len()).filter(|k| is_velocity(&series.headers[*k]));
+        let velocities: Vec<usize> = velocities.collect();
+        if series.headers.len() < 2 || velocities.is_empty() {
+            return Vec::new();
+        }
+        let path = self.folder.join(file);
+        let Ok(recording) = self.reading.reader().and_then(|reader| reader.from_path(path)) else {
+            return Vec::new();
+        };
+        let shares: Vec<f64> = recording.records.iter().map(at_two_levels).collect();
+        let most = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
+        let Some(pulses) = most.filter(|k| shares[*k] > 0.9) else { return Vec::new() };
+        let table = |k: usize| {
+            let header = &series.headers[k];
+            let about = "a hammer drill with the pulses of its crank";
+            let table = Table::new("drill", about, file).surmised();
+            let table = table.found("name", format!("{name} {}", header.name)).found("file", file);
+            let table = table.guessed("velocity", series.channel(k), "not the channel of two levels");
+            let table = table.guessed("reference", series.channel(pulses), "the channel of two levels");
+            let table = table.missing("pulses_per_turn", "1", "pulses in a turn of the crank");
+            let table = table.guessed("edge", "rising", "either does");
+            let table =
+                table.missing("beam_angle", "0", "degrees between the beam and the axis of the motion");
+            let table = table.guessed("from", "axis", "as beam_angle is stated");
+            match header.quantity {
+                "velocity" => table,
+                _ => table.missing("sensitivity", "1", "m/s along the beam for one unit of the channel"),
+            }
+        };
+        velocities.into_iter().filter(|k| *k != pulses).map(table).collect()
+    }
+}
+
+impl Series {
+    /// The table of a train of bounces.
+    fn bounces(&self, k: usize, name: &str) -> Table {
+        self.channel_table(k, name, "drop", "impacts of a falling body").surmised().open("height", "", HEIGHT)
+    }
+
+    /// The table of a fall with one rebound.
+    fn fall(&self, k: usize, name: &str) -> Table {
+        let table = self.channel_table(k, name, "drop", "a fall and one rebound").surmised();
+        let table = table.missing("height", "0.5", HEIGHT);
+        let table = table.missing("height_std", "0.001", "its standard uncertainty in m");
+        table.open(
+            "interval_std",
+            "1e-5",
+            "of the time between the impacts in s, where there are fewer than four drops",
+        )
+    }
+
+    fn channel_table(&self, k: usize, name: &str, section: &'static str, about: &'static str) -> Table {
+        let (file, several) = (&self.files[0], self.headers.len() > 1);
+        let called = if several { format!("{name} {}", self.headers[k].name) } else { name.to_owned() };
+        let table = Table::new(section, about, file).found("name", called).found("file", file);
+        if several { table.found("channel", self.channel(k)) } else { table }
+    }
+
+    /// What one channel may be, a pulse before all others.
+    fn of_channel(&self, k: usize, name: &str) -> [Table; 5] {
+        let table = |section, about| self.channel_table(k, name, section, about).surmised();
+        let low_pass =
+            "corner of the instrument's low-pass in Hz, with order; or \"none\"; gives uncertainties";
+        let pulse = table("pulse", "one contact pulse").open("low_pass", "", low_pass);
+        [
+            pulse.open("mass", "", "kg; gives stiffness"),
+            self.bounces(k, name),
+            self.fall(k, name),
+            table("decay", "a free decay"),
+            table("impacts", "impacts in a row").open("excitation", "", "Hz; gives impacts per cycle"),
+        ]
+    }
+}
+
+/// Whether impacts are as their tables have them: three or more in a row; two in a fall with one rebound; and none that return with
+/// the speed with which they came.
+fn sensible(tables: &[Table], heard: &Heard) -> bool {
+    let first = |section: &str| heard.result.get(section).and_then(|all| all.get(0));
+    let few = first("impacts").is_some_and(|impacts| impacts["n"].as_u64() < Some(3));
+    let drop = first("drops");
+    let lossless = drop.is_some_and(|drop| drop["restitution"]["value"].as_f64() > Some(0.99));
+    let one = |intervals: &Value| intervals.as_array().is_some_and(|all| all.len() == 1);
+    let of_each = drop.and_then(|drop| drop["intervals"].as_array());
+    let several = tables.iter().any(Table::lacks) && of_each.is_some_and(|all| !all.iter().all(one));
+    !few && !lossless && !several
+}
+
+/// Share of the values that lie in the lowest or highest tenth of the range, where some do in each.
+fn at_two_levels(record: &Record) -> f64 {
+    let Record::Trace(trace) = record else { return 0.0 };
+    let ends = |(a, b): (f64, f64), v: &f64| (a.min(*v), b.max(*v));
+    let (low, high) = trace.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    let tenth = 0.1 * (high - low);
+    let count = |is: &dyn Fn(f64) -> bool| trace.values.iter().filter(|v| is(**v)).count();
+    let (down, up) = (count(&|v| v < low + tenth), count(&|v| v > high - tenth));
+    let some = trace.values.len() / 200;
+    if down > some && up > some { (down + up) as f64 / trace.values.len() as f64 } else { 0.0 }
+}

@@ -1,0 +1,172 @@
+//! A folder of recordings without a campaign: `vibro init`, `vibro check`, `vibro run FOLDER`, `vibro response FILES`.
+
+use super::stepped::steps;
+use super::{complaint, json, text, vibro};
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use vibroimpact::math::Noise;
+
+/// A file of one channel beside the time.
+fn write(path: &Path, head: &str, rate: f64, seconds: f64, value: &mut dyn FnMut(f64) -> f64) {
+    let mut text = format!("time [s],{head}\n");
+    for i in 0..(rate * seconds) as usize {
+        let t = i as f64 / rate;
+        writeln!(text, "{t:.6},{:.7}", value(t)).unwrap();
+    }
+    fs::write(path, text).unwrap();
+}
+
+/// A burst of ringing that begins at 0.
+fn burst(t: f64) -> f64 {
+    if t < 0.0 { 0.0 } else { (-t / 0.003).exp() * (TAU * 2900.0 * t).sin() }
+}
+
+/// One record of each kind that a person may have in a folder; each row of the answer: file, section.
+fn folder(root: &Path) -> [(&'static str, &'static str); 10] {
+    steps(root);
+    fs::remove_file(root.join("campaign.toml")).unwrap();
+    let mut noise = Noise::new(5);
+    let at = |name: &str| root.join(name);
+    write(&at("release.csv"), "displacement [mm]", 2000.0, 3.0, &mut |t| {
+        let since = (t - 0.3).max(0.0);
+        let swing = (-0.02 * TAU * 37.0 * since).exp() * (TAU * 37.0 * since).sin();
+        swing + 0.002 * noise.normal()
+    });
+    write(&at("contact.csv"), "contact [V]", 10_000.0, 3.0, &mut |t| {
+        let since = t.rem_euclid(1.0 / 11.0);
+        if since < 0.001 { 5.0 } else { 0.02 * noise.normal() }
+    });
+    write(&at("shaft.csv"), "acceleration [m/s²]", 1000.0, 4.0, &mut |t| {
+        (TAU * 23.0 * t).sin() + 0.01 * noise.normal()
+    });
+    write(&at("pulse.csv"), "acceleration [m/s²]", 200_000.0, 0.004, &mut |t| {
+        let part = (t - 0.001) / 0.0009;
+        let push = if (0.0..1.0).contains(&part) { (0.5 * TAU * part).sin() } else { 0.0 };
+        900.0 * push + 0.5 * noise.normal()
+    });
+    for (k, rest) in (1..=4).zip([0.4788, 0.4791, 0.4789, 0.4790]) {
+        write(&at(&format!("fall{k}.csv")), "sound [V]", 20_000.0, 1.0, &mut |t| {
+            burst(t - 0.2) + 0.6 * burst(t - 0.2 - rest) + 0.003 * noise.normal()
+        });
+    }
+    fs::write(at("notes.txt"), "Measured on Monday.\n").unwrap();
+    [
+        ("step1.csv", "sweep"),
+        ("shaft.csv", "spectrum"),
+        ("step1.csv", "frf"),
+        ("contact.csv", "impacts"),
+        ("fall1.csv", "drop"),
+        ("fall2.csv", "drop"),
+        ("fall3.csv", "drop"),
+        ("fall4.csv", "drop"),
+        ("release.csv", "decay"),
+        ("pulse.csv", "pulse"),
+    ]
+}
+
+#[test]
+fn each_record_of_a_folder_gets_the_table_of_its_kind() {
+    let root = tempfile::tempdir().unwrap();
+    let expected = folder(root.path());
+    let answer = json(&["init", text(root.path())]);
+    let campaign = root.path().join("campaign.toml");
+    assert_eq!(answer["written"], text(&campaign));
+    let written = fs::read_to_string(&campaign).unwrap();
+    let tables: Vec<&str> =
+        written.lines().filter_map(|l| l.trim_start_matches('#').strip_prefix("[[")).collect();
+    assert_eq!(
+        tables.iter().map(|t| t.trim_end_matches("]]")).collect::<Vec<_>>(),
+        expected.map(|(_, section)| section)
+    );
+    for (file, section) in expected {
+        let about = written.lines().any(|l| l.starts_with('#') && l.contains(file));
+        assert!(about, "{file} for {section}:\n{written}");
+    }
+    let keys = |list: &str, key: &str| {
+        answer[list].as_array().unwrap().iter().filter(|row| row["key"] == key).count()
+    };
+    assert_eq!([keys("guessed", "force"), keys("guessed", "response"), keys("missing", "height")], [1, 1, 4]);
+    assert_eq!(answer["left"][0][0], "notes.txt");
+    // It runs as it stands, and is never written over.
+    let found = json(&["check", text(&campaign)]);
+    assert_eq!(found["files"].as_array().unwrap().len(), 12 + 4);
+    let run = json(&["run", text(&campaign)]);
+    assert_eq!(run["results"]["frf"][0]["modes"].as_array().unwrap().len(), 2);
+    assert!(complaint(&["init", text(root.path())], 2).contains("there is a campaign already"));
+    assert_eq!(fs::read_to_string(&campaign).unwrap(), written);
+}
+
+#[test]
+fn a_folder_runs_without_a_campaign_and_nothing_is_written_beside_its_files() {
+    let root = tempfile::tempdir().unwrap();
+    folder(root.path());
+    let before: Vec<_> = fs::read_dir(root.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    for _ in 0..2 {
+        // The second run passes over the results of the first.
+        let output = vibro(&["run", text(root.path())]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert!(said.contains("guessed: force = \"Force\"") && !said.contains("results"), "{said}");
+    }
+    let mut after: Vec<_> = fs::read_dir(root.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    after.retain(|name| name != "results");
+    assert_eq!(after.len(), before.len());
+    let results: Value =
+        serde_json::from_slice(&fs::read(root.path().join("results/results.json")).unwrap()).unwrap();
+    let interval = &results["impacts"][0]["interval"];
+    let [value, std] = ["value", "std"].map(|key| interval[key].as_f64().unwrap());
+    // Samples are 0.1 ms apart, and a fourth of that is the most by which a mean of 33 intervals of 1/11 s can be off.
+    assert!((value - 1.0 / 11.0).abs() < 2.5e-5 && std < 1e-4, "{interval}");
+}
+
+#[test]
+fn a_sweep_is_named_by_its_files_a_pattern_or_a_folder() {
+    let root = tempfile::tempdir().unwrap();
+    steps(root.path());
+    let files: Vec<String> =
+        (1..=12).map(|k| text(&root.path().join(format!("step{k}.csv"))).to_owned()).collect();
+    let named = json(&[&["response".to_owned()][..], &files].concat());
+    let pattern = json(&["response", text(&root.path().join("step*.csv"))]);
+    let of_folder = json(&["response", text(root.path())]);
+    assert_eq!(named["points"].as_array().unwrap().len(), 12);
+    assert_eq!(named["points"], pattern["points"]);
+    assert_eq!(named["points"], of_folder["points"]);
+    // A single trace is no sweep, and nor are traces without a force.
+    let alone = root.path().join("alone.csv");
+    write(&alone, "sound [V]", 1000.0, 1.0, &mut f64::sin);
+    let said = complaint(&["response", text(&alone), text(&alone)], 2);
+    assert!(said.contains("sound [V]") && said.contains("[[sweep]]"), "{said}");
+}
+
+#[test]
+fn a_folder_without_recordings_is_named_and_a_rate_can_be_stated() {
+    let root = tempfile::tempdir().unwrap();
+    assert!(complaint(&["init", text(root.path())], 2).contains("no recording"));
+    let values: Vec<String> = (0..4000).map(|i| (f64::from(i) * 0.3).sin().to_string()).collect();
+    let values = values.join("\n");
+    fs::write(root.path().join("column.dat"), values).unwrap();
+    assert!(complaint(&["init", text(root.path())], 2).contains("--rate"));
+    json(&["init", text(root.path()), "--rate", "1000", "--unit", "m/s²"]);
+    let written = fs::read_to_string(root.path().join("campaign.toml")).unwrap();
+    assert!(written.contains("rate = 1000") && written.contains("unit = \"m/s²\""), "{written}");
+}
+
+#[test]
+fn the_help_begins_with_five_commands_and_each_has_an_example() {
+    let short = String::from_utf8(vibro::<&str>(&[]).stderr).unwrap();
+    assert_eq!(short.lines().filter(|l| l.starts_with("  ")).count(), 5, "{short}");
+    let help = String::from_utf8(vibro(&["--help"]).stdout).unwrap();
+    let listed = help.lines().take_while(|l| *l != "Options:").filter(|l| l.starts_with("  "));
+    for command in listed.filter_map(|l| l.split_whitespace().next()) {
+        let help = String::from_utf8(vibro(&[command, "--help"]).stdout).unwrap();
+        assert!(help.contains(&format!("Example:\n  vibro {command} ")), "{help}");
+    }
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let completions = String::from_utf8(vibro(&["completions", shell]).stdout).unwrap();
+        assert!(completions.contains("restitution"), "{shell}");
+    }
+    assert!(String::from_utf8(vibro(&["man"]).stdout).unwrap().starts_with(".ie"));
+}
