@@ -14,8 +14,7 @@ fn main() -> Result<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "gallery".to_owned());
     let mut out = Output::new(folder)?;
     let mut page = Page::new("Two-mass rig: one figure of each kind")
-        .warning("All data are made up by formulas: nothing here is a measurement.")
-        .warning("The spectra are read on their lines, so that amplitudes between lines are up to 15 % low.")
+        .paragraph("All data are made up by formulas: nothing here is a measurement.")
         .heading("Figures");
     for (name, figure) in figures()? {
         let start = Instant::now();
@@ -32,7 +31,7 @@ fn main() -> Result<()> {
         );
         out.write(&format!("{name}.svg"), svg)?;
         out.write(&format!("{name}.png"), png)?;
-        page = page.figure(&drawing, &figure.caption, &[&format!("{name}.svg"), &format!("{name}.png")]);
+        page = page.figure(&figure, &drawing, &[&format!("{name}.svg"), &format!("{name}.png")]);
     }
     let table = resonances();
     print!("{}", table.text());

@@ -17,6 +17,7 @@ pub(crate) mod source;
 pub(crate) mod spectrum;
 pub(crate) mod sweep;
 
+mod headline;
 mod page;
 
 pub use answer::Answer;
@@ -50,6 +51,8 @@ use std::path::{Path, PathBuf};
 pub(crate) trait Analysis: DeserializeOwned {
     /// Its section of a campaign: `impacts` for `[[impacts]]`.
     const SECTION: &'static str;
+    /// Its heading in the report.
+    const TITLE: &'static str;
     /// Whether records lie in files: their tables then have the keys of how a file is read.
     const OF_FILES: bool = true;
 
@@ -88,6 +91,7 @@ pub(crate) trait OfFile {
 #[derive(Clone, Copy)]
 pub(crate) struct Kind {
     section: &'static str,
+    title: &'static str,
     check: fn(&Campaign) -> Result<()>,
     files: fn(&Campaign, bool) -> Result<Vec<PathBuf>>,
     run: fn(&mut Job<'_>) -> Result<()>,
@@ -95,7 +99,13 @@ pub(crate) struct Kind {
 
 impl Kind {
     const fn of<A: Analysis>() -> Kind {
-        Kind { section: A::SECTION, check: check::<A>, files: files_of::<A>, run: run_all::<A> }
+        Kind {
+            section: A::SECTION,
+            title: A::TITLE,
+            check: check::<A>,
+            files: files_of::<A>,
+            run: run_all::<A>,
+        }
     }
 }
 

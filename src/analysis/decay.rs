@@ -83,6 +83,7 @@ fn levels(found: &DecayResult) -> Table {
 
 impl Analysis for Keys {
     const SECTION: &'static str = "decay";
+    const TITLE: &'static str = "Free decays";
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file).map(drop)

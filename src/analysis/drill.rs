@@ -219,6 +219,7 @@ impl Keys {
 
 impl Analysis for Keys {
     const SECTION: &'static str = "drill";
+    const TITLE: &'static str = "Hammer drills";
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

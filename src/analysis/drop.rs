@@ -252,6 +252,7 @@ fn by_method(name: &str, found: &Restitution) -> Table {
 
 impl Analysis for Keys {
     const SECTION: &'static str = "drop";
+    const TITLE: &'static str = "Restitution";
 
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {
         entry.keys.usable(entry.file.is_some())?;

@@ -208,6 +208,7 @@ impl Keys {
 
 impl Analysis for Keys {
     const SECTION: &'static str = "frf";
+    const TITLE: &'static str = "Frequency response functions";
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         match (&entry.file, &entry.keys.sweep) {

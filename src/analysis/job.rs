@@ -223,6 +223,35 @@ pub struct Record {
     pub answer: Answer,
 }
 
+/// What one kind of record adds to the report.
+pub(super) struct Part {
+    /// Its heading.
+    pub title: &'static str,
+    /// How much there was before.
+    pub from: Extent,
+    /// How much there is behind.
+    pub to: Extent,
+}
+
+/// How many tables, figures, long tables and findings an answer has.
+pub(super) struct Extent {
+    pub tables: usize,
+    pub figures: usize,
+    pub details: usize,
+    pub findings: usize,
+}
+
+impl Extent {
+    fn of(answer: &Answer) -> Extent {
+        Extent {
+            tables: answer.tables.len(),
+            figures: answer.figures.len(),
+            details: answer.details.len(),
+            findings: answer.findings.len(),
+        }
+    }
+}
+
 /// What the records of a campaign answer.
 #[derive(Debug)]
 pub struct Heard {
@@ -273,8 +302,11 @@ pub fn run(
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;
     job.put("version", &version)?;
+    let mut parts = Vec::new();
     for kind in KINDS {
+        let from = Extent::of(&job.all);
         (kind.run)(&mut job)?;
+        parts.push(Part { title: kind.title, from, to: Extent::of(&job.all) });
     }
     if campaign.is_empty() {
         job.all.add("", [Finding::caution("campaign-without-record")]);
@@ -290,6 +322,6 @@ pub fn run(
     put(&mut all.result, &all.findings, Voice::Campaign);
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
     output.write("results.json", json + "\n")?;
-    output.write("report.html", page::page(&job, version, &all, &drawings).html())?;
+    output.write("report.html", page::page(&job, version, &all, &drawings, &parts).html())?;
     Ok((all, job.answers > 0))
 }

@@ -1,34 +1,55 @@
 //! The report of a campaign as one page.
 
+use super::headline::headlines;
+use super::job::Part;
 use super::{Answer, Job};
-use crate::record::Step;
-use crate::report::words::{Voice, sentences};
+use crate::record::{Severity, Step};
+use crate::report::words::{Voice, graded};
 use crate::report::{Drawing, Page};
 use crate::units::notation::shortest;
 use std::fmt::Write as _;
 
-/// Lays out all that is shown, with the drawings of its figures.
-pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing]) -> Page {
-    let warnings = sentences(&all.findings, Voice::Campaign, true);
-    let page = warnings.into_iter().fold(Page::new(job.title.as_str()), Page::warning);
-    let mut page = all.tables.iter().fold(page, Page::table);
-    for ((name, figure), drawing) in all.figures.iter().zip(drawings) {
-        let files = [format!("{name}.svg"), format!("{name}.png")];
-        page = page.figure(drawing, &figure.caption, &files.each_ref().map(String::as_str));
+/// Lays out all that is shown, with the drawings of its figures: answers first, then kind by kind, then where they come from.
+pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing], parts: &[Part]) -> Page {
+    let mut page = Page::new(job.title.as_str()).heading("Answers");
+    page = headlines(&all.result).iter().fold(page, Page::table);
+    let worst: Vec<_> = graded(&all.findings, Voice::Campaign).into_iter().take(MATTER).collect();
+    let worst: Vec<_> = worst.into_iter().filter(|(severity, _)| *severity > Severity::Note).collect();
+    page = page.findings(&worst);
+    for Part { title, from, to } in parts {
+        let findings = graded(&all.findings[from.findings..to.findings], Voice::Campaign);
+        let tables = &all.tables[from.tables..to.tables];
+        let (figures, details) = (from.figures..to.figures, &all.details[from.details..to.details]);
+        if tables.is_empty() && figures.is_empty() && details.is_empty() && findings.is_empty() {
+            continue;
+        }
+        page = page.heading(title).findings(&findings);
+        for ((name, figure), drawing) in all.figures[figures.clone()].iter().zip(&drawings[figures]) {
+            let files = [format!("{name}.svg"), format!("{name}.png")];
+            page = page.figure(figure, drawing, &files.each_ref().map(String::as_str));
+        }
+        page = tables.iter().chain(details).fold(page, Page::table);
     }
-    page = all.details.iter().fold(page, Page::table);
+    let rest = parts.last().map_or(0, |part| part.to.findings);
+    page =
+        page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
     if !job.constants.is_empty() {
         let values = job.constants.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         page = page.details("Rig of the comparison", values);
     }
     let steps: Vec<(&str, String)> =
         job.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
-    page.heading("Processing")
-        .details("Steps from file to result", steps.iter().map(|(name, text)| (*name, text.as_str())))
-        .paragraph(&format!(
-            "Made by vibroimpact {version}. All numbers are in results.json beside this page."
-        ))
+    if !steps.is_empty() {
+        page = page
+            .details("Steps from file to result", steps.iter().map(|(name, text)| (*name, text.as_str())));
+    }
+    page.paragraph(&format!(
+        "Made by vibroimpact {version}. All numbers are in results.json beside this page."
+    ))
 }
+
+/// Findings that the page begins with, at most.
+const MATTER: usize = 3;
 
 fn history(steps: &[Step]) -> String {
     let mut text = String::new();

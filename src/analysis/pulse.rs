@@ -157,6 +157,7 @@ fn models(title: &str, result: &PulseResult) -> Table {
 
 impl Analysis for Keys {
     const SECTION: &'static str = "pulse";
+    const TITLE: &'static str = "Contact pulses";
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.keys.usable(entry.file.is_some())

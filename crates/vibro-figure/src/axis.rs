@@ -136,8 +136,8 @@ pub(super) struct Axis {
     pub lo: f64,
     pub hi: f64,
     pub title: String,
-    scale: Scale,
-    power: i32,
+    pub scale: Scale,
+    pub power: i32,
     degrees: bool,
 }
 

@@ -57,6 +57,11 @@ impl Heatmap {
         Ok(Heatmap { x: x.to_vec(), y: y.to_vec(), values: values.to_owned(), key })
     }
 
+    /// Positions of columns and rows, and values.
+    pub(super) fn parts(&self) -> (&[f64], &[f64], &Array2<f64>) {
+        (&self.x, &self.y, &self.values)
+    }
+
     /// Borders of all columns and of all rows, to find the limits of the axes.
     pub(super) fn borders(&self, x: Scale, y: Scale) -> (Vec<f64>, Vec<f64>) {
         let borders = |positions: &[f64], scale: Scale| {

@@ -15,6 +15,7 @@ mod forms;
 mod frame;
 mod grid;
 mod heatmap;
+mod interactive;
 mod legend;
 mod notes;
 mod path;

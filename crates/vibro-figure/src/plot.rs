@@ -67,6 +67,11 @@ impl<'a> Sheet<'a> {
         Sheet { plot, axes, bar, looks, keys, names, named_x }
     }
 
+    /// Its axes, if there is anything to show.
+    pub fn into_axes(self) -> Option<(Axis, Axis)> {
+        self.axes
+    }
+
     /// Room around a frame of about this size.
     pub fn insets(&self, size: (f64, f64)) -> Insets {
         let bare = Insets { left: 2.5 * LARGE, bottom: 2.5 * LARGE, top: SMALL, right: GAP };

@@ -65,12 +65,29 @@ impl Waterfall {
         Waterfall { x: self.x.limits(low, high), ..self }
     }
 
-    /// Settles the axes and brings everything to their scale; `None` where there is nothing to show.
-    fn cube(&self) -> Option<Cube> {
+    /// Axes to the right, to the back and upwards; `None` where there is nothing to show.
+    pub(super) fn axes(&self) -> Option<[Axis; 3]> {
         let x = Axis::new(&self.x, Extent::of(self.x.scale, self.frequency.iter().copied()), Room::Tight)?;
         let depths = Extent::of(Scale::Linear, self.rows.iter().map(|r| r.0));
         // Not on the axes, so that the outer spectra can be read.
         let depth = Axis::new(&AxisSpec::new("Excitation frequency", "Hz"), depths, Room::Margin)?;
+        let seen = |axis: &Axis, value: f64| (0.0..=1.0).contains(&axis.at(value));
+        let shown = self.rows.iter().filter(|row| seen(&depth, row.0));
+        let heights = shown.flat_map(|(_, row)| {
+            self.frequency.iter().zip(row).filter(|(f, _)| seen(&x, **f)).map(|(_, v)| *v)
+        });
+        let up = Axis::new(&self.height, Extent::of(self.height.scale, heights), Room::Floor)?;
+        Some([x, depth, up])
+    }
+
+    /// Frequencies of the lines, and spectra with their excitations.
+    pub(super) fn parts(&self) -> (&[f64], &[(f64, Vec<f64>)]) {
+        (&self.frequency, &self.rows)
+    }
+
+    /// Brings everything to the scale of the axes; `None` where there is nothing to show.
+    fn cube(&self) -> Option<Cube> {
+        let [x, depth, up] = self.axes()?;
         let shown = |axis: &Axis, value: f64| Some(axis.at(value)).filter(|at| (0.0..=1.0).contains(at));
         let rows: Vec<(f64, Vec<(f64, f64)>)> = self
             .rows
@@ -80,8 +97,6 @@ impl Waterfall {
                 Some((shown(&depth, *excitation)?, values.collect()))
             })
             .collect();
-        let heights = rows.iter().flat_map(|(_, row)| row.iter().map(|(_, v)| *v));
-        let up = Axis::new(&self.height, Extent::of(self.height.scale, heights), Room::Floor)?;
         // NaN stays NaN: a gap.
         let height = |value: f64| up.at(value).clamp(0.0, 1.0);
         let spectra =

@@ -1,0 +1,249 @@
+//! Figures as data for a page that draws them itself.
+
+use crate::style::{Look, looks};
+use crate::{Axis, Figure, Heatmap, Key, Marker, Panel, Plot, Rgb, Scale, Shape, Sheet, Waterfall};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
+
+impl Figure {
+    /// The figure for a page: panels with axes, series and matrices, all values as the axes show them. Lists are base64 of 32-bit floats,
+    /// least significant byte first; matrices base64 of 16-bit levels between `low` and `high`, logarithmic for magnitudes (0 is a gap). A panel
+    /// that is a table of classes is null.
+    pub fn data(&self) -> Value {
+        let panels: Vec<Value> = self.panels.iter().map(Panel::data).collect();
+        let grows = if self.width > 0.0 { self.height / self.width } else { 0.6 };
+        json!({ "title": self.title, "columns": self.columns.max(1), "sharedX": self.shared_x, "aspect": grows, "panels": panels })
+    }
+}
+
+impl Panel {
+    fn data(&self) -> Value {
+        match self {
+            Panel::Plot(plot) => plot.data().unwrap_or(Value::Null),
+            Panel::Waterfall(waterfall) => waterfall.data().unwrap_or(Value::Null),
+            Panel::Grid(_) => Value::Null,
+        }
+    }
+}
+
+impl Axis {
+    /// A value as the axis shows it; NaN where it has none.
+    fn shown(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => value / 10f64.powi(self.power),
+            Scale::Log => value,
+            Scale::Db { .. } => self.scale.of(value),
+        }
+    }
+
+    fn data(&self) -> Value {
+        let log = self.scale == Scale::Log;
+        let end = |u: f64| match self.scale {
+            Scale::Log => 10f64.powf(u),
+            Scale::Linear => u / 10f64.powi(self.power),
+            Scale::Db { .. } => u,
+        };
+        let reference = if let Scale::Db { reference } = self.scale { Some(reference) } else { None };
+        // A matrix has amplitudes: times the factor they are as shown, or levels over the reference are.
+        let factor = if self.scale == Scale::Linear { self.shown(1.0) } else { 1.0 };
+        let (low, high) = (end(self.lo), end(self.hi));
+        json!({ "title": self.title, "log": log, "low": low, "high": high, "reference": reference, "factor": factor })
+    }
+
+    fn list(&self, values: &[f64]) -> Value {
+        floats(values.iter().map(|v| self.shown(*v)))
+    }
+}
+
+impl Plot {
+    fn data(&self) -> Option<Value> {
+        let shared = crate::plot::extents(self).0;
+        let (x, y) = Sheet::new(self, shared, true).into_axes()?;
+        let series: Vec<Value> = self
+            .series
+            .iter()
+            .zip(looks(&self.series))
+            .map(|(series, look)| {
+                let joined =
+                    series.shape == Shape::Line || series.shape == Shape::Points && series.stroke.is_some();
+                json!({
+                    "name": series.name,
+                    "shape": shape(series.shape),
+                    "x": x.list(&series.x),
+                    "y": y.list(&series.y),
+                    "low": y.list(&series.low),
+                    "high": y.list(&series.high),
+                    "joined": joined,
+                    "look": look.data(),
+                })
+            })
+            .collect();
+        let note =
+            |note: &crate::Note| json!({ "text": note.text, "x": x.shown(note.x), "y": y.shown(note.y) });
+        Some(json!({
+            "kind": "plot",
+            "title": self.title,
+            "x": x.data(),
+            "y": y.data(),
+            "series": series,
+            "notes": self.notes.iter().map(note).collect::<Vec<_>>(),
+            "map": self.heatmap.as_ref().and_then(|map| map.data(&x, &y)),
+        }))
+    }
+}
+
+impl Heatmap {
+    fn data(&self, x: &Axis, y: &Axis) -> Option<Value> {
+        let (columns, rows, values) = self.parts();
+        let key = match &self.key {
+            Key::Quantity(_) => self.colour_axis()?.data(),
+            Key::Classes(names) => {
+                let colours: Vec<String> = (0..names.len()).map(|k| css(Heatmap::class_colour(k))).collect();
+                json!({ "classes": names, "colours": colours })
+            }
+        };
+        Some(json!({
+            "x": x.list(columns),
+            "y": y.list(rows),
+            "z": levels(values.iter().copied()),
+            "key": key,
+        }))
+    }
+}
+
+impl Waterfall {
+    fn data(&self) -> Option<Value> {
+        let [x, depth, up] = self.axes()?;
+        let (frequency, rows) = self.parts();
+        Some(json!({
+            "kind": "waterfall",
+            "x": x.data(),
+            "depth": depth.data(),
+            "up": up.data(),
+            "frequency": x.list(frequency),
+            "excitation": depth.list(&rows.iter().map(|row| row.0).collect::<Vec<_>>()),
+            "z": levels(rows.iter().flat_map(|row| row.1.iter().copied())),
+        }))
+    }
+}
+
+impl Look {
+    fn data(&self) -> Value {
+        json!({
+            "colour": css(self.colour),
+            "width": self.pen.width,
+            "dashes": self.pen.dashes,
+            "marker": marker(self.marker),
+        })
+    }
+}
+
+fn css(Rgb(r, g, b): Rgb) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+fn shape(shape: Shape) -> &'static str {
+    match shape {
+        Shape::Line => "line",
+        Shape::Points => "points",
+        Shape::Band => "band",
+        Shape::Bars => "bars",
+        Shape::Vertical => "vertical",
+        Shape::Horizontal => "horizontal",
+        Shape::Heading => "heading",
+    }
+}
+
+fn marker(marker: Marker) -> String {
+    match marker {
+        Marker::Circle => "circle",
+        Marker::Square => "open-square",
+        Marker::Triangle => "triangle",
+        Marker::Diamond => "open-diamond",
+        Marker::OpenCircle => "open-circle",
+        Marker::FilledSquare => "square",
+        Marker::Cross => "cross",
+        Marker::Saltire => "saltire",
+        Marker::Star => "star",
+        Marker::Limit => "open-limit",
+        Marker::Letter(letter) => return letter.to_string(),
+    }
+    .to_owned()
+}
+
+/// Base64 of 32-bit floats.
+fn floats(values: impl Iterator<Item = f64>) -> Value {
+    let bytes: Vec<u8> = values.flat_map(|v| (v as f32).to_le_bytes()).collect();
+    Value::String(STANDARD.encode(bytes))
+}
+
+/// Decades below the largest magnitude that levels reach.
+const DECADES: f64 = 8.0;
+
+/// Base64 of 16-bit levels from 1 to 65535 between `low` and `high`: of log₁₀ where all are magnitudes, 8 decades at most, in steps of
+/// 0.03 %; what lies deeper is at the lowest level.
+fn levels(values: impl Iterator<Item = f64> + Clone) -> Value {
+    let finite = values.clone().filter(|v| v.is_finite());
+    let magnitudes = finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);
+    let scale = if magnitudes { Scale::Log } else { Scale::Linear };
+    let ends = |(a, b): (f64, f64), v: f64| (a.min(v), b.max(v));
+    let scaled = finite.map(|v| scale.of(v)).filter(|u| u.is_finite());
+    let (mut low, high) = scaled.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    if magnitudes {
+        low = low.max(high - DECADES);
+    }
+    let span = if high > low { high - low } else { 1.0 };
+    let level = |v: f64| match scale.of(v) {
+        u if v.is_nan() || u.is_nan() => 0,
+        u => 1 + (((u - low) / span).clamp(0.0, 1.0) * 65534.0).round() as u16,
+    };
+    let bytes: Vec<u8> = values.flat_map(|v| level(v).to_le_bytes()).collect();
+    json!({ "levels": STANDARD.encode(bytes), "low": low, "high": low + span, "log": magnitudes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{AxisSpec, Series};
+    use ndarray::array;
+
+    fn decoded(list: &Value) -> Vec<f32> {
+        let bytes = STANDARD.decode(list.as_str().unwrap()).unwrap();
+        bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
+    }
+
+    #[test]
+    fn values_are_as_the_axes_show_them() {
+        let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("Displacement", "m"))
+            .with(Series::points("a", [1.0, 2.0], [0.001, 0.002]).y_error([1e-4, f64::NAN]));
+        let data = Figure::single("x").panel(plot).data();
+        let panel = &data["panels"][0];
+        assert_eq!(panel["y"]["title"], "Displacement (mm)");
+        assert_eq!(decoded(&panel["series"][0]["y"]), [1.0, 2.0]);
+        let low = decoded(&panel["series"][0]["low"]);
+        assert!((low[0] - 0.9).abs() < 1e-6 && low[1].is_nan());
+    }
+
+    /// 65534 steps of 8 decades are 0.028 % each, so that a level is right to half of that.
+    #[test]
+    fn levels_keep_magnitudes_to_their_step() {
+        let values = [1.0, 3e-4, 0.0, f64::NAN, 2e-9];
+        let data = levels(values.into_iter());
+        let bytes = STANDARD.decode(data["levels"].as_str().unwrap()).unwrap();
+        let (low, high) = (data["low"].as_f64().unwrap(), data["high"].as_f64().unwrap());
+        let value = |b: &[u8]| match u16::from_le_bytes([b[0], b[1]]) {
+            0 => f64::NAN,
+            level => 10f64.powf(low + f64::from(level - 1) / 65534.0 * (high - low)),
+        };
+        let found: Vec<f64> = bytes.chunks_exact(2).map(value).collect();
+        assert!((found[0] - 1.0).abs() < 1.5e-4 && (found[1] / 3e-4 - 1.0).abs() < 1.5e-4, "{found:?}");
+        assert!(found[3].is_nan());
+        // Zero and what lies deeper than eight decades are at the lowest level.
+        assert!((found[2] / 1e-8 - 1.0).abs() < 1.5e-4 && found[4] == found[2]);
+        let matrix = array![[1.0, 2.0], [3.0, f64::NAN]];
+        let map = Heatmap::new(&[0.0, 1.0], &[0.0, 1.0], &matrix, AxisSpec::new("z", "m")).unwrap();
+        let plot = Plot::new(AxisSpec::frequency(), AxisSpec::frequency()).heatmap(map);
+        assert!(Figure::single("").panel(plot).data()["panels"][0]["map"]["z"]["log"].as_bool().unwrap());
+    }
+}

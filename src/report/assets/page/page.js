@@ -1,0 +1,91 @@
+"use strict";
+
+/** Text of a table as CSV. */
+function csv(table) {
+  const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  return Array.from(table.rows, (row) => Array.from(row.cells, (c) => cell(c.textContent)).join(",")).join("\n") + "\n";
+}
+
+/** Buttons and, for a long one, a search above a table. */
+function tableTools(table) {
+  const bar = document.createElement("div");
+  bar.className = "tools";
+  const name = table.caption?.textContent || "table";
+  if (table.tBodies[0]?.rows.length > 12) {
+    const search = document.createElement("input");
+    [search.type, search.placeholder] = ["search", "find a row"];
+    search.setAttribute("aria-label", `Find a row of ${name}`);
+    search.addEventListener("input", () => {
+      for (const row of table.tBodies[0].rows) row.hidden = !row.textContent.toLowerCase().includes(search.value.toLowerCase());
+    });
+    bar.append(search);
+  }
+  const copy = button("copy", "Copy with tabs, for a spreadsheet", async () => {
+    const text = Array.from(table.rows, (row) => Array.from(row.cells, (c) => c.textContent).join("\t")).join("\n");
+    try {
+      await navigator.clipboard.writeText(text);
+      copy.textContent = "copied";
+    } catch {
+      getSelection().selectAllChildren(table);
+      copy.textContent = "selected: press Ctrl+C";
+    }
+  });
+  bar.append(copy, button("CSV", "Save as CSV", () => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([csv(table)], { type: "text/csv" }));
+    link.download = `${name.replace(/[^\p{L}\p{N}]+/gu, "_")}.csv`;
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }));
+  table.parentElement.before(bar);
+}
+
+/** Draws a figure into its place. */
+function drawFigure(host, figure, shared) {
+  host.replaceChildren();
+  const narrow = host.clientWidth < 560;
+  const columns = narrow ? 1 : figure.columns;
+  host.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
+  const rows = Math.ceil(figure.panels.length / figure.columns);
+  const whole = Math.max(host.clientWidth * Math.min(figure.aspect, 1.2), 240 * rows);
+  const height = Math.round(Math.min(Math.max(whole / rows, 220), 460));
+  for (const panel of figure.panels) {
+    const cell = document.createElement("div");
+    host.append(cell);
+    if (panel?.kind === "plot") new Plot(cell, panel, height, shared);
+    else if (panel?.kind === "waterfall") new Waterfall(cell, panel, height, shared);
+  }
+}
+
+function start() {
+  const { figures, matrices } = JSON.parse(document.getElementById("data").textContent);
+  const hosts = document.querySelectorAll("[data-figure]");
+  const drawn = new Map();
+  const draw = (host) => {
+    if (drawn.get(host) === host.clientWidth) return;
+    drawn.set(host, host.clientWidth);
+    drawFigure(host, figures[host.dataset.figure], matrices);
+  };
+  const seen = new IntersectionObserver((entries) => {
+    for (const { isIntersecting, target } of entries) if (isIntersecting) draw(target);
+  }, { rootMargin: "400px" });
+  for (const host of hosts) seen.observe(host);
+  const again = () => {
+    const before = Array.from(drawn.keys());
+    drawn.clear();
+    before.forEach(draw);
+  };
+  let waits = 0;
+  addEventListener("resize", () => {
+    clearTimeout(waits);
+    waits = setTimeout(() => Array.from(drawn.keys()).forEach(draw), 150);
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
+  addEventListener("beforeprint", () => {
+    for (const fold of document.querySelectorAll("details")) fold.open = true;
+    hosts.forEach(draw);
+  });
+  for (const table of document.querySelectorAll(".table table")) tableTools(table);
+}
+
+start();

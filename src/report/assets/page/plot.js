@@ -1,0 +1,390 @@
+"use strict";
+
+/** Colours of the page as it is shown now. */
+function theme(element) {
+  const style = getComputedStyle(element);
+  const of = (name) => style.getPropertyValue(name).trim();
+  return { ink: of("--ink"), faint: of("--faint"), paper: of("--paper"), font: `12px ${style.fontFamily}` };
+}
+
+/** A button with a text. */
+function button(text, title, action) {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = text;
+  made.title = title;
+  made.addEventListener("click", action);
+  return made;
+}
+
+/** Whether a tick of a logarithmic axis is 1, 2 or 5 times a power of ten: those have numbers. */
+function plain(value, log) {
+  const first = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
+  return !log || [1, 2, 5].some((k) => Math.abs(first - k) < 1e-6);
+}
+
+/** Paths of markers of half width `s` around points. */
+const MARKERS = {
+  circle: (c, x, y, s) => { c.moveTo(x + s, y); c.arc(x, y, s, 0, 7); },
+  square: (c, x, y, s) => c.rect(x - 0.9 * s, y - 0.9 * s, 1.8 * s, 1.8 * s),
+  triangle: (c, x, y, s) => corners(c, x, y, s, [[0, -1.3], [1.2, 0.85], [-1.2, 0.85]]),
+  limit: (c, x, y, s) => corners(c, x, y, s, [[0, 1.3], [1.2, -0.85], [-1.2, -0.85]]),
+  diamond: (c, x, y, s) => corners(c, x, y, s, [[0, -1.3], [1.2, 0], [0, 1.3], [-1.2, 0]]),
+  cross: (c, x, y, s) => strokes(c, x, y, s, [[-1.2, 0, 1.2, 0], [0, -1.2, 0, 1.2]]),
+  saltire: (c, x, y, s) => strokes(c, x, y, s, [[-0.9, -0.9, 0.9, 0.9], [-0.9, 0.9, 0.9, -0.9]]),
+  star: (c, x, y, s) => { MARKERS.cross(c, x, y, s); MARKERS.saltire(c, x, y, s); },
+};
+
+function corners(c, x, y, s, points) {
+  points.forEach(([dx, dy], k) => c[k ? "lineTo" : "moveTo"](x + dx * s, y + dy * s));
+  c.closePath();
+}
+
+function strokes(c, x, y, s, lines) {
+  for (const [x0, y0, x1, y1] of lines) {
+    c.moveTo(x + x0 * s, y + y0 * s);
+    c.lineTo(x + x1 * s, y + y1 * s);
+  }
+}
+
+/** Draws one marker of a name; open ones are filled with the paper. */
+function mark(c, name, x, y, s, colour, paper) {
+  const open = name.startsWith("open-");
+  const path = MARKERS[open ? name.slice(5) : name];
+  c.beginPath();
+  if (!path) {
+    c.fillStyle = colour;
+    c.fillText(name, x, y);
+    return;
+  }
+  path(c, x, y, s);
+  c.fillStyle = open ? paper : colour;
+  c.fill();
+  c.stroke();
+}
+
+/** Series over two axes: uPlot has axes, zoom and cursor; what is drawn in the frame is drawn here, since motions turn back along the abscissa. */
+class Plot {
+  constructor(host, panel, height, shared) {
+    this.host = host;
+    this.panel = panel;
+    this.height = height;
+    this.series = panel.series.map((s) => ({
+      ...s, x: floats(s.x), y: floats(s.y), low: floats(s.low), high: floats(s.high), hidden: false,
+    }));
+    if (panel.map) {
+      const { x, y, z, key } = panel.map;
+      this.map = { ...panel.map, x: floats(x), y: floats(y), z: matrix(z, key, shared) };
+    }
+    this.log = panel.y.log;
+    this.tools();
+    this.frame = document.createElement("div");
+    this.tip = document.createElement("div");
+    this.tip.className = "tip";
+    this.tip.setAttribute("role", "status");
+    this.below = document.createElement("div");
+    host.append(this.frame, this.tip, this.below);
+    this.build();
+  }
+
+  /** Buttons above, and names that switch their series. */
+  tools() {
+    const bar = document.createElement("div");
+    bar.className = "tools";
+    if (this.panel.title) {
+      const title = document.createElement("b");
+      title.textContent = this.panel.title;
+      bar.append(title);
+    }
+    for (const series of this.series.filter((s) => s.name && !["vertical", "horizontal"].includes(s.shape))) {
+      if (series.shape === "heading") {
+        const heading = document.createElement("span");
+        heading.textContent = series.name;
+        bar.append(heading);
+        continue;
+      }
+      const name = button(series.name, "Show or hide", () => {
+        series.hidden = !series.hidden;
+        name.setAttribute("aria-pressed", String(!series.hidden));
+        this.plot.redraw();
+      });
+      name.setAttribute("aria-pressed", "true");
+      name.className = "name";
+      name.prepend(this.key(series));
+      bar.append(name);
+    }
+    for (const [k, name] of (this.panel.map?.key.classes ?? []).entries()) {
+      const entry = document.createElement("span");
+      const box = document.createElement("i");
+      box.style.background = this.panel.map.key.colours[k];
+      box.className = "box";
+      entry.append(box, name);
+      bar.append(entry);
+    }
+    if (this.map && !this.map.key.classes) bar.append(this.scale());
+    const positive = this.series.some((s) => s.y.some((v) => v > 0)) && !this.panel.map && this.panel.y.low >= 0;
+    if (positive) {
+      this.switch = button(this.log ? "linear" : "log", "Scale of the ordinate", () => {
+        this.log = !this.log;
+        this.switch.textContent = this.log ? "linear" : "log";
+        this.build();
+      });
+      bar.append(this.switch);
+    }
+    bar.append(button("reset", "Show all (or click twice in the figure)", () => this.build()));
+    this.host.append(bar);
+  }
+
+  /** The colours of a map with the ends of their scale. */
+  scale() {
+    const { key } = this.map, entry = document.createElement("span"), strip = document.createElement("i");
+    const stops = Array.from({ length: 9 }, (_, k) => viridis(k / 8));
+    strip.className = "strip";
+    strip.style.background = `linear-gradient(to right, ${stops.join(",")})`;
+    entry.append(`${key.title}: ${digits(key.low, 3)} `, strip, ` ${digits(key.high, 3)}`);
+    return entry;
+  }
+
+  /** The row of a map under the cursor, as a curve below it. */
+  slice(r) {
+    if (this.row === r) return;
+    this.row = r;
+    const n = this.map.x.length, { ink, faint, font } = theme(this.host), { key } = this.map;
+    const data = [this.map.x, this.map.z.slice(r * n, (r + 1) * n)];
+    if (this.curve) {
+      this.curve.setData(data, false);
+      this.curve.redraw();
+      return;
+    }
+    const axis = { stroke: ink, font, labelFont: font, labelSize: 22, grid: { stroke: faint, width: 1 }, ticks: { show: false } };
+    this.curve = new uPlot({
+      width: this.plot.width, height: 170, legend: { show: false }, cursor: { show: false },
+      scales: {
+        x: { time: false, range: [this.panel.x.low, this.panel.x.high] },
+        y: { distr: key.log ? 3 : 1, range: [key.low, key.high] },
+      },
+      axes: [{ ...axis, size: 34, label: this.panel.x.title }, { ...axis, size: 58, label: key.title }],
+      series: [{}, { stroke: "#0072b2", width: 1.2, points: { show: false } }],
+    }, data, this.below);
+  }
+
+  /** A sample of a series' look. */
+  key(series) {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height, canvas.className] = [52, 28, "key"];
+    const c = canvas.getContext("2d"), { ink, paper } = theme(this.host);
+    this.pen(c, series, ink, 2);
+    if (series.joined) {
+      c.beginPath();
+      c.moveTo(2, 14);
+      c.lineTo(50, 14);
+      c.stroke();
+    }
+    c.setLineDash([]);
+    if (series.shape === "points") mark(c, series.look.marker, 26, 14, 8, c.strokeStyle, paper);
+    if (series.shape === "band" || series.shape === "bars") c.fillRect(4, 4, 44, 20);
+    return canvas;
+  }
+
+  pen(c, series, ink, ratio) {
+    const { colour, width, dashes } = series.look;
+    c.strokeStyle = colour === "#000000" ? ink : colour;
+    c.fillStyle = c.strokeStyle;
+    c.lineWidth = 1.3 * width * ratio;
+    c.setLineDash(dashes.map((d) => 1.3 * d * ratio));
+  }
+
+  build() {
+    this.plot?.destroy();
+    const { x, y } = this.panel, { ink, faint, font } = theme(this.host);
+    const positive = this.series.flatMap((s) => Array.from(s.y).filter((v) => v > 0));
+    const least = positive.reduce((a, b) => Math.min(a, b), Infinity);
+    const low = this.log && !(y.low > 0) ? Math.max(least, y.high * 1e-9) : y.low;
+    const scale = (axis, log, from) => ({
+      time: false, distr: log ? 3 : 1,
+      range: (_, a, b) => (a == null || b == null || a === b ? [from, axis.high] : [a, b]),
+    });
+    const rule = (axis, size, log) => ({
+      label: axis.title, labelSize: 22, size, stroke: ink, font, labelFont: font, grid: { show: !this.map, stroke: faint, width: 1 },
+      ticks: { stroke: faint, width: 1 }, values: (_, ticks) => ticks.map((v) => (v == null || !plain(v, log) ? "" : digits(v, 10))),
+    });
+    const width = Math.max(this.host.clientWidth, 200);
+    this.plot = new uPlot({
+      width, height: this.height, legend: { show: false },
+      cursor: { drag: { x: true, y: true, uni: 20 }, points: { show: false } },
+      scales: { x: scale(x, x.log, x.low), y: scale(y, this.log, low) },
+      axes: [rule(x, 34, x.log), rule(y, width < 420 ? 46 : 58, this.log)],
+      series: [{}, { paths: () => null, points: { show: false } }],
+      hooks: {
+        drawClear: [() => this.map && this.cells()],
+        draw: [() => this.draw()],
+        setCursor: [() => this.point()],
+      },
+    }, [[x.low, x.high], [low, y.high]], this.frame);
+  }
+
+  inFrame(drawing) {
+    const { ctx, bbox } = this.plot;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    drawing(ctx);
+    ctx.restore();
+  }
+
+  at(x, y) {
+    const of = (v, name, log) => (log && !(v > 0) ? NaN : Number.isNaN(v) ? NaN : this.plot.valToPos(v, name, true));
+    return [of(x, "x", this.panel.x.log), of(y, "y", this.log)];
+  }
+
+  cells() {
+    const { x, y, z, key } = this.map, across = borders(x), up = borders(y);
+    const part = (v) => key.log
+      ? Math.log(v / key.low) / Math.log(key.high / key.low)
+      : (v - key.low) / (key.high - key.low);
+    const colour = (v) => (key.classes ? key.colours[v] : viridis(part(v)));
+    this.inFrame((c) => {
+      const xs = across.map((v) => this.at(v, this.panel.y.low)[0]);
+      const ys = up.map((v) => this.at(this.panel.x.low, v)[1]);
+      for (let r = 0; r < y.length; r++) {
+        for (let k = 0; k < x.length; k++) {
+          const v = z[r * x.length + k];
+          if (Number.isNaN(v) || xs[k + 1] < 0) continue;
+          c.fillStyle = colour(v);
+          c.fillRect(Math.floor(xs[k]), Math.floor(ys[r + 1]), Math.ceil(xs[k + 1]) - Math.floor(xs[k]), Math.ceil(ys[r]) - Math.floor(ys[r + 1]));
+        }
+      }
+    });
+  }
+
+  draw() {
+    const { ink, paper, font } = theme(this.host), ratio = devicePixelRatio;
+    this.inFrame((c) => {
+      c.textAlign = "left";
+      c.textBaseline = "alphabetic";
+      c.font = font.replace("12px", `${11 * ratio}px`);
+      for (const series of this.series.filter((s) => !s.hidden)) {
+        this.pen(c, series, ink, ratio);
+        this[series.shape]?.(c, series, paper, ratio);
+      }
+      c.setLineDash([]);
+      c.fillStyle = ink;
+      for (const note of this.panel.notes) {
+        const [x, y] = this.at(note.x, note.y), right = x > this.plot.bbox.left + 0.6 * this.plot.bbox.width;
+        c.textAlign = right ? "right" : "left";
+        c.fillText(note.text, x + (right ? -6 : 6) * ratio, y - 6 * ratio);
+      }
+    });
+  }
+
+  line(c, series) {
+    c.beginPath();
+    let pen = false;
+    for (let i = 0; i < Math.min(series.x.length, series.y.length); i++) {
+      const [x, y] = this.at(series.x[i], series.y[i]);
+      const is = Number.isFinite(x) && Number.isFinite(y);
+      if (is) c[pen ? "lineTo" : "moveTo"](x, y);
+      pen = is;
+    }
+    c.stroke();
+  }
+
+  points(c, series, paper, ratio) {
+    if (series.joined) this.line(c, series);
+    c.setLineDash([]);
+    c.lineWidth = ratio;
+    const size = ratio * 3.4 * Math.min(1, Math.max(0.5, Math.sqrt(60 / series.x.length)));
+    c.beginPath();
+    for (let i = 0; i < series.low.length; i++) {
+      const [x, a] = this.at(series.x[i], series.low[i]), b = this.at(series.x[i], series.high[i])[1];
+      if (!Number.isFinite(x + b) || Number.isNaN(series.low[i])) continue;
+      c.moveTo(x, Number.isFinite(a) ? a : 1e5);
+      c.lineTo(x, b);
+    }
+    c.stroke();
+    const colour = c.strokeStyle;
+    for (let i = 0; i < series.x.length; i++) {
+      const [x, y] = this.at(series.x[i], series.y[i]);
+      if (Number.isFinite(x + y)) mark(c, series.look.marker, x, y, size, colour, paper);
+    }
+  }
+
+  band(c, series) {
+    c.globalAlpha = 0.3;
+    c.beginPath();
+    for (let i = 0; i < series.x.length; i++) c.lineTo(...this.at(series.x[i], series.high[i]));
+    for (let i = series.x.length - 1; i >= 0; i--) {
+      const [x, y] = this.at(series.x[i], series.low[i]);
+      c.lineTo(x, Number.isFinite(y) ? y : 1e5);
+    }
+    c.fill();
+    c.globalAlpha = 1;
+  }
+
+  bars(c, series) {
+    c.globalAlpha = 0.5;
+    const zero = this.at(0, 0)[1];
+    for (let i = 0; i < series.y.length; i++) {
+      const [a, y] = this.at(series.x[i], series.y[i]), b = this.at(series.x[i + 1], 0)[0];
+      c.fillRect(a, y, b - a, (Number.isFinite(zero) ? zero : 1e5) - y);
+    }
+    c.globalAlpha = 1;
+  }
+
+  vertical(c, series, _, ratio) {
+    this.reference(c, series, [series.x[0], null], ratio);
+  }
+
+  horizontal(c, series, _, ratio) {
+    this.reference(c, series, [null, series.y[0]], ratio);
+  }
+
+  reference(c, series, [x, y], ratio) {
+    const { left, top, width, height } = this.plot.bbox;
+    c.beginPath();
+    if (y === null) {
+      const at = this.plot.valToPos(x, "x", true);
+      c.moveTo(at, top);
+      c.lineTo(at, top + height);
+      c.fillText(series.name, at + 3 * ratio, top + 12 * ratio);
+    } else {
+      const at = this.plot.valToPos(y, "y", true);
+      c.moveTo(left, at);
+      c.lineTo(left + width, at);
+      c.fillText(series.name, left + 4 * ratio, at - 3 * ratio);
+    }
+    c.stroke();
+  }
+
+  /** Says what lies under the cursor. */
+  point() {
+    const { left, top } = this.plot.cursor;
+    if (!(left >= 0)) {
+      this.tip.textContent = "";
+      return;
+    }
+    const [x, y] = [this.plot.posToVal(left, "x"), this.plot.posToVal(top, "y")];
+    if (this.map) {
+      const k = nearest(this.map.x, x), r = nearest(this.map.y, y), v = this.map.z[r * this.map.x.length + k];
+      const value = this.map.key.classes ? this.map.key.classes[v] ?? "–" : `${this.map.key.title}: ${digits(v, 4)}`;
+      if (!this.map.key.classes) this.slice(r);
+      this.tip.textContent = `${this.panel.x.title}: ${digits(this.map.x[k])}, ${this.panel.y.title}: ${digits(this.map.y[r])}, ${value}`;
+      return;
+    }
+    let best = null, least = 40;
+    for (const series of this.series.filter((s) => !s.hidden && s.y.length > 1)) {
+      for (let i = 0; i < Math.min(series.x.length, series.y.length); i++) {
+        const distance = Math.hypot(this.plot.valToPos(series.x[i], "x") - left, this.plot.valToPos(series.y[i], "y") - top);
+        if (distance < least) [best, least] = [[series, i], distance];
+      }
+    }
+    if (!best) {
+      this.tip.textContent = `${this.panel.x.title}: ${digits(x, 5)}, ${this.panel.y.title}: ${digits(y, 4)}`;
+      return;
+    }
+    const [series, i] = best, std = series.high.length ? series.high[i] - series.y[i] : NaN;
+    const name = series.name ? `${series.name}: ` : "";
+    this.tip.textContent = `${name}${this.panel.x.title} ${digits(series.x[i])}, ${this.panel.y.title} ${estimate(series.y[i], std)}`;
+  }
+}

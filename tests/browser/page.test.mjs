@@ -1,0 +1,209 @@
+// The report page in a real browser: node --test, with Chromium from the system. `VIBRO` is the program, `REPORT` the example's page.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, writeFileSync, copyFileSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+import { chromium } from "playwright-core";
+
+const root = resolve(import.meta.dirname, "../..");
+const vibro = process.env.VIBRO ?? join(root, "target/release/vibro");
+const report = process.env.REPORT ?? join(root, "examples/two_mass_rig/results/report.html");
+const flags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+
+let browser;
+before(async () => (browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: flags })));
+after(() => browser.close());
+
+/** A page whose errors and requests fail the test. */
+async function open(path, options = {}, todo) {
+  const context = await browser.newContext({ viewport: { width: 1200, height: 900 }, acceptDownloads: true, ...options });
+  const page = await context.newPage(), wrong = [];
+  page.on("pageerror", (error) => wrong.push(error.stack));
+  page.on("console", (message) => message.type() === "error" && wrong.push(message.text()));
+  page.on("dialog", (dialog) => wrong.push(`dialog ${dialog.message()}`) && dialog.dismiss());
+  page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || wrong.push(request.url()));
+  await page.goto(`file://${path}`);
+  const given = await todo(page);
+  assert.deepEqual(wrong, []);
+  await context.close();
+  return given;
+}
+
+/** Scrolls to an element and waits until its figure is drawn. */
+async function show(page, selector, nth = 0) {
+  const element = page.locator(selector).nth(nth);
+  await element.scrollIntoViewIfNeeded();
+  await page.waitForTimeout(150);
+  return element;
+}
+
+/** What the pixels of a canvas add up to. */
+const ink = (canvas) => canvas.evaluate((c) => c.toDataURL().length);
+
+test("the page is small and shows its first view in 0.3 s", async (t) => {
+  const size = statSync(report).size;
+  t.diagnostic(`${Math.round(size / 1000)} kB`);
+  assert.ok(size < 900_000, String(size));
+  const times = [];
+  for (let k = 0; k < 5; k++) {
+    times.push(await open(report, {}, (page) => page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime
+      ?? performance.getEntriesByType("navigation")[0].domContentLoadedEventEnd)));
+  }
+  const median = times.sort((a, b) => a - b)[2];
+  t.diagnostic(`first view ${Math.round(median)} ms`);
+  assert.ok(median < 300, String(times));
+});
+
+test("a value under the pointer is named with its uncertainty, and names switch their series", () => open(report, {}, async (page) => {
+  const figure = await show(page, "[data-figure]");
+  const over = figure.locator(".u-over").first(), canvas = figure.locator(".uplot canvas").first();
+  const box = await over.boundingBox();
+  await over.hover({ position: { x: 1, y: box.height - 1 } });
+  let said = "";
+  for (let x = 20; x < box.width && !said.includes("±"); x += 4) {
+    for (let y = 10; y < box.height && !said.includes("±"); y += 30) {
+      await page.mouse.move(box.x + x, box.y + y);
+      said = await figure.locator(".tip").first().textContent();
+    }
+  }
+  assert.match(said, /mass [12], (up|down): .*Hz.* \d.*±/);
+  const name = figure.locator("button.name").first(), all = await ink(canvas);
+  await name.click();
+  assert.equal(await name.getAttribute("aria-pressed"), "false");
+  assert.notEqual(await ink(canvas), all);
+  await name.click();
+  assert.equal(await ink(canvas), all);
+}));
+
+test("a dragged rectangle zooms, and reset shows all", () => open(report, {}, async (page) => {
+  const figure = await show(page, "[data-figure]");
+  const canvas = figure.locator(".uplot canvas").first(), all = await ink(canvas);
+  const box = await figure.locator(".u-over").first().boundingBox();
+  await page.mouse.move(box.x + 100, box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 300, box.y + 200, { steps: 4 });
+  await page.mouse.up();
+  assert.notEqual(await ink(canvas), all);
+  await figure.getByRole("button", { name: "reset" }).first().click();
+  await page.mouse.move(5, 5);
+  assert.equal(await ink(figure.locator(".uplot canvas").first()), all);
+}));
+
+test("a waterfall turns by pointer and keys, changes to levels, and names the spectrum under the pointer", () => open(report, {}, async (page) => {
+  await show(page, "[data-figure]", 2);
+  const canvas = page.locator("canvas.turn").first(), first = await ink(canvas), box = await canvas.boundingBox();
+  await page.mouse.move(box.x + 300, box.y + 200);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 200, box.y + 150, { steps: 3 });
+  await page.mouse.up();
+  await page.waitForTimeout(60);
+  const turned = await ink(canvas);
+  assert.notEqual(turned, first);
+  await canvas.focus();
+  await page.keyboard.press("ArrowLeft");
+  await page.waitForTimeout(60);
+  assert.notEqual(await ink(canvas), turned);
+  const figure = page.locator("[data-figure]", { has: page.locator("canvas.turn") }).first();
+  await figure.getByRole("button", { name: "dB" }).click();
+  await page.mouse.move(box.x + 400, box.y + 250);
+  await page.waitForTimeout(60);
+  assert.match(await figure.locator(".tip").textContent(), /Excitation frequency \(Hz\) [\d.]+, Frequency \(Hz\) [\d.]+, .* \d/);
+}));
+
+test("a map names the cell under the pointer and shows its spectrum", () => open(report, {}, async (page) => {
+  const map = await show(page, "[data-figure]", 3);
+  await map.locator(".u-over").first().hover();
+  assert.match(await map.locator(".tip").textContent(), /dB|mm|µm/);
+  assert.equal(await map.locator(".uplot").count(), 2);
+}));
+
+test("tables are searched, copied and saved", () => open(report, { permissions: ["clipboard-read", "clipboard-write"] }, async (page) => {
+  const fold = page.locator("details", { has: page.locator("input[type=search]") }).first();
+  await fold.locator("summary").click();
+  const rows = fold.locator("tbody tr"), n = await rows.count();
+  await fold.locator("input[type=search]").fill("5.5");
+  const left = await rows.evaluateAll((all) => all.filter((row) => !row.hidden).length);
+  assert.ok(left > 0 && left < n, `${left} of ${n}`);
+  await fold.getByRole("button", { name: "copy" }).click();
+  await fold.getByRole("button", { name: /copied|selected/ }).waitFor();
+  const [file] = await Promise.all([page.waitForEvent("download"), fold.getByRole("button", { name: "CSV" }).click()]);
+  const text = readFileSync(await file.path(), "utf8");
+  assert.equal(text.trimEnd().split("\n").length, n + 1);
+}));
+
+test("nothing is wider than a phone of 360 px, light or dark", async () => {
+  for (const colorScheme of ["light", "dark"]) {
+    await open(report, { viewport: { width: 360, height: 740 }, colorScheme }, async (page) => {
+      await show(page, "[data-figure]");
+      await show(page, "[data-figure]", 2);
+      const [wide, paper] = await page.evaluate(() => [document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]);
+      assert.ok(wide <= 360, `${wide} px`);
+      assert.equal(paper === "rgb(255, 255, 255)", colorScheme === "light");
+    });
+  }
+});
+
+test("print opens what is folded, on A4 and on Letter", () => open(report, {}, async (page) => {
+  for (const format of ["A4", "Letter"]) {
+    await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    const pdf = await page.pdf({ format });
+    assert.ok(pdf.length > 50_000, String(pdf.length));
+  }
+  assert.equal(await page.locator("details:not([open])").count(), 0);
+}));
+
+test("without scripts the figures stand as printed", () => open(report, { javaScriptEnabled: false }, async (page) => {
+  const html = await page.content();
+  assert.ok((html.match(/<svg/g) ?? []).length >= 6);
+}));
+
+test("markup in names stays text", () => {
+  const folder = mkdtempSync(join(tmpdir(), "page-"));
+  copyFileSync(join(root, "examples/bench/DECAY.CSV"), join(folder, "DECAY.CSV"));
+  const name = JSON.stringify("</script><script>alert(1)</script><img src=x onerror=alert(2)>");
+  writeFileSync(join(folder, "campaign.toml"), `name = ${name}\n[[decay]]\nname = ${name}\nfile = "DECAY.CSV"\n`);
+  execFileSync(vibro, ["run", join(folder, "campaign.toml")], { stdio: "pipe" });
+  return open(join(folder, "results/report.html"), {}, async (page) => {
+    await show(page, "[data-figure]");
+    assert.match(await page.title(), /<script>alert\(1\)/);
+    assert.equal(await page.locator("img").count(), 0);
+  });
+});
+
+test("200 spectra of 6400 lines are drawn in 1 s and turn at 60 frames a second", (t) => open(report, {}, async (page) => {
+  const [drawn, frames] = await page.evaluate(async () => {
+    const [rows, lines] = [200, 6400], steps = new Uint16Array(rows * lines);
+    for (let i = 0; i < steps.length; i++) steps[i] = 20000 + ((i * 7919) % 40000);
+    const base64 = (array) => {
+      const raw = new Uint8Array(array.buffer);
+      let text = "";
+      for (let i = 0; i < raw.length; i += 32768) text += String.fromCharCode(...raw.subarray(i, i + 32768));
+      return btoa(text);
+    };
+    const axis = (title, low, high) => ({ title, low, high, log: false, reference: null, factor: 1 });
+    const panel = {
+      kind: "waterfall", x: axis("Frequency (Hz)", 0, lines), depth: axis("Excitation frequency (Hz)", 0, rows), up: axis("m", 0, 1),
+      frequency: base64(Float32Array.from({ length: lines }, (_, k) => k)), excitation: base64(Float32Array.from({ length: rows }, (_, k) => k)),
+      z: { levels: base64(steps), low: -3, high: 0, log: true },
+    };
+    const host = document.createElement("div");
+    document.querySelector("main").prepend(host);
+    const began = performance.now();
+    const waterfall = new Waterfall(host, panel, 420, []);
+    const drawn = performance.now() - began, times = [];
+    for (let k = 0; k < 30; k++) {
+      const from = performance.now();
+      waterfall.turn = -0.3 + 0.02 * k;
+      waterfall.draw(true);
+      // Until the pixels are there.
+      waterfall.canvas.getContext("2d").getImageData(0, 0, 1, 1);
+      times.push(performance.now() - from);
+    }
+    return [drawn, times.sort((a, b) => a - b)];
+  });
+  t.diagnostic(`drawn in ${Math.round(drawn)} ms, a frame in ${frames[15].toFixed(1)} ms (median), ${frames[28].toFixed(1)} ms at most but one`);
+  assert.ok(drawn < 1000, String(drawn));
+  assert.ok(frames[15] < 1000 / 60, String(frames[15]));
+}));
