@@ -7,6 +7,7 @@ use crate::record::{Severity, Step};
 use crate::report::words::{Voice, graded};
 use crate::report::{Drawing, Page};
 use crate::units::notation::shortest;
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
 /// Lays out all that is shown, with the drawings of its figures: answers first, then kind by kind, then where they come from.
@@ -30,6 +31,9 @@ pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing], pa
         }
         page = tables.iter().chain(details).fold(page, Page::table);
     }
+    if let Some(start) = what_if(job, &all.result) {
+        page = page.heading("What if").paragraph(WHAT_IF).what_if(start);
+    }
     let rest = parts.last().map_or(0, |part| part.to.findings);
     page =
         page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
@@ -46,6 +50,49 @@ pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing], pa
     page.paragraph(&format!(
         "Made by vibroimpact {version}. All numbers are in results.json beside this page."
     ))
+}
+
+/// What stands above the sliders.
+const WHAT_IF: &str = "Curves: motions with one impact a cycle and without impacts, as the model has them for these values. A contact stiffness is taken into account to first \
+    order, and curves end where the contact lasts longer than 2.5 % of a cycle.";
+
+/// What the sliders begin with: the rig of the overlay, over what was measured.
+fn what_if(job: &Job<'_>, results: &Map<String, Value>) -> Option<Value> {
+    let rig = results.get("rig").filter(|rig| rig.is_object())?;
+    let overlay = results.get("overlay").filter(|overlay| overlay.is_object())?;
+    let force = overlay["levels"][0]["force"].as_f64()?;
+    let pairs = overlay["pairs"].as_array()?;
+    let mut measured: Vec<Value> = Vec::new();
+    let (mut lowest, mut highest, mut largest) = (f64::INFINITY, 0.0f64, (0.0, 0.0));
+    for pair in pairs {
+        let (Some(x), Some(metres)) = (pair["frequency"].as_f64(), pair["measured"]["value"].as_f64()) else {
+            continue;
+        };
+        let y = 1e3 * metres;
+        (lowest, highest) = (lowest.min(x), highest.max(x));
+        if y > largest.1 {
+            largest = (x, y);
+        }
+        let known = measured.iter().position(|m| m["name"] == pair["sweep"]);
+        let k = known.unwrap_or_else(|| {
+            let down = pair["direction"] == "down";
+            measured
+                .push(json!({"name": pair["sweep"], "mass": pair["mass"], "down": down, "x": [], "y": []}));
+            measured.len() - 1
+        });
+        for (key, value) in [("x", x), ("y", y)] {
+            if let Some(list) = measured[k][key].as_array_mut() {
+                list.push(json!(value));
+            }
+        }
+    }
+    let stiffness = job.campaign.contact.and_then(|contact| contact.stiffness).unwrap_or(0.0);
+    (lowest < highest).then(|| {
+        json!({
+            "rig": rig, "force": force, "stiffness": stiffness, "frequency": largest.0, "from": lowest, "to": highest,
+            "low": largest.1 * 1e-3, "high": largest.1 * 3.0, "measured": measured,
+        })
+    })
 }
 
 /// Findings that the page begins with, at most.

@@ -72,9 +72,10 @@ impl<'a> Trial<'a> {
                 1 => series.name.clone(),
                 _ => format!("{} {}", series.name, series.headers[k].name),
             };
-            let modes = responses
-                .iter()
-                .map(|k| Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k)));
+            let modes = responses.iter().map(|k| {
+                let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
+                table.found("name", format!("{}, modes", name(*k)))
+            });
             let modes: Vec<Table> = modes.collect();
             proposal.tables.push(table);
             proposal.tables.extend(modes);

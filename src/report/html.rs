@@ -3,8 +3,13 @@
 use super::Drawing;
 use super::table::Table;
 use crate::record::Severity;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 use std::fmt::Write;
+use std::io::Write as _;
 use vibro_figure::{Figure, escaped};
 
 /// A report in the order in which it is read. Figures are drawn by a script, so that they can be searched and turned; a reader without
@@ -24,6 +29,7 @@ pub struct Page {
     body: String,
     figures: Vec<Value>,
     matrices: Vec<Value>,
+    whatif: Option<Value>,
 }
 
 /// Rows beyond which a table is folded.
@@ -118,6 +124,14 @@ impl Page {
         format!("<div class=\"panels\" data-figure=\"{number}\"></div>\n<noscript>\n{without}</noscript>\n")
     }
 
+    /// Adds sliders for the parameters of a rig, with the curves and the motion that it would have. `start` holds `rig` with its keys in SI units,
+    /// `force` in N, `stiffness` of the contact in N/m (0: rigid), `frequency` of the motion, `from` and `to` in Hz, `low` and `high` of
+    /// amplitudes in mm, and `measured`: `name`, `mass`, `down`, lists `x` in Hz and `y` in mm.
+    pub fn what_if(mut self, start: Value) -> Page {
+        self.whatif = Some(start);
+        self.element("<div id=\"what-if\"></div>\n<noscript><p>This part needs scripts.</p></noscript>")
+    }
+
     /// Puts matrices into the list of the page, each once: a waterfall and a map show the same.
     fn share(&mut self, data: &mut Value) {
         let Some(panels) = data["panels"].as_array_mut() else { return };
@@ -163,13 +177,11 @@ impl Page {
         out.push_str(&self.body);
         out.push_str("</main>\n");
         if !self.figures.is_empty() || self.body.contains("<table") {
-            // Markup in names must not end the script.
-            let data = json!({ "figures": self.figures, "matrices": self.matrices }).to_string();
-            let _ = writeln!(
-                out,
-                "<script type=\"application/json\" id=\"data\">{}</script>",
-                data.replace('<', "\\u003c")
-            );
+            let data = json!({ "figures": self.figures, "matrices": self.matrices, "whatif": self.whatif });
+            packed(&mut out, "data", &gzip(data.to_string().as_bytes()));
+            if self.whatif.is_some() {
+                packed(&mut out, "model", MODEL);
+            }
             for script in SCRIPTS {
                 let _ = writeln!(out, "<script>{script}</script>");
             }
@@ -185,15 +197,32 @@ impl Page {
     }
 }
 
+/// Adds bytes that gzip packed, as base64: markup in names cannot end the script.
+fn packed(out: &mut String, id: &str, bytes: &[u8]) {
+    let _ =
+        writeln!(out, "<script type=\"application/gzip\" id=\"{id}\">{}</script>", STANDARD.encode(bytes));
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    // Writing to a vector cannot fail.
+    let _ = encoder.write_all(bytes);
+    encoder.finish().unwrap_or_default()
+}
+
+/// The model in WebAssembly, made by `crates/vibro-whatif/build.sh`.
+const MODEL: &[u8] = include_bytes!("assets/page/whatif.wasm.gz");
+
 const STYLE: &str = include_str!("assets/page.css");
 const PLOTS: &str = include_str!("assets/page/uplot.css");
 
 /// The scripts of the page: uPlot 1.6.32 (MIT, `assets/page/LICENSE-uPlot.txt`), and ours.
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("assets/page/uplot.js"),
     include_str!("assets/page/decode.js"),
     include_str!("assets/page/plot.js"),
     include_str!("assets/page/waterfall.js"),
+    include_str!("assets/page/whatif.js"),
     include_str!("assets/page/page.js"),
 ];
 

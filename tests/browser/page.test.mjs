@@ -5,6 +5,7 @@ import { mkdtempSync, readFileSync, writeFileSync, copyFileSync, statSync } from
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test } from "node:test";
+import { gunzipSync } from "node:zlib";
 import { chromium } from "playwright-core";
 
 const root = resolve(import.meta.dirname, "../..");
@@ -207,3 +208,72 @@ test("200 spectra of 6400 lines are drawn in 1 s and turn at 60 frames a second"
   assert.ok(drawn < 1000, String(drawn));
   assert.ok(frames[15] < 1000 / 60, String(frames[15]));
 }));
+
+test("sliders move the curve within 50 ms, reset brings it back, and the values are those of a campaign", (t) => open(report, {}, async (page) => {
+  const place = page.locator("#what-if");
+  await place.scrollIntoViewIfNeeded();
+  await place.locator("canvas").first().waitFor();
+  const canvas = place.locator(".uplot canvas").first(), gap = place.locator("label", { hasText: "gap" }).locator("input");
+  const first = await ink(canvas), toml = await place.locator("pre").textContent();
+  const times = [];
+  for (const value of [100, 300, 500, 700, 900]) {
+    await gap.fill(String(value));
+    await page.waitForTimeout(60);
+    times.push(await place.evaluate((host) => host.whatIf.took));
+  }
+  t.diagnostic(`a step of a slider: ${times.map((ms) => ms.toFixed(0)).join(", ")} ms`);
+  assert.ok(Math.max(...times) < 50, String(times));
+  assert.notEqual(await ink(canvas), first);
+  assert.match(await place.locator("pre").textContent(), /\[rig\]\nm1 = 0\.125\n/);
+  await place.getByRole("button", { name: "reset" }).first().click();
+  await page.waitForTimeout(60);
+  assert.equal(await place.locator("pre").textContent(), toml);
+  const folder = mkdtempSync(join(tmpdir(), "page-"));
+  writeFileSync(join(folder, "campaign.toml"), toml);
+  execFileSync(vibro, ["check", join(folder, "campaign.toml")], { stdio: "pipe" });
+}));
+
+/** Answers of a module of the model, asked in Node. */
+async function wasm(packed, questions) {
+  const { instance } = await WebAssembly.instantiate(gunzipSync(readFileSync(packed)), {});
+  const { memory, input, output } = instance.exports;
+  return questions.map(([what, numbers]) => {
+    new Float64Array(memory.buffer, input(), 16).set(numbers);
+    const n = instance.exports[what]();
+    return Array.from(new Float64Array(memory.buffer, output(), n));
+  });
+}
+
+test("the model of the page answers as the library for 1000 rigs, and so does one that is built anew", async (t) => {
+  let state = 1;
+  const random = () => (state = (state * 48271) % 2147483647) / 2147483647;
+  const around = (value, factor) => value * factor ** (2 * random() - 1);
+  const questions = Array.from({ length: 1000 }, (_, k) => {
+    const contact = k % 3 ? 0 : 10 ** (5 + 3 * random());
+    const rig = [around(0.125, 4), around(0.094, 4), around(135, 4), around(128, 4), around(0.1, 5), around(0.1, 5), 3e-3 * random(), 0.2 + 0.79 * random(), around(0.1, 10), contact];
+    return k % 10 ? ["response", [...rig, 3, 13, 20, 0, 0, 0]] : ["motion", [...rig, 3 + 10 * random(), 0, 0, 0, 0, 0]];
+  });
+  const asked = questions.map(([what, numbers]) => `${what} ${numbers.join(" ")}`).join("\n");
+  const run = ["run", "--locked", "--release", "--quiet", "--package", "vibro-whatif", "--example", "answers"];
+  const native = execFileSync("cargo", run, { cwd: root, input: asked, maxBuffer: 1 << 28, encoding: "utf8" }).trimEnd().split("\n");
+  const files = [join(root, "src/report/assets/page/whatif.wasm.gz"), process.env.WHATIF].filter(Boolean);
+  for (const file of files) {
+    let largest = 0, answered = 0, different = 0;
+    for (const [k, found] of (await wasm(file, questions)).entries()) {
+      const expected = native[k] === "" ? [] : native[k].split(" ").map(Number);
+      assert.equal(found.length, expected.length, asked.split("\n")[k]);
+      // A motion from rest may be chaotic: there the last bit of a sine decides, and only responses are compared number by number.
+      if (questions[k][0] === "motion") continue;
+      const size = Math.max(...expected.filter(Number.isFinite));
+      found.forEach((v, i) => {
+        if (Number.isNaN(v) !== Number.isNaN(expected[i])) different++;
+        else if (!Number.isNaN(v)) [answered, largest] = [answered + 1, Math.max(largest, Math.abs(v - expected[i]) / Math.max(Math.abs(expected[i]), 1e-12 * size))];
+      });
+    }
+    t.diagnostic(`${file.split("/").at(-1)}: ${answered} numbers, largest relative difference ${largest.toExponential(1)}, ${different} that one has and the other has not`);
+    assert.ok(answered > 10_000);
+    assert.equal(different, 0);
+    // Where two motions meet, √ε is what rounding leaves of a number.
+    assert.ok(largest < 1e-7, String(largest));
+  }
+});

@@ -8,9 +8,15 @@ function bytes(text) {
   return out;
 }
 
-/** 32-bit floats of base64. */
-function floats(text) {
-  return new Float32Array(bytes(text).buffer);
+/** What gzip packed, of base64. */
+function unpacked(text) {
+  const stream = new Blob([bytes(text.trim())]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).arrayBuffer();
+}
+
+/** 32-bit floats of base64; numbers stay as they are. */
+function floats(values) {
+  return typeof values === "string" ? new Float32Array(bytes(values).buffer) : values;
 }
 
 /** Values of a matrix of levels as an axis shows them; NaN in gaps. A number in place of the text means that matrix of the page. */
@@ -95,4 +101,4 @@ function viridis(part) {
   return `rgb(${mix(0)},${mix(1)},${mix(2)})`;
 }
 
-if (typeof module !== "undefined") module.exports = { bytes, floats, matrix, decimated, digits, estimate, borders, nearest, viridis };
+if (typeof module !== "undefined") module.exports = { bytes, unpacked, floats, matrix, decimated, digits, estimate, borders, nearest, viridis };

@@ -11,6 +11,7 @@ function tableTools(table) {
   const bar = document.createElement("div");
   bar.className = "tools";
   const name = table.caption?.textContent || "table";
+  bar.classList.add("beside");
   if (table.tBodies[0]?.rows.length > 12) {
     const search = document.createElement("input");
     [search.type, search.placeholder] = ["search", "find a row"];
@@ -37,7 +38,8 @@ function tableTools(table) {
     link.click();
     URL.revokeObjectURL(link.href);
   }));
-  table.parentElement.before(bar);
+  if (table.caption) table.caption.append(bar);
+  else table.parentElement.before(bar);
 }
 
 /** Draws a figure into its place. */
@@ -57,8 +59,9 @@ function drawFigure(host, figure, shared) {
   }
 }
 
-function start() {
-  const { figures, matrices } = JSON.parse(document.getElementById("data").textContent);
+async function start() {
+  const data = await unpacked(document.getElementById("data").textContent);
+  const { figures, matrices, whatif } = JSON.parse(new TextDecoder().decode(data));
   const hosts = document.querySelectorAll("[data-figure]");
   const drawn = new Map();
   const draw = (host) => {
@@ -86,6 +89,15 @@ function start() {
     hosts.forEach(draw);
   });
   for (const table of document.querySelectorAll(".table table")) tableTools(table);
+  const place = document.getElementById("what-if");
+  if (!place) return;
+  const near = new IntersectionObserver(async (entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    near.disconnect();
+    const module = await unpacked(document.getElementById("model").textContent);
+    place.whatIf = await whatIf(place, whatif, module);
+  }, { rootMargin: "400px" });
+  near.observe(place);
 }
 
 start();

@@ -17,6 +17,15 @@ function button(text, title, action) {
   return made;
 }
 
+/** A tick's number, as a power of ten where it has many zeros. */
+function short(value) {
+  const size = Math.abs(value);
+  if (size === 0 || (size >= 1e-3 && size < 1e6)) return digits(value, 10);
+  const power = Math.floor(Math.log10(size) + 1e-9), raised = String(power).replace(/./g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻");
+  const first = digits(value / 10 ** power, 4);
+  return first === "1" ? `10${raised}` : `${first}×10${raised}`;
+}
+
 /** Whether a tick of a logarithmic axis is 1, 2 or 5 times a power of ten: those have numbers. */
 function plain(value, log) {
   const first = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
@@ -206,7 +215,7 @@ class Plot {
     });
     const rule = (axis, size, log) => ({
       label: axis.title, labelSize: 22, size, stroke: ink, font, labelFont: font, grid: { show: !this.map, stroke: faint, width: 1 },
-      ticks: { stroke: faint, width: 1 }, values: (_, ticks) => ticks.map((v) => (v == null || !plain(v, log) ? "" : digits(v, 10))),
+      ticks: { stroke: faint, width: 1 }, values: (_, ticks) => ticks.map((v) => (v == null || !plain(v, log) ? "" : short(v))),
     });
     const width = Math.max(this.host.clientWidth, 200);
     this.plot = new uPlot({

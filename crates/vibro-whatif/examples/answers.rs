@@ -1,0 +1,21 @@
+//! Answers what a page would ask, for the comparison with it: each line of standard input has the 16 numbers of `vibro_whatif`, behind `response` or `motion`;
+//! each line of standard output has the bits of the answer's numbers.
+
+use vibro_model::Rig;
+use vibro_whatif::{Question, Scene};
+
+fn main() {
+    for line in std::io::stdin().lines() {
+        let line = line.expect("a line");
+        let (what, numbers) = line.split_once(' ').expect("a question and its numbers");
+        let n: Vec<f64> = numbers.split(' ').map(|n| n.parse().expect("a number")).collect();
+        let rig =
+            Rig { m1: n[0], m2: n[1], k1: n[2], k2: n[3], c1: n[4], c2: n[5], gap: n[6], restitution: n[7] };
+        let question = match what {
+            "response" => Question::Response { from: n[10], to: n[11], points: n[12] as usize },
+            _ => Question::Motion { frequency: n[10] },
+        };
+        let answer = question.answer(&Scene { rig, force: n[8], stiffness: n[9] });
+        println!("{}", answer.iter().map(f64::to_string).collect::<Vec<_>>().join(" "));
+    }
+}

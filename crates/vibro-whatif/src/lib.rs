@@ -1,0 +1,192 @@
+//! What a rig would do with other parameters: the model crate behind numbers in and numbers out, for the report page.
+//!
+//! ```
+//! use vibro_whatif::{Question, Scene};
+//! let scene = Scene { force: 0.1, ..Scene::default() };
+//! let answer = Question::Response { from: 5.0, to: 6.0, points: 11 }.answer(&scene);
+//! assert_eq!(answer.len(), 11 * 8);
+//! ```
+
+mod page;
+
+use num_complex::Complex64;
+use vibro_model::contact::conversion;
+use vibro_model::{
+    Compliance, Compliant, Excitation, Law, Motion, Orbits, Rig, Simulation, Sine, State, orbits_of, softened,
+};
+use vibro_record::Result;
+
+/// A rig under a sine force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    /// The rig.
+    pub rig: Rig,
+    /// Force amplitude in N.
+    pub force: f64,
+    /// Stiffness of the contact in N/m; rigid where it is not finite or not above 0.
+    pub stiffness: f64,
+}
+
+impl Default for Scene {
+    fn default() -> Scene {
+        Scene { rig: Rig::thesis(), force: 0.1, stiffness: 0.0 }
+    }
+}
+
+/// What is asked of a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Question {
+    /// Motions with one impact a cycle, and the one without impacts, at frequencies in Hz.
+    Response {
+        /// The lowest.
+        from: f64,
+        /// The highest.
+        to: f64,
+        /// How many.
+        points: usize,
+    },
+    /// The motion that is reached from rest.
+    Motion {
+        /// Frequency in Hz.
+        frequency: f64,
+    },
+}
+
+/// Cycles after which a motion from rest is shown, those shown, and points of each.
+const SETTLE: u32 = 300;
+const SHOWN: u32 = 4;
+const POINTS: u32 = 200;
+
+impl Question {
+    /// The answer in numbers, NaN where there is none.
+    ///
+    /// [`Question::Response`]: 8 a frequency: frequency in Hz; amplitude in m of mass 1 without impacts; of two motions the larger first,
+    /// amplitudes in m of both masses at the excitation frequency and 2 where it is stable, 1 where it is not, 0 where it is not real.
+    /// [`Question::Motion`]: 5 a point: time in s, x₁, x₂ in m, v₁, v₂ in m/s.
+    pub fn answer(&self, scene: &Scene) -> Vec<f64> {
+        match *self {
+            Question::Response { from, to, points } => {
+                let step = (to - from) / points.saturating_sub(1).max(1) as f64;
+                (0..points).flat_map(|k| scene.at(from + step * k as f64)).collect()
+            }
+            Question::Motion { frequency } => scene.motion(frequency).unwrap_or_default(),
+        }
+    }
+}
+
+impl Scene {
+    fn excitation(&self, frequency: f64) -> Excitation {
+        Excitation::Sine(Sine { force: self.force, frequency })
+    }
+
+    fn contact(&self) -> Option<f64> {
+        Some(self.stiffness).filter(|k| k.is_finite() && *k > 0.0)
+    }
+
+    fn at(&self, frequency: f64) -> [f64; 8] {
+        let nan = f64::NAN;
+        let mut row = [frequency, nan, nan, nan, 0.0, nan, nan, 0.0];
+        let excitation = self.excitation(frequency);
+        let Ok(found) = orbits_of(&self.rig, &excitation, 1) else { return row };
+        if found.no_impact.possible {
+            row[1] = found.no_impact.amplitude;
+        }
+        let amplitudes = self.amplitudes(&excitation, &found);
+        for ((orbit, amplitudes), cells) in
+            found.orbits.iter().zip(amplitudes).zip(row[2..].chunks_exact_mut(3))
+        {
+            let real = orbit.validity.exists && orbit.validity.admissible;
+            if let (true, Some([one, two])) = (real, amplitudes) {
+                let stable = orbit.validity.stable == Some(true);
+                cells.copy_from_slice(&[one, two, if stable { 2.0 } else { 1.0 }]);
+            }
+        }
+        row
+    }
+
+    /// Amplitudes of both masses of each orbit; with a contact that gives way `None` where its correction does not hold.
+    fn amplitudes(&self, excitation: &Excitation, found: &Orbits) -> Vec<Option<[f64; 2]>> {
+        let Some(stiffness) = self.contact() else {
+            return found.orbits.iter().map(|orbit| Some(orbit.fundamental.map(Complex64::norm))).collect();
+        };
+        let soft = Compliance::new(&self.rig, stiffness, None);
+        let soft = soft.and_then(|contact| softened(&self.rig, excitation, found, &contact));
+        soft.map_or_else(
+            |_| vec![None; found.orbits.len()],
+            |all| all.into_iter().map(|orbit| orbit.map(|orbit| orbit.fundamental)).collect(),
+        )
+    }
+
+    fn motion(&self, frequency: f64) -> Result<Vec<f64>> {
+        let (rig, excitation) = (&self.rig, self.excitation(frequency));
+        let start = Simulation::at_rest(rig);
+        let mut motion: Box<dyn Motion> = match self.contact() {
+            Some(stiffness) => {
+                let ratio = conversion::damping_ratio(rig.restitution)?;
+                let damping = 2.0 * ratio * (stiffness * rig.reduced_mass()).sqrt();
+                Box::new(Compliant::new(
+                    rig,
+                    &excitation,
+                    Law::KelvinVoigt { stiffness, damping },
+                    start,
+                    0.0,
+                )?)
+            }
+            None => Box::new(Simulation::new(rig, &excitation)?),
+        };
+        let settled = f64::from(SETTLE) / frequency;
+        motion.advance(settled, &mut |_| ())?;
+        let step = 1.0 / frequency / f64::from(POINTS);
+        let mut rows = Vec::new();
+        let mut next = 0;
+        let mut show = |t: f64, state: State| rows.extend([t, state.x1, state.x2, state.v1, state.v2]);
+        motion.advance(settled + f64::from(SHOWN) / frequency, &mut |piece| {
+            while next < SHOWN * POINTS {
+                let t = settled + f64::from(next) * step - piece.start;
+                if t > piece.duration {
+                    break;
+                }
+                show(f64::from(next) * step, piece.path.state(t.max(0.0)));
+                next += 1;
+            }
+        })?;
+        Ok(rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_response_is_that_of_the_model() {
+        let scene = Scene::default();
+        let row = Question::Response { from: 5.2, to: 5.2, points: 1 }.answer(&scene);
+        let found = vibro_model::orbits(&scene.rig, scene.force, 5.2).unwrap();
+        let [x1, x2] = found.orbits[0].fundamental.map(Complex64::norm);
+        assert_eq!(row[2..5], [x1, x2, 2.0]);
+    }
+
+    /// A stable motion is reached from rest: half of its peak-to-peak within what 800 points resolve of a sine, (π/200)²/2.
+    #[test]
+    fn a_motion_from_rest_comes_to_the_stable_orbit() {
+        let scene = Scene::default();
+        let rows = Question::Motion { frequency: 5.2 }.answer(&scene);
+        assert_eq!(rows.len(), 5 * (SHOWN * POINTS) as usize);
+        let x2: Vec<f64> = rows.chunks_exact(5).map(|row| row[2]).collect();
+        let (low, high) =
+            x2.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+        let found = vibro_model::orbits(&scene.rig, scene.force, 5.2).unwrap();
+        let truth = found.orbits[0].peak_to_peak[1];
+        assert!(((high - low) / truth - 1.0).abs() < 1e-3, "{} {truth}", high - low);
+    }
+
+    #[test]
+    fn what_cannot_be_has_no_answer_and_no_panic() {
+        for rig in [Rig { m1: -1.0, ..Rig::thesis() }, Rig { k1: f64::NAN, ..Rig::thesis() }] {
+            let scene = Scene { rig, ..Scene::default() };
+            assert!(Question::Response { from: 1.0, to: 2.0, points: 3 }.answer(&scene)[1].is_nan());
+            assert!(Question::Motion { frequency: 5.0 }.answer(&scene).is_empty());
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! The functions by which a page calls the model: it writes numbers at [`input`], calls one, and reads so many at [`output`].
+#![allow(
+    unsafe_code,
+    reason = "a name by which a page calls a function is an unsafe attribute; nothing else is unsafe here"
+)]
+
+use super::{Question, Scene};
+use std::sync::Mutex;
+use vibro_model::Rig;
+
+/// m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, then what is asked.
+static INPUT: Mutex<[f64; 16]> = Mutex::new([0.0; 16]);
+static OUTPUT: Mutex<Vec<f64>> = Mutex::new(Vec::new());
+
+fn answered(question: impl Fn(&[f64; 16]) -> Question) -> usize {
+    let (Ok(input), Ok(mut output)) = (INPUT.lock(), OUTPUT.lock()) else { return 0 };
+    let [m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, ..] = *input;
+    let scene = Scene { rig: Rig { m1, m2, k1, k2, c1, c2, gap, restitution }, force, stiffness };
+    *output = question(&input).answer(&scene);
+    output.len()
+}
+
+/// Place of 16 numbers: m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, and what is asked from the eleventh on.
+#[unsafe(no_mangle)]
+pub extern "C" fn input() -> *mut f64 {
+    INPUT.lock().map_or(std::ptr::null_mut(), |mut input| input.as_mut_ptr())
+}
+
+/// Place of the answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn output() -> *const f64 {
+    OUTPUT.lock().map_or(std::ptr::null(), |output| output.as_ptr())
+}
+
+/// The response from the eleventh number to the twelfth in Hz, at so many frequencies as the thirteenth says; gives the count of numbers.
+#[unsafe(no_mangle)]
+pub extern "C" fn response() -> usize {
+    answered(|input| Question::Response { from: input[10], to: input[11], points: input[12] as usize })
+}
+
+/// The motion from rest at the eleventh number in Hz; gives the count of numbers.
+#[unsafe(no_mangle)]
+pub extern "C" fn motion() -> usize {
+    answered(|input| Question::Motion { frequency: input[10] })
+}
