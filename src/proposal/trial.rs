@@ -19,8 +19,8 @@ const HEIGHT: &str = "height of the fall in m";
 /// What is said where a pulse is not the only one.
 const ANOTHER: &str = "pulse-not-alone";
 
-/// Averages that a function should have, and samples of a segment that are enough.
-const AVERAGES: usize = 10;
+/// Segments side by side that a function should have at least, and samples of a segment that are enough.
+const AVERAGES: usize = 4;
 const LONG: usize = 8192;
 
 /// Files that may be steps of a sweep.
@@ -159,7 +159,7 @@ impl<'a> Trial<'a> {
         };
         let steady = table("force and response");
         let steady = match series.headers[response].n / AVERAGES {
-            few if few < LONG => steady.guessed("segment", 1 << few.max(1).ilog2(), "ten averages or more"),
+            few if few < LONG => steady.guessed("segment", 1 << few.max(1).ilog2(), "seven averages of half-overlapping segments"),
             _ => steady,
         };
         let blows = table("a hammer test").guessed("hammer", true, "the force rests but for blows");

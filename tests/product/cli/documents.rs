@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// Section and command of each line of the blocks of `sh` that begins with `vibro`; lines that end in a backslash go on.
+/// Section and command of each line of the blocks of `sh` that begins with `vibro` or a tool of the shell; lines that end in a backslash go on.
 fn commands(text: &str) -> Vec<(String, String)> {
     let (mut section, mut shell, mut found) = (String::new(), false, Vec::new());
     let joined = text.replace("\\\n", " ");
@@ -13,7 +13,7 @@ fn commands(text: &str) -> Vec<(String, String)> {
             name.clone_into(&mut section);
         } else if line.starts_with("```") {
             shell = line == "```sh";
-        } else if shell && line.starts_with("vibro ") {
+        } else if shell && ["vibro ", "mkdir ", "cp ", "sed "].iter().any(|tool| line.starts_with(tool)) {
             found.push((section.clone(), line.to_owned()));
         }
     }
@@ -25,13 +25,13 @@ fn commands(text: &str) -> Vec<(String, String)> {
 #[cfg(unix)]
 const ELSEWHERE: [&str; 2] = ["vibro drill", "vibro precision"];
 
+/// Runs the commands of a document in their order, in a folder that has the repository's examples; gives the number of each section's.
 #[cfg(unix)]
-#[test]
-fn every_section_has_an_example_that_runs() {
+fn run(document: &str) -> BTreeMap<String, usize> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = tempfile::tempdir().unwrap();
     std::os::unix::fs::symlink(root.join("examples"), folder.path().join("examples")).unwrap();
-    let text = std::fs::read_to_string(root.join("docs/commands.md")).unwrap();
+    let text = std::fs::read_to_string(root.join(document)).unwrap();
     let program = Path::new(env!("CARGO_BIN_EXE_vibro")).parent().unwrap();
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
     let mut ran: BTreeMap<String, usize> = BTreeMap::new();
@@ -46,11 +46,72 @@ fn every_section_has_an_example_that_runs() {
             .output()
             .expect("a shell");
         assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+        if document == TUTORIAL {
+            shown(&text, &line, &output);
+        }
         *ran.entry(section).or_default() += 1;
     }
+    ran
+}
+
+const TUTORIAL: &str = "docs/tutorial.md";
+
+/// What the tutorial shows of a run is what it prints.
+fn shown(text: &str, line: &str, output: &std::process::Output) {
+    let printed = String::from_utf8_lossy(&output.stderr);
+    let blocks = text.split("```text\n").skip(1).filter_map(|block| block.split("```").next());
+    if line == "vibro run lab" {
+        for block in blocks {
+            for expected in block.lines() {
+                assert!(printed.contains(expected), "{expected}\n{printed}");
+            }
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn every_section_has_an_example_that_runs() {
+    let ran = run("docs/commands.md");
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/commands.md")).unwrap();
     let sections = text.lines().filter_map(|l| l.strip_prefix("## ")).filter(|s| !ELSEWHERE.contains(s));
     for section in sections {
         assert!(ran.contains_key(section), "{section} has no example");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_tutorial_and_the_recipes_run() {
+    assert_eq!(run(TUTORIAL).values().sum::<usize>(), 10);
+    assert_eq!(run("docs/recipes.md").len(), 9);
+}
+
+#[test]
+fn documents_for_reading_are_short_and_in_the_book() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
+    assert!(text("README.md").lines().count() < 120);
+    let summary = text("docs/SUMMARY.md");
+    // Reference and records of measurements are looked up, not read.
+    let reference = [
+        "campaign.md",
+        "commands.md",
+        "findings.md",
+        "formats.md",
+        "coverage.md",
+        "precision.md",
+        "thesis.md",
+    ];
+    for entry in std::fs::read_dir(root.join("docs")).unwrap() {
+        let name = entry.unwrap().file_name().to_string_lossy().into_owned();
+        if !name.ends_with(".md") || name == "SUMMARY.md" {
+            continue;
+        }
+        assert!(summary.contains(&format!("({name})")), "{name} is not in docs/SUMMARY.md");
+        let words = text(&format!("docs/{name}")).split_whitespace().count();
+        assert!(reference.contains(&name.as_str()) || words <= 1500, "{name}: {words} words");
     }
 }
 
