@@ -3,6 +3,7 @@
 mod campaign;
 mod complain;
 mod convert;
+mod demo;
 mod info;
 mod init;
 mod model;
@@ -32,6 +33,11 @@ const GROUPS: &[(&str, &[Row])] = &[
                 .first(),
             Row::of::<init::Check>("check", "Check a campaign without computing")
                 .example("check campaign.toml"),
+            Row::of::<demo::Open>("open", "Open the report of a folder in a browser")
+                .example("open measurements"),
+            Row::of::<demo::Demo>("demo", "Write an example with its recordings, and run it")
+                .example("demo bench")
+                .first(),
         ],
     ),
     (
@@ -84,8 +90,7 @@ const GROUPS: &[(&str, &[Row])] = &[
                 "restitution",
                 "Coefficient of restitution from drops, bounces or velocities, every method side by side",
             )
-            .example("restitution drop1.csv drop2.csv --height 0.57 --height-std 0.001")
-            .first(),
+            .example("restitution drop1.csv drop2.csv --height 0.57 --height-std 0.001"),
             Row::of::<record::Pulse>(
                 "pulse",
                 "Damping ratio, frequency and restitution of a contact from its pulse",

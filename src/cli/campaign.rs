@@ -54,6 +54,13 @@ fn opened(path: &Path, json: bool) -> Result<Campaign> {
     proposal.campaign()
 }
 
+impl Run {
+    /// The campaign of a file, with its own folder for results.
+    pub fn of(campaign: PathBuf) -> Run {
+        Run { campaign, out: None, allow_outside: false }
+    }
+}
+
 impl super::Run for Run {
     const VOICE: Voice = Voice::Campaign;
 

@@ -159,7 +159,11 @@ impl<'a> Trial<'a> {
         };
         let steady = table("force and response");
         let steady = match series.headers[response].n / AVERAGES {
-            few if few < LONG => steady.guessed("segment", 1 << few.max(1).ilog2(), "seven averages of half-overlapping segments"),
+            few if few < LONG => steady.guessed(
+                "segment",
+                1 << few.max(1).ilog2(),
+                "seven averages of half-overlapping segments",
+            ),
             _ => steady,
         };
         let blows = table("a hammer test").guessed("hammer", true, "the force rests but for blows");

@@ -1,12 +1,12 @@
 //! `vibro drill` from the command line: the example's record against its truth, and input that allows no answer.
 
 #[allow(dead_code)]
-#[path = "../../examples/hammer_drill/make/noise.rs"]
+#[path = "../../crates/vibro-demo/src/hammer_drill/noise.rs"]
 pub mod noise;
-#[path = "../../examples/hammer_drill/make/record.rs"]
+#[path = "../../crates/vibro-demo/src/hammer_drill/record.rs"]
 mod record;
 #[allow(dead_code)]
-#[path = "../../examples/hammer_drill/make/stroke.rs"]
+#[path = "../../crates/vibro-demo/src/hammer_drill/stroke.rs"]
 pub mod stroke;
 
 use serde_json::Value;

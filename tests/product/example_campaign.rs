@@ -1,10 +1,10 @@
 //! The example campaign's data are what its generator makes, byte for byte, and what is measured in them is what the rig did.
 
-#[path = "../../examples/two_mass_rig/make/analyser.rs"]
+#[path = "../../crates/vibro-demo/src/two_mass_rig/analyser.rs"]
 mod analyser;
-#[path = "../../examples/two_mass_rig/make/campaign.rs"]
+#[path = "../../crates/vibro-demo/src/two_mass_rig/campaign.rs"]
 mod campaign;
-#[path = "../../examples/two_mass_rig/make/noise.rs"]
+#[path = "../../crates/vibro-demo/src/two_mass_rig/noise.rs"]
 mod noise;
 
 use campaign::{Direction, list, measure, truth_header};

@@ -1,10 +1,8 @@
 //! The example drop test: its data are what its generator makes, and its campaign gives back the truth.
 
-#[path = "../../examples/drop_test/make/records.rs"]
-mod records;
-
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use vibro_demo::drop_test as records;
 use vibroimpact::analysis::{self, JobOptions};
 use vibroimpact::report::Output;
 

@@ -105,8 +105,9 @@ fn documents_for_reading_are_short_and_in_the_book() {
         "thesis.md",
     ];
     for entry in std::fs::read_dir(root.join("docs")).unwrap() {
-        let name = entry.unwrap().file_name().to_string_lossy().into_owned();
-        if !name.ends_with(".md") || name == "SUMMARY.md" {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.extension().is_none_or(|ending| ending != "md") || name == "SUMMARY.md" {
             continue;
         }
         assert!(summary.contains(&format!("({name})")), "{name} is not in docs/SUMMARY.md");

@@ -170,3 +170,24 @@ fn the_help_begins_with_five_commands_and_each_has_an_example() {
     }
     assert!(String::from_utf8(vibro(&["man"]).stdout).unwrap().starts_with(".ie"));
 }
+
+#[test]
+fn an_example_is_written_with_its_recordings_and_runs() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("bench");
+    let listed = json(&["demo"]);
+    assert_eq!(listed["demos"].as_array().unwrap().len(), 4);
+    let answer = json(&["demo", "bench", "--out", text(&folder)]);
+    assert_eq!(answer["results"]["decays"][0]["modes"].as_array().unwrap().len(), 1);
+    // The recordings are those of the repository; a second time nothing is written anew, and a changed file is left.
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench");
+    for name in ["BENCH.CSV", "PULSE.CSV", "FILTERED.CSV", "DECAY.CSV", "TRUTH.csv", "campaign.toml"] {
+        assert_eq!(fs::read(folder.join(name)).unwrap(), fs::read(own.join(name)).unwrap(), "{name}");
+    }
+    json(&["demo", "bench", "--out", text(&folder)]);
+    fs::write(folder.join("DECAY.CSV"), "mine").unwrap();
+    assert!(complaint(&["demo", "bench", "--out", text(&folder)], 2).contains("another content"));
+    assert_eq!(fs::read_to_string(folder.join("DECAY.CSV")).unwrap(), "mine");
+    assert!(complaint(&["demo", "bensh"], 2).contains("try: vibro demo bench"));
+    assert!(complaint(&["open", text(root.path())], 2).contains("vibro run"));
+}

@@ -1,7 +1,4 @@
-//! Makes the records of the example bench: a mass on a spring, shaken at random and let go, and one contact pulse.
-//!
-//! `cargo run --release --example bench [FOLDER]` writes into FOLDER, by default into this example's own. The same bytes come out every
-//! time: the noise has a fixed seed.
+//! The records of the example bench: a mass on a spring, shaken at random and let go, and one contact pulse.
 //!
 //! - `BENCH.CSV`: force and velocity of 0.125 kg on a spring and a damper (60 Hz, ζ = 0.02), 4 s at 1024 Hz;
 //! - `DECAY.CSV`: displacement of the same mass, held 2 mm aside and let go at 0.25 s, 2 s at 512 Hz;
@@ -9,10 +6,10 @@
 //! - `FILTERED.CSV`: the same behind a Butterworth low-pass of order 2 at 2 kHz;
 //! - `TRUTH.csv`: what a perfect instrument would have found.
 
+use super::Sink;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use vibroimpact::{Error, Result};
+use vibro_record::Result;
 
 const MASS: f64 = 0.125;
 const FREQUENCY: f64 = 60.0;
@@ -106,25 +103,16 @@ fn pulse(noise: &mut Noise) -> String {
     text
 }
 
-fn main() -> Result<()> {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench");
-    let folder = std::env::args_os().nth(1).map_or(own, PathBuf::from);
-    std::fs::create_dir_all(&folder).map_err(|e| Error::io("create", &folder, e))?;
+/// All files.
+pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
     let mut noise = Noise(20);
     let truth = format!(
         "what,value,unit\nfrequency of the mass,{FREQUENCY},Hz\nits damping ratio,{ZETA},1\nits mass,{MASS},kg\n\
          frequency of the contact,{CONTACT},Hz\nits damping ratio,{XI},1\n"
     );
-    let files = [
-        ("BENCH.CSV", bench(&mut noise)),
-        ("PULSE.CSV", pulse(&mut noise)),
-        ("FILTERED.CSV", filtered(&mut noise)),
-        ("DECAY.CSV", decay(&mut noise)),
-        ("TRUTH.csv", truth),
-    ];
-    for (name, text) in files {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|e| Error::io("write", &path, e))?;
-    }
-    Ok(())
+    sink("BENCH.CSV", bench(&mut noise).as_bytes())?;
+    sink("PULSE.CSV", pulse(&mut noise).as_bytes())?;
+    sink("FILTERED.CSV", filtered(&mut noise).as_bytes())?;
+    sink("DECAY.CSV", decay(&mut noise).as_bytes())?;
+    sink("TRUTH.csv", truth.as_bytes())
 }

@@ -23,6 +23,7 @@ pub struct Record {
     /// Impacts within the record.
     pub impacts: Vec<Struck>,
     /// Drop-outs of the striker's channel.
+    #[allow(dead_code, reason = "tests count them")]
     pub dropouts: usize,
 }
 

@@ -1,7 +1,15 @@
-//! What the instruments of the drop test write.
+//! What the instruments of the drop test write: a ball that falls down a tube onto a plate, an accelerometer on the plate, and a contact trace of
+//! the shaken rig.
+//!
+//! - `DROP01.CSV` … `DROP05.CSV`: drops from 0.57 m, recorded until after the second impact;
+//! - `BOUNCE.CSV`: one longer record with a train of bounces;
+//! - `CONTACT.DAT`: a contact trace of 2.56 × 50 Hz, one impact in two cycles of 11.2 Hz, with mains hum;
+//! - `TRUTH.csv`: what a perfect instrument would have found.
 
+use super::Sink;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use vibro_record::Result;
 
 /// Height of the drops in m.
 pub const HEIGHT: f64 = 0.57;
@@ -111,4 +119,12 @@ pub fn all() -> Vec<(String, String)> {
     );
     files.push(("TRUTH.csv".to_owned(), truth));
     files
+}
+
+/// Gives all files.
+///
+/// # Errors
+/// Those of `sink`.
+pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
+    all().iter().try_for_each(|(name, text)| sink(name, text.as_bytes()))
 }

@@ -5,9 +5,9 @@ use super::noise::Noise;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use vibroimpact::Result;
-use vibroimpact::model::portrait::Samples;
-use vibroimpact::model::{Motion, Rig, Simulation, Sine, State};
+use vibro_model::portrait::Samples;
+use vibro_model::{Motion, Rig, Simulation, Sine, State};
+use vibro_record::Result;
 
 /// Force amplitude in N. With it and the thesis' masses, springs and dampers the in-phase (grazing) resonance is met in
 /// both directions and the out-of-phase (clapping) one only going up.

@@ -1,0 +1,41 @@
+//! The record of the example hammer drill: striker and bit under a laser, with a pulse once a turn.
+//!
+//! - `data/drill.wav`: striker, bit and pulse in volts, 20 s at 102.4 kHz (25 MB);
+//! - `data/still.wav`: the same laser with the machine at rest;
+//! - `TRUTH.csv`: every impact, as it would be seen without noise and faults.
+
+mod noise;
+mod record;
+mod stroke;
+
+use super::Sink;
+use std::fmt::Write as _;
+use vibro_io::write::{Precision, wav::write};
+use vibro_record::units::Unit;
+use vibro_record::{Axis, Meta, Record, Result, Trace};
+
+/// Seconds of the record.
+const SECONDS: f64 = 20.0;
+
+/// All files.
+pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
+    let made = record::record(SECONDS);
+    let mut wave = |name: &str, channels: Vec<Record>| {
+        let mut bytes = Vec::new();
+        write(&channels, Precision::Single, &mut bytes)?;
+        sink(name, &bytes)
+    };
+    let channels = [("striker", made.striker), ("bit", made.bit), ("pulse", made.pulse)];
+    wave("data/drill.wav", channels.into_iter().map(|(name, values)| volts(name, values)).collect())?;
+    wave("data/still.wav", vec![volts("striker", record::still(5.0))])?;
+    let mut truth = String::from("turn,time (s),phase (1),before (m/s),after (m/s)\n");
+    for i in &made.impacts {
+        let _ = writeln!(truth, "{},{:.7},{:.5},{:.4},{:.4}", i.turn, i.time, i.phase, i.before, i.after);
+    }
+    sink("TRUTH.csv", truth.as_bytes())
+}
+
+fn volts(name: &str, values: Vec<f64>) -> Record {
+    let meta = Meta::new(name, Unit::parse_or_opaque("V"));
+    Record::Trace(Trace { meta, axis: Axis::time(0.0, 1.0 / record::RATE, values.len()), values })
+}

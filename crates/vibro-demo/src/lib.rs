@@ -1,0 +1,72 @@
+//! Example campaigns with their recordings: the same bytes every time, since the noise has fixed seeds and nothing depends on the clock.
+//!
+//! ```
+//! let demo = vibro_demo::DEMOS.iter().find(|demo| demo.name == "bench").unwrap();
+//! let mut names = Vec::new();
+//! demo.make(&mut |name, _| {
+//!     names.push(name.to_owned());
+//!     Ok(())
+//! })?;
+//! assert!(names.contains(&"campaign.toml".to_owned()));
+//! # Ok::<(), vibro_record::Error>(())
+//! ```
+
+mod bench;
+pub mod drop_test;
+mod hammer_drill;
+mod two_mass_rig;
+
+use vibro_record::Result;
+
+/// Takes a file: its path within the folder of the example, and its bytes.
+pub type Sink<'a> = dyn FnMut(&str, &[u8]) -> Result<()> + 'a;
+
+/// An example campaign.
+#[derive(Debug, Clone, Copy)]
+pub struct Demo {
+    /// Name of its folder.
+    pub name: &'static str,
+    /// What it shows.
+    pub about: &'static str,
+    campaign: &'static str,
+    recordings: fn(&mut Sink<'_>) -> Result<()>,
+}
+
+/// All examples.
+pub const DEMOS: [Demo; 4] = [
+    Demo {
+        name: "two_mass_rig",
+        about: "stepped sweeps of two masses striking each other, against the model (240 spectra)",
+        campaign: include_str!("../../../examples/two_mass_rig/campaign.toml"),
+        recordings: two_mass_rig::recordings,
+    },
+    Demo {
+        name: "bench",
+        about: "a mass on a spring, shaken and let go, and a contact pulse",
+        campaign: include_str!("../../../examples/bench/campaign.toml"),
+        recordings: bench::recordings,
+    },
+    Demo {
+        name: "drop_test",
+        about: "a ball that drops and bounces, and a contact circuit",
+        campaign: include_str!("../../../examples/drop_test/campaign.toml"),
+        recordings: drop_test::recordings,
+    },
+    Demo {
+        name: "hammer_drill",
+        about: "a hammer drill under a laser vibrometer (25 MB)",
+        campaign: include_str!("../../../examples/hammer_drill/campaign.toml"),
+        recordings: hammer_drill::recordings,
+    },
+];
+
+impl Demo {
+    /// Makes its files, the campaign last.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn make(&self, sink: &mut Sink<'_>) -> Result<()> {
+        (self.recordings)(sink)?;
+        sink("campaign.toml", self.campaign.as_bytes())
+    }
+}

@@ -1,0 +1,110 @@
+//! `vibro demo` and `vibro open`: an example with its recordings, and the page of a report.
+
+use super::campaign::Run;
+use super::{complain, print};
+use crate::error::{Error, Place, Result};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use vibro_demo::{DEMOS, Demo as Example};
+
+#[derive(Debug, clap::Args)]
+pub struct Demo {
+    /// Name of the example [default: lists them]
+    #[arg(index = 1)]
+    name: Option<String>,
+    /// Folder for it [default: its name]
+    #[arg(value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write its files without running it
+    no_run: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Open {
+    /// Folder with a report, folder of its campaign, or report.html itself
+    #[arg(index = 1, default_value = ".")]
+    report: PathBuf,
+}
+
+impl super::Run for Demo {
+    /// Writes the files of an example and runs it.
+    fn run(&self, json: bool) -> Result<u8> {
+        let Some(name) = &self.name else {
+            let all: Vec<_> =
+                DEMOS.iter().map(|demo| json!({ "name": demo.name, "about": demo.about })).collect();
+            let lines: Vec<String> =
+                DEMOS.iter().map(|demo| format!("  {:14} {}", demo.name, demo.about)).collect();
+            if json {
+                print::object(json!({ "demos": all, "warnings": [] }))?;
+            } else {
+                print::text(&format!("{}\nnext: vibro demo {}\n", lines.join("\n"), DEMOS[0].name))?;
+            }
+            return Ok(0);
+        };
+        let demo = DEMOS.iter().find(|demo| demo.name == *name).ok_or_else(|| {
+            let known: Vec<&str> = DEMOS.iter().map(|demo| demo.name).collect();
+            let like = |known: &&str| strsim::jaro(known, name);
+            let near = known.iter().copied().max_by(|a, b| like(a).total_cmp(&like(b))).unwrap_or_default();
+            let error = Error::usage(format!("no example is named {name:?}"), known.join(", "));
+            error.hint(format!("vibro demo {near}"))
+        })?;
+        let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(demo.name));
+        print::busy(json, "making recordings", |_| write(demo, &folder))?;
+        if self.no_run {
+            return print::text(&format!("wrote {}\n", folder.display())).map(|()| 0);
+        }
+        complain::line(&format!("wrote the recordings and campaign.toml into {}", folder.display()));
+        Run::of(folder.join("campaign.toml")).run(json)
+    }
+}
+
+/// Writes the files of an example. One that is there with another content is left, and named.
+fn write(demo: &Example, folder: &Path) -> Result<()> {
+    demo.make(&mut |name, bytes| {
+        let path = folder.join(name);
+        if let Ok(known) = std::fs::read(&path) {
+            if known == bytes {
+                return Ok(());
+            }
+            let found = "a file of this name with another content";
+            let error = Error::input(Place::file(&path), found, "a folder without it");
+            return Err(error.hint("name another folder with --out"));
+        }
+        let parent = path.parent().unwrap_or(folder);
+        std::fs::create_dir_all(parent).map_err(|e| Error::io("make the folder", parent, e))?;
+        std::fs::write(&path, bytes).map_err(|e| Error::io("write", &path, e))
+    })
+}
+
+/// Programs that open a page, on one system or another.
+const OPENERS: [(&str, &[&str]); 3] = [("xdg-open", &[]), ("open", &[]), ("cmd", &["/C", "start", ""])];
+
+impl super::Run for Open {
+    /// Opens the page in a browser.
+    fn run(&self, json: bool) -> Result<u8> {
+        let places =
+            [self.report.clone(), self.report.join("report.html"), self.report.join("results/report.html")];
+        let page = places.iter().find(|place| place.is_file()).ok_or_else(|| {
+            let error = Error::input(
+                Place::file(&self.report),
+                "no report.html here, nor in results",
+                "a folder with a report",
+            );
+            error.hint(format!("vibro run {}", self.report.display()))
+        })?;
+        let opens = |(program, before): &(&str, &[&str])| {
+            let status =
+                Command::new(program).args(*before).arg(page).stdin(std::process::Stdio::null()).status();
+            status.is_ok_and(|status| status.success())
+        };
+        if !OPENERS.iter().any(opens) {
+            return Err(Error::refused("no program opens a page here")
+                .hint(format!("open {} in a browser", page.display())));
+        }
+        if json {
+            print::object(json!({ "opened": page.display().to_string(), "warnings": [] }))?;
+        }
+        Ok(0)
+    }
+}
