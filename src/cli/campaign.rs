@@ -10,6 +10,7 @@ use crate::report::words::{Voice, graded};
 use crate::report::{Output, Table};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 #[derive(Debug, clap::Args)]
 pub struct Run {
@@ -21,6 +22,8 @@ pub struct Run {
     out: Option<PathBuf>,
     /// Allow files outside the folder of the campaign
     allow_outside: bool,
+    /// Run again whenever a file of the folder changes, until Ctrl+C
+    watch: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -57,15 +60,63 @@ fn opened(path: &Path, json: bool) -> Result<Campaign> {
 impl Run {
     /// The campaign of a file, with its own folder for results.
     pub fn of(campaign: PathBuf) -> Run {
-        Run { campaign, out: None, allow_outside: false }
+        Run { campaign, out: None, allow_outside: false, watch: false }
     }
 }
 
 impl super::Run for Run {
     const VOICE: Voice = Voice::Campaign;
 
-    /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
     fn run(&self, json: bool) -> Result<u8> {
+        if !self.watch {
+            return self.once(json);
+        }
+        let folder = if self.campaign.is_dir() { self.campaign.clone() } else { folder_of(&self.campaign) };
+        loop {
+            // A campaign that is being written may have a fault for a moment.
+            if let Err(error) = self.once(json) {
+                complain::error(&error, Voice::Campaign, json);
+            }
+            let before = stamps(&folder);
+            complain::line(&format!("watching {}; Ctrl+C ends", folder.display()));
+            while stamps(&folder) == before {
+                std::thread::sleep(PAUSE);
+            }
+            // What is still being written lands within another pause.
+            std::thread::sleep(PAUSE);
+        }
+    }
+}
+
+/// Time between two looks at a folder that is watched.
+const PAUSE: Duration = Duration::from_millis(500);
+
+fn folder_of(campaign: &Path) -> PathBuf {
+    campaign.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
+}
+
+/// Names, sizes and times of the files of a folder and of those in it, but for folders of results.
+fn stamps(folder: &Path) -> Vec<(PathBuf, u64, Option<SystemTime>)> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let Ok(entries) = std::fs::read_dir(&folder) else { continue };
+        for entry in entries.flatten() {
+            let (path, Ok(meta)) = (entry.path(), entry.metadata()) else { continue };
+            if meta.is_file() {
+                found.push((path, meta.len(), meta.modified().ok()));
+            } else if meta.is_dir() && !path.join("results.json").exists() {
+                folders.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+impl Run {
+    /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
+    fn once(&self, json: bool) -> Result<u8> {
         let campaign = opened(&self.campaign, json)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let options = JobOptions { allow_outside: self.allow_outside };

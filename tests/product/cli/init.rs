@@ -191,3 +191,36 @@ fn an_example_is_written_with_its_recordings_and_runs() {
     assert!(complaint(&["demo", "bensh"], 2).contains("try: vibro demo bench"));
     assert!(complaint(&["open", text(root.path())], 2).contains("vibro run"));
 }
+
+#[test]
+fn a_folder_that_is_watched_runs_again_when_a_file_lands() {
+    let root = tempfile::tempdir().unwrap();
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench");
+    let copy = |name: &str| fs::copy(own.join(name), root.path().join(name)).unwrap();
+    copy("DECAY.CSV");
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_vibro"))
+        .args(["run", "--watch", text(root.path())])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let pulses = || {
+        let bytes = fs::read(root.path().join("results/results.json")).ok()?;
+        let results: Value = serde_json::from_slice(&bytes).ok()?;
+        Some(results["pulses"].as_array().map_or(0, Vec::len))
+    };
+    let wait = |wanted: usize| {
+        // A machine under load needs some seconds.
+        (0..300).any(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            pulses() == Some(wanted)
+        })
+    };
+    let first = wait(0);
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    copy("PULSE.CSV");
+    let second = wait(1);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(first && second, "{first} {second}");
+}
