@@ -53,7 +53,11 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     if !x.is_empty() {
         below = below.with(Series::phase("", &x, &angle).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
     }
-    lettered(figure.height(110.0).shared_x().panel(above).panel(below))
+    let figure = figure.height(110.0).shared_x().panel(above).panel(below);
+    lettered(match &measured.coherence {
+        Some(coherence) => figure.height(145.0).panel(coherence_plot(f, coherence, Ink::Grey)),
+        None => figure,
+    })
 }
 
 /// The fitted response at its lines and, where these are few, between them: the modes, and a straight line through what else was fitted. What a
@@ -86,6 +90,12 @@ fn curve(measured: &Measured, modes: &[Mode], windowed: bool) -> Vec<(f64, Compl
     };
     let last = rest.last().map(|(f, left)| (*f, alone(*f) + left));
     rest.windows(2).flat_map(piece).chain(last).collect()
+}
+
+/// The coherence of a function over its frequencies.
+pub(crate) fn coherence_plot(f: &[f64], coherence: &[f64], ink: Ink) -> Plot {
+    Plot::new(AxisSpec::frequency(), AxisSpec::new("Coherence", "").limits(0.0, 1.0))
+        .with(Series::line("", f, coherence).ink(ink).stroke(Stroke::Solid))
 }
 
 /// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below it only fills the frame.

@@ -1,6 +1,6 @@
 //! Spectra, and frequency response functions with their band and coherence.
 
-use crate::analysis::frf::figures::phase_plot;
+use crate::analysis::frf::figures::{coherence_plot, phase_plot};
 use crate::measure::spectral::{Lines, SpectralResult};
 use crate::record::{Scaling, Spectrum};
 use crate::report::layout::{capital, lettered};
@@ -21,7 +21,7 @@ pub fn lines(title: &str, result: &SpectralResult) -> Figure {
             let (plot, lines) = axes(found);
             drawn(title, plot, lines, result)
         }
-        Lines::Transfer(found) => transfer(title, found),
+        Lines::Transfer(found) => transfer(title, found, &conditions(result)),
     }
 }
 
@@ -44,7 +44,7 @@ fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &Spectra
     };
     let (x, y): (Vec<f64>, Vec<f64>) = f.chunks(together).zip(v.chunks(together)).map(largest).unzip();
     let mut plot = plot.with(Series::line("", x, y));
-    let mut said = Vec::new();
+    let mut said = vec![conditions(result)];
     if !at.is_empty() {
         plot = plot.with(Series::points("", at, heights).marker(Marker::OpenCircle).ink(Ink::Nth(1)));
         said.push("Circles mark the sines that were fitted.".to_owned());
@@ -53,6 +53,19 @@ fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &Spectra
         said.push(format!("Of {together} lines side by side the largest is drawn."));
     }
     Figure::double(title).panel(plot).caption(said.join(" "))
+}
+
+/// Window, averages and scaling, as a caption states them.
+fn conditions(result: &SpectralResult) -> String {
+    let averages = match result.averages {
+        1 => "one average".to_owned(),
+        n => format!("{n} averages"),
+    };
+    let scaling = match result.found {
+        Lines::Spectrum(_) => format!(", scaling {}", result.scaling),
+        Lines::Transfer(_) => String::new(),
+    };
+    format!("{} window, {averages}{scaling}.", capital(result.window))
 }
 
 /// The axes of a spectrum, and its lines.
@@ -75,7 +88,7 @@ fn axes(spectrum: &Spectrum) -> (Plot, (Vec<f64>, Vec<f64>)) {
 }
 
 /// Magnitude with a band of two standard deviations, phase (where the coherence is 0.5 or more), coherence.
-fn transfer(title: &str, transfer: &Transfer) -> Figure {
+fn transfer(title: &str, transfer: &Transfer, conditions: &str) -> Figure {
     let frf = &transfer.frf;
     let f = frf.axis.values();
     let magnitude: Vec<f64> = frf.values.iter().map(|v| v.norm()).collect();
@@ -89,11 +102,11 @@ fn transfer(title: &str, transfer: &Transfer) -> Figure {
         .with(Series::line("", f.clone(), magnitude).ink(Ink::Nth(0)))
         .legend(Legend::Above);
     let middle = phase_plot(&f, frf.values.iter().copied(), &transfer.coherence, Ink::Nth(0));
-    let below = Plot::new(AxisSpec::frequency(), AxisSpec::new("Coherence", "").limits(0.0, 1.0))
-        .with(Series::line("", f, transfer.coherence.clone()).ink(Ink::Nth(0)));
+    let below = coherence_plot(&f, &transfer.coherence, Ink::Nth(0));
     let figure = Figure::double(title).height(140.0).shared_x().panel(above).panel(middle);
     if transfer.coherence.is_empty() {
-        return lettered(figure).caption("Of one blow: without coherence.");
+        return lettered(figure).caption(format!("{conditions} Of one blow: without coherence."));
     }
-    lettered(figure.panel(below)).caption("The phase is drawn where the coherence is 0.5 or more.")
+    lettered(figure.panel(below))
+        .caption(format!("{conditions} The phase is drawn where the coherence is 0.5 or more."))
 }

@@ -96,11 +96,11 @@ fn panel(response: &Response, mass: usize) -> Plot {
     }
     let [real, unstable, impossible] = lines;
     for (name, pieces, ink, stroke) in [
-        ("impossible", impossible, Ink::Grey, Stroke::Thin),
+        ("impossible motion", impossible, Ink::Grey, Stroke::Thin),
         ("backbone", back, Ink::Nth(2), Stroke::DashDot),
         ("without impacts", free, Ink::Black, Stroke::Thin),
-        ("unstable", unstable, Ink::Nth(0), Stroke::Dashed),
-        ("stable", real, Ink::Nth(0), Stroke::Solid),
+        ("unstable motion", unstable, Ink::Nth(0), Stroke::Dashed),
+        ("stable motion", real, Ink::Nth(0), Stroke::Solid),
     ] {
         plot = line(plot, name, pieces.places(), ink, stroke);
     }
@@ -130,9 +130,10 @@ pub fn continued(over: Parameter, branches: &[Branch], beside: &[Branch]) -> Fig
             _ => AxisSpec::new("Force", "N"),
         };
         let mut plot = Plot::new(axis, AxisSpec::new(label, "mm").log());
-        for (all, ink, stable, unstable) in
-            [(beside, Ink::Nth(1), "one impact a cycle", ""), (branches, Ink::Nth(0), "stable", "unstable")]
-        {
+        for (all, ink, stable, unstable) in [
+            (beside, Ink::Nth(1), "one impact a cycle", ""),
+            (branches, Ink::Nth(0), "stable branch", "unstable branch"),
+        ] {
             let mut lines: [Pieces; 3] = Default::default();
             for pair in all.iter().flat_map(|b| b.points.windows(2)) {
                 if let (Some(_), Some(seen)) = (look(&pair[0].validity), look(&pair[1].validity)) {

@@ -65,8 +65,8 @@ fn panel(mass: u8, curve: &Prediction, pairs: &[Pair], measured: &[(usize, &Resp
     };
     for (verdict, name, stroke) in [
         (Verdict::Seen, seen, Stroke::Solid),
-        (Verdict::Unstable, "unstable", Stroke::Dashed),
-        (Verdict::Neutral, "neutral", Stroke::DashDot),
+        (Verdict::Unstable, "unstable motion", Stroke::Dashed),
+        (Verdict::Neutral, "neutral motion", Stroke::DashDot),
     ] {
         // Both branches have one entry in the legend.
         for rank in 0..2 {
