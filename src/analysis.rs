@@ -94,6 +94,7 @@ pub(crate) struct Kind {
     title: &'static str,
     check: fn(&Campaign) -> Result<()>,
     files: fn(&Campaign, bool) -> Result<Vec<PathBuf>>,
+    channels: fn(&Campaign, bool) -> Result<()>,
     run: fn(&mut Job<'_>) -> Result<()>,
 }
 
@@ -104,6 +105,7 @@ impl Kind {
             title: A::TITLE,
             check: check::<A>,
             files: files_of::<A>,
+            channels: channels_of::<A>,
             run: run_all::<A>,
         }
     }
@@ -156,6 +158,14 @@ pub fn files(campaign: &Campaign, allow_outside: bool) -> Result<Vec<PathBuf>> {
     Ok(files?.concat())
 }
 
+/// Looks for the channel that each table names in its file.
+///
+/// # Errors
+/// If a file cannot be read, or has no such channel.
+pub fn channels(campaign: &Campaign, allow_outside: bool) -> Result<()> {
+    KINDS.iter().try_for_each(|kind| (kind.channels)(campaign, allow_outside))
+}
+
 /// The tables of a kind of record.
 ///
 /// # Errors
@@ -176,6 +186,22 @@ fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
             None => entry.reading.reader().and_then(|_| A::check(entry, &entries[..i])),
         };
         checked.map_err(|e| campaign.fault(entry, e))?;
+    }
+    Ok(())
+}
+
+fn channels_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<()> {
+    for entry in entries::<A>(campaign)? {
+        let (Some(file), Some(channel)) = (&entry.file, &entry.channel.channel) else { continue };
+        let path = campaign.file(&entry, "file", file, allow_outside)?;
+        let (_, headers, _) = entry.reading.reader()?.survey(path)?;
+        let numbered = channel.parse().is_ok_and(|n: usize| (1..=headers.len()).contains(&n));
+        if !numbered && !headers.iter().any(|h| h.name.eq_ignore_ascii_case(channel)) {
+            let names: Vec<&str> = headers.iter().map(|h| h.name.as_str()).collect();
+            let error =
+                Error::usage(format!("{} has no channel {channel:?}", file.display()), names.join(", "));
+            return Err(campaign.fault(&entry, error.setting("channel")));
+        }
     }
     Ok(())
 }

@@ -88,7 +88,13 @@ impl Campaign {
         let path = path.as_ref();
         let other = |found: &str, expected: &str| Error::input(Place::file(path), found, expected);
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || path.is_dir() {
-            return Err(other("not a campaign", "a campaign file, NAME.toml")
+            if !path.exists() {
+                return Err(other(
+                    "there is no such file or folder",
+                    "a campaign file, NAME.toml, or a folder of recordings",
+                ));
+            }
+            return Err(other("not a campaign", "a campaign file, NAME.toml, or a folder of recordings")
                 .hint("a list of files goes to `vibro response`; docs/campaign.md shows a campaign"));
         }
         let bytes = std::fs::read(path).map_err(|e| Error::io("open", path, e))?;
@@ -136,6 +142,11 @@ impl Campaign {
         let parsed = DeTable::parse(&self.text);
         let parsed = parsed.map_err(|e| locate::toml_error(&self.path, &self.text, &e, &[]))?;
         Ok(parsed.into_inner())
+    }
+
+    /// Its text.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// The campaign file.

@@ -123,12 +123,14 @@ fn cell(item: &Value, key: &str) -> Cell {
 /// Agreement with the model, sweep by sweep.
 fn agreement(results: &Map<String, Value>) -> Option<Table> {
     let scores = results.get("overlay")?["scores"].as_array()?;
-    let table = Table::new("Agreement with the model").column("sweep", "").column("points", "");
+    let table = Table::new("Agreement with the model").column("sweep", "").column("points compared", "");
     let table = table.column("median deviation", "%").column("largest", "%");
     let percent = |score: &Value, key: &str| Cell::from(score[key].as_f64().map(|part| 100.0 * part));
+    let count = |score: &Value, key: &str| score[key].as_u64().unwrap_or(0) as usize;
+    let compared = |score: &Value| Cell::from(count(score, "n").saturating_sub(count(score, "faint")));
     let row = |score: &Value| {
         let name = score["sweep"].as_str().unwrap_or_default();
-        [name.into(), cell(score, "n"), percent(score, "median_relative"), percent(score, "max_relative")]
+        [name.into(), compared(score), percent(score, "median_relative"), percent(score, "max_relative")]
     };
     Some(scores.iter().map(row).fold(table, Table::row))
 }

@@ -43,6 +43,7 @@ pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing], pa
     }
     let steps: Vec<(&str, String)> =
         job.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
+    page = page.details("The campaign as it ran", [("campaign.toml", job.campaign.text())]);
     if !steps.is_empty() {
         page = page
             .details("Steps from file to result", steps.iter().map(|(name, text)| (*name, text.as_str())));

@@ -6,7 +6,7 @@ use super::job::Marks;
 use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::spectral::{Method, SpectralOptions, SpectralResult, spectral};
+use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral};
 use crate::record::{Scaling, Window};
 use crate::report::layout::table;
 use crate::report::{Cell, Table, files};
@@ -145,7 +145,7 @@ const SHOWN: usize = 8;
 fn peaks(name: &str, found: &SpectralResult) -> Table {
     let of = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
     let response = found.response.as_ref();
-    table(
+    let peaks = table(
         "Largest peaks of spectra",
         found.peaks(SHOWN),
         &[
@@ -157,8 +157,18 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
             ("phase", "°", &|k| Cell::from(response.and_then(|r| of(&r.phase, *k)))),
             ("coherence", "", &|k| Cell::from(response.and_then(|r| of(r.coherence.as_ref()?, *k)))),
         ],
-    )
+    );
+    let low = LOW.iter().find(|(window, _)| *window == found.window).map_or("", |(_, low)| low);
+    match &found.found {
+        Lines::Spectrum(_) if !low.is_empty() && found.tones.is_empty() => {
+            peaks.note(format!("A sine between two lines reads low, by up to {low}; tones fits it."))
+        }
+        _ => peaks,
+    }
 }
+
+/// By how much a sine half-way between two lines reads low.
+const LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
 
 /// How the lines of a record were taken.
 fn taken(found: &SpectralResult) -> Table {

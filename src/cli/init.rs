@@ -100,6 +100,7 @@ impl super::Run for Check {
     fn run(&self, json: bool) -> Result<u8> {
         let campaign = analysis::open(&self.campaign)?;
         let files = analysis::files(&campaign, self.allow_outside)?;
+        analysis::channels(&campaign, self.allow_outside)?;
         if json {
             print::object(json!({ "warnings": [], "files": files }))?;
         } else {

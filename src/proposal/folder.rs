@@ -72,17 +72,18 @@ impl Folder {
         }
         let mut groups: BTreeMap<(String, String), Vec<Member>> = BTreeMap::new();
         let mut order = Vec::new();
+        let names: Vec<String> = paths.iter().map(|path| within(path)).collect();
         for path in &paths {
             match reader.survey(path) {
                 Ok((_, headers, _)) if headers.is_empty() => {
                     found.left.push((within(path), "no records".to_owned()));
                 }
                 Ok((_, headers, _)) if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none()) => {
-                    let why = "no sampling rate in it: state it with --rate HZ, for all files of the folder";
+                    let why = "no sampling rate in it; vibro init FOLDER --rate HZ states it for all files of the folder";
                     found.left.push((within(path), why.to_owned()));
                 }
                 Ok((_, headers, _)) => {
-                    let key = (apart(&within(path)).join("*"), signature(&headers));
+                    let key = (apart(&within(path), &names).join("*"), signature(&headers));
                     if !groups.contains_key(&key) {
                         order.push(key.clone());
                     }
@@ -94,7 +95,7 @@ impl Folder {
         for key in order {
             let Some(members) = groups.remove(&key) else { continue };
             let files: Vec<String> = members.iter().map(|(path, _)| within(path)).collect();
-            let [before, after] = apart(&files[0]);
+            let [before, after] = apart(&files[0], &names);
             let name = name(&files);
             let meant = |path: &&PathBuf| {
                 let own = within(path);
@@ -102,7 +103,13 @@ impl Folder {
             };
             let plain = !key.0.replacen('*', "", 1).contains(['*', '?', '[']);
             let pattern = (plain && paths.iter().filter(meant).count() == files.len()).then(|| key.0.clone());
-            let headers = members.into_iter().next().map_or_else(Vec::new, |(_, headers)| headers);
+            let mut headers = members[0].1.clone();
+            for (k, header) in headers.iter_mut().enumerate() {
+                // Channels of several names go by their numbers.
+                if members.iter().any(|(_, all)| all[k].name != header.name) {
+                    header.name.clear();
+                }
+            }
             found.series.push(Series { name, files, headers, pattern });
         }
         Ok(found)
@@ -166,23 +173,36 @@ pub(super) fn stem(path: &Path) -> String {
 pub(super) fn name(files: &[String]) -> String {
     match files {
         [one] => stem(Path::new(one)),
-        [first, ..] => common(&apart(first)[0]),
+        [first, ..] => common(&apart(first, files)[0]),
         [] => String::new(),
     }
 }
 
-/// What stands before and behind the last number in a name; a name without one is all before.
-fn apart(name: &str) -> [String; 2] {
+/// What stands before and behind the number by which a name differs from others that are like it but for one number; else behind the last. A
+/// name without a number is all before.
+fn apart(name: &str, others: &[String]) -> [String; 2] {
     let from = name.rfind('/').map_or(0, |at| at + 1);
     let to = name[from..].rfind('.').map_or(name.len(), |at| from + at);
-    let Some(last) = name[from..to].rfind(|c: char| c.is_ascii_digit()) else {
-        return [name.to_owned(), String::new()];
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for (i, c) in name[from..to].bytes().enumerate() {
+        if c.is_ascii_digit() {
+            match runs.last_mut() {
+                Some(run) if run.1 == from + i => run.1 += 1,
+                _ => runs.push((from + i, from + i + 1)),
+            }
+        }
+    }
+    let ends = |(begin, end): (usize, usize)| [name[..begin].to_owned(), name[end..].to_owned()];
+    let varies = |run: &&(usize, usize)| {
+        let [before, after] = ends(**run);
+        let like = |other: &&String| {
+            let inside = other.strip_prefix(&before).and_then(|rest| rest.strip_suffix(&after));
+            inside.is_some_and(|n| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit()))
+        };
+        others.iter().filter(like).count() > 1
     };
-    let end = from + last + 1;
-    let begin = name[from..end]
-        .rfind(|c: char| !c.is_ascii_digit())
-        .map_or(from, |at| from + at + name[from + at..].chars().next().map_or(1, char::len_utf8));
-    [name[..begin].to_owned(), name[end..].to_owned()]
+    let run = runs.iter().rev().find(varies).or(runs.last());
+    run.map_or_else(|| [name.to_owned(), String::new()], |run| ends(*run))
 }
 
 /// The name of a series: what stands before its numbers, without marks at its end.
@@ -194,7 +214,7 @@ fn common(before: &str) -> String {
 
 /// Channels that make files of one kind.
 fn signature(headers: &[Header]) -> String {
-    let one = |h: &Header| [h.name.as_str(), h.unit.as_str(), h.kind].join("|");
+    let one = |h: &Header| [h.unit.as_str(), h.kind].join("|");
     headers.iter().map(one).collect::<Vec<_>>().join("\n")
 }
 
@@ -237,16 +257,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_come_apart_at_their_last_number() {
+    fn names_come_apart_at_the_number_that_differs() {
+        let all: Vec<String> = ["step_01.csv", "step_02.csv", "drop1_h450mm.wav", "drop2_h450mm.wav"]
+            .map(str::to_owned)
+            .to_vec();
         for (name, expected) in [
             ("step_01.csv", ["step_", ".csv"]),
+            ("drop1_h450mm.wav", ["drop", "_h450mm.wav"]),
             ("a1/run2_12 Hz.csv", ["a1/run2_", " Hz.csv"]),
             ("µ7.txt", ["µ", ".txt"]),
             ("7.txt", ["", ".txt"]),
             ("record.mp3", ["record.mp3", ""]),
             ("a5/plain", ["a5/plain", ""]),
         ] {
-            assert_eq!(apart(name), expected, "{name}");
+            assert_eq!(apart(name, &all), expected, "{name}");
         }
         assert_eq!([common("x/step_"), common("")], ["step", "series"]);
     }

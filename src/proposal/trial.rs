@@ -213,7 +213,10 @@ impl<'a> Trial<'a> {
 impl Series {
     /// The table of a train of bounces.
     fn bounces(&self, k: usize, name: &str) -> Table {
-        self.channel_table(k, name, "drop", "impacts of a falling body").surmised().open("height", "", HEIGHT)
+        self.channel_table(k, name, "drop", "impacts of a falling body")
+            .surmised()
+            .open("height", "", HEIGHT)
+            .open("height_std", "", "its standard uncertainty in m")
     }
 
     /// The table of a fall with one rebound.

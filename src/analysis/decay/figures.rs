@@ -4,6 +4,7 @@ use crate::measure::decay::DecayResult;
 use crate::record::Meta;
 use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
+use std::fmt::Write as _;
 
 /// Points that a line keeps: more than a print can show.
 const SHOWN: usize = 4000;
@@ -16,6 +17,9 @@ pub fn decay(title: &str, meta: &Meta, found: &DecayResult) -> Figure {
     let (from, to) = (times[0], times[shown - 1]);
     let x = || AxisSpec::new("Time", "s").limits(from, to);
     let left: Vec<f64> = record.iter().zip(modes).map(|(v, modes)| v - modes).collect();
+    let offset = left.iter().sum::<f64>() / left.len().max(1) as f64;
+    let left: Vec<f64> = left.into_iter().map(|v| v - offset).collect();
+    let modes: Vec<f64> = modes.iter().map(|v| v + offset).collect();
     let above = Plot::new(x(), AxisSpec::new(capital(meta.quantity.name()), unit))
         .with(Series::line("record", &times[..shown], &record[..shown]).ink(Ink::Grey).stroke(Stroke::Solid))
         .with(
@@ -26,7 +30,15 @@ pub fn decay(title: &str, meta: &Meta, found: &DecayResult) -> Figure {
         .legend(Legend::Hidden);
     let mut figure = Figure::double(title).height(110.0).panel(above).panel(below);
     let mut caption =
-        "(a) The part of the record that was used, and the sum of its modes. (b) What they leave.".to_owned();
+        "(a) The part of the record that was used, and the sum of its modes with an offset. (b) What they leave.".to_owned();
+    if shown < times.len() {
+        let _ = write!(
+            caption,
+            " Drawn are the first {:.3} of {:.3} s.",
+            to - from,
+            times[times.len() - 1] - from
+        );
+    }
     if !found.levels.is_empty() {
         let levels = found.levels.iter().map(|level| (level.mode.amplitude.value, level.mode.zeta.value));
         let (amplitude, zeta): (Vec<f64>, Vec<f64>) = levels.unzip();

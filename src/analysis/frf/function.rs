@@ -73,7 +73,7 @@ impl Function {
         points.dedup_by(|a, b| a.0 == b.0);
         let frequency = points.iter().map(|p| p.0).collect();
         let values = points.iter().map(|p| p.1).collect();
-        let std = phased.then(|| points.iter().map(|p| p.2).collect());
+        let std = phased.then(|| pooled(&points.iter().map(|p| p.2).collect::<Vec<f64>>()));
         let mut meta = Meta::new(response.name.clone(), Unit::parse_or_opaque("m/N"));
         meta.history.clone_from(&response.history);
         meta.quantity = meta.unit.quantity();
@@ -86,5 +86,25 @@ impl Function {
         };
         let findings = left_out.map(found).collect();
         Ok(Function { findings, ..Function::new(meta, measured) })
+    }
+}
+
+/// Uncertainties none of which lies below the median of the five around it: each comes from a few blocks, and one that is small by chance would
+/// carry the fit.
+fn pooled(std: &[f64]) -> Vec<f64> {
+    let around = |i: usize| {
+        let mut near = std[i.saturating_sub(2)..(i + 3).min(std.len())].to_vec();
+        near.sort_by(f64::total_cmp);
+        near[near.len() / 2]
+    };
+    (0..std.len()).map(|i| std[i].max(around(i))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn an_uncertainty_that_is_small_by_chance_is_that_of_its_neighbours() {
+        assert_eq!(super::pooled(&[1.0, 0.01, 2.0, 1.0, 9.0]), [1.0, 1.0, 2.0, 2.0, 9.0]);
+        assert!(super::pooled(&[]).is_empty());
     }
 }

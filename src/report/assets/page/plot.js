@@ -112,8 +112,11 @@ class Plot {
         bar.append(heading);
         continue;
       }
+      const alike = this.series.filter((s) => s.name === series.name && s.shape === series.shape);
+      if (alike[0] !== series) continue;
       const name = button(series.name, "Show or hide", () => {
-        series.hidden = !series.hidden;
+        const hidden = !series.hidden;
+        alike.forEach((s) => (s.hidden = hidden));
         name.setAttribute("aria-pressed", String(!series.hidden));
         this.plot.redraw();
       });

@@ -200,8 +200,11 @@ class Waterfall {
     c.fillText(`${depth.title}, to the back`, 4, 14);
     c.textAlign = "right";
     const [ux, uy] = this.project(0, 0, 1);
-    if (this.level) c.fillText("0 dB, 60 dB high", Math.max(ux - 4, 100), uy - 6);
-    else for (const v of ticks(up.low, up.high)) {
+    if (this.level) {
+      c.textAlign = "left";
+      c.fillText(`60 dB below ${digits(up.high, 3)} (${up.title})`, 4, uy - 10);
+    }
+    if (!this.level) for (const v of ticks(up.low, up.high)) {
       const [px, py] = this.project(0, 0, up.log ? Math.log10(v / up.low) / Math.log10(up.high / up.low) : (v - up.low) / (up.high - up.low));
       c.fillText(digits(v, 4), px - 6, py + 4);
     }
