@@ -146,9 +146,11 @@ test("nothing is wider than a phone of 360 px, light or dark", async () => {
   }
 });
 
-test("print opens what is folded, on A4 and on Letter", () => open(report, {}, async (page) => {
+test("print opens what is folded, on white paper of A4 and of Letter", () => open(report, { colorScheme: "dark" }, async (page) => {
   for (const format of ["A4", "Letter"]) {
     await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    const ink = await page.evaluate(() => theme(document.querySelector("[data-figure]")).ink);
+    assert.equal(ink, "#1a1a1a");
     const pdf = await page.pdf({ format });
     assert.ok(pdf.length > 50_000, String(pdf.length));
   }

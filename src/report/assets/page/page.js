@@ -84,9 +84,16 @@ async function start() {
     waits = setTimeout(() => Array.from(drawn.keys()).forEach(draw), 150);
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
+  // Paper is white, whatever the screen is.
   addEventListener("beforeprint", () => {
     for (const fold of document.querySelectorAll("details")) fold.open = true;
+    document.documentElement.classList.add("printing");
+    again();
     hosts.forEach(draw);
+  });
+  addEventListener("afterprint", () => {
+    document.documentElement.classList.remove("printing");
+    again();
   });
   for (const table of document.querySelectorAll(".table table")) tableTools(table);
   const place = document.getElementById("what-if");
