@@ -170,7 +170,7 @@ impl Table {
                 Known::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}"),
             };
         }
-        let about = format!("# {}\n", self.in_words());
+        let about = format!("# {}\n", plain(&self.in_words()));
         if !self.lacks() {
             return about + &text;
         }
@@ -249,7 +249,7 @@ impl Proposal {
             text += "\n# Not used:\n";
         }
         for (file, why) in &self.left {
-            let _ = writeln!(text, "# {file}: {why}");
+            let _ = writeln!(text, "# {}", plain(&format!("{file}: {why}")));
         }
         text
     }
@@ -261,6 +261,11 @@ impl Proposal {
     pub fn campaign(&self) -> Result<Campaign> {
         analysis::parse(&self.folder.join(Proposal::FILE), self.toml())
     }
+}
+
+/// A text without line breaks and other control characters: a name from a folder must not end a comment.
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 /// Time traces that are one sweep, one file a step: a campaign of it alone.

@@ -62,7 +62,9 @@ fn what_if(job: &Job<'_>, results: &Map<String, Value>) -> Option<Value> {
     let rig = results.get("rig").filter(|rig| rig.is_object())?;
     let overlay = results.get("overlay").filter(|overlay| overlay.is_object())?;
     let force = overlay["levels"][0]["force"].as_f64()?;
-    let pairs = overlay["pairs"].as_array()?;
+    // The sweeps of one level of force.
+    let level = overlay["levels"][0]["sweeps"].as_array()?;
+    let pairs = overlay["pairs"].as_array()?.iter().filter(|pair| level.contains(&pair["sweep"]));
     let mut measured: Vec<Value> = Vec::new();
     let (mut lowest, mut highest, mut largest) = (f64::INFINITY, 0.0f64, (0.0, 0.0));
     for pair in pairs {

@@ -72,12 +72,16 @@ impl super::Run for Run {
             return self.once(json);
         }
         let folder = if self.campaign.is_dir() { self.campaign.clone() } else { folder_of(&self.campaign) };
+        if !self.campaign.exists() {
+            return self.once(json);
+        }
         loop {
+            // What changes while it runs is for the next run.
+            let before = stamps(&folder);
             // A campaign that is being written may have a fault for a moment.
             if let Err(error) = self.once(json) {
                 complain::error(&error, Voice::Campaign, json);
             }
-            let before = stamps(&folder);
             complain::line(&format!("watching {}; Ctrl+C ends", folder.display()));
             while stamps(&folder) == before {
                 std::thread::sleep(PAUSE);
@@ -102,7 +106,8 @@ fn stamps(folder: &Path) -> Vec<(PathBuf, u64, Option<SystemTime>)> {
     while let Some(folder) = folders.pop() {
         let Ok(entries) = std::fs::read_dir(&folder) else { continue };
         for entry in entries.flatten() {
-            let (path, Ok(meta)) = (entry.path(), entry.metadata()) else { continue };
+            let path = entry.path();
+            let Ok(meta) = std::fs::metadata(&path) else { continue };
             if meta.is_file() {
                 found.push((path, meta.len(), meta.modified().ok()));
             } else if meta.is_dir() && !path.join("results.json").exists() {

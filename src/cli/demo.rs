@@ -2,10 +2,12 @@
 
 use super::campaign::Run;
 use super::{complain, print};
+use crate::analysis;
 use crate::error::{Error, Place, Result};
+use crate::proposal::Proposal;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use vibro_demo::{DEMOS, Demo as Example};
 
 #[derive(Debug, clap::Args)]
@@ -36,7 +38,7 @@ impl super::Run for Demo {
             let lines: Vec<String> =
                 DEMOS.iter().map(|demo| format!("  {:14} {}", demo.name, demo.about)).collect();
             if json {
-                print::object(json!({ "demos": all, "warnings": [] }))?;
+                print::object(json!({ "demos": all, "warnings": [], "findings": [] }))?;
             } else {
                 print::text(&format!("{}\nnext: vibro demo {}\n", lines.join("\n"), DEMOS[0].name))?;
             }
@@ -52,7 +54,13 @@ impl super::Run for Demo {
         let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(demo.name));
         print::busy(json, "making recordings", |_| write(demo, &folder))?;
         if self.no_run {
-            return print::text(&format!("wrote {}\n", folder.display())).map(|()| 0);
+            let written = folder.display().to_string();
+            if json {
+                print::object(json!({ "written": written, "warnings": [], "findings": [] }))?;
+            } else {
+                print::text(&format!("wrote {written}\n"))?;
+            }
+            return Ok(0);
         }
         complain::line(&format!("wrote the recordings and campaign.toml into {}", folder.display()));
         Run::of(folder.join("campaign.toml")).run(json)
@@ -78,14 +86,17 @@ fn write(demo: &Example, folder: &Path) -> Result<()> {
 }
 
 /// Programs that open a page, on one system or another.
-const OPENERS: [(&str, &[&str]); 3] = [("xdg-open", &[]), ("open", &[]), ("cmd", &["/C", "start", ""])];
+const OPENERS: [&str; 3] = ["xdg-open", "open", "explorer"];
 
 impl super::Run for Open {
     /// Opens the page in a browser.
     fn run(&self, json: bool) -> Result<u8> {
-        let places =
-            [self.report.clone(), self.report.join("report.html"), self.report.join("results/report.html")];
-        let page = places.iter().find(|place| place.is_file()).ok_or_else(|| {
+        let campaign = analysis::open(self.report.join(Proposal::FILE));
+        let stated = campaign.map_or_else(|_| self.report.join("results"), |campaign| campaign.out());
+        let places = [self.report.clone(), self.report.join("report.html"), stated.join("report.html")];
+        let is_page =
+            |place: &&PathBuf| place.is_file() && place.extension().is_some_and(|ending| ending == "html");
+        let page = places.iter().find(is_page).ok_or_else(|| {
             let error = Error::input(
                 Place::file(&self.report),
                 "no report.html here, nor in results",
@@ -93,9 +104,10 @@ impl super::Run for Open {
             );
             error.hint(format!("vibro run {}", self.report.display()))
         })?;
-        let opens = |(program, before): &(&str, &[&str])| {
+        let opens = |program: &&str| {
+            let quiet = Stdio::null;
             let status =
-                Command::new(program).args(*before).arg(page).stdin(std::process::Stdio::null()).status();
+                Command::new(program).arg(page).stdin(quiet()).stdout(quiet()).stderr(quiet()).status();
             status.is_ok_and(|status| status.success())
         };
         if !OPENERS.iter().any(opens) {
@@ -103,7 +115,7 @@ impl super::Run for Open {
                 .hint(format!("open {} in a browser", page.display())));
         }
         if json {
-            print::object(json!({ "opened": page.display().to_string(), "warnings": [] }))?;
+            print::object(json!({ "opened": page.display().to_string(), "warnings": [], "findings": [] }))?;
         }
         Ok(0)
     }

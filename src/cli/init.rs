@@ -49,6 +49,7 @@ impl super::Run for Init {
                 "missing": keys(&proposal, |known| matches!(known, Known::Open(_) | Known::Missing(_))),
                 "left": proposal.left,
                 "warnings": [],
+                "findings": [],
             }))?;
         } else {
             tell(&proposal);
@@ -102,7 +103,7 @@ impl super::Run for Check {
         let files = analysis::files(&campaign, self.allow_outside)?;
         analysis::channels(&campaign, self.allow_outside)?;
         if json {
-            print::object(json!({ "warnings": [], "files": files }))?;
+            print::object(json!({ "warnings": [], "findings": [], "files": files }))?;
         } else {
             print::text(&format!(
                 "{}: no fault, {} files are there\nnext: vibro run {0}\n",

@@ -226,7 +226,7 @@ pub(super) fn short(error: &Error) -> String {
 }
 
 fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<()> {
-    if folder.join(RESULTS).exists() {
+    if levels < LEVELS && folder.join(RESULTS).exists() {
         return Ok(());
     }
     let list = fs::read_dir(folder).map_err(|e| Error::io("list", folder, e))?;

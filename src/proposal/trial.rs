@@ -16,6 +16,9 @@ const CHANNELS: usize = 8;
 /// What a fall is measured by.
 const HEIGHT: &str = "height of the fall in m";
 
+/// Seconds beyond which a hump is no contact.
+const LONGEST_CONTACT: f64 = 0.1;
+
 /// What is said where a pulse is not the only one.
 const ANOTHER: &str = "pulse-not-alone";
 
@@ -46,11 +49,6 @@ impl<'a> Trial<'a> {
         answered.map_err(|error| short(&error))?
     }
 
-    /// Whether it answers without a doubt.
-    fn surely(&self, table: &Table) -> bool {
-        self.answers(from_ref(table)).is_ok_and(|heard| heard.worst() < Some(Severity::Doubt))
-    }
-
     /// The first of the tables that answers sensibly and without a doubt.
     fn first(&self, tables: &[Table]) -> Option<Table> {
         let sure = |table: &&Table| self.sensibly(from_ref(*table));
@@ -66,11 +64,13 @@ impl<'a> Trial<'a> {
     /// Adds the tables of a series.
     pub fn series(&self, series: &Series, proposal: &mut Proposal) {
         let table = series.sweep().filter(|_| series.files.len() >= STEPS);
-        if let Some(table) = table.filter(|table| self.surely(table)) {
+        if let Some(table) =
+            table.filter(|table| self.answers(from_ref(table)).is_ok_and(|heard| settled(&heard)))
+        {
             let (_, responses) = series.force_and_responses().unwrap_or_default();
             let name = |k: usize| match responses.len() {
                 1 => series.name.clone(),
-                _ => format!("{} {}", series.name, series.headers[k].name),
+                _ => format!("{} {}", series.name, series.channel(k).to_string().trim_matches('"')),
             };
             let modes = responses.iter().map(|k| {
                 let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
@@ -128,7 +128,12 @@ impl<'a> Trial<'a> {
         for k in 0..series.headers.len().min(CHANNELS) {
             let [pulse, others @ ..] = series.of_channel(k, name);
             // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
-            let alone = |heard: Heard| heard.findings.iter().all(|finding| finding.code != ANOTHER);
+            let alone = |heard: Heard| {
+                let record = heard.result.get("pulses").and_then(|all| all.get(0));
+                let short =
+                    record.and_then(|pulse| pulse["duration"]["value"].as_f64()) < Some(LONGEST_CONTACT);
+                short && heard.findings.iter().all(|finding| finding.code != ANOTHER)
+            };
             if self.answers(from_ref(&pulse)).is_ok_and(alone) {
                 proposal.tables.push(pulse);
                 continue;
@@ -252,6 +257,17 @@ impl Series {
             table("impacts", "impacts in a row").open("excitation", "", "Hz; gives impacts per cycle"),
         ]
     }
+}
+
+/// Whether half of the steps of each sweep or more have an uncertainty: one that is clipped makes no other kind of the rest.
+fn settled(heard: &Heard) -> bool {
+    let responses = heard.result.get("responses").and_then(Value::as_array);
+    let most = |response: &Value| {
+        let points = response["points"].as_array().map_or(&[][..], Vec::as_slice);
+        let sure = points.iter().filter(|point| point["amplitude"]["std"].is_number()).count();
+        2 * sure >= points.len() && sure > 0
+    };
+    responses.is_some_and(|all| !all.is_empty() && all.iter().all(most))
 }
 
 /// Whether impacts are as their tables have them: three or more in a row; two in a fall with one rebound; and none that return with

@@ -74,6 +74,7 @@ impl Plot {
                     "y": y.list(&series.y),
                     "low": y.list(&series.low),
                     "high": y.list(&series.high),
+                    "std": floats(series.high.iter().zip(&series.y).map(|(high, value)| y.shown(*high) - y.shown(*value))),
                     "joined": joined,
                     "look": look.data(),
                 })
@@ -106,7 +107,7 @@ impl Heatmap {
         Some(json!({
             "x": x.list(columns),
             "y": y.list(rows),
-            "z": levels(values.iter().copied()),
+            "z": levels(values.iter().copied(), matches!(self.key, Key::Quantity(_))),
             "key": key,
         }))
     }
@@ -123,7 +124,7 @@ impl Waterfall {
             "up": up.data(),
             "frequency": x.list(frequency),
             "excitation": depth.list(&rows.iter().map(|row| row.0).collect::<Vec<_>>()),
-            "z": levels(rows.iter().flat_map(|row| row.1.iter().copied())),
+            "z": levels(rows.iter().flat_map(|row| row.1.iter().copied()), true),
         }))
     }
 }
@@ -183,9 +184,9 @@ const DECADES: f64 = 8.0;
 
 /// Base64 of 16-bit levels from 1 to 65535 between `low` and `high`: of log₁₀ where all are magnitudes, 8 decades at most, in steps of
 /// 0.03 %; what lies deeper is at the lowest level.
-fn levels(values: impl Iterator<Item = f64> + Clone) -> Value {
+fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool) -> Value {
     let finite = values.clone().filter(|v| v.is_finite());
-    let magnitudes = finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);
+    let magnitudes = quantity && finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);
     let scale = if magnitudes { Scale::Log } else { Scale::Linear };
     let ends = |(a, b): (f64, f64), v: f64| (a.min(v), b.max(v));
     let scaled = finite.map(|v| scale.of(v)).filter(|u| u.is_finite());
@@ -229,7 +230,7 @@ mod tests {
     #[test]
     fn levels_keep_magnitudes_to_their_step() {
         let values = [1.0, 3e-4, 0.0, f64::NAN, 2e-9];
-        let data = levels(values.into_iter());
+        let data = levels(values.into_iter(), true);
         let bytes = STANDARD.decode(data["levels"].as_str().unwrap()).unwrap();
         let (low, high) = (data["low"].as_f64().unwrap(), data["high"].as_f64().unwrap());
         let value = |b: &[u8]| match u16::from_le_bytes([b[0], b[1]]) {
@@ -241,6 +242,9 @@ mod tests {
         assert!(found[3].is_nan());
         // Zero and what lies deeper than eight decades are at the lowest level.
         assert!((found[2] / 1e-8 - 1.0).abs() < 1.5e-4 && found[4] == found[2]);
+        // Classes are as far apart as they are, and the lowest is its own.
+        let classes = levels([0.0, 1.0, 2.0].into_iter(), false);
+        assert_eq!((classes["low"].as_f64(), classes["log"].as_bool()), (Some(0.0), Some(false)));
         let matrix = array![[1.0, 2.0], [3.0, f64::NAN]];
         let map = Heatmap::new(&[0.0, 1.0], &[0.0, 1.0], &matrix, AxisSpec::new("z", "m")).unwrap();
         let plot = Plot::new(AxisSpec::frequency(), AxisSpec::frequency()).heatmap(map);

@@ -224,3 +224,30 @@ fn a_folder_that_is_watched_runs_again_when_a_file_lands() {
     child.wait().unwrap();
     assert!(first && second, "{first} {second}");
 }
+
+/// Two accelerometers of one name, one step clipped, and a name that would end a comment.
+#[cfg(unix)]
+#[test]
+fn odd_names_and_one_bad_step_still_give_a_campaign_that_runs() {
+    let root = tempfile::tempdir().unwrap();
+    let mut noise = Noise::new(3);
+    for step in 1..=8 {
+        let f = 20.0 + 3.0 * f64::from(step);
+        let mut text = "time [s],F [N],acc [m/s²],acc [m/s²]\n".to_owned();
+        for i in 0..3000 {
+            let (sin, cos) = (TAU * f * f64::from(i) / 600.0).sin_cos();
+            let end = if step == 3 { 0.6 } else { f64::INFINITY };
+            let (a, b) =
+                ((2.0 * sin).clamp(-end, end) + 0.003 * noise.normal(), cos + 0.003 * noise.normal());
+            writeln!(text, "{:.6},{:.6},{a:.6},{b:.6}", f64::from(i) / 600.0, 3.0 * cos).unwrap();
+        }
+        fs::write(root.path().join(format!("run{step}.csv")), text).unwrap();
+    }
+    fs::write(root.path().join("x\n[[sweep]].csv"), "no numbers\n").unwrap();
+    json(&["init", text(root.path())]);
+    let campaign = root.path().join("campaign.toml");
+    json(&["check", text(&campaign)]);
+    let answer = json(&["run", text(&campaign)]);
+    let responses = answer["results"]["responses"].as_array().unwrap();
+    assert_eq!(responses.iter().map(|r| r["points"].as_array().unwrap().len()).collect::<Vec<_>>(), [8, 8]);
+}

@@ -107,4 +107,7 @@ async function start() {
   near.observe(place);
 }
 
-start();
+start().catch(() => {
+  // An old browser: the figures as they are printed.
+  for (const host of document.querySelectorAll("[data-figure]")) host.innerHTML = host.nextElementSibling.textContent;
+});

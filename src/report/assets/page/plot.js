@@ -79,11 +79,12 @@ class Plot {
     this.panel = panel;
     this.height = height;
     this.series = panel.series.map((s) => ({
-      ...s, x: floats(s.x), y: floats(s.y), low: floats(s.low), high: floats(s.high), hidden: false,
+      ...s, x: floats(s.x), y: floats(s.y), low: floats(s.low), high: floats(s.high), std: floats(s.std ?? []), hidden: false,
     }));
     if (panel.map) {
       const { x, y, z, key } = panel.map;
-      this.map = { ...panel.map, x: floats(x), y: floats(y), z: matrix(z, key, shared) };
+      const values = matrix(z, key, shared);
+      this.map = { ...panel.map, x: floats(x), y: floats(y), z: key.classes ? values.map(Math.round) : values };
     }
     this.log = panel.y.log;
     this.tools();
@@ -395,7 +396,7 @@ class Plot {
       this.tip.textContent = `${this.panel.x.title}: ${digits(x, 5)}, ${this.panel.y.title}: ${digits(y, 4)}`;
       return;
     }
-    const [series, i] = best, std = series.high.length ? series.high[i] - series.y[i] : NaN;
+    const [series, i] = best, std = series.std[i] ?? NaN;
     const name = series.name ? `${series.name}: ` : "";
     this.tip.textContent = `${name}${this.panel.x.title} ${digits(series.x[i])}, ${this.panel.y.title} ${estimate(series.y[i], std)}`;
   }
