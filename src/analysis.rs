@@ -44,6 +44,7 @@ pub mod figures {
 
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
+use crate::record::find_channel;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
@@ -194,14 +195,9 @@ fn channels_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<
     for entry in entries::<A>(campaign)? {
         let (Some(file), Some(channel)) = (&entry.file, &entry.channel.channel) else { continue };
         let path = campaign.file(&entry, "file", file, allow_outside)?;
-        let (_, headers, _) = entry.reading.reader()?.survey(path)?;
-        let numbered = channel.parse().is_ok_and(|n: usize| (1..=headers.len()).contains(&n));
-        if !numbered && !headers.iter().any(|h| h.name.eq_ignore_ascii_case(channel)) {
-            let names: Vec<&str> = headers.iter().map(|h| h.name.as_str()).collect();
-            let error =
-                Error::usage(format!("{} has no channel {channel:?}", file.display()), names.join(", "));
-            return Err(campaign.fault(&entry, error.setting("channel")));
-        }
+        let (_, headers, _) = entry.reading.reader()?.survey(&path)?;
+        let names = headers.iter().map(|h| h.name.as_str());
+        find_channel(&path, channel, names).map_err(|e| campaign.fault(&entry, e.setting("channel")))?;
     }
     Ok(())
 }

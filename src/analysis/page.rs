@@ -64,31 +64,22 @@ fn what_if(job: &Job<'_>, results: &Map<String, Value>) -> Option<Value> {
     let force = overlay["levels"][0]["force"].as_f64()?;
     // The sweeps of one level of force.
     let level = overlay["levels"][0]["sweeps"].as_array()?;
-    let pairs = overlay["pairs"].as_array()?.iter().filter(|pair| level.contains(&pair["sweep"]));
-    let mut measured: Vec<Value> = Vec::new();
-    let (mut lowest, mut highest, mut largest) = (f64::INFINITY, 0.0f64, (0.0, 0.0));
-    for pair in pairs {
-        let (Some(x), Some(metres)) = (pair["frequency"].as_f64(), pair["measured"]["value"].as_f64()) else {
-            continue;
-        };
-        let y = 1e3 * metres;
-        (lowest, highest) = (lowest.min(x), highest.max(x));
-        if y > largest.1 {
-            largest = (x, y);
-        }
-        let known = measured.iter().position(|m| m["name"] == pair["sweep"]);
-        let k = known.unwrap_or_else(|| {
-            let down = pair["direction"] == "down";
-            measured
-                .push(json!({"name": pair["sweep"], "mass": pair["mass"], "down": down, "x": [], "y": []}));
-            measured.len() - 1
-        });
-        for (key, value) in [("x", x), ("y", y)] {
-            if let Some(list) = measured[k][key].as_array_mut() {
-                list.push(json!(value));
-            }
-        }
+    let pairs = overlay["pairs"].as_array()?;
+    let point = |pair: &Value| Some((pair["frequency"].as_f64()?, 1e3 * pair["measured"]["value"].as_f64()?));
+    let of = |sweep: &Value| pairs.iter().filter(|pair| pair["sweep"] == *sweep).collect::<Vec<&Value>>();
+    let (mut measured, mut all) = (Vec::new(), Vec::new());
+    for sweep in level {
+        let own = of(sweep);
+        let Some(first) = own.first() else { continue };
+        let points: Vec<(f64, f64)> = own.iter().filter_map(|pair| point(pair)).collect();
+        let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+        let down = first["direction"] == "down";
+        measured.push(json!({"name": sweep, "mass": first["mass"], "down": down, "x": x, "y": y}));
+        all.extend(points);
     }
+    let largest = all.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let lowest = all.iter().map(|point| point.0).fold(f64::INFINITY, f64::min);
+    let highest = all.iter().map(|point| point.0).fold(0.0, f64::max);
     let stiffness = job.campaign.contact.and_then(|contact| contact.stiffness).unwrap_or(0.0);
     (lowest < highest).then(|| {
         json!({

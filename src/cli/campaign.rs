@@ -1,5 +1,6 @@
 //! `vibro run` and `vibro compare`: what a campaign asks for.
 
+use super::convert::folder_of;
 use super::{complain, init, print};
 use crate::analysis::sweep::modelled;
 use crate::analysis::{self, JobOptions};
@@ -71,19 +72,20 @@ impl super::Run for Run {
         if !self.watch {
             return self.once(json);
         }
-        let folder = if self.campaign.is_dir() { self.campaign.clone() } else { folder_of(&self.campaign) };
         if !self.campaign.exists() {
             return self.once(json);
         }
+        let is_folder = self.campaign.is_dir();
+        let folder = if is_folder { self.campaign.as_path() } else { folder_of(&self.campaign)? };
         loop {
             // What changes while it runs is for the next run.
-            let before = stamps(&folder);
+            let before = stamps(folder);
             // A campaign that is being written may have a fault for a moment.
             if let Err(error) = self.once(json) {
                 complain::error(&error, Voice::Campaign, json);
             }
             complain::line(&format!("watching {}; Ctrl+C ends", folder.display()));
-            while stamps(&folder) == before {
+            while stamps(folder) == before {
                 std::thread::sleep(PAUSE);
             }
             // What is still being written lands within another pause.
@@ -94,10 +96,6 @@ impl super::Run for Run {
 
 /// Time between two looks at a folder that is watched.
 const PAUSE: Duration = Duration::from_millis(500);
-
-fn folder_of(campaign: &Path) -> PathBuf {
-    campaign.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
-}
 
 /// Names, sizes and times of the files of a folder and of those in it, but for folders of results.
 fn stamps(folder: &Path) -> Vec<(PathBuf, u64, Option<SystemTime>)> {
@@ -110,7 +108,7 @@ fn stamps(folder: &Path) -> Vec<(PathBuf, u64, Option<SystemTime>)> {
             let Ok(meta) = std::fs::metadata(&path) else { continue };
             if meta.is_file() {
                 found.push((path, meta.len(), meta.modified().ok()));
-            } else if meta.is_dir() && !path.join("results.json").exists() {
+            } else if meta.is_dir() && !path.join(Proposal::RESULTS).exists() {
                 folders.push(path);
             }
         }

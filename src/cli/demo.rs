@@ -63,7 +63,7 @@ impl super::Run for Demo {
             return Ok(0);
         }
         complain::line(&format!("wrote the recordings and campaign.toml into {}", folder.display()));
-        Run::of(folder.join("campaign.toml")).run(json)
+        Run::of(folder.join(Proposal::FILE)).run(json)
     }
 }
 

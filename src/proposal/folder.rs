@@ -1,6 +1,6 @@
 //! The recordings of a folder: lists of sweeps, and files in series.
 
-use super::{Known, Table};
+use super::{Known, Proposal, Table};
 use crate::error::{Error, Result};
 use crate::read::{Header, Reader, SweepList};
 use std::collections::BTreeMap;
@@ -36,9 +36,6 @@ type Member = (PathBuf, Vec<Header>);
 
 /// Levels below a folder that are looked into.
 const LEVELS: usize = 2;
-
-/// The file that marks a folder of results.
-const RESULTS: &str = "results.json";
 
 /// Files that nobody takes for recordings.
 const NO_RECORDINGS: [&str; 20] = [
@@ -226,7 +223,7 @@ pub(super) fn short(error: &Error) -> String {
 }
 
 fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<()> {
-    if levels < LEVELS && folder.join(RESULTS).exists() {
+    if levels < LEVELS && folder.join(Proposal::RESULTS).exists() {
         return Ok(());
     }
     let list = fs::read_dir(folder).map_err(|e| Error::io("list", folder, e))?;

@@ -91,7 +91,7 @@ fn named<'a>(path: &Path, named: &[&str], all: impl Iterator<Item = &'a Meta> + 
     if named.is_empty() {
         return Ok((0..all.count()).collect());
     }
-    named.iter().map(|name| find_channel(path, name, all.clone())).collect()
+    named.iter().map(|name| find_channel(path, name, all.clone().map(|m| m.name.as_str()))).collect()
 }
 
 impl Recording {
@@ -122,7 +122,7 @@ impl Recording {
                 let found = format!("{n} records of kind trace, and none was chosen");
                 Err(Error::input(Place::file(&self.path), found, names.join(", ")))
             }
-            (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| &t.meta)),
+            (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.name.as_str())),
         };
         let hint = "name one, by its name or its number from 1; `vibro info` lists all";
         let mut trace = traces[chosen.map_err(|e| e.hint(hint).setting("channel"))?].clone();

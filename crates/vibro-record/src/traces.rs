@@ -137,7 +137,7 @@ impl Traces {
     /// # Errors
     /// If there is none, or two have this name.
     pub fn channel(&self, channel: &str) -> Result<usize> {
-        find_channel(&self.path, channel, self.channels.iter())
+        find_channel(&self.path, channel, self.channels.iter().map(|m| m.name.as_str()))
     }
 
     /// Sampling rate in Hz.
@@ -228,10 +228,10 @@ impl Traces {
 pub fn find_channel<'a>(
     path: &Path,
     wanted: &str,
-    all: impl Iterator<Item = &'a Meta> + Clone,
+    all: impl Iterator<Item = &'a str> + Clone,
 ) -> Result<usize> {
     let named = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
-        all.clone().enumerate().filter(|(_, m)| is(&m.name)).map(|(i, _)| i).collect()
+        all.clone().enumerate().filter(|(_, name)| is(name)).map(|(i, _)| i).collect()
     };
     let mut same = named(&|name| name == wanted);
     if same.is_empty() {
@@ -240,8 +240,7 @@ pub fn find_channel<'a>(
     }
     let n = all.clone().count();
     let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
-    let list: Vec<String> =
-        all.take(20).enumerate().map(|(i, m)| format!("{} {:?}", i + 1, m.name)).collect();
+    let list: Vec<String> = all.take(20).enumerate().map(|(i, name)| format!("{} {name:?}", i + 1)).collect();
     let (found, expected) = match (same.as_slice(), number) {
         ([one], _) => return Ok(*one),
         ([], Some(number)) => return Ok(number - 1),
