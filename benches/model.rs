@@ -1,4 +1,4 @@
-//! Speed of the models: `cargo bench --bench model`.
+//! Speed of the models: `cargo bench -p vibro-bench --bench model`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

@@ -1,6 +1,6 @@
 //! Averaged spectra: the whole of it against its bare transforms.
 //!
-//! `cargo bench --bench welch`
+//! `cargo bench -p vibro-bench --bench welch`
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rayon::prelude::*;

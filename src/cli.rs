@@ -10,6 +10,7 @@ mod model;
 mod precision;
 mod print;
 mod record;
+mod respelt;
 mod shell;
 mod sweep;
 
@@ -96,8 +97,9 @@ const GROUPS: &[(&str, &[Row])] = &[
                 "Damping ratio, frequency and restitution of a contact from its pulse",
             )
             .example("pulse contact.csv --low-pass none"),
-            Row::of::<record::Drill>("drill", "Speed, impacts and average turn of a hammer drill")
-                .example("drill drill.wav --velocity striker --beam-angle 0 --from axis --sensitivity 2"),
+            Row::of::<record::Drill>("drill", "Speed, impacts and average turn of a hammer drill").example(
+                "drill drill.wav --velocity striker --beam-angle 0 --beam-from axis --sensitivity 2",
+            ),
         ],
     ),
     (
@@ -220,7 +222,7 @@ fn command() -> Typed {
 /// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
 /// unreadable input.
 pub fn main() -> u8 {
-    let typed = match command().try_get_matches() {
+    let typed = match command().try_get_matches_from(respelt::args()) {
         Ok(typed) => typed,
         // What could not be parsed may have asked for JSON all the same.
         Err(error) => {

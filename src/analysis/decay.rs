@@ -7,6 +7,7 @@ use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::Entry;
 use crate::error::Result;
 use crate::measure::decay::{DecayOptions, DecayResult, decay};
+use crate::record::units::notation;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
 use serde::Deserialize;
@@ -54,10 +55,10 @@ fn modes(name: &str, found: &DecayResult) -> Table {
         ],
     );
     let (start, end) = (found.start, found.end);
-    let note = format!("Amplitude and phase at {start:.6} s; used up to {end:.6} s.");
+    let note = format!("Amplitude and phase at {start:.3} s; used up to {end:.3} s.");
     let decrement = found.decrement.as_ref().map(|ratio| {
-        let std = ratio.std.map_or_else(String::new, |std| format!(" ± {std:.2e}"));
-        format!(" Logarithmic decrement of the strongest: damping ratio {:.6}{std}.", ratio.value)
+        let ratio = notation::estimate(ratio.value, ratio.std);
+        format!(" Logarithmic decrement of the strongest: damping ratio {ratio}.")
     });
     table.note(note + &decrement.unwrap_or_default())
 }

@@ -33,7 +33,8 @@ pub struct Keys {
     pub beam_angle: Option<f64>,
     /// What the beam angle is counted from: normal (to the motion) or axis (of the motion)
     #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<From>))]
-    pub from: Option<From>,
+    #[serde(alias = "from")]
+    pub beam_from: Option<From>,
     /// Pulses of the reference in a turn
     pub pulses_per_turn: Option<usize>,
     /// Edge of the pulse that counts: rising or falling
@@ -48,7 +49,8 @@ pub struct Keys {
     /// Longest contact in s [default: 0.0002]
     pub contact: Option<f64>,
     /// Duration in s of the fits before and after a contact [default: 0.0005]
-    pub fit: Option<f64>,
+    #[serde(alias = "fit")]
+    pub fit_duration: Option<f64>,
     /// Longest drop-out in s that is bridged [default: 0.002]
     pub longest_dropout: Option<f64>,
     /// Channel delay to remove, in s: the velocity was recorded later than the reference [default: 0]
@@ -64,7 +66,8 @@ pub struct Keys {
     /// Bandwidth of the instrument in Hz
     pub instrument: Option<f64>,
     /// Record of the velocity channel without motion: the noise floor
-    pub noise: Option<PathBuf>,
+    #[serde(alias = "noise")]
+    pub noise_record: Option<PathBuf>,
     /// Margin in dB of the motion above the noise [default: 10]
     pub margin: Option<f64>,
     /// Acceleration channel of a handle, up to three times: hand-arm exposure
@@ -82,7 +85,7 @@ fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     let expected = match key {
         "velocity" => "the channel of the velocity, by name or number",
         "beam_angle" => "the angle of the laser beam in degrees",
-        "from" => "normal or axis: what the beam angle is counted from",
+        "beam_from" => "normal or axis: what the beam angle is counted from",
         "pulses_per_turn" => "the number of reference pulses in a turn of the crank",
         "edge" => "rising or falling: the pulse edge that counts",
         "sensitivity" => {
@@ -115,7 +118,7 @@ impl Keys {
     pub fn usable(&self) -> Result<()> {
         needed("velocity", self.velocity.as_ref())?;
         needed("beam_angle", self.beam_angle)?;
-        needed("from", self.from)?;
+        needed("beam_from", self.beam_from)?;
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {
@@ -148,7 +151,7 @@ impl Keys {
             mass: self.mass,
             struck_mass: self.struck_mass,
             contact: self.contact.unwrap_or(plain.contact),
-            fit: self.fit.unwrap_or(plain.fit),
+            fit: self.fit_duration.unwrap_or(plain.fit),
             longest_dropout: self.longest_dropout.unwrap_or(plain.longest_dropout),
             delay: self.delay.unwrap_or(plain.delay),
             points: self.points.unwrap_or(plain.points),
@@ -176,8 +179,10 @@ impl Keys {
     ) -> Result<Answer> {
         self.usable()?;
         own_channels(source.channel)?;
-        let options =
-            self.options(Beam::new(needed("beam_angle", self.beam_angle)?, needed("from", self.from)?)?)?;
+        let options = self.options(Beam::new(
+            needed("beam_angle", self.beam_angle)?,
+            needed("beam_from", self.beam_from)?,
+        )?)?;
         let velocity = needed("velocity", self.velocity.as_deref())?;
         let mut names = vec![velocity];
         names.extend(self.reference.as_deref());
@@ -194,13 +199,13 @@ impl Keys {
             needed("handle_sensitivity", self.handle_sensitivity)?;
         }
         channels.scale(own, self.handle_sensitivity.unwrap_or(1.0));
-        let still = source.further("noise", self.noise.as_ref())?;
+        let still = source.further("noise_record", self.noise_record.as_ref())?;
         let still =
             still.map(|path| Channels::read(source.reader()?, &path, &[velocity], &())).transpose()?;
         if let Some(rate) = still.as_ref().map(|s| s.rate).filter(|r| (r / channels.rate - 1.0).abs() > 1e-9)
         {
             let why = format!("the noise was sampled at {rate} Hz, the motion at {} Hz", channels.rate);
-            return Err(Error::refused(why).setting("noise"));
+            return Err(Error::refused(why).setting("noise_record"));
         }
         let still = still.and_then(|s| s.values.into_iter().next());
         let record =

@@ -214,12 +214,13 @@ impl Series {
         answer.findings = self.answer.findings;
         answer.add("", &found.findings);
         answer.table("restitution", by_method(name, &found));
-        let columns: [Shown<Restitution>; 2] = [
+        let columns: [Shown<Restitution>; 3] = [
+            ("series", "", &|_| name.into()),
             ("methods", "", &|r| together(r).into()),
             ("standard uncertainty by bootstrap", "1", &|r| r.bootstrap_std.into()),
         ];
         if found.by.len() > 1 || found.bootstrap_std.is_some() {
-            answer.tables.push(table("Methods together", [found], &columns));
+            answer.tables.push(table("Methods compared", [found], &columns));
         }
         Ok(answer)
     }
@@ -231,7 +232,7 @@ fn together(found: &Restitution) -> &'static str {
         _ if found.by.len() < 2 => "one method",
         Some(true) => "agree",
         Some(false) => "disagree",
-        None => "cannot be compared: one has no uncertainty",
+        None => "not compared: one has no uncertainty",
     }
 }
 

@@ -238,7 +238,7 @@ fn taken(
         .map(|entry| {
             let listed = Listed::of(campaign, entry, options.allow_outside)?;
             let compute = &campaign.compute;
-            let options = ResponseOptions { band: compute.band, integrate: None, fmin: compute.fmin };
+            let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
             let (sweep, response) = listed.taken(&options)?;
             progress.step();
             Ok((sweep, response, options))

@@ -44,7 +44,8 @@ pub struct Compute {
     /// Draw waterfalls. Default true.
     pub waterfall: bool,
     /// Lines on both sides of the excitation in which a peak is looked for. Default 3.
-    pub band: usize,
+    #[serde(alias = "band")]
+    pub peak_lines: usize,
     /// Cut-off in Hz. Default: two lines or a quarter of the lowest excitation.
     pub fmin: Option<f64>,
     /// Highest frequency in waterfalls, in Hz. Default: the base band.
@@ -58,14 +59,18 @@ impl Compute {
             let v = value.unwrap_or(1.0);
             (key, v.is_finite() && v > 0.0, format!("{key} = {v} is not a finite number above 0"))
         });
-        let band = format!("band = {} is not between 1 and 1000 lines", self.band);
-        first_fault(above_zero.into_iter().chain([("band", (1..=1000).contains(&self.band), band)]))
+        let band = format!("peak_lines = {} is not between 1 and 1000 lines", self.peak_lines);
+        first_fault(above_zero.into_iter().chain([(
+            "peak_lines",
+            (1..=1000).contains(&self.peak_lines),
+            band,
+        )]))
     }
 }
 
 impl Default for Compute {
     fn default() -> Compute {
-        Compute { overlay: true, waterfall: true, band: 3, fmin: None, fmax: None }
+        Compute { overlay: true, waterfall: true, peak_lines: 3, fmin: None, fmax: None }
     }
 }
 

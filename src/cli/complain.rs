@@ -3,9 +3,10 @@
 use crate::error::Error;
 use crate::record::Severity;
 use crate::report::words::Voice;
-use clap::error::ContextKind;
+use clap::error::{ContextKind, ErrorKind};
 use serde_json::json;
 use std::io::Write;
+use std::path::Path;
 
 /// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
 pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
@@ -57,6 +58,12 @@ const NUMBERS: [(&str, &str); 4] = [
 
 /// What to type: a number with a decimal comma with a point, in place of an unknown word the first that is known.
 fn advice(error: &clap::Error) -> Option<String> {
+    let argument = |kind| error.get(kind).map(ToString::to_string);
+    if error.kind() == ErrorKind::UnknownArgument
+        && argument(ContextKind::InvalidArg).is_some_and(|word| Path::new(&word).exists())
+    {
+        return Some("one file at a time; for all of a folder: vibro run FOLDER".to_owned());
+    }
     let value = error.get(ContextKind::InvalidValue)?.to_string();
     let point = value.replacen(',', ".", 1);
     if value != point && point.parse::<f64>().is_ok() {

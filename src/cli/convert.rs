@@ -1,12 +1,13 @@
 //! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY, on the way filtered and integrated.
 
-use super::{Run, print};
+use super::{Run, complain, print};
 use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading, above_zero};
 use crate::error::{Error, Result};
 use crate::record::{Finding, Record, Trace};
 use crate::report::Output;
 use crate::report::layout::headed;
+use crate::report::words::{Voice, graded};
 use crate::signal::filter::Filter;
 use crate::signal::{differentiate, integrate};
 use crate::units::Quantity;
@@ -19,7 +20,7 @@ pub struct Convert {
     /// File to read
     #[arg(index = 1)]
     input: PathBuf,
-    /// File to write: .uff .unv (UFF-58), .csv .tsv, .wav, .npy
+    /// File to write: .uff .unv (UFF-58), .csv .tsv, .wav, .npy; or - for CSV on standard output
     #[arg(index = 2)]
     output: PathBuf,
     /// Write UFF-58 as binary (58b)
@@ -37,8 +38,17 @@ pub struct Convert {
 impl Run for Convert {
     /// Writes the file and prints what is in it.
     fn run(&self, json: bool) -> Result<u8> {
-        let target = Target::of(&self.output)?;
-        apart(&self.input, &self.output)?;
+        let piped = self.output == Path::new("-");
+        let target = if piped { Target::Csv } else { Target::of(&self.output)? };
+        if piped && json {
+            return Err(Error::usage(
+                "the CSV and the JSON object would both go to standard output",
+                "a file to write",
+            ));
+        }
+        if !piped {
+            apart(&self.input, &self.output)?;
+        }
         let one = self.channel.channel.is_some() || self.channel.calibration.is_some();
         let reader = self.reading.reader()?;
         let reader = if one || self.change.wanted() { reader.rate_of_base_band() } else { reader };
@@ -51,6 +61,12 @@ impl Run for Convert {
         let mut bytes = Vec::new();
         let precision = if self.single { Precision::Single } else { Precision::Double };
         target.write(&recording.records, Storage { binary: self.binary, precision }, &mut bytes)?;
+        if piped {
+            let about = recording.all_findings().into_iter().chain(changes).map(|f| (String::new(), f));
+            complain::warn(&graded(&about.collect::<Vec<_>>(), Voice::Command));
+            print::text(&String::from_utf8_lossy(&bytes))?;
+            return Ok(0);
+        }
         let existed = self.output.exists();
         write_beside(&self.output, &bytes)?;
         let written = self.output.display().to_string();

@@ -20,7 +20,7 @@ pub struct Precision {
     failures: bool,
     /// Use the results that `vibro precision --json` wrote to this file
     #[arg(conflicts_with = "quick")]
-    from: Option<PathBuf>,
+    results: Option<PathBuf>,
     /// Add results of another program from this file
     ///
     /// The file is a JSON list with an object for each method and setting: scene (its name as printed here), method
@@ -42,7 +42,7 @@ const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 impl Run for Precision {
     /// Measures, or takes up what was measured, and prints it.
     fn run(&self, json: bool) -> Result<u8> {
-        let mut results = match &self.from {
+        let mut results = match &self.results {
             Some(path) => Results::from_path(path)?,
             None => self.measured(json)?,
         };
@@ -62,7 +62,7 @@ impl Run for Precision {
                 left.name("scene", l[0].as_str()).about(path.display().to_string())
             }));
         }
-        if self.from.is_none() && cfg!(debug_assertions) {
+        if self.results.is_none() && cfg!(debug_assertions) {
             findings.push(Finding::caution("development-build"));
         }
         let mut answer = Answer::of(&results)?;

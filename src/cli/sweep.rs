@@ -44,7 +44,7 @@ pub struct Taken {
     integrate: Option<i8>,
     /// Lines on both sides of the excitation that are searched for the peak
     #[arg(default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    band: u16,
+    peak_lines: u16,
     /// Folder for figures as SVG and PNG, and tables as CSV
     #[arg(value_name = "DIR")]
     out: Option<PathBuf>,
@@ -158,7 +158,11 @@ impl Run for Taken {
 
 impl Taken {
     fn options(&self) -> ResponseOptions {
-        ResponseOptions { band: usize::from(self.band), integrate: self.integrate, fmin: self.sweep.fmin }
+        ResponseOptions {
+            band: usize::from(self.peak_lines),
+            integrate: self.integrate,
+            fmin: self.sweep.fmin,
+        }
     }
 }
 

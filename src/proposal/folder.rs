@@ -49,8 +49,8 @@ impl Folder {
     /// # Errors
     /// If a folder cannot be listed.
     pub fn of(root: &Path, reader: &Reader) -> Result<Folder> {
-        let mut paths = Vec::new();
-        files(root, LEVELS, &mut paths)?;
+        let (mut paths, mut others) = (Vec::new(), Vec::new());
+        files(root, LEVELS, &mut paths, &mut others)?;
         paths.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
         let within = |path: &Path| {
             let inside = path.strip_prefix(root).unwrap_or(path);
@@ -76,7 +76,7 @@ impl Folder {
                     found.left.push((within(path), "no records".to_owned()));
                 }
                 Ok((_, headers, _)) if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none()) => {
-                    let why = "no sampling rate in it; vibro init FOLDER --rate HZ states it for all files of the folder";
+                    let why = "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder";
                     found.left.push((within(path), why.to_owned()));
                 }
                 Ok((_, headers, _)) => {
@@ -108,6 +108,13 @@ impl Folder {
                 }
             }
             found.series.push(Series { name, files, headers, pattern });
+        }
+        if let [first, more @ ..] = others.as_slice() {
+            let names = match more.len() {
+                0 => within(first),
+                n => format!("{} and {n} more", within(first)),
+            };
+            found.left.push((names, "no recording by its ending".to_owned()));
         }
         Ok(found)
     }
@@ -222,7 +229,7 @@ pub(super) fn short(error: &Error) -> String {
     line.split_once(": ").map_or(line, |(_, rest)| rest).to_owned()
 }
 
-fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<()> {
+fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {
     if levels < LEVELS && folder.join(Proposal::RESULTS).exists() {
         return Ok(());
     }
@@ -238,13 +245,12 @@ fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<()> {
             below.push(path);
         } else if path.is_file() {
             let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
-            if !NO_RECORDINGS.contains(&ending.as_str()) {
-                found.push(path);
-            }
+            let list = if NO_RECORDINGS.contains(&ending.as_str()) { &mut *others } else { &mut *found };
+            list.push(path);
         }
     }
     for folder in below.iter().filter(|_| levels > 0) {
-        files(folder, levels - 1, found)?;
+        files(folder, levels - 1, found, others)?;
     }
     Ok(())
 }

@@ -2,7 +2,9 @@
 
 use crate::error::{Error, Place, Result};
 use std::fs;
+use std::io::Write;
 use std::path::{Component, Path, PathBuf};
+use tempfile::{NamedTempFile, TempPath};
 
 /// Folder into which results are written.
 ///
@@ -13,6 +15,8 @@ use std::path::{Component, Path, PathBuf};
 pub struct Output {
     folder: PathBuf,
     written: Vec<String>,
+    /// The file of each name, closed, and removed unless it gets its name.
+    files: Vec<TempPath>,
 }
 
 impl Output {
@@ -29,7 +33,7 @@ impl Output {
             return Err(Error::input(Place::file(&folder), "this is a file", "a folder for results")
                 .hint("name another folder"));
         }
-        Ok(Output { folder, written: Vec::new() })
+        Ok(Output { folder, written: Vec::new(), files: Vec::new() })
     }
 
     /// The folder.
@@ -52,53 +56,54 @@ impl Output {
         if path.is_dir() {
             return Err(unusable(name, "names a folder").hint("remove that folder or choose another name"));
         }
-        let i = self.written.iter().position(|w| w == name).unwrap_or_else(|| {
-            if self.written.is_empty() {
-                remove_leftovers(&self.folder);
+        if self.written.is_empty() {
+            remove_leftovers(&self.folder);
+        }
+        let refused = |e| Error::io("write", &path, e);
+        let mut file = temporary(&self.folder).map_err(refused)?;
+        file.write_all(bytes.as_ref()).map_err(refused)?;
+        match self.written.iter().position(|w| w == name) {
+            Some(i) => self.files[i] = file.into_temp_path(),
+            None => {
+                self.written.push(name.to_owned());
+                self.files.push(file.into_temp_path());
             }
-            self.written.push(name.to_owned());
-            self.written.len() - 1
-        });
-        fs::write(self.temporary(i), bytes).map_err(|e| Error::io("write", &path, e))
+        }
+        Ok(())
     }
 
     /// Gives the files their names, which it returns in the order in which they were written.
     ///
     /// # Errors
     /// If the system refuses; the folder is then marked as incomplete.
-    pub fn commit(mut self) -> Result<Vec<String>> {
+    pub fn commit(self) -> Result<Vec<String>> {
         let mark = self.folder.join(Self::INCOMPLETE);
         if self.written.len() > 1 {
             let text = "Old and new results stand side by side here: run the same command again.\n";
             fs::write(&mark, text).map_err(|e| Error::io("write", &mark, e))?;
         }
-        for (i, name) in self.written.iter().enumerate() {
+        for (name, file) in self.written.iter().zip(self.files) {
             let path = self.folder.join(name);
-            fs::rename(self.temporary(i), &path).map_err(|e| Error::io("write", &path, e))?;
+            file.persist(&path).map_err(|e| Error::io("write", &path, e.error))?;
         }
         if self.written.len() > 1 {
             fs::remove_file(&mark).map_err(|e| Error::io("remove", &mark, e))?;
         }
-        Ok(std::mem::take(&mut self.written))
+        Ok(self.written)
     }
+}
 
-    /// A hidden name in the same folder, hence on the same file system; the process number keeps two programs apart.
-    fn temporary(&self, i: usize) -> PathBuf {
-        self.folder.join(format!(".{}.{i}{PART}", std::process::id()))
-    }
+/// A file of a hidden name in the same folder, hence on the same file system, which everybody may read who may read a new file there.
+fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
+    let mut named = tempfile::Builder::new();
+    named.prefix(".").suffix(PART);
+    #[cfg(unix)]
+    named.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    named.tempfile_in(folder)
 }
 
 /// End of the names of temporary files.
 const PART: &str = ".vibro.part";
-
-impl Drop for Output {
-    /// Results that were given up leave nothing.
-    fn drop(&mut self) {
-        for i in 0..self.written.len() {
-            let _ = fs::remove_file(self.temporary(i));
-        }
-    }
-}
 
 /// Removes temporary files of killed programs: those that nobody has written to for an hour.
 fn remove_leftovers(folder: &Path) {

@@ -77,12 +77,51 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     }
     let mut all = Vec::new();
     for severity in [Severity::Doubt, Severity::Caution, Severity::Note] {
+        let mut said: Vec<Said<'_>> = Vec::new();
         for (finding, records) in groups.iter().filter(|g| g.0.severity == severity) {
-            let (text, whole) = (sentence(finding, voice), records.contains(&""));
-            all.push((severity, if whole { text } else { format!("{}: {text}", records.join("; ")) }));
+            let new = Said { finding, text: sentence(finding, voice), of: records.clone(), like: Vec::new() };
+            match said.iter_mut().find(|known| known.takes(&new)) {
+                Some(known) if known.text == new.text => known.of.extend(new.of),
+                Some(known) => known.like.extend(new.of),
+                None => said.push(new),
+            }
         }
+        all.extend(said.iter().map(|said| (severity, said.whole())));
     }
     all
+}
+
+/// A sentence with the records that it is about, and those of which it holds with other numbers.
+struct Said<'a> {
+    finding: &'a Finding,
+    text: String,
+    of: Vec<&'a str>,
+    like: Vec<&'a str>,
+}
+
+impl Said<'_> {
+    /// Whether another sentence of the same code can stand with this one: it is the same, or differs in numbers and is about other records.
+    fn takes(&self, other: &Said<'_>) -> bool {
+        let (a, b) = (self.finding, other.finding);
+        let about =
+            |record: &&str| record.is_empty() || self.of.contains(record) || self.like.contains(record);
+        let name = |(_, fact): &&(&str, Fact)| matches!(fact, Fact::Name(_));
+        let alike = a.subject == b.subject && a.facts.iter().filter(name).eq(b.facts.iter().filter(name));
+        a.code == b.code
+            && (self.text == other.text || alike && !self.of.contains(&"") && !other.of.iter().any(about))
+    }
+
+    fn whole(&self) -> String {
+        let like = match self.like.as_slice() {
+            [] => String::new(),
+            like => format!(" The same, with numbers of its own: {}.", like.join("; ")),
+        };
+        if self.of.contains(&"") {
+            self.text.clone()
+        } else {
+            format!("{}: {}{like}", self.of.join("; "), self.text)
+        }
+    }
 }
 
 /// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none itself, and the sentences
@@ -158,12 +197,20 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
         None => how,
     };
     let show = |v: &f64| match unit {
-        "%" => format!("{} %", significant(100.0 * v, digits)),
+        "%" => format!("{} %", trimmed(&significant(100.0 * v, digits))),
         "" if v.fract() == 0.0 && v.abs() < 1e15 => v.to_string(),
-        "" => significant(*v, digits),
-        unit => quantity(*v, unit, digits),
+        "" => trimmed(&significant(*v, digits)),
+        unit => trimmed(&quantity(*v, unit, digits)),
     };
     Some(all.iter().map(show).collect::<Vec<String>>().join(", "))
+}
+
+/// A number without the noughts that end its decimals: how well it is known stands elsewhere.
+fn trimmed(number: &str) -> String {
+    let end = number.find([' ', '×']).unwrap_or(number.len());
+    let (value, rest) = number.split_at(end);
+    let short = if value.contains('.') { value.trim_end_matches('0').trim_end_matches('.') } else { value };
+    format!("{short}{rest}")
 }
 
 #[cfg(test)]
@@ -192,7 +239,7 @@ mod tests {
         let found = Finding::doubt("x").number("part", 0.0312).numbers("lines", [5.0, 10.5]).count("n", 3);
         assert_eq!(
             said("{part %} on {lines Hz}: {n:entry/entries}", &found),
-            "3.12 % on 5.00 Hz, 10.5 Hz: 3 entries"
+            "3.12 % on 5 Hz, 10.5 Hz: 3 entries"
         );
     }
 
@@ -214,6 +261,20 @@ mod tests {
         put(&mut answer, &all[..1], Voice::Campaign);
         assert_eq!(answer["findings"][0]["subject"], "a");
         assert_eq!(answer["warnings"], serde_json::json!(["a: x-code"]));
+    }
+
+    #[test]
+    fn sentences_that_differ_in_numbers_stand_together() {
+        let of = |record: &str, code, n| (record.to_owned(), Finding::caution(code).count("n", n));
+        let said = |all: &[About]| sentences(all, Voice::Campaign, true);
+        let all = ["a", "b", "c"].map(|name| of(name, "frf-one-blow", name.len()));
+        assert_eq!(said(&all).len(), 1);
+        let all =
+            [of("a", "impacts-doubled", 1), of("b", "impacts-doubled", 2), of("c", "impacts-doubled", 1)];
+        let first = "a; c: 1 impact follows another too soon: left out of the mean interval.";
+        assert_eq!(said(&all), [format!("{first} The same, with numbers of its own: b.")]);
+        // Two of one record are two facts.
+        assert_eq!(said(&[of("a", "impacts-doubled", 1), of("a", "impacts-doubled", 2)]).len(), 2);
     }
 
     #[test]

@@ -4,10 +4,17 @@ use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use vibro_record::{Error, Place, Result};
 
 /// How many bytes [`Source::head`] gives at most: enough to tell every format apart.
 const HEAD: usize = 64 * 1024;
+
+/// The name of standard input.
+const PIPE: &str = "-";
+
+/// What has come from it: a second look finds the same bytes.
+static STDIN: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
 /// Bytes that can be opened several times, by several threads.
 #[derive(Debug)]
@@ -23,12 +30,20 @@ pub(crate) trait ReadSeek: Read + Seek + Send {}
 impl<T: Read + Seek + Send> ReadSeek for T {}
 
 impl Source {
-    /// A file on disk.
+    /// A file on disk; `-` is standard input, kept in memory.
     ///
     /// # Errors
     /// If it cannot be opened, is a folder, a pipe or a device, or is empty.
     pub fn file(path: impl AsRef<Path>) -> Result<Source> {
         let path = path.as_ref();
+        if path == Path::new(PIPE) {
+            let mut held = STDIN.lock().unwrap_or_else(PoisonError::into_inner);
+            std::io::stdin()
+                .lock()
+                .read_to_end(&mut held)
+                .map_err(|e| Error::io("read", "standard input", e))?;
+            return Source::memory(PIPE, held.clone());
+        }
         let info = std::fs::metadata(path).map_err(|e| Error::io("open", path, e))?;
         if info.is_dir() {
             return Err(Error::input(Place::file(path), "this is a folder", "a measurement file")
@@ -36,7 +51,7 @@ impl Source {
         }
         if !info.is_file() {
             return Err(Error::input(Place::file(path), "not a regular file", "a measurement file")
-                .hint("write what comes from a pipe or a device to a file first"));
+                .hint("a pipe is read as -"));
         }
         let mut bytes = Vec::with_capacity(HEAD.min(info.len() as usize + 1));
         File::open(path)

@@ -44,7 +44,7 @@ pub struct Keys {
     pub tolerance: f64,
     /// Noise floor of the measurement, in the unit of the observable: smaller changes do not matter
     #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
-    pub noise: f64,
+    pub noise_floor: f64,
     /// Standard uncertainty of the gap in m: a closed form nearer to grazing is not valid
     #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub gap_std: f64,
@@ -62,7 +62,7 @@ impl Keys {
         let question = Question {
             observable: self.observable,
             tolerance: self.tolerance,
-            noise: self.noise,
+            noise: self.noise_floor,
             gap_std: self.gap_std,
             history: self.history,
         };

@@ -40,7 +40,7 @@ pub struct Keys {
     pub direction: Way,
     /// Change the frequency continuously by this many Hz/s, instead of in steps
     #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["settle", "measure"]))]
-    pub rate: Option<f64>,
+    pub sweep_rate: Option<f64>,
     /// Points: steps of a stepped sweep, readings of a continuous one
     #[cfg_attr(feature = "cli", arg(default_value_t = 221))]
     pub steps: usize,
@@ -88,7 +88,7 @@ impl Keys {
         // A frequency for the scene where it is swept: any within.
         let frequency = if over_force { self.frequency } else { Some(self.from) };
         let Driven { scene, excitation, finding } = self.scene.driven(frequency)?;
-        let pace = match self.rate {
+        let pace = match self.sweep_rate {
             Some(rate) => Pace::Rate { rate, points: self.steps },
             None => Pace::Steps { points: self.steps, settle: self.settle, measure: self.measure },
         };

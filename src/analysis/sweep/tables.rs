@@ -26,7 +26,7 @@ const PHASE: usize = 4;
 const LIMIT: usize = 6;
 
 fn points(response: &Response) -> Table {
-    table(
+    let shown = table(
         format!("Response, {}", response.name),
         &response.points,
         &[
@@ -37,11 +37,15 @@ fn points(response: &Response) -> Table {
             ("phase", "°", &|p| {
                 p.phase.as_ref().map(|p| pair(p.value.to_degrees(), p.std.map(f64::to_degrees))).into()
             }),
-            ("larger line at", "Hz", &|p| p.largest_elsewhere.then_some(p.largest_at).into()),
+            ("strongest line at", "Hz", &|p| p.largest_elsewhere.then_some(p.largest_at).into()),
             ("upper limit", response.unit, &|p| p.upper_limit.into()),
         ],
-    )
+    );
+    if response.points.iter().any(|p| p.largest_elsewhere) { shown.note(STRONGEST) } else { shown }
 }
+
+/// What the column of that name means.
+const STRONGEST: &str = "Strongest line at: this line of the spectrum is stronger than that of the excitation, as of a resonance, a harmonic or hum.";
 
 /// Point by point with receptance, harmonics and sub-harmonics, for files.
 pub fn response(response: &Response) -> Table {
@@ -79,7 +83,7 @@ fn imaginary(receptance: Receptance) -> f64 {
 }
 
 /// What the kinds of resonances mean, a line each.
-const KINDS: &str = "Grazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: a shallow one of mass 2, or of a point whose mass is not stated. A phase that rises there by 180° means an antiresonance.";
+const KINDS: &str = "Grazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: an antiresonance if the phase rises there by 180°; the amplitude alone does not show it.";
 
 /// Resonances and antiresonances.
 pub fn resonances(responses: &[Response]) -> Table {

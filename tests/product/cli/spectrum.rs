@@ -324,7 +324,7 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
     let said = found["warnings"].to_string();
     assert!(said.contains("Of 3 blows some are left out, 1 double hit"), "{said}");
     // e^(−0.003·784) = 9.5 % are left.
-    assert!(said.contains("are left when the record of a blow ends"), "{said}");
+    assert!(said.contains("remains when the record of a blow ends"), "{said}");
     for name in ["frf.csv", "frf.uff"] {
         let file = out.join(name);
         let value = json(&["modal", text(&file), "--band", "40:58", "--channel", "1"]);
