@@ -68,6 +68,9 @@ const HEADLINES: &[Headline] = &[
     },
 ];
 
+/// Why the modes of a sweep differ from its resonances.
+const OF_SWEEP: &str = "Modes of a sweep use all its points and their phase; its resonances above are by the points around each peak.";
+
 /// Rows of a headline, at most.
 const ROWS: usize = 10;
 
@@ -84,7 +87,12 @@ pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
         let rows: Vec<Vec<Cell>> = records.iter().flat_map(|record| rows(headline, record)).collect();
         let more = rows.len().saturating_sub(ROWS);
         let table = rows.into_iter().take(ROWS).fold(empty, Table::row);
-        Some(if more > 0 { table.note(format!("{more} more below.")) } else { table })
+        let of_sweep = records.iter().any(|record| record["file"] == "");
+        Some(match more {
+            0 if headline.records == "frf" && of_sweep => table.note(OF_SWEEP),
+            0 => table,
+            _ => table.note(format!("{more} more below.")),
+        })
     });
     let scores = agreement(results);
     tables.chain(scores).filter(|table| !table.rows.is_empty()).collect()

@@ -59,7 +59,7 @@ impl Page {
             let said = all.iter().filter(|(severity, _)| of(*severity));
             said.fold(String::new(), |mut out, (severity, sentence)| {
                 let name = severity.name();
-                let _ = writeln!(out, "<li class=\"{name}\"><b>{name}</b> {}</li>", escaped(sentence));
+                let _ = writeln!(out, "<li class=\"{name}\"><b>{name}</b> {}</li>", code(&escaped(sentence)));
                 out
             })
         };
@@ -225,6 +225,12 @@ const SCRIPTS: [&str; 6] = [
     include_str!("assets/page/whatif.js"),
     include_str!("assets/page/page.js"),
 ];
+
+/// Text with what stands between backticks as code.
+fn code(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    parts.map(|(i, part)| if i % 2 == 1 { format!("<code>{part}</code>") } else { part.to_owned() }).collect()
+}
 
 #[cfg(test)]
 mod tests {

@@ -57,6 +57,24 @@ test("the page is small and shows its first view in 0.3 s", async (t) => {
   assert.ok(median < 300, String(times));
 });
 
+test("a click on a point of a sweep shows its spectrum below", () => open(report, {}, async (page) => {
+  const figure = await show(page, "[data-figure]");
+  const over = figure.locator(".u-over").first(), box = await over.boundingBox();
+  const said = () => figure.locator(".tip").first().textContent();
+  let found = false;
+  for (let x = 20; x < box.width && !found; x += 4) {
+    for (let y = 10; y < box.height && !found; y += 30) {
+      await page.mouse.move(box.x + x, box.y + y);
+      found = (await said()).includes("click: its spectrum");
+    }
+  }
+  const frequency = (await said()).match(/Hz\) ([\d.]+)/)[1], plots = figure.locator(".uplot"), before = await plots.count();
+  await page.mouse.down();
+  await page.mouse.up();
+  assert.equal(await plots.count(), before + 1);
+  assert.ok(Math.abs((await said()).match(/spectrum at ([\d.]+) Hz/)[1] - frequency) < 0.01, await said());
+}));
+
 test("a value under the pointer is named with its uncertainty, and names switch their series", () => open(report, {}, async (page) => {
   const figure = await show(page, "[data-figure]");
   const over = figure.locator(".u-over").first(), canvas = figure.locator(".uplot canvas").first();

@@ -165,7 +165,7 @@ fn a_campaign_measures_both_channels() {
     );
     assert!(folder.path().join("results/drill_average_striker.svg").exists());
     // A key without a default that is left out is named.
-    std::fs::write(&campaign, text.replace("from = \"normal\"", "")).unwrap();
+    std::fs::write(&campaign, text.replace("beam_from = \"normal\"", "")).unwrap();
     let without = run(&campaign);
     assert_eq!(without.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&without.stderr).contains("beam from is not stated"));

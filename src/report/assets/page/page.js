@@ -43,7 +43,7 @@ function tableTools(table) {
 }
 
 /** Draws a figure into its place. */
-function drawFigure(host, figure, shared) {
+function drawFigure(host, figure, shared, spectra) {
   host.replaceChildren();
   const narrow = host.clientWidth < 560;
   const columns = narrow ? 1 : figure.columns;
@@ -54,7 +54,7 @@ function drawFigure(host, figure, shared) {
   for (const panel of figure.panels) {
     const cell = document.createElement("div");
     host.append(cell);
-    if (panel?.kind === "plot") new Plot(cell, panel, height, shared);
+    if (panel?.kind === "plot") new Plot(cell, panel, height, shared, spectra);
     else if (panel?.kind === "waterfall") new Waterfall(cell, panel, height, shared);
   }
 }
@@ -64,10 +64,12 @@ async function start() {
   const { figures, matrices, whatif } = JSON.parse(new TextDecoder().decode(data));
   const hosts = document.querySelectorAll("[data-figure]");
   const drawn = new Map();
+  // The spectra of a sweep are those of its waterfall.
+  const spectra = (name) => figures.find((f) => f.title === name && f.panels[0]?.kind === "waterfall")?.panels[0];
   const draw = (host) => {
     if (drawn.get(host) === host.clientWidth) return;
     drawn.set(host, host.clientWidth);
-    drawFigure(host, figures[host.dataset.figure], matrices);
+    drawFigure(host, figures[host.dataset.figure], matrices, spectra);
   };
   const seen = new IntersectionObserver((entries) => {
     for (const { isIntersecting, target } of entries) if (isIntersecting) draw(target);

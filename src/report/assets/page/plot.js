@@ -74,9 +74,11 @@ function mark(c, name, x, y, s, colour, paper) {
 
 /** Series over two axes: uPlot has axes, zoom and cursor; what is drawn in the frame is drawn here, since motions turn back along the abscissa. */
 class Plot {
-  constructor(host, panel, height, shared) {
+  constructor(host, panel, height, shared, spectra = () => null) {
     this.host = host;
     this.panel = panel;
+    this.shared = shared;
+    this.spectra = spectra;
     this.height = height;
     this.series = panel.series.map((s) => ({
       ...s, x: floats(s.x), y: floats(s.y), low: floats(s.low), high: floats(s.high), std: floats(s.std ?? []), hidden: false,
@@ -162,21 +164,38 @@ class Plot {
   slice(r) {
     if (this.row === r) return;
     this.row = r;
-    const n = this.map.x.length, { ink, faint, font } = theme(this.host), { key } = this.map;
+    const n = this.map.x.length, { key } = this.map;
     const data = [this.map.x, this.map.z.slice(r * n, (r + 1) * n)];
     if (this.curve) {
       this.curve.setData(data, false);
       this.curve.redraw();
-      return;
-    }
+    } else this.lower(data, this.panel.x, key);
+  }
+
+  /** The spectrum that a point of a sweep is taken from, as a curve below the figure. */
+  spectrum() {
+    const [series, i] = this.under ?? [], waterfall = series && this.spectra(series.name);
+    if (!waterfall || this.plot.select.width > 0) return;
+    const frequency = floats(waterfall.frequency), excitation = floats(waterfall.excitation), n = frequency.length;
+    const away = excitation.map((f) => Math.abs(f - series.x[i])), r = away.indexOf(away.reduce((a, b) => Math.min(a, b)));
+    const least = 1e-5 * waterfall.up.high, { title } = waterfall.up;
+    const values = matrix(waterfall.z, waterfall.up, this.shared).slice(r * n, (r + 1) * n).map((v) => Math.max(v, least));
+    this.lower([frequency, values], waterfall.x, { title, log: true, low: least, high: 2 * waterfall.up.high });
+    this.tip.textContent = `${series.name}: spectrum at ${digits(excitation[r])} Hz, below`;
+  }
+
+  /** Draws a curve below the figure, in place of an earlier one. */
+  lower(data, x, y) {
+    this.curve?.destroy();
+    const { ink, faint, font } = theme(this.host);
     const axis = { stroke: ink, font, labelFont: font, labelSize: 22, grid: { stroke: faint, width: 1 }, ticks: { show: false } };
     this.curve = new uPlot({
       width: this.plot.width, height: 170, legend: { show: false }, cursor: { show: false },
       scales: {
-        x: { time: false, range: [this.panel.x.low, this.panel.x.high] },
-        y: { distr: key.log ? 3 : 1, range: [key.low, key.high] },
+        x: { time: false, range: [x.low, x.high] },
+        y: { distr: y.log ? 3 : 1, range: [y.low, y.high] },
       },
-      axes: [{ ...axis, size: 34, label: this.panel.x.title }, { ...axis, size: 58, label: key.title }],
+      axes: [{ ...axis, size: 34, label: x.title }, { ...axis, size: 58, label: y.title, values: (_, ticks) => ticks.map((v) => (v == null || !plain(v, y.log) ? "" : short(v))) }],
       series: [{}, { stroke: "#0072b2", width: 1.2, points: { show: false } }],
     }, data, this.below);
   }
@@ -234,6 +253,7 @@ class Plot {
         setCursor: [() => this.point()],
       },
     }, [[x.low, x.high], [low, y.high]], this.frame);
+    this.plot.over.addEventListener("click", () => this.spectrum());
   }
 
   inFrame(drawing) {
@@ -392,12 +412,14 @@ class Plot {
         if (distance < least) [best, least] = [[series, i], distance];
       }
     }
+    this.under = best;
     if (!best) {
       this.tip.textContent = `${this.panel.x.title}: ${digits(x, 5)}, ${this.panel.y.title}: ${digits(y, 4)}`;
       return;
     }
     const [series, i] = best, std = series.std[i] ?? NaN;
     const name = series.name ? `${series.name}: ` : "";
-    this.tip.textContent = `${name}${this.panel.x.title} ${digits(series.x[i])}, ${this.panel.y.title} ${estimate(series.y[i], std)}`;
+    const click = this.spectra(series.name) ? " (click: its spectrum)" : "";
+    this.tip.textContent = `${name}${this.panel.x.title} ${digits(series.x[i])}, ${this.panel.y.title} ${estimate(series.y[i], std)}${click}`;
   }
 }

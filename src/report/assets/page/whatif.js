@@ -80,7 +80,7 @@ class WhatIf {
     const { from, to, low, high } = start;
     this.curves = [0, 1].map((mass) => place(`mass ${mass + 1}`, axis("Excitation frequency (Hz)", from, to), axis("Displacement amplitude (mm)", low, high, true), [
       { name: "stable motion", shape: "line", look: look(INK) },
-      { name: "unstable motion", shape: "line", look: look(INK, [4.5, 2.2]) },
+      { name: "unstable or neutral motion", shape: "line", look: look(INK, [4.5, 2.2]) },
       ...(mass ? [] : [{ name: "without impacts", shape: "line", look: look("#808080") }]),
       ...start.measured.filter((m) => m.mass === mass + 1).map((m) => ({
         name: m.name, shape: "points", x: m.x, y: m.y, look: look(MASSES[mass], [], m.down ? "open-circle" : "circle"),
@@ -188,6 +188,7 @@ class WhatIf {
       Object.assign(this.trace.series[k], { x: t, y: x });
       Object.assign(this.plane.series[k], { x, y: v });
     }
+    this.trace.tip.textContent = t.length ? "" : "No motion from rest: the rig cannot be simulated with these values.";
     this.fit(this.trace);
     this.fit(this.plane);
     const text = (key, value) => `${key} = ${digits(value, 6).replace("−", "-")}`;
