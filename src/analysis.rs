@@ -9,6 +9,7 @@ pub(crate) mod drill;
 pub(crate) mod drop;
 pub(crate) mod frf;
 pub(crate) mod impacts;
+mod inputs;
 pub(crate) mod job;
 pub(crate) mod model;
 pub(crate) mod precision;
@@ -21,12 +22,13 @@ mod headline;
 mod page;
 
 pub use answer::Answer;
-pub use job::{Heard, JobOptions, Progress, answers, run};
+pub use inputs::inputs;
+pub use job::{Heard, INPUTS, JobOptions, Progress, REPORT, RESULTS, SUMMARY, answers, run};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 
 pub(crate) use job::Job;
-pub(crate) use source::Source;
+pub(crate) use source::{Source, file_name};
 
 /// Figures of results, as data.
 pub mod figures {
@@ -63,13 +65,19 @@ pub(crate) trait Analysis: DeserializeOwned {
     /// If keys contradict each other, are impossible, or one is missing.
     fn check(entry: &Entry<Self>, earlier: &[Entry<Self>]) -> Result<()>;
 
+    /// Keys that name files beside that of the record.
+    fn beside(&self) -> Option<(&'static str, &PathBuf)> {
+        None
+    }
+
     /// The files of a table.
     ///
     /// # Errors
     /// If one leads outside the folder or does not exist.
     fn files(campaign: &Campaign, entry: &Entry<Self>, allow_outside: bool) -> Result<Vec<PathBuf>> {
-        let file = entry.file.as_ref().map(|file| campaign.file(entry, "file", file, allow_outside));
-        Ok(Vec::from_iter(file.transpose()?))
+        let own = entry.file.as_ref().map(|file| ("file", file));
+        let all = own.into_iter().chain(entry.keys.beside());
+        all.map(|(key, file)| campaign.file(entry, key, file, allow_outside)).collect()
     }
 
     /// Measures the records of all tables.

@@ -16,6 +16,7 @@ mod sweep;
 
 use crate::analysis::{decay, frf, spectrum};
 use crate::error::Result;
+use crate::report::Medium;
 use crate::report::words::Voice;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
@@ -182,6 +183,10 @@ impl Row {
     }
 }
 
+/// What styles of figures there are.
+const STYLES: &str =
+    "Figures for a report, paper (86 mm wide, grey) or slide (1.6 times larger) [default: report]";
+
 /// What the program is for.
 const ABOUT: &str = "Measure impacting machines: from analyser files to answers, each with its uncertainty";
 
@@ -231,6 +236,13 @@ pub fn main() -> u8 {
         }
     };
     let json = typed.get_flag("json");
+    let last = std::iter::successors(Some(&typed), |at| Some(at.subcommand()?.1)).last();
+    let style = last.and_then(|typed| typed.try_get_one::<String>("style").ok()?);
+    match style.map(String::as_str) {
+        Some("paper") => drop(print::STYLE.set(Medium::Paper)),
+        Some("slide") => drop(print::STYLE.set(Medium::Slide)),
+        _ => {}
+    }
     let row = |(name, typed)| Some((rows().find(|row| row.name == name)?, typed));
     let Some((row, typed)) = typed.subcommand().and_then(row) else {
         return complain::nothing(&short(), json);
@@ -256,7 +268,12 @@ fn options(command: Typed) -> Typed {
         let arg = arg.long(long);
         if takes && !own { arg.value_name(kind) } else { arg }
     };
-    command.mut_args(option).mut_subcommands(options)
+    let command = command.mut_args(option).mut_subcommands(options);
+    if !command.get_arguments().any(|arg| arg.get_id() == "out") {
+        return command;
+    }
+    let style = Arg::new("style").long("style").value_name("STYLE").help(STYLES).hide_possible_values(true);
+    command.arg(style.value_parser(["report", "paper", "slide"]).display_order(order + 1))
 }
 
 /// The kind of an option's value.

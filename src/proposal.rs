@@ -186,9 +186,6 @@ impl Proposal {
     /// Name of the file of a campaign in a folder.
     pub const FILE: &str = "campaign.toml";
 
-    /// The file that marks a folder of results.
-    pub const RESULTS: &str = "results.json";
-
     /// A campaign for what lies in a folder and up to two levels below it.
     ///
     /// # Errors

@@ -12,6 +12,6 @@ pub use html::Page;
 pub use output::Output;
 pub use table::{Cell, Column, Table};
 pub(crate) use vibro_figure::{
-    AxisSpec, Drawing, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Panel, Plot, Series, Stroke,
+    AxisSpec, Drawing, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Medium, Panel, Plot, Series, Stroke,
     Waterfall, colour,
 };

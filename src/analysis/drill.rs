@@ -232,6 +232,10 @@ impl Analysis for Keys {
         entry.keys.usable()
     }
 
+    fn beside(&self) -> Option<(&'static str, &PathBuf)> {
+        Some(("noise_record", self.noise_record.as_ref()?))
+    }
+
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         job.each("drill", entries, Marks::Names, |entry, source| {
             let mut answer = entry.keys.measure(source, &mut |_| Ok(()))?;

@@ -225,6 +225,10 @@ impl Analysis for Keys {
         }
     }
 
+    fn beside(&self) -> Option<(&'static str, &PathBuf)> {
+        Some(("coherence", self.coherence.as_ref()?))
+    }
+
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         let (campaign, allow) = (job.campaign, job.options.allow_outside);
         job.each("frf", entries, Marks::Numbers, |entry, source| {

@@ -147,6 +147,10 @@ impl Analysis for Keys {
         entry.keys.usable()
     }
 
+    fn beside(&self) -> Option<(&'static str, &PathBuf)> {
+        Some(("shape", self.shape.as_ref()?))
+    }
+
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         job.each("impacts", entries, Marks::Numbers, |entry, source| Ok(vec![entry.keys.measure(source)?]))
     }

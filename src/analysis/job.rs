@@ -1,16 +1,34 @@
 //! All that a campaign asks for, and its files.
 
 use super::answer::{left_out, unwritten};
+use super::inputs::inputs;
 use super::source::{Source, file_name, name_of};
 use super::{Analysis, Answer, KINDS, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::Result;
 use crate::record::{Fact, Finding, Severity, Step};
-use crate::report::words::{About, Voice, put};
-use crate::report::{Output, Table, files};
+use crate::report::words::{About, Voice, graded, put};
+use crate::report::{Medium, Output, Table, files};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
+
+/// The files of a campaign's results that are not figures or tables of one record.
+pub const RESULTS: &str = "results.json";
+/// The page.
+pub const REPORT: &str = "report.html";
+/// Findings and tables, as the terminal shows them.
+pub const SUMMARY: &str = "summary.txt";
+/// What the results were computed from.
+pub const INPUTS: &str = "inputs.sha256";
+
+/// Findings and tables, for a person.
+fn summary(all: &Answer) -> String {
+    let findings = graded(&all.findings, Voice::Campaign);
+    let findings = findings.iter().map(|(severity, sentence)| format!("{}: {sentence}\n", severity.name()));
+    let tables: Vec<String> = all.tables.iter().map(Table::text).collect();
+    format!("{}\n{}", findings.collect::<String>(), tables.join("\n"))
+}
 
 /// Told how far a job is.
 pub trait Progress: Sync {
@@ -320,8 +338,15 @@ pub fn run(
         output.write(name, bytes)?;
     }
     put(&mut all.result, &all.findings, Voice::Campaign);
+    output.write(SUMMARY, summary(&all))?;
+    let inputs = inputs(campaign, options.allow_outside)?;
+    // Figures of another style are not those of a run without it.
+    let style = if output.medium == Medium::Report { "" } else { "# with figures of another style\n" };
+    output.write(INPUTS, format!("{inputs}{style}"))?;
+    let names = output.written().iter().map(String::as_str).chain([RESULTS, REPORT]);
+    all.result.insert("files".to_owned(), names.collect());
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
-    output.write("results.json", json + "\n")?;
-    output.write("report.html", page::page(&job, version, &all, &drawings, &parts).html())?;
+    output.write(RESULTS, json + "\n")?;
+    output.write(REPORT, page::page(&job, version, &inputs, &all, &drawings, &parts).html())?;
     Ok((all, job.answers > 0))
 }

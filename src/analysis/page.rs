@@ -11,7 +11,14 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
 /// Lays out all that is shown, with the drawings of its figures: answers first, then kind by kind, then where they come from.
-pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing], parts: &[Part]) -> Page {
+pub fn page(
+    job: &Job<'_>,
+    version: &str,
+    inputs: &str,
+    all: &Answer,
+    drawings: &[Drawing],
+    parts: &[Part],
+) -> Page {
     let mut page = Page::new(job.title.as_str()).heading("Answers");
     page = headlines(&all.result).iter().fold(page, Page::table);
     let worst: Vec<_> = graded(&all.findings, Voice::Campaign).into_iter().take(MATTER).collect();
@@ -43,6 +50,9 @@ pub fn page(job: &Job<'_>, version: &str, all: &Answer, drawings: &[Drawing], pa
     }
     let steps: Vec<(&str, String)> =
         job.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
+    let files =
+        inputs.lines().filter_map(|line| line.split_once("  ")).map(|(digest, name)| (name, &digest[..16]));
+    page = page.details("Files, and how their SHA-256 begins (whole in inputs.sha256)", files);
     page = page.details("The campaign as it ran", [("campaign.toml", job.campaign.text())]);
     if !steps.is_empty() {
         page = page

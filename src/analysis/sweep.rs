@@ -272,6 +272,8 @@ impl Analysis for Keys {
             Files::Spectra(list) => [list.force, list.response].concat(),
             Files::Traces(steps) => steps.files,
         };
+        let list = entry.keys.list.as_ref().map(|list| campaign.file(entry, "list", list, allow_outside));
+        let files = list.transpose()?.into_iter().chain(files).collect::<Vec<_>>();
         match files.iter().find(|file| !file.exists()) {
             Some(file) => {
                 let error = Error::usage(format!("the file {} does not exist", file.display()), "");

@@ -3,13 +3,13 @@
 use super::convert::folder_of;
 use super::{complain, init, print};
 use crate::analysis::sweep::modelled;
-use crate::analysis::{self, JobOptions};
+use crate::analysis::{self, INPUTS, JobOptions, REPORT, RESULTS, SUMMARY};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
 use crate::report::words::{Voice, graded};
 use crate::report::{Output, Table};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
@@ -23,6 +23,8 @@ pub struct Run {
     out: Option<PathBuf>,
     /// Allow files outside the folder of the campaign
     allow_outside: bool,
+    /// Compute anew, also where nothing has changed since the last run
+    again: bool,
     /// Run again whenever a file of the folder changes, until Ctrl+C
     watch: bool,
 }
@@ -61,7 +63,7 @@ fn opened(path: &Path, json: bool) -> Result<Campaign> {
 impl Run {
     /// The campaign of a file, with its own folder for results.
     pub fn of(campaign: PathBuf) -> Run {
-        Run { campaign, out: None, allow_outside: false, watch: false }
+        Run { campaign, out: None, allow_outside: false, again: false, watch: false }
     }
 }
 
@@ -108,7 +110,7 @@ fn stamps(folder: &Path) -> Vec<(PathBuf, u64, Option<SystemTime>)> {
             let Ok(meta) = std::fs::metadata(&path) else { continue };
             if meta.is_file() {
                 found.push((path, meta.len(), meta.modified().ok()));
-            } else if meta.is_dir() && !path.join(Proposal::RESULTS).exists() {
+            } else if meta.is_dir() && !path.join(RESULTS).exists() {
                 folders.push(path);
             }
         }
@@ -123,17 +125,26 @@ impl Run {
         let campaign = opened(&self.campaign, json)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let options = JobOptions { allow_outside: self.allow_outside };
-        let mut output = Output::new(&folder)?;
+        let held =
+            if self.again || print::STYLE.get().is_some() { None } else { held(&folder, &campaign, options) };
+        if let Some((found, summary)) = held {
+            complain::line("nothing has changed since the last run; --again computes anew");
+            let code = found["findings"]
+                .as_array()
+                .is_some_and(|f| f.iter().any(|f| f["code"] == "no-record-answers"));
+            if json {
+                of_results(&found, &folder)?;
+            } else {
+                print::text(&format!("{summary}\nopen {}\n", folder.join(REPORT).display()))?;
+            }
+            return Ok(u8::from(code));
+        }
+        let mut output = print::output(&folder)?;
         let (found, answered) =
             print::busy(json, "campaign", |bar| analysis::run(&campaign, options, &mut output, bar))?;
         let files = output.commit()?;
         if json {
-            print::object(json!({
-                "warnings": found.result["warnings"],
-                "results": found.result,
-                "files": files,
-                "folder": folder.display().to_string(),
-            }))?;
+            of_results(&found.result.into(), &folder)?;
         } else {
             complain::warn(&graded(&found.findings, Voice::Campaign));
             let tables = found.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
@@ -142,6 +153,27 @@ impl Run {
         }
         Ok(u8::from(!answered && !campaign.is_empty()))
     }
+}
+
+/// Prints the results of a campaign as one object.
+fn of_results(results: &Value, folder: &Path) -> Result<()> {
+    let (warnings, files) = (&results["warnings"], &results["files"]);
+    let folder = folder.display().to_string();
+    print::object(json!({ "warnings": warnings, "results": results, "files": files, "folder": folder }))
+}
+
+/// The results in a folder and their summary, where they are of the same campaign, recordings and program, and complete.
+fn held(folder: &Path, campaign: &Campaign, options: JobOptions) -> Option<(Value, String)> {
+    let made = |path: &Path| std::fs::metadata(path).and_then(|meta| meta.modified()).ok();
+    let text = |name| std::fs::read_to_string(folder.join(name)).ok();
+    let program = std::env::current_exe().ok()?;
+    let newer = made(&folder.join(REPORT))? > made(&program)?;
+    let same = newer && text(INPUTS)? == analysis::inputs(campaign, options.allow_outside).ok()?;
+    let results: Value = serde_json::from_str(&text(RESULTS).filter(|_| same)?).ok()?;
+    let whole = |name: &Value| name.as_str().is_some_and(|name| folder.join(name).is_file());
+    let complete =
+        results["files"].as_array()?.iter().all(whole) && !folder.join(Output::INCOMPLETE).exists();
+    complete.then_some((results, text(SUMMARY)?))
 }
 
 impl super::Run for Compare {

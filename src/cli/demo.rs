@@ -93,7 +93,7 @@ impl super::Run for Open {
     fn run(&self, json: bool) -> Result<u8> {
         let campaign = analysis::open(self.report.join(Proposal::FILE));
         let stated = campaign.map_or_else(|_| self.report.join("results"), |campaign| campaign.out());
-        let places = [self.report.clone(), self.report.join("report.html"), stated.join("report.html")];
+        let places = [self.report.clone(), self.report.join(analysis::REPORT), stated.join(analysis::REPORT)];
         let is_page =
             |place: &&PathBuf| place.is_file() && place.extension().is_some_and(|ending| ending == "html");
         let page = places.iter().find(is_page).ok_or_else(|| {

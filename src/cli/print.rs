@@ -4,12 +4,13 @@ use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::report::words::{Voice, graded, put};
-use crate::report::{Output, Table, files};
+use crate::report::{Medium, Output, Table, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// Writes the figures and files of an answer where a folder is named, and prints it: as JSON, or its tables. Gives the exit code.
@@ -19,7 +20,7 @@ use std::time::Duration;
 pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> {
     let mut written = Vec::new();
     if let Some(folder) = out {
-        let mut output = Output::new(folder)?;
+        let mut output = output(folder)?;
         files::figures(&mut output, &answer.figures, &|| ())?;
         for (name, bytes) in &answer.files {
             output.write(name, bytes)?;
@@ -43,6 +44,19 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> 
     text(&all)?;
     Ok(0)
 }
+
+/// A folder for results, with figures in the style that was asked for.
+///
+/// # Errors
+/// As [`Output::new`].
+pub fn output(folder: &Path) -> Result<Output> {
+    let mut output = Output::new(folder)?;
+    output.medium = STYLE.get().copied().unwrap_or_default();
+    Ok(output)
+}
+
+/// The style of all figures of this program.
+pub static STYLE: OnceLock<Medium> = OnceLock::new();
 
 /// Prints one JSON object.
 ///

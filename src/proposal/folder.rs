@@ -1,6 +1,7 @@
 //! The recordings of a folder: lists of sweeps, and files in series.
 
-use super::{Known, Proposal, Table};
+use super::{Known, Table};
+use crate::analysis::RESULTS;
 use crate::error::{Error, Result};
 use crate::read::{Header, Reader, SweepList};
 use std::collections::BTreeMap;
@@ -230,7 +231,7 @@ pub(super) fn short(error: &Error) -> String {
 }
 
 fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {
-    if levels < LEVELS && folder.join(Proposal::RESULTS).exists() {
+    if levels < LEVELS && folder.join(RESULTS).exists() {
         return Ok(());
     }
     let list = fs::read_dir(folder).map_err(|e| Error::io("list", folder, e))?;

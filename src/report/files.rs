@@ -21,10 +21,11 @@ pub fn figures(
     figures: &[(String, Figure)],
     step: &(dyn Fn() + Sync),
 ) -> Result<Vec<Drawing>> {
+    let medium = output.medium;
     let drawn: Vec<(Drawing, Vec<u8>)> = figures
         .par_iter()
         .map(|(_, figure)| {
-            let drawing = figure.draw();
+            let drawing = figure.draw_for(medium);
             let png = drawing.png(DPI)?;
             step();
             Ok((drawing, png))

@@ -1,5 +1,6 @@
 //! A folder of results, whose files appear together or not at all.
 
+use super::Medium;
 use crate::error::{Error, Place, Result};
 use std::fs;
 use std::io::Write;
@@ -13,6 +14,8 @@ use tempfile::{NamedTempFile, TempPath};
 /// forced to the disk: a power failure in the seconds after may still lose the new content.
 #[derive(Debug)]
 pub struct Output {
+    /// What its figures are drawn for.
+    pub medium: Medium,
     folder: PathBuf,
     written: Vec<String>,
     /// The file of each name, closed, and removed unless it gets its name.
@@ -33,7 +36,7 @@ impl Output {
             return Err(Error::input(Place::file(&folder), "this is a file", "a folder for results")
                 .hint("name another folder"));
         }
-        Ok(Output { folder, written: Vec::new(), files: Vec::new() })
+        Ok(Output { medium: Medium::default(), folder, written: Vec::new(), files: Vec::new() })
     }
 
     /// The folder.
@@ -62,12 +65,12 @@ impl Output {
         let refused = |e| Error::io("write", &path, e);
         let mut file = temporary(&self.folder).map_err(refused)?;
         file.write_all(bytes.as_ref()).map_err(refused)?;
-        match self.written.iter().position(|w| w == name) {
-            Some(i) => self.files[i] = file.into_temp_path(),
-            None => {
-                self.written.push(name.to_owned());
-                self.files.push(file.into_temp_path());
-            }
+        let file = file.into_temp_path();
+        if let Some(i) = self.written.iter().position(|w| w == name) {
+            self.files[i] = file;
+        } else {
+            self.written.push(name.to_owned());
+            self.files.push(file);
         }
         Ok(())
     }

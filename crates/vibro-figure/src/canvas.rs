@@ -160,10 +160,16 @@ impl Canvas {
     }
 }
 
-/// The whole document of `width` by `height` mm, with a name for readers that cannot see it.
-pub(super) fn document((width, height): (f64, f64), name: &str, images: &[Image], body: &str) -> String {
+/// The whole document, laid out for `width` by `height` mm and so many times larger, with a name for readers that cannot see it.
+pub(super) fn document(
+    (width, height): (f64, f64),
+    scale: f64,
+    name: &str,
+    images: &[Image],
+    body: &str,
+) -> String {
     const POINTS: f64 = 72.0 / 25.4;
-    let [across, down, w, h] = [width, height, width * POINTS, height * POINTS].map(decimal);
+    let [across, down, w, h] = [width * scale, height * scale, width * POINTS, height * POINTS].map(decimal);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}mm\" height=\"{down}mm\" \
          viewBox=\"0 0 {w} {h}\" role=\"img\" aria-label=\"{}\" style=\"background:#ffffff\">\n",

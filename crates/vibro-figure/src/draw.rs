@@ -9,6 +9,8 @@ pub struct Drawing {
     pub name: String,
     /// Width and height in mm.
     pub size: (f64, f64),
+    /// How much larger it stands in print.
+    pub(super) scale: f64,
     pub(super) canvas: Canvas,
 }
 
@@ -16,7 +18,7 @@ impl Drawing {
     /// The picture as an SVG document with real text; it refers to nothing outside and has no ids, so that
     /// several can stand in one page.
     pub fn svg(&self) -> String {
-        canvas::document(self.size, &self.name, &self.canvas.images, &self.canvas.body)
+        canvas::document(self.size, self.scale, &self.name, &self.canvas.images, &self.canvas.body)
     }
 }
 
@@ -50,7 +52,7 @@ impl Figure {
                 (Panel::Plot(_), None) => {}
             }
         }
-        Drawing { name: self.title.clone(), size, canvas }
+        Drawing { name: self.title.clone(), size, scale: 1.0, canvas }
     }
 }
 

@@ -17,6 +17,7 @@ mod grid;
 mod heatmap;
 mod interactive;
 mod legend;
+mod medium;
 mod notes;
 mod path;
 mod plot;
@@ -32,6 +33,7 @@ pub use draw::Drawing;
 pub use figure::{Figure, Legend, Note, Panel, Plot};
 pub use grid::{Grid, Kind};
 pub use heatmap::Heatmap;
+pub use medium::Medium;
 pub use series::{Ink, Marker, Series, Shape, Stroke};
 pub use waterfall::Waterfall;
 

@@ -40,13 +40,14 @@ impl Drawing {
         let mut options = usvg::Options { font_family: font::NAME.to_owned(), ..usvg::Options::default() };
         options.fontdb_mut().load_font_data(font::BYTES.to_vec());
         // Without the cell images, which lie under everything else.
-        let text = canvas::document(self.size, &self.name, &[], &self.canvas.body);
+        let text = canvas::document(self.size, 1.0, &self.name, &[], &self.canvas.body);
         let tree = usvg::Tree::from_str(&text, &options)
             .map_err(|e| refused(format!("cannot be turned into pixels: {e}")))?;
         let transform =
             Transform::from_scale(across as f32 / tree.size().width(), down as f32 / tree.size().height());
         resvg::render(&tree, transform, &mut pixmap.as_mut());
-        Ok(encoded(&pixmap, Some(dpi)))
+        // So many pixels a millimetre as it stands in print.
+        Ok(encoded(&pixmap, Some(dpi / self.scale)))
     }
 }
 

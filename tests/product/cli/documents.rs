@@ -88,6 +88,38 @@ fn the_tutorial_and_the_recipes_run() {
     assert_eq!(run("docs/recipes.md").len(), 9);
 }
 
+/// The help of every command, as a page: `VIBRO_DOCS=1 cargo test --release --test product options_of_every_command` writes it anew.
+#[test]
+fn the_options_of_every_command_are_those_of_its_help() {
+    let help =
+        |words: &[&str]| String::from_utf8(super::vibro(&[words, &["--help"]].concat()).stdout).unwrap();
+    let named = |text: &str| -> Vec<String> {
+        let lines = text.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+        let words = lines.filter_map(|line| line.split_whitespace().next());
+        words.filter(|word| word.chars().all(char::is_lowercase)).map(str::to_owned).collect()
+    };
+    let mut page = "# Options of every command\nAs `vibro COMMAND --help` prints them. In a campaign, the options of an analysis are the keys of its section, with `_` for `-`.\n".to_owned();
+    let mut add = |words: &[&str]| {
+        let text = help(words).lines().map(str::trim_end).collect::<Vec<_>>().join("\n");
+        page += &format!("\n## vibro {}\n```text\n{}\n```\n", words.join(" "), text.trim_end());
+        text
+    };
+    for command in named(&help(&[])) {
+        let text = add(&[&command]);
+        if command == "model" {
+            for of_model in named(&text).iter().filter(|name| !["help", "vibro"].contains(&name.as_str())) {
+                add(&["model", of_model]);
+            }
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/options.md");
+    if std::env::var_os("VIBRO_DOCS").is_some() {
+        std::fs::write(&path, &page).unwrap();
+    }
+    assert!(page.matches("\n## ").count() > 25, "{page}");
+    assert_eq!(std::fs::read_to_string(path).unwrap(), page, "run the command above this test");
+}
+
 #[test]
 fn documents_for_reading_are_short_and_in_the_book() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -98,6 +130,7 @@ fn documents_for_reading_are_short_and_in_the_book() {
     let reference = [
         "campaign.md",
         "commands.md",
+        "options.md",
         "findings.md",
         "formats.md",
         "coverage.md",

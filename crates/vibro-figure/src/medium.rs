@@ -1,0 +1,106 @@
+//! What a figure is drawn for.
+
+use crate::{Drawing, Figure};
+use resvg::tiny_skia::PremultipliedColorU8;
+
+/// Where a figure is to stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Medium {
+    /// A report or a screen: as wide as the figure asks, in colour.
+    #[default]
+    Report,
+    /// A column of a journal: 86 mm wide, one panel over the other, in grey.
+    Paper,
+    /// A projected slide: all larger, the text with it.
+    Slide,
+}
+
+/// Width of a column in mm.
+const COLUMN: f64 = 86.0;
+
+/// How much larger all is on a slide: 8 pt become 13 pt.
+const LARGER: f64 = 1.6;
+
+impl Figure {
+    /// Draws the figure for a medium.
+    pub fn draw_for(&self, medium: Medium) -> Drawing {
+        match medium {
+            Medium::Report => self.draw(),
+            Medium::Slide => {
+                let drawing = self.draw();
+                Drawing { scale: LARGER, ..drawing }
+            }
+            Medium::Paper => self.in_column().draw().grey(),
+        }
+    }
+
+    /// The figure in a column: panels under one another, each with the proportions that it had but no lower than three quarters of its width.
+    fn in_column(&self) -> Figure {
+        if self.width <= COLUMN {
+            return self.clone();
+        }
+        let (columns, panels) = (self.columns.clamp(1, self.panels.len().max(1)), self.panels.len().max(1));
+        let own = (self.height / panels.div_ceil(columns) as f64) / (self.width / columns as f64);
+        let height = panels as f64 * COLUMN * own.clamp(0.75, 1.1);
+        Figure { width: COLUMN, height, columns: 1, ..self.clone() }
+    }
+}
+
+impl Drawing {
+    /// The drawing in grey: the maps' colours are as light as their values, series differ in marker and dash.
+    fn grey(mut self) -> Drawing {
+        let coloured = |part: &str| {
+            let rgb = u32::from_str_radix(part.get(..6)?, 16).ok()?.to_be_bytes();
+            Some(format!("{0:02x}{0:02x}{0:02x}{1}", grey([rgb[1], rgb[2], rgb[3]]), &part[6..]))
+        };
+        let parts = self.canvas.body.split('#').map(|part| coloured(part).unwrap_or_else(|| part.to_owned()));
+        self.canvas.body = parts.collect::<Vec<String>>().join("#");
+        for image in &mut self.canvas.images {
+            for pixel in image.pixels.pixels_mut() {
+                let level = grey([pixel.red(), pixel.green(), pixel.blue()]);
+                *pixel =
+                    PremultipliedColorU8::from_rgba(level, level, level, pixel.alpha()).unwrap_or(*pixel);
+            }
+        }
+        self
+    }
+}
+
+/// The luma of a colour (ITU-R BT.601).
+fn grey([r, g, b]: [u8; 3]) -> u8 {
+    (0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b)).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{AxisSpec, Plot, Series};
+
+    fn figure() -> Figure {
+        let line = Series::line("a # of 00ff00", [0.0, 1.0], [0.0, 1.0]);
+        let plot = || Plot::new(AxisSpec::new("x", "s"), AxisSpec::new("y", "m")).with(line.clone());
+        Figure::double("two").columns(2).height(60.0).panel(plot()).panel(plot())
+    }
+
+    #[test]
+    fn a_column_has_its_panels_under_one_another_in_grey() {
+        let drawn = figure().draw_for(Medium::Paper);
+        assert_eq!(drawn.size, (86.0, 2.0 * 0.75 * 86.0));
+        let svg = drawn.svg();
+        let colours = svg.split("=\"#").skip(1).map(|part| &part[..6]);
+        assert!(
+            colours.clone().all(|c| c[..2] == c[2..4] && c[2..4] == c[4..]) && colours.count() > 2,
+            "{svg}"
+        );
+    }
+
+    #[test]
+    fn a_slide_is_the_same_picture_larger() {
+        let (report, slide) = (figure().draw_for(Medium::Report), figure().draw_for(Medium::Slide));
+        assert_eq!(report.canvas, slide.canvas);
+        let wide = |drawing: &Drawing| {
+            drawing.svg().split("width=\"").nth(1).and_then(|w| w.split("mm").next()?.parse::<f64>().ok())
+        };
+        assert!((wide(&slide).unwrap() - 1.6 * wide(&report).unwrap()).abs() < 0.011);
+    }
+}

@@ -1,0 +1,46 @@
+//! What a campaign is computed from, by content: whether a second run would give the same.
+
+use super::{file_name, files};
+use crate::campaign::Campaign;
+use crate::error::{Error, Result};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// A line for the campaign and for each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
+///
+/// # Errors
+/// As [`files`]; if a file cannot be read.
+pub fn inputs(campaign: &Campaign, allow_outside: bool) -> Result<String> {
+    let mut all = files(campaign, allow_outside)?;
+    all.sort();
+    all.dedup();
+    let own = line(Sha256::digest(campaign.text()).as_slice(), &file_name(campaign.path()));
+    let of_file = |path: &Path| {
+        let name = path.strip_prefix(campaign.folder()).unwrap_or(path).display().to_string();
+        digest(path).map(|digest| line(&digest, &name)).map_err(|e| Error::io("read", path, e))
+    };
+    let lines: Result<Vec<String>> = all.par_iter().map(|path| of_file(path)).collect();
+    Ok(own + &lines?.concat())
+}
+
+fn line(digest: &[u8], name: &str) -> String {
+    let mut line = String::new();
+    for byte in digest {
+        let _ = write!(line, "{byte:02x}");
+    }
+    line + "  " + name + "\n"
+}
+
+fn digest(path: &Path) -> std::io::Result<Vec<u8>> {
+    let (mut file, mut hash, mut part) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(hash.finalize().to_vec()),
+            n => hash.update(&part[..n]),
+        }
+    }
+}
