@@ -101,7 +101,7 @@ fn the_options_of_every_command_are_those_of_its_help() {
     let mut page = "# Options of every command\nAs `vibro COMMAND --help` prints them. In a campaign, the options of an analysis are the keys of its section, with `_` for `-`.\n".to_owned();
     let mut add = |words: &[&str]| {
         let text = help(words).lines().map(str::trim_end).collect::<Vec<_>>().join("\n");
-        page += &format!("\n## vibro {}\n```text\n{}\n```\n", words.join(" "), text.trim_end());
+        page.extend(["\n## vibro ", &words.join(" "), "\n```text\n", text.trim_end(), "\n```\n"]);
         text
     };
     for command in named(&help(&[])) {
