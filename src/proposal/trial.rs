@@ -205,7 +205,7 @@ impl<'a> Trial<'a> {
             let table = table.guessed("edge", "rising", "either does");
             let table =
                 table.missing("beam_angle", "0", "degrees between the beam and the axis of the motion");
-            let table = table.guessed("from", "axis", "as beam_angle is stated");
+            let table = table.guessed("beam_from", "axis", "as beam_angle is stated");
             match header.quantity {
                 "velocity" => table,
                 _ => table.missing("sensitivity", "1", "m/s along the beam for one unit of the channel"),

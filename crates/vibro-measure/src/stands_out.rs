@@ -94,6 +94,7 @@ mod tests {
     use crate::spectral::{SpectralOptions, spectral};
     use crate::synthetic::{pink, trace};
     use crate::tones::tones;
+    use rayon::prelude::*;
     use std::f64::consts::TAU;
     use vibro_math::Noise;
     use vibro_record::{Scaling, Traces};
@@ -109,19 +110,18 @@ mod tests {
 
     /// Of records of noise those that show a tone, and those that show a peak of averages; `colour` is the share of 1/f noise.
     fn false_alarms(records: u64, colour: f64) -> [u32; 2] {
-        let mut seen = [0; 2];
-        for seed in 0..records {
+        let of = |seed: u64| {
             let mut noise = Noise::new(seed);
             let slow = pink(&mut noise, 2000);
             let values = slow.into_iter().map(|v| colour * v + (1.0 - colour) * noise.normal()).collect();
             let trace = trace(values);
             let options =
                 SpectralOptions { segment: Some(256), scaling: Some(Scaling::Psd), ..Default::default() };
-            seen[0] += u32::from(tones(&trace, 3).is_ok());
+            let tone = u32::from(tones(&trace, 3).is_ok());
             let found = spectral(&mut Traces::from_memory(vec![trace]).unwrap(), &options, |_| ()).unwrap();
-            seen[1] += u32::from(!found.peaks(8).is_empty());
-        }
-        seen
+            [tone, u32::from(!found.peaks(8).is_empty())]
+        };
+        (0..records).into_par_iter().map(of).reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
     }
 
     #[test]

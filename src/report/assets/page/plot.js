@@ -190,7 +190,7 @@ class Plot {
     const { ink, faint, font } = theme(this.host);
     const axis = { stroke: ink, font, labelFont: font, labelSize: 22, grid: { stroke: faint, width: 1 }, ticks: { show: false } };
     this.curve = new uPlot({
-      width: this.plot.width, height: 170, legend: { show: false }, cursor: { show: false },
+      width: this.plot.width, height: 240, legend: { show: false }, cursor: { show: false },
       scales: {
         x: { time: false, range: [x.low, x.high] },
         y: { distr: y.log ? 3 : 1, range: [y.low, y.high] },
