@@ -317,6 +317,8 @@ pub fn run(
     progress: &dyn Progress,
 ) -> Result<(Answer, bool)> {
     let mut job = Job::new(campaign, options, progress);
+    // Before anything is read: what changes meanwhile is for the next run.
+    let inputs = inputs(campaign, options.allow_outside)?;
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;
     job.put("version", &version)?;
@@ -339,7 +341,6 @@ pub fn run(
     }
     put(&mut all.result, &all.findings, Voice::Campaign);
     output.write(SUMMARY, summary(&all))?;
-    let inputs = inputs(campaign, options.allow_outside)?;
     // Figures of another style are not those of a run without it.
     let style = if output.medium == Medium::Report { "" } else { "# with figures of another style\n" };
     output.write(INPUTS, format!("{inputs}{style}"))?;
