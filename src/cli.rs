@@ -15,7 +15,7 @@ mod shell;
 mod sweep;
 
 use crate::analysis::{decay, frf, spectrum};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::report::Medium;
 use crate::report::words::Voice;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
@@ -236,6 +236,10 @@ pub fn main() -> u8 {
         }
     };
     let json = typed.get_flag("json");
+    if respelt::pipes() {
+        let twice = Error::usage("- stands twice", "standard input once: it is one record");
+        return complain::error(&twice, Voice::Command, json);
+    }
     let last = std::iter::successors(Some(&typed), |at| Some(at.subcommand()?.1)).last();
     let style = last.and_then(|typed| typed.try_get_one::<String>("style").ok()?);
     match style.map(String::as_str) {

@@ -195,7 +195,7 @@ impl Proposal {
             let found = if folder.exists() { "this is a file" } else { "there is no such folder" };
             return Err(Error::input(Place::file(folder), found, "a folder of recordings"));
         }
-        let found = folder::Folder::of(folder, &reading.reader()?)?;
+        let found = folder::Folder::of(folder, reading)?;
         let mut proposal = Proposal { folder: folder.to_owned(), tables: Vec::new(), left: found.left };
         let all = found.lists.len() + found.series.len();
         progress.start("looking at files", all);
@@ -208,9 +208,13 @@ impl Proposal {
             proposal.tables.push(table.open("scaling", "", "\"peak\" or \"rms\""));
             progress.step();
         }
-        let tried = trial::Trial::new(folder, reading, progress);
         for series in &found.series {
-            tried.series(series, &mut proposal);
+            let reading = if series.timed { reading.untimed() } else { reading.clone() };
+            let before = proposal.tables.len();
+            trial::Trial::new(folder, &reading, progress).series(series, &mut proposal);
+            for table in &mut proposal.tables[before..] {
+                *table = table.stated(&reading);
+            }
             progress.step();
         }
         if proposal.tables.is_empty() {
@@ -223,9 +227,6 @@ impl Proposal {
                 error = error.aside(format!("{file}: {why}"));
             }
             return Err(error.hint(format!("`vibro info {}/FILE` tells what is in a file", folder.display())));
-        }
-        for table in &mut proposal.tables {
-            *table = table.stated(reading);
         }
         let place = |table: &Table| analysis::sections().position(|section| section == table.section);
         proposal.tables.sort_by_key(place);
@@ -277,7 +278,7 @@ pub fn of_steps(files: &[PathBuf], reading: &Reading) -> Result<Proposal> {
     let (_, headers, _) = reading.reader()?.survey(first)?;
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-    let series = Series { name: folder::name(&names), files: names, headers, pattern: None };
+    let series = Series { name: folder::name(&names), files: names, headers, pattern: None, timed: true };
     let table = series.sweep().ok_or_else(|| {
         let found = format!("the channels {}", channels.join(", "));
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")

@@ -116,9 +116,18 @@ impl Keys {
     /// # Errors
     /// With the key at fault.
     pub fn usable(&self) -> Result<()> {
-        needed("velocity", self.velocity.as_ref())?;
-        needed("beam_angle", self.beam_angle)?;
-        needed("beam_from", self.beam_from)?;
+        let stated = [
+            ("velocity", self.velocity.is_some()),
+            ("beam_angle", self.beam_angle.is_some()),
+            ("beam_from", self.beam_from.is_some()),
+        ];
+        let missing =
+            stated.into_iter().filter(|(_, stated)| !stated).map(|(key, _)| needed::<()>(key, None));
+        // One complaint names all.
+        let first = missing.filter_map(Result::err).reduce(|all, next| {
+            next.settings().iter().fold(all.aside(next.to_string()), |all, key| all.setting(key))
+        });
+        first.map_or(Ok(()), Err)?;
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {

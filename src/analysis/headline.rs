@@ -36,13 +36,22 @@ const HEADLINES: &[Headline] = &[
         title: "Hammer drill",
         records: "drill",
         list: "",
-        columns: &[("speed", "speed", "Hz"), ("cycles", "cycles", "")],
+        columns: &[
+            ("speed", "speed", "Hz"),
+            ("velocity before impact", "before", "m/s"),
+            ("restitution", "restitution", ""),
+            ("impacts", "impacts", ""),
+        ],
     },
     Headline {
         title: "Impacts",
         records: "impacts",
         list: "",
-        columns: &[("impacts", "n", ""), ("interval", "interval", "s"), ("frequency", "frequency", "Hz")],
+        columns: &[
+            ("impacts", "n", ""),
+            ("frequency", "frequency", "Hz"),
+            ("impacts/cycles", "per_cycle", ""),
+        ],
     },
     Headline {
         title: "Restitution",
@@ -118,6 +127,9 @@ fn cell(item: &Value, key: &str) -> Cell {
         }
         Value::String(word) => word.as_str().into(),
         Value::Array(all) => all.len().into(),
+        Value::Object(ratio) if ratio.contains_key("cycles") => {
+            format!("{}/{}", ratio["impacts"], ratio["cycles"]).into()
+        }
         Value::Object(estimate) => {
             estimate.get("value").and_then(Value::as_f64).map_or(Cell::Missing, |value| Cell::Estimate {
                 value,

@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// A line for the campaign and for each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
+/// A line for the program, the campaign and each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
 ///
 /// # Errors
 /// As [`files`]; if a file cannot be read.
@@ -18,13 +18,19 @@ pub fn inputs(campaign: &Campaign, allow_outside: bool) -> Result<String> {
     let mut all = files(campaign, allow_outside)?;
     all.sort();
     all.dedup();
+    // The reader says what is wrong with a folder or a pipe.
+    all.retain(|path| path.is_file());
     let own = line(Sha256::digest(campaign.text()).as_slice(), &file_name(campaign.path()));
+    // One that was proposed is no file that could be checked.
+    let own = if campaign.path().is_file() { own } else { format!("# {own}") };
+    let program = std::env::current_exe().and_then(|path| digest(&path)).unwrap_or_default();
+    let program = line(&program, concat!("vibro ", env!("CARGO_PKG_VERSION")));
     let of_file = |path: &Path| {
         let name = path.strip_prefix(campaign.folder()).unwrap_or(path).display().to_string();
         digest(path).map(|digest| line(&digest, &name)).map_err(|e| Error::io("read", path, e))
     };
     let lines: Result<Vec<String>> = all.par_iter().map(|path| of_file(path)).collect();
-    Ok(own + &lines?.concat())
+    Ok(format!("# {program}{own}{}", lines?.concat()))
 }
 
 fn line(digest: &[u8], name: &str) -> String {

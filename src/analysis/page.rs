@@ -50,8 +50,11 @@ pub fn page(
     }
     let steps: Vec<(&str, String)> =
         job.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
-    let files =
-        inputs.lines().filter_map(|line| line.split_once("  ")).map(|(digest, name)| (name, &digest[..16]));
+    let files = inputs
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .filter_map(|line| line.split_once("  "))
+        .map(|(digest, name)| (name, &digest[..16]));
     page = page.details("Files, and how their SHA-256 begins (whole in inputs.sha256)", files);
     page = page.details("The campaign as it ran", [("campaign.toml", job.campaign.text())]);
     if !steps.is_empty() {

@@ -100,6 +100,6 @@ impl Campaign {
 
     /// The error with its place in the file.
     pub(super) fn pointed(&self, error: Error, span: Range<usize>) -> Error {
-        error.in_file(self.path()).excerpt(&self.text, span)
+        error.named_in(self.path()).excerpt(&self.text, span)
     }
 }

@@ -83,6 +83,11 @@ impl Reading {
         Reading::KEYS.into_iter().filter_map(stated).collect()
     }
 
+    /// The same of files that say their sampling rate or frequencies themselves.
+    pub fn untimed(&self) -> Reading {
+        Reading { rate: None, base_band: None, ..self.clone() }
+    }
+
     /// A reader that knows what is stated.
     ///
     /// # Errors

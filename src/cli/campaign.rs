@@ -135,7 +135,13 @@ impl Run {
             if json {
                 of_results(&found, &folder)?;
             } else {
-                print::text(&format!("{summary}\nopen {}\n", folder.join(REPORT).display()))?;
+                // Findings stand before the first empty line.
+                let (said, tables) = summary
+                    .split_once("\n\n")
+                    .filter(|_| !summary.starts_with('\n'))
+                    .unwrap_or(("", summary.trim_start()));
+                said.lines().for_each(complain::line);
+                tables_of(tables, found["files"].as_array().map_or(0, Vec::len), &folder)?;
             }
             return Ok(u8::from(code));
         }
@@ -148,11 +154,15 @@ impl Run {
         } else {
             complain::warn(&graded(&found.findings, Voice::Campaign));
             let tables = found.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
-            let n = files.len();
-            print::text(&format!("{tables}\n{n} files in {}; open report.html there\n", folder.display()))?;
+            tables_of(&tables, files.len(), &folder)?;
         }
         Ok(u8::from(!answered && !campaign.is_empty()))
     }
+}
+
+/// Prints the tables of a campaign.
+fn tables_of(tables: &str, files: usize, folder: &Path) -> Result<()> {
+    print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", folder.display()))
 }
 
 /// Prints the results of a campaign as one object.
@@ -166,11 +176,12 @@ fn of_results(results: &Value, folder: &Path) -> Result<()> {
 fn held(folder: &Path, campaign: &Campaign, options: JobOptions) -> Option<(Value, String)> {
     let made = |path: &Path| std::fs::metadata(path).and_then(|meta| meta.modified()).ok();
     let text = |name| std::fs::read_to_string(folder.join(name)).ok();
-    let program = std::env::current_exe().ok()?;
-    let newer = made(&folder.join(REPORT))? > made(&program)?;
-    let same = newer && text(INPUTS)? == analysis::inputs(campaign, options.allow_outside).ok()?;
+    let same = text(INPUTS)? == analysis::inputs(campaign, options.allow_outside).ok()?;
     let results: Value = serde_json::from_str(&text(RESULTS).filter(|_| same)?).ok()?;
-    let whole = |name: &Value| name.as_str().is_some_and(|name| folder.join(name).is_file());
+    // The page is written last: what is younger was changed by somebody else.
+    let page = made(&folder.join(REPORT))?;
+    let whole =
+        |name: &Value| name.as_str().and_then(|name| made(&folder.join(name))).is_some_and(|at| at <= page);
     let complete =
         results["files"].as_array()?.iter().all(whole) && !folder.join(Output::INCOMPLETE).exists();
     complete.then_some((results, text(SUMMARY)?))

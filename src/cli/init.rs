@@ -21,7 +21,7 @@ pub struct Init {
 
 #[derive(Debug, clap::Args)]
 pub struct Check {
-    /// campaign.toml
+    /// campaign.toml, or its folder
     #[arg(index = 1)]
     campaign: PathBuf,
     /// Allow files outside the folder of the campaign
@@ -99,7 +99,8 @@ impl super::Run for Check {
 
     /// Checks keys, values and files.
     fn run(&self, json: bool) -> Result<u8> {
-        let campaign = analysis::open(&self.campaign)?;
+        let of_folder = self.campaign.join(Proposal::FILE);
+        let campaign = analysis::open(if self.campaign.is_dir() { &of_folder } else { &self.campaign })?;
         let files = analysis::files(&campaign, self.allow_outside)?;
         analysis::channels(&campaign, self.allow_outside)?;
         if json {

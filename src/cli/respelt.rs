@@ -2,6 +2,7 @@
 //! name of another one get their own, with a note.
 
 use super::complain;
+use glob::MatchOptions;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -17,14 +18,26 @@ const OLD: [(&str, &str, &str); 8] = [
     ("model choose", "--noise", "--noise-floor"),
 ];
 
-/// The files that a pattern stands for, in the order of their numbers; another word as it is.
-fn named(word: OsString) -> Vec<OsString> {
+/// Commands that take several files: a pattern may mean many of them, elsewhere it means one. A file to write is never meant by a pattern.
+const SEVERAL: [&str; 2] = ["info", "restitution"];
+
+/// The files that a pattern stands for, in the order of their numbers; a word that means none as it is. As in a shell, a hidden file is meant
+/// by its dot only.
+fn named(word: OsString, command: &str) -> Vec<OsString> {
     let pattern =
         word.to_str().filter(|w| w.contains(['*', '?']) && !w.starts_with('-') && !Path::new(w).exists());
-    let files = pattern.and_then(|pattern| glob::glob(pattern).ok()).into_iter().flatten().flatten();
-    let mut files: Vec<OsString> = files.map(PathBuf::into_os_string).collect();
+    let options = MatchOptions { require_literal_leading_dot: true, ..MatchOptions::default() };
+    let files = pattern.and_then(|pattern| glob::glob_with(&pattern.replace('[', "[[]"), options).ok());
+    let files: Result<Vec<PathBuf>, _> = files.into_iter().flatten().collect();
+    let mut files = files.unwrap_or_default();
     files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
-    if files.is_empty() { vec![word] } else { files }
+    let meant = files.len() == 1 && command != "convert" || files.len() > 1 && SEVERAL.contains(&command);
+    if meant { files.into_iter().map(PathBuf::into_os_string).collect() } else { vec![word] }
+}
+
+/// Whether standard input is named more than once: it has one record.
+pub fn pipes() -> bool {
+    std::env::args_os().filter(|word| word == "-").count() > 1
 }
 
 /// What was typed, in the spelling of today.
@@ -32,8 +45,16 @@ pub fn args() -> impl Iterator<Item = OsString> {
     let typed: Vec<OsString> = std::env::args_os().collect();
     let words = typed.iter().skip(1).filter_map(|word| word.to_str()).filter(|word| !word.starts_with('-'));
     let command = words.take(2).collect::<Vec<_>>().join(" ");
+    let first = command.split(' ').next().unwrap_or_default().to_owned();
     let of = move |row: &&(&str, &str, &str)| command == row.0 || command.starts_with(&format!("{} ", row.0));
     let rows: Vec<_> = OLD.iter().filter(of).collect();
+    // What stands behind an option may be its value.
+    let mut free = true;
+    let named = move |word: OsString| {
+        let is_option = word.to_str().is_some_and(|w| w.starts_with('-'));
+        let before = std::mem::replace(&mut free, !is_option);
+        if before { named(word, &first) } else { vec![word] }
+    };
     typed.into_iter().flat_map(named).map(move |word| {
         let (option, value) = word.to_str().and_then(|w| w.split_once('=')).unzip();
         let option = option.or(word.to_str());

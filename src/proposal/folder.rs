@@ -2,8 +2,9 @@
 
 use super::{Known, Table};
 use crate::analysis::RESULTS;
+use crate::campaign::Reading;
 use crate::error::{Error, Result};
-use crate::read::{Header, Reader, SweepList};
+use crate::read::{Header, SweepList};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,6 +31,8 @@ pub struct Series {
     pub headers: Vec<Header>,
     /// Pattern that means all of them and no other file.
     pub pattern: Option<String>,
+    /// Whether the files say their sampling rate or frequencies.
+    pub timed: bool,
 }
 
 /// A file and its channels.
@@ -45,11 +48,12 @@ const NO_RECORDINGS: [&str; 20] = [
 ];
 
 impl Folder {
-    /// Lists and sorts the files of a folder. Hidden files, folders of results and what is no recording are passed over.
+    /// Lists and sorts the files of a folder; a sampling rate that is stated is that of files without one. Hidden files, folders of results and what is no recording are passed over.
     ///
     /// # Errors
     /// If a folder cannot be listed.
-    pub fn of(root: &Path, reader: &Reader) -> Result<Folder> {
+    pub fn of(root: &Path, reading: &Reading) -> Result<Folder> {
+        let (reader, with_rate) = (reading.untimed().reader()?, reading.reader()?);
         let (mut paths, mut others) = (Vec::new(), Vec::new());
         files(root, LEVELS, &mut paths, &mut others)?;
         paths.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
@@ -68,20 +72,23 @@ impl Folder {
             });
             found.lists.push((stem(path), within(path)));
         }
-        let mut groups: BTreeMap<(String, String), Vec<Member>> = BTreeMap::new();
+        let mut groups: BTreeMap<(String, String, bool), Vec<Member>> = BTreeMap::new();
         let mut order = Vec::new();
         let names: Vec<String> = paths.iter().map(|path| within(path)).collect();
         for path in &paths {
-            match reader.survey(path) {
+            let untimed = |headers: &[Header]| headers.iter().all(|h| h.kind == "trace" && h.rate.is_none());
+            let own = reader.survey(path).ok().filter(|(_, headers, _)| !untimed(headers));
+            let timed = own.is_some();
+            match own.map_or_else(|| with_rate.survey(path), Ok) {
                 Ok((_, headers, _)) if headers.is_empty() => {
                     found.left.push((within(path), "no records".to_owned()));
                 }
-                Ok((_, headers, _)) if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none()) => {
+                Ok((_, headers, _)) if untimed(&headers) => {
                     let why = "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder";
                     found.left.push((within(path), why.to_owned()));
                 }
                 Ok((_, headers, _)) => {
-                    let key = (apart(&within(path), &names).join("*"), signature(&headers));
+                    let key = (apart(&within(path), &names).join("*"), signature(&headers), timed);
                     if !groups.contains_key(&key) {
                         order.push(key.clone());
                     }
@@ -108,7 +115,7 @@ impl Folder {
                     header.name.clear();
                 }
             }
-            found.series.push(Series { name, files, headers, pattern });
+            found.series.push(Series { name, files, headers, pattern, timed: key.2 });
         }
         if let [first, more @ ..] = others.as_slice() {
             let names = match more.len() {
@@ -127,6 +134,12 @@ impl Series {
         let (force, responses) = self.force_and_responses()?;
         let table = Table::new("sweep", "a stepped sweep, one file a step", &self.in_words());
         let table = table.found("name", &self.name);
+        let name = self.name.to_lowercase();
+        let way = name.split(|c: char| !c.is_alphanumeric()).find(|word| ["up", "down"].contains(word));
+        let table = match way {
+            Some(way) => table.guessed("direction", way, "the name says it"),
+            None => table,
+        };
         let table = match &self.pattern {
             Some(pattern) => table.found("traces", pattern),
             None => table.found("traces", &self.files),

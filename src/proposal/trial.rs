@@ -26,6 +26,9 @@ const ANOTHER: &str = "pulse-not-alone";
 const AVERAGES: usize = 4;
 const LONG: usize = 8192;
 
+/// Share of a record from the beginning of its decay on that is the decay, at least, where impacts in a row are possible too.
+const MOSTLY: f64 = 0.2;
+
 /// Files that may be steps of a sweep.
 const STEPS: usize = 5;
 
@@ -52,7 +55,19 @@ impl<'a> Trial<'a> {
     /// The first of the tables that answers sensibly and without a doubt.
     fn first(&self, tables: &[Table]) -> Option<Table> {
         let sure = |table: &&Table| self.sensibly(from_ref(*table));
-        tables.iter().find(sure).cloned()
+        let mut answering = tables.iter().filter(sure);
+        let first = answering.next()?;
+        Some(if self.is_brief(first) { answering.next().unwrap_or(first) } else { first }.clone())
+    }
+
+    /// Whether a table is a decay that takes a small part of its record: where impacts in a row ring down, one of them is a decay, too.
+    fn is_brief(&self, table: &Table) -> bool {
+        let used = |heard: Heard| {
+            let decay = heard.result.get("decays")?.get(0)?;
+            let [start, end, last] = ["start", "end", "last"].map(|key| decay[key].as_f64());
+            Some((end? - start?) / (last? - start?))
+        };
+        table.section == "decay" && self.answers(from_ref(table)).ok().and_then(used) < Some(MOSTLY)
     }
 
     /// Whether the tables answer sensibly and without a doubt.

@@ -64,18 +64,25 @@ impl Page {
             })
         };
         let (doubts, others) = (list(&|s| s == Severity::Doubt), list(&|s| s != Severity::Doubt));
-        let n = all.iter().filter(|(severity, _)| *severity != Severity::Doubt).count();
+        let count =
+            |of: Severity, name: &str| match all.iter().filter(|(severity, _)| *severity == of).count() {
+                0 => None,
+                1 => Some(format!("1 {name}")),
+                n => Some(format!("{n} {name}s")),
+            };
+        let folded = [count(Severity::Caution, "caution"), count(Severity::Note, "note")];
+        let folded: Vec<String> = folded.into_iter().flatten().collect();
         let mut page = self;
         if !doubts.is_empty() {
             page = page.element(&format!("<ul class=\"findings\">\n{doubts}</ul>"));
         }
-        match n {
-            0 => page,
-            _ => page.element(&format!(
-                "<details><summary>{n} caution{} and notes</summary>\n<ul class=\"findings\">\n{others}</ul></details>",
-                if n == 1 { "" } else { "s" }
-            )),
+        if folded.is_empty() {
+            return page;
         }
+        let folded = folded.join(", ");
+        page.element(&format!(
+            "<details><summary>{folded}</summary>\n<ul class=\"findings\">\n{others}</ul></details>"
+        ))
     }
 
     /// Adds a table; a long one is folded.
@@ -228,6 +235,9 @@ const SCRIPTS: [&str; 6] = [
 
 /// Text with what stands between backticks as code.
 fn code(text: &str) -> String {
+    if text.matches('`').count() % 2 == 1 {
+        return text.to_owned();
+    }
     let parts = text.split('`').enumerate();
     parts.map(|(i, part)| if i % 2 == 1 { format!("<code>{part}</code>") } else { part.to_owned() }).collect()
 }

@@ -3,7 +3,7 @@
 use super::Medium;
 use crate::error::{Error, Place, Result};
 use std::fs;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 use tempfile::{NamedTempFile, TempPath};
 
@@ -90,7 +90,11 @@ impl Output {
             file.persist(&path).map_err(|e| Error::io("write", &path, e.error))?;
         }
         if self.written.len() > 1 {
-            fs::remove_file(&mark).map_err(|e| Error::io("remove", &mark, e))?;
+            match fs::remove_file(&mark) {
+                // Another run that ended here meanwhile has removed it.
+                Err(e) if e.kind() != ErrorKind::NotFound => return Err(Error::io("remove", &mark, e)),
+                _ => {}
+            }
         }
         Ok(self.written)
     }

@@ -82,7 +82,7 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
             let new = Said { finding, text: sentence(finding, voice), of: records.clone(), like: Vec::new() };
             match said.iter_mut().find(|known| known.takes(&new)) {
                 Some(known) if known.text == new.text => known.of.extend(new.of),
-                Some(known) => known.like.extend(new.of),
+                Some(known) => known.like.push((new.finding, new.of)),
                 None => said.push(new),
             }
         }
@@ -96,32 +96,45 @@ struct Said<'a> {
     finding: &'a Finding,
     text: String,
     of: Vec<&'a str>,
-    like: Vec<&'a str>,
+    like: Vec<(&'a Finding, Vec<&'a str>)>,
 }
 
 impl Said<'_> {
-    /// Whether another sentence of the same code can stand with this one: it is the same, or differs in numbers and is about other records.
+    /// Whether another sentence of the same code can stand with this one: it is the same, or differs in numbers and is about other records. A
+    /// doubt stands for itself.
     fn takes(&self, other: &Said<'_>) -> bool {
         let (a, b) = (self.finding, other.finding);
-        let about =
-            |record: &&str| record.is_empty() || self.of.contains(record) || self.like.contains(record);
+        let about = |record: &&str| record.is_empty() || self.of.contains(record);
         let name = |(_, fact): &&(&str, Fact)| matches!(fact, Fact::Name(_));
         let alike = a.subject == b.subject && a.facts.iter().filter(name).eq(b.facts.iter().filter(name));
-        a.code == b.code
-            && (self.text == other.text || alike && !self.of.contains(&"") && !other.of.iter().any(about))
+        let apart = a.severity < Severity::Doubt && !self.of.contains(&"") && !other.of.iter().any(about);
+        a.code == b.code && (self.text == other.text || alike && apart)
     }
 
     fn whole(&self) -> String {
-        let like = match self.like.as_slice() {
-            [] => String::new(),
-            like => format!(" The same, with numbers of its own: {}.", like.join("; ")),
+        let also = |(finding, records): &(&Finding, Vec<&str>)| {
+            let numbers = differing(self.finding, finding).join(", ");
+            format!("{} ({numbers})", records.join("; "))
         };
+        let like: Vec<String> = self.like.iter().map(also).collect();
+        let like = if like.is_empty() { String::new() } else { format!(" Also: {}.", like.join("; ")) };
         if self.of.contains(&"") {
             self.text.clone()
         } else {
             format!("{}: {}{like}", self.of.join("; "), self.text)
         }
     }
+}
+
+/// The numbers in which a finding differs from another one of its code, as the sentence shows them.
+fn differing(from: &Finding, finding: &Finding) -> Vec<String> {
+    let template = SENTENCES.get(finding.code).copied().unwrap_or_default();
+    let places = template.split('{').skip(1).filter_map(|part| part.split('}').next());
+    let shown = places.filter(|place| !place.contains('?')).filter_map(|place| {
+        let (own, other) = (shown(place, finding)?, shown(place, from));
+        (Some(&own) != other.as_ref()).then_some(own)
+    });
+    shown.collect()
 }
 
 /// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none itself, and the sentences
@@ -272,7 +285,7 @@ mod tests {
         let all =
             [of("a", "impacts-doubled", 1), of("b", "impacts-doubled", 2), of("c", "impacts-doubled", 1)];
         let first = "a; c: 1 impact follows another too soon: left out of the mean interval.";
-        assert_eq!(said(&all), [format!("{first} The same, with numbers of its own: b.")]);
+        assert_eq!(said(&all), [format!("{first} Also: b (2 impacts).")]);
         // Two of one record are two facts.
         assert_eq!(said(&[of("a", "impacts-doubled", 1), of("a", "impacts-doubled", 2)]).len(), 2);
     }

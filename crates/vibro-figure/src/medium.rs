@@ -1,6 +1,7 @@
 //! What a figure is drawn for.
 
-use crate::{Drawing, Figure};
+use crate::colour::{Rgb, SERIES};
+use crate::{Drawing, Figure, Heatmap};
 use resvg::tiny_skia::PremultipliedColorU8;
 
 /// Where a figure is to stand.
@@ -47,7 +48,7 @@ impl Figure {
 }
 
 impl Drawing {
-    /// The drawing in grey: the maps' colours are as light as their values, series differ in marker and dash.
+    /// The drawing in grey: the maps' colours are as light as their values, series and classes differ in level.
     fn grey(mut self) -> Drawing {
         let coloured = |part: &str| {
             let rgb = u32::from_str_radix(part.get(..6)?, 16).ok()?.to_be_bytes();
@@ -66,8 +67,15 @@ impl Drawing {
     }
 }
 
-/// The luma of a colour (ITU-R BT.601).
+/// Greys of the colours of series: neighbours far apart, and the last black as it is.
+const LEVELS: [u8; 7] = [50, 135, 95, 170, 200, 225, 0];
+
+/// The grey of a colour: that of its place among series or classes, else its luma (ITU-R BT.601).
 fn grey([r, g, b]: [u8; 3]) -> u8 {
+    let places = SERIES.into_iter().zip(LEVELS).chain((0..).map(Heatmap::class_colour).zip(LEVELS));
+    if let Some((_, level)) = places.into_iter().find(|(colour, _)| *colour == Rgb(r, g, b)) {
+        return level;
+    }
     (0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b)).round() as u8
 }
 
@@ -92,6 +100,15 @@ mod tests {
             colours.clone().all(|c| c[..2] == c[2..4] && c[2..4] == c[4..]) && colours.count() > 2,
             "{svg}"
         );
+    }
+
+    #[test]
+    fn greys_of_series_and_classes_are_apart() {
+        for colours in [SERIES.to_vec(), (0..SERIES.len()).map(Heatmap::class_colour).collect()] {
+            let mut levels: Vec<u8> = colours.iter().map(|c| grey([c.0, c.1, c.2])).collect();
+            levels.sort_unstable();
+            assert!(levels.windows(2).all(|pair| pair[1] - pair[0] >= 20), "{levels:?}");
+        }
     }
 
     #[test]

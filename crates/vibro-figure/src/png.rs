@@ -17,7 +17,7 @@ impl Drawing {
     pub fn png(&self, dpi: f64) -> Result<Vec<u8>> {
         let dpi = if dpi.is_nan() { 300.0 } else { dpi.clamp(30.0, 1200.0) };
         let refused = |why: String| Error::refused(format!("the figure \"{}\" {why}", self.name));
-        let (width, height) = self.size;
+        let (width, height) = (self.size.0 * self.scale, self.size.1 * self.scale);
         let pixels = |mm: f64| (mm / 25.4 * dpi).round().max(1.0) as u32;
         let (across, down) = (pixels(width), pixels(height));
         let mut pixmap = Some((across, down))
@@ -28,7 +28,7 @@ impl Drawing {
                     .hint("fewer dots per inch, or the SVG, which has no pixels")
             })?;
         pixmap.fill(Color::WHITE);
-        let points = dpi as f32 / 72.0;
+        let points = (dpi * self.scale) as f32 / 72.0;
         for Image { place, pixels } in &self.canvas.images {
             let scale = |size: f64, cells: u32| size as f32 / cells as f32 * points;
             let (sx, sy) = (scale(place.w, pixels.width()), scale(place.h, pixels.height()));
@@ -46,8 +46,7 @@ impl Drawing {
         let transform =
             Transform::from_scale(across as f32 / tree.size().width(), down as f32 / tree.size().height());
         resvg::render(&tree, transform, &mut pixmap.as_mut());
-        // So many pixels a millimetre as it stands in print.
-        Ok(encoded(&pixmap, Some(dpi / self.scale)))
+        Ok(encoded(&pixmap, Some(dpi)))
     }
 }
 

@@ -128,7 +128,7 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
         _ if axis.len() < 2 => None,
         // Steps may differ by rounding in binary; a thousandth of a step is visible.
         Some(step) if largest - smallest > 2e-3 * step => {
-            Some(Finding::caution("axis-rounded").number("step", step))
+            Some(Finding::note("axis-rounded").number("step", step))
         }
         Some(_) => None,
         None if smallest > 0.0 => Some(Finding::caution("axis-uneven")),

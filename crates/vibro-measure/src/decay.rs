@@ -331,6 +331,7 @@ impl Sines {
         Ok(DecayResult {
             start: at(part.start),
             end: at(part.end - 1),
+            last: at(trace.values.len() - 1),
             modes,
             levels,
             decrement,

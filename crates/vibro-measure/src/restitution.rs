@@ -115,7 +115,9 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         let matters = |at: (&Way, &f64)| at.0.restitution.std.is_some_and(|s| by_contact(at) > s);
         let moved: Vec<f64> = by.iter().zip(&bias).map(by_contact).collect();
         if by.iter().zip(&bias).any(matters) {
-            findings.push(Finding::caution("contact-time-unsaid").numbers("parts", bias));
+            let methods: Vec<&str> = by.iter().map(|way| way.method).collect();
+            let found = Finding::caution("contact-time-unsaid").numbers("parts", bias);
+            findings.push(found.name("methods", methods.join(", ")));
         }
         for (way, moved) in by.iter_mut().zip(moved) {
             way.restitution.std = way.restitution.std.map(|std| std.hypot(moved));

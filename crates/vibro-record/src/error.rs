@@ -189,6 +189,16 @@ impl Error {
         self
     }
 
+    /// Names the file that named another one, which is said beside what was found.
+    pub fn named_in(mut self, path: &Path) -> Self {
+        if let Some(other) =
+            self.fault().and_then(|fault| fault.place.path.take()).filter(|other| other != path)
+        {
+            self = self.aside(other.display());
+        }
+        self.in_file(path)
+    }
+
     /// Says the place where none is known yet.
     pub fn at(mut self, place: &Place) -> Self {
         if let Some(fault) = self.fault()

@@ -43,9 +43,9 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
     // The answer's model last, over the others.
     for (i, curve) in picture.curves.iter().enumerate().rev() {
         let stroke = match (i, dense) {
-            (0, false) => Stroke::Solid,
-            (0, true) => Stroke::Dashed,
-            _ => Stroke::Thin,
+            (0, false) => Some(Stroke::Solid),
+            (0, true) => Some(Stroke::Dashed),
+            _ => None,
         };
         let shifted = |points: &[(f64, f64)]| -> (Vec<f64>, Vec<f64>) {
             points.iter().map(|p| (p.0 - start, p.1)).unzip()
@@ -58,15 +58,15 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
             ContactModel::Yielding => "yielding spring".to_owned(),
         };
         let (t, v) = shifted(&curve.points);
-        above = above.with(Series::line(name, t, v).ink(Ink::Nth(i)).stroke(stroke));
+        above = above.with(Series { stroke, ..Series::line(name, t, v).ink(Ink::Nth(i)) });
         let inside: Vec<(f64, f64)> =
             curve.residuals.iter().copied().filter(|r| (from..=to).contains(&r.0)).collect();
         let (t, r) = shifted(&inside);
-        let stroke = if i == 0 { Stroke::Solid } else { Stroke::Thin };
-        below = below.with(Series::line("", t, r).ink(Ink::Nth(i)).stroke(stroke));
+        let stroke = (i == 0).then_some(Stroke::Solid);
+        below = below.with(Series { stroke, ..Series::line("", t, r).ink(Ink::Nth(i)) });
     }
     let begins = if onset.is_some() { "the contact of spring and damper" } else { "what is shown" };
-    let at = significant(start, 7);
+    let at = significant(start, 4);
     Some(lettered(Figure::double(title).height(110.0).shared_x().panel(above).panel(below)).caption(format!(
         "Contact pulse with the models fitted to it (a), and what they leave (b); {begins} begins at {at} s of the record."
     )))

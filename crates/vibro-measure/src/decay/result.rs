@@ -43,6 +43,8 @@ pub struct DecayResult {
     pub start: f64,
     /// Its end in s.
     pub end: f64,
+    /// End of the record in s.
+    pub last: f64,
     /// Modes by rising frequency.
     pub modes: Vec<DecayMode>,
     /// The strongest mode over falling amplitude, where the part is long enough.

@@ -95,10 +95,12 @@ impl Drop {
         });
         if std.is_none() {
             let without = Finding::caution("drop-without-uncertainty").count("n", n);
-            findings.push(match timing {
+            let without = match timing {
                 Some(timing) => without.number("timing", value * timing / mean),
-                None => without,
-            });
+                None => without.count("drops", n),
+            };
+            let known = self.height_std.is_some();
+            findings.push(if known { without } else { without.number("height", self.height) });
         }
         let of = if n == 1 { "one drop".to_owned() } else { format!("the mean of {n} drops") };
         let restitution = Estimate::new(value, std, "1", n, format!("(Δt/2)√(g/2h) of {of}"));

@@ -220,7 +220,9 @@ class Plot {
 
   pen(c, series, ink, ratio) {
     const { colour, width, dashes } = series.look;
-    c.strokeStyle = colour === "#000000" ? ink : colour;
+    // On a dark page black is white, and greys are as far from the paper as in print.
+    const [r, g, b] = [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16)), dark = ink > "#8";
+    c.strokeStyle = colour === "#000000" ? ink : dark && r === g && g === b ? `rgb(${255 - r},${255 - r},${255 - r})` : colour;
     c.fillStyle = c.strokeStyle;
     c.lineWidth = 1.3 * width * ratio;
     c.setLineDash(dashes.map((d) => 1.3 * d * ratio));
@@ -245,7 +247,7 @@ class Plot {
       width, height: this.height, legend: { show: false },
       cursor: { drag: { x: true, y: true, uni: 20 }, points: { show: false } },
       scales: { x: scale(x, x.log, x.low), y: scale(y, this.log, low) },
-      axes: [rule(x, 34, x.log), rule(y, width < 420 ? 46 : 58, this.log)],
+      axes: [rule(x, 34, x.log), { ...rule(y, width < 420 ? 50 : 70, this.log), ...(y.title.endsWith("(°)") ? { incrs: [5, 15, 45, 90, 180] } : {}) }],
       series: [{}, { paths: () => null, points: { show: false } }],
       hooks: {
         drawClear: [() => this.map && this.cells()],
