@@ -119,8 +119,7 @@ pub(super) fn look(response: &Response, rank: usize) -> (Option<Marker>, Ink) {
         (Some(2), false) => Some(Marker::FilledSquare),
         (Some(2), true) => Some(Marker::Square),
         (Some(_), false) => Some(Marker::Circle),
-        (Some(_), true) => Some(Marker::OpenCircle),
-        (None, true) => Some(Marker::OpenCircle),
+        (_, true) => Some(Marker::OpenCircle),
         (None, false) => None,
     };
     (marker, Ink::Nth(response.mass.map_or(rank, |mass| 2 * rank + usize::from(mass.saturating_sub(1)))))

@@ -56,8 +56,8 @@ function strokes(c, x, y, s, lines) {
   }
 }
 
-/** Draws one marker of a name; open ones are filled with the paper. */
-function mark(c, name, x, y, s, colour, paper) {
+/** Draws one marker of a name. */
+function mark(c, name, x, y, s, colour) {
   const open = name.startsWith("open-");
   const path = MARKERS[open ? name.slice(5) : name];
   c.beginPath();
@@ -66,9 +66,10 @@ function mark(c, name, x, y, s, colour, paper) {
     c.fillText(name, x, y);
     return;
   }
-  path(c, x, y, s);
-  c.fillStyle = open ? paper : colour;
-  c.fill();
+  // As in print, an open one shows around a filled one.
+  path(c, x, y, open ? 1.3 * s : s);
+  c.fillStyle = colour;
+  if (!open) c.fill();
   c.stroke();
 }
 
@@ -204,7 +205,7 @@ class Plot {
   key(series) {
     const canvas = document.createElement("canvas");
     [canvas.width, canvas.height, canvas.className] = [52, 28, "key"];
-    const c = canvas.getContext("2d"), { ink, paper } = theme(this.host);
+    const c = canvas.getContext("2d"), { ink } = theme(this.host);
     this.pen(c, series, ink, 2);
     if (series.joined) {
       c.beginPath();
@@ -213,7 +214,7 @@ class Plot {
       c.stroke();
     }
     c.setLineDash([]);
-    if (series.shape === "points") mark(c, series.look.marker, 26, 14, 8, c.strokeStyle, paper);
+    if (series.shape === "points") mark(c, series.look.marker, 26, 14, 8, c.strokeStyle);
     if (series.shape === "band" || series.shape === "bars") c.fillRect(4, 4, 44, 20);
     return canvas;
   }
@@ -294,14 +295,14 @@ class Plot {
   }
 
   draw() {
-    const { ink, paper, font } = theme(this.host), ratio = devicePixelRatio;
+    const { ink, font } = theme(this.host), ratio = devicePixelRatio;
     this.inFrame((c) => {
       c.textAlign = "left";
       c.textBaseline = "alphabetic";
       c.font = font.replace("12px", `${11 * ratio}px`);
       for (const series of this.series.filter((s) => !s.hidden)) {
         this.pen(c, series, ink, ratio);
-        this[series.shape]?.(c, series, paper, ratio);
+        this[series.shape]?.(c, series, ratio);
       }
       c.setLineDash([]);
       c.fillStyle = ink;
@@ -325,7 +326,7 @@ class Plot {
     c.stroke();
   }
 
-  points(c, series, paper, ratio) {
+  points(c, series, ratio) {
     if (series.joined) this.line(c, series);
     c.setLineDash([]);
     c.lineWidth = ratio;
@@ -341,7 +342,7 @@ class Plot {
     const colour = c.strokeStyle;
     for (let i = 0; i < series.x.length; i++) {
       const [x, y] = this.at(series.x[i], series.y[i]);
-      if (Number.isFinite(x + y)) mark(c, series.look.marker, x, y, size, colour, paper);
+      if (Number.isFinite(x + y)) mark(c, series.look.marker, x, y, size, colour);
     }
   }
 
@@ -367,11 +368,11 @@ class Plot {
     c.globalAlpha = 1;
   }
 
-  vertical(c, series, _, ratio) {
+  vertical(c, series, ratio) {
     this.reference(c, series, [series.x[0], null], ratio);
   }
 
-  horizontal(c, series, _, ratio) {
+  horizontal(c, series, ratio) {
     this.reference(c, series, [null, series.y[0]], ratio);
   }
 
