@@ -7,8 +7,10 @@ use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
+use crate::record::Trace;
 use crate::report::layout::{Shown, table};
 use crate::report::{Cell, Table};
+use crate::units::notation::significant;
 use serde::Deserialize;
 
 /// What is known of drops of one series beside their records.
@@ -187,7 +189,9 @@ impl Series {
         let (train, found) = Train::of(&trace, &how)?;
         self.trains.push(train);
         self.answer.add(&file, &recording.findings);
-        self.answer.add(&file, &trace.meta.findings);
+        // Times alone matter here.
+        let of_trace = trace.meta.findings.iter().filter(|found| found.code != Trace::UNCALIBRATED);
+        self.answer.add(&file, of_trace);
         self.answer.add(&file, &found.findings);
         self.answer
             .figure(format!("drop_{number}"), impacts::figures::drop(source.name, &trace, &found.times));
@@ -217,7 +221,7 @@ impl Series {
         let columns: [Shown<Restitution>; 3] = [
             ("series", "", &|_| name.into()),
             ("methods", "", &|r| together(r).into()),
-            ("standard uncertainty by bootstrap", "1", &|r| r.bootstrap_std.into()),
+            ("std of R by bootstrap", "", &|r| r.bootstrap_std.map(|std| significant(std, 2)).into()),
         ];
         if found.by.len() > 1 || found.bootstrap_std.is_some() {
             answer.tables.push(table("Methods compared", [found], &columns));

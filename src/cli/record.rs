@@ -88,7 +88,10 @@ impl Record {
         json: bool,
         measure: impl FnOnce(&Source<'_>) -> Result<T>,
     ) -> Result<T> {
-        let name = file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let name = match file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned()) {
+            pipe if pipe == "-" => "standard input".to_owned(),
+            name => name,
+        };
         print::busy(json, "samples", |bar| {
             measure(&Source {
                 name: &name,

@@ -114,7 +114,8 @@ impl Said<'_> {
     fn whole(&self) -> String {
         let also = |(finding, records): &(&Finding, Vec<&str>)| {
             let numbers = differing(self.finding, finding).join(", ");
-            format!("{} ({numbers})", records.join("; "))
+            let numbers = if numbers.is_empty() { numbers } else { format!(" ({numbers})") };
+            format!("{}{numbers}", records.join("; "))
         };
         let like: Vec<String> = self.like.iter().map(also).collect();
         let like = if like.is_empty() { String::new() } else { format!(" Also: {}.", like.join("; ")) };
