@@ -201,9 +201,15 @@ fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
 
 fn channels_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<()> {
     for entry in entries::<A>(campaign)? {
-        let (Some(file), Some(channel)) = (&entry.file, &entry.channel.channel) else { continue };
+        let Some(file) = &entry.file else { continue };
         let path = campaign.file(&entry, "file", file, allow_outside)?;
         let (_, headers, _) = entry.reading.reader()?.survey(&path)?;
+        // Values that are numbered, as a step without a rate shows.
+        if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
+            let error = Error::usage(format!("{} has no sampling rate", path.display()), "rate = HZ");
+            return Err(campaign.fault(&entry, error.setting("rate").setting("file")));
+        }
+        let Some(channel) = &entry.channel.channel else { continue };
         let names = headers.iter().map(|h| h.name.as_str());
         find_channel(&path, channel, names).map_err(|e| campaign.fault(&entry, e.setting("channel")))?;
     }

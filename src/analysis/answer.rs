@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::record::Finding;
 use crate::report::files::Files;
 use crate::report::words::About;
+use crate::report::words::Voice;
 use crate::report::{Figure, Table};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -78,7 +79,9 @@ pub(crate) fn unwritten(error: serde_json::Error) -> Error {
 pub fn left_out(error: Error) -> Result<Finding> {
     let Some(why) = error.refusal() else { return Err(error) };
     let found = Finding::caution("left-out").name("why", why.trim_end_matches('.'));
-    Ok(if error.advice().is_empty() { found } else { found.name("hint", error.advice()) })
+    let keys: Vec<String> = error.settings().iter().map(|key| Voice::Campaign.setting(key)).collect();
+    let keys = if keys.is_empty() { String::new() } else { format!(" ({})", keys.join(", ")) };
+    Ok(if error.advice().is_empty() { found } else { found.name("hint", error.advice().to_owned() + &keys) })
 }
 
 #[cfg(test)]

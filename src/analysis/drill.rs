@@ -80,9 +80,9 @@ pub struct Keys {
     pub exposure: Option<f64>,
 }
 
-/// The value of a key that has no default.
-fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
-    let expected = match key {
+/// What a key without a default says.
+fn expected(key: &str) -> &'static str {
+    match key {
         "velocity" => "the channel of the velocity, by name or number",
         "beam_angle" => "the angle of the laser beam in degrees",
         "beam_from" => "normal or axis: what the beam angle is counted from",
@@ -92,9 +92,13 @@ fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
             "m/s for one unit of the velocity channel: the file does not say that it is a velocity"
         }
         _ => "m/s² for one unit of the handle channels: the file does not say that they are accelerations",
-    };
+    }
+}
+
+/// The value of a key that has no default.
+fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     value.ok_or_else(|| {
-        Error::usage(format!("{} is not stated", key.replace('_', " ")), expected).setting(key)
+        Error::usage(format!("{} is not stated", key.replace('_', " ")), expected(key)).setting(key)
     })
 }
 
@@ -120,14 +124,18 @@ impl Keys {
             ("velocity", self.velocity.is_some()),
             ("beam_angle", self.beam_angle.is_some()),
             ("beam_from", self.beam_from.is_some()),
+            ("pulses_per_turn", self.pulses_per_turn.is_some() || self.reference.is_none()),
+            ("edge", self.edge.is_some() || self.reference.is_none()),
         ];
-        let missing =
-            stated.into_iter().filter(|(_, stated)| !stated).map(|(key, _)| needed::<()>(key, None));
-        // One complaint names all.
-        let first = missing.filter_map(Result::err).reduce(|all, next| {
-            next.settings().iter().fold(all.aside(next.to_string()), |all, key| all.setting(key))
-        });
-        first.map_or(Ok(()), Err)?;
+        let missing: Vec<&'static str> =
+            stated.iter().filter(|(_, stated)| !stated).map(|row| row.0).collect();
+        if let [first, more @ ..] = missing.as_slice() {
+            let names = missing.iter().map(|key| key.replace('_', " ")).collect::<Vec<_>>().join(", ");
+            let expected = missing.iter().map(|key| expected(key)).collect::<Vec<_>>().join("; ");
+            let are = if more.is_empty() { "is" } else { "are" };
+            let error = Error::usage(format!("{names} {are} not stated"), expected).setting(first);
+            return Err(more.iter().fold(error, |error, key| error.setting(key)));
+        }
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {

@@ -65,6 +65,9 @@ fn advice(error: &clap::Error) -> Option<String> {
         return Some("one file at a time; for all of a folder: vibro run FOLDER".to_owned());
     }
     let value = error.get(ContextKind::InvalidValue)?.to_string();
+    if error.to_string().contains("':'") {
+        return Some(value.replacen([',', '-', ';'], ":", 1));
+    }
     let point = value.replacen(',', ".", 1);
     if value != point && point.parse::<f64>().is_ok() {
         return Some(format!("a decimal point: {point}"));

@@ -70,10 +70,13 @@ impl Reader {
             let reference = reference.map(|name| all.channel(name)).transpose()?;
             let others: Vec<usize> = (0..all.channels().len()).filter(|i| Some(*i) != reference).collect();
             if others.len() != 1 {
-                let names: Vec<&str> = all.channels().iter().map(|m| m.name.as_str()).collect();
+                let names: Vec<&str> = others.iter().map(|i| all.channels()[*i].name.as_str()).collect();
                 let found = format!("{} channels to choose from, and none was chosen", others.len());
-                return Err(Error::input(Place::file(file), found, names.join(", "))
-                    .hint("name one, by its name or its number from 1")
+                return Err(Error::input(Place::file(file), found, format!("one of {}", names.join(", ")))
+                    .hint(names.first().map_or_else(
+                        || "another file".to_owned(),
+                        |name| format!("{name:?}, or its number from 1"),
+                    ))
                     .setting("channel"));
             }
             all.keep(&reference.into_iter().chain(others).collect::<Vec<usize>>());

@@ -42,9 +42,9 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     for mode in modes {
         above = above.with(Series::vertical(format!("{:.2} Hz", mode.frequency.value), mode.frequency.value));
     }
-    let figure = Figure::double(title).caption(
-        "Frequency response function with the modes fitted to it; vertical lines are natural frequencies.",
-    );
+    let fitted = " with the modes fitted to it; vertical lines are natural frequencies";
+    let fitted = if modes.is_empty() { "" } else { fitted };
+    let figure = Figure::double(title).caption(format!("Frequency response function{fitted}."));
     if measured.magnitude_only {
         return figure.panel(above);
     }

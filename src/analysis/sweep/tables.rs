@@ -83,7 +83,7 @@ fn imaginary(receptance: Receptance) -> f64 {
 }
 
 /// What the kinds of resonances mean, a line each.
-const KINDS: &str = "Resonance: a peak of the amplitude, by the points around it. Modes of the sweep, from [[frf]], use all points and their phase.\nGrazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: an antiresonance if the phase rises there by 180°; the amplitude alone does not show it.";
+const KINDS: &str = "Resonance: a peak of the amplitude, by the points around it. Modes of the sweep (a table [[frf]] of the campaign) use all points and their phase.\nGrazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: an antiresonance if the phase rises there by 180°; the amplitude alone does not show it.";
 
 /// Resonances and antiresonances.
 pub fn resonances(responses: &[Response]) -> Table {

@@ -322,7 +322,7 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
         text(&out),
     ]);
     let said = found["warnings"].to_string();
-    assert!(said.contains("Of 3 blows some are left out, 1 double hit"), "{said}");
+    assert!(said.contains("Left out of 3 blows: 1 double hit. `blows` lists all."), "{said}");
     // e^(−0.003·784) = 9.5 % are left.
     assert!(said.contains("remains when the record of a blow ends"), "{said}");
     for name in ["frf.csv", "frf.uff"] {

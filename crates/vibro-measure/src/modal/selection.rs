@@ -313,7 +313,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         peaks.retain(|p| within.contains(&p.at));
     }
     if peaks.is_empty() {
-        let [first, last] = [f[0], f[f.len() - 1]].map(shortest);
+        let [first, last] = [f[0], f[f.len() - 1]].map(|f| shortest(format!("{f:.4e}").parse().unwrap_or(f)));
         let between = band.map_or_else(String::new, |(low, high)| format!(" between {low} and {high} Hz"));
         let why = format!(
             "no peak{between} stands a factor of {PROMINENCE} above its valleys and clear of the noise; the function runs from {first} to {last} Hz"

@@ -248,7 +248,7 @@ class Plot {
       width, height: this.height, legend: { show: false },
       cursor: { drag: { x: true, y: true, uni: 20 }, points: { show: false } },
       scales: { x: scale(x, x.log, x.low), y: scale(y, this.log, low) },
-      axes: [rule(x, 34, x.log), { ...rule(y, width < 420 ? 50 : 70, this.log), ...(y.title.endsWith("(°)") ? { incrs: [5, 15, 45, 90, 180] } : {}) }],
+      axes: [rule(x, 34, x.log), { ...rule(y, width < 420 ? 64 : 70, this.log), ...(y.title.endsWith("(°)") ? { incrs: [5, 15, 45, 90, 180] } : {}) }],
       series: [{}, { paths: () => null, points: { show: false } }],
       hooks: {
         drawClear: [() => this.map && this.cells()],
