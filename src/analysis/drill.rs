@@ -130,10 +130,13 @@ impl Keys {
         let missing: Vec<&'static str> =
             stated.iter().filter(|(_, stated)| !stated).map(|row| row.0).collect();
         if let [first, more @ ..] = missing.as_slice() {
-            let names = missing.iter().map(|key| key.replace('_', " ")).collect::<Vec<_>>().join(", ");
-            let expected = missing.iter().map(|key| expected(key)).collect::<Vec<_>>().join("; ");
-            let are = if more.is_empty() { "is" } else { "are" };
-            let error = Error::usage(format!("{names} {are} not stated"), expected).setting(first);
+            let expected = missing.iter().map(|key| format!("{}: {}", key.replace('_', " "), expected(key)));
+            let expected = expected.collect::<Vec<_>>().join("; ");
+            let found = match missing.len() {
+                1 => "1 key without a default is not stated".to_owned(),
+                n => format!("{n} keys without a default are not stated"),
+            };
+            let error = Error::usage(found, expected).setting(first);
             return Err(more.iter().fold(error, |error, key| error.setting(key)));
         }
         // A beam from which nothing is seen leaves its own record out.

@@ -74,7 +74,7 @@ pub fn tell(proposal: &Proposal) {
     let mut series: Vec<(&str, &str)> = Vec::new();
     for table in &proposal.tables {
         if series.contains(&(table.section, table.name())) {
-            complain::line(&format!("{} -> [[{}]], as before", table.in_words(), table.section));
+            complain::line(&format!("{} -> [[{}]], of the same series", table.in_words(), table.section));
             continue;
         }
         series.push((table.section, table.name()));

@@ -115,15 +115,23 @@ impl Said<'_> {
         let also = |(finding, records): &(&Finding, Vec<&str>)| {
             let numbers = differing(self.finding, finding).join(", ");
             let numbers = if numbers.is_empty() { numbers } else { format!(" ({numbers})") };
-            format!("{}{numbers}", records.join("; "))
+            format!("{}{numbers}", names(records))
         };
         let like: Vec<String> = self.like.iter().map(also).collect();
         let like = if like.is_empty() { String::new() } else { format!(" Also: {}.", like.join("; ")) };
         if self.of.contains(&"") {
             self.text.clone()
         } else {
-            format!("{}: {}{like}", self.of.join("; "), self.text)
+            format!("{}: {}{like}", names(&self.of), self.text)
         }
+    }
+}
+
+/// Records by their names; many by the first and the last.
+fn names(records: &[&str]) -> String {
+    match records {
+        [first, .., last] if records.len() > 4 => format!("{} records, {first} to {last}", records.len()),
+        few => few.join("; "),
     }
 }
 

@@ -44,7 +44,13 @@ impl Source {
                 .map_err(|e| Error::io("read", "standard input", e))?;
             return Source::memory(PIPE, held.clone());
         }
-        let info = std::fs::metadata(path).map_err(|e| Error::io("open", path, e))?;
+        let info = std::fs::metadata(path).map_err(|e| {
+            if path.to_string_lossy().contains(['*', '?']) {
+                return Error::input(Place::file(path), "not the name of one file", "a pattern of one file")
+                    .hint("vibro run FOLDER takes all files of a folder");
+            }
+            Error::io("open", path, e)
+        })?;
         if info.is_dir() {
             return Err(Error::input(Place::file(path), "this is a folder", "a measurement file")
                 .hint("name a file in it"));

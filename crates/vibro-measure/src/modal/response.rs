@@ -103,8 +103,12 @@ impl Measured {
         if found.is_empty() {
             let what = channel.map_or_else(String::new, |c| format!(" named {c:?}"));
             return Err(refused.unwrap_or_else(|| {
-                Error::refused(format!("no frequency response function{what}"))
-                    .hint("`vibro info` lists what is in the file")
+                let error = Error::refused(format!("no frequency response function{what}"));
+                if records.iter().any(|record| matches!(record, Record::Trace(_))) {
+                    error.hint("name the channel of the force").setting("reference")
+                } else {
+                    error.hint("`vibro info` lists what is in the file")
+                }
             }));
         }
         if let [(_, only)] = found.as_mut_slice()
@@ -183,9 +187,12 @@ impl Measured {
             Finding::caution("frf-lines-low-coherence").number("least", least),
         ] {
             let lines: Vec<usize> = (0..n).filter(|i| wrong(*i) == Some(finding.code)).collect();
-            if !lines.is_empty() {
+            if let [from, more @ ..] = lines.as_slice() {
                 let first: Vec<f64> = lines.iter().take(NAMED).map(|i| self.frequency[*i]).collect();
-                findings.push(finding.count("n", lines.len()).numbers("lines", first));
+                let found = finding.count("n", lines.len()).numbers("lines", first);
+                let found = found.number("from", self.frequency[*from]);
+                let to = more.last().map(|to| self.frequency[*to]);
+                findings.push(to.map_or(found.clone(), |to| found.number("to", to)));
             }
         }
         let kept: Vec<usize> = (0..n).filter(|i| self.frequency[*i] > 0.0 && wrong(*i).is_none()).collect();
