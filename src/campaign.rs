@@ -42,6 +42,7 @@ pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Parameter, Rig, Scene};
 use crate::read::inside;
+use crate::record::Finding;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -89,10 +90,7 @@ impl Campaign {
         let other = |found: &str, expected: &str| Error::input(Place::file(path), found, expected);
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || path.is_dir() {
             if !path.exists() {
-                return Err(other(
-                    "there is no such file or folder",
-                    "a campaign file, NAME.toml, or a folder of recordings",
-                ));
+                return Err(Error::absent(format!("there is no {}", path.display()), path));
             }
             return Err(other("not a campaign", "a campaign file, NAME.toml, or a folder of recordings")
                 .hint("a list of files goes to `vibro response`; docs/campaign.md shows a campaign"));
@@ -142,6 +140,15 @@ impl Campaign {
         let parsed = DeTable::parse(&self.text);
         let parsed = parsed.map_err(|e| locate::toml_error(&self.path, &self.text, &e, &[]))?;
         Ok(parsed.into_inner())
+    }
+
+    /// The tables that stand in it as comments, and so are left out.
+    pub(crate) fn commented(&self) -> Vec<Finding> {
+        let table = |(i, line): (usize, &str)| {
+            let name = line.strip_prefix('#')?.trim_start().strip_prefix("[[")?.split("]]").next()?;
+            Some(Finding::note("table-in-comment").about(format!("[[{name}]]")).count("line", i + 1))
+        };
+        self.text.lines().enumerate().filter_map(table).collect()
     }
 
     /// Its text.
@@ -227,11 +234,11 @@ impl Campaign {
         if path.exists() {
             return Ok(path);
         }
-        let hint = match &self.made_by {
-            Some(command) => format!("`{command}` makes it"),
-            None => "names are relative to the folder of the campaign file".to_owned(),
+        let error = Error::absent(format!("the file {} does not exist", path.display()), &path);
+        let error = match &self.made_by {
+            Some(command) => error.hint(format!("`{command}` makes it")),
+            None => error,
         };
-        let error = Error::usage(format!("the file {} does not exist", path.display()), "").hint(hint);
         Err(self.fault(entry, error.setting(key)))
     }
 }

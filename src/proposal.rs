@@ -192,8 +192,9 @@ impl Proposal {
     /// If it is no folder, cannot be listed, or holds no recording.
     pub fn of(folder: &Path, reading: &Reading, progress: &dyn Progress) -> Result<Proposal> {
         if !folder.is_dir() {
-            let found = if folder.exists() { "this is a file" } else { "there is no such folder" };
-            return Err(Error::input(Place::file(folder), found, "a folder of recordings"));
+            let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
+            let absent = || Error::absent(format!("there is no folder {}", folder.display()), folder);
+            return Err(if folder.exists() { error.hint("name the folder that holds it") } else { absent() });
         }
         let found = folder::Folder::of(folder, reading)?;
         let mut proposal = Proposal { folder: folder.to_owned(), tables: Vec::new(), left: found.left };

@@ -79,7 +79,7 @@ pub(crate) fn unwritten(error: serde_json::Error) -> Error {
 pub fn left_out(error: Error) -> Result<Finding> {
     let Some(why) = error.refusal() else { return Err(error) };
     let found = Finding::caution("left-out").name("why", why.trim_end_matches('.'));
-    let keys: Vec<String> = error.settings().iter().map(|key| Voice::Campaign.setting(key)).collect();
+    let keys: Vec<String> = error.settings().map(|key| Voice::Campaign.setting(key)).collect();
     let keys = if keys.is_empty() { String::new() } else { format!(" ({})", keys.join(", ")) };
     Ok(if error.advice().is_empty() { found } else { found.name("hint", error.advice().to_owned() + &keys) })
 }

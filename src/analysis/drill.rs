@@ -10,6 +10,7 @@ use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
 use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Slices, Smoothing, drill_each};
+use crate::read::Header;
 use file::Channels;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -80,25 +81,31 @@ pub struct Keys {
     pub exposure: Option<f64>,
 }
 
-/// What a key without a default says.
-fn expected(key: &str) -> &'static str {
+/// What a key without a default says, and how a value of it is written.
+fn expected(key: &str) -> (&'static str, &'static str) {
     match key {
-        "velocity" => "the channel of the velocity, by name or number",
-        "beam_angle" => "the angle of the laser beam in degrees",
-        "beam_from" => "normal or axis: what the beam angle is counted from",
-        "pulses_per_turn" => "the number of reference pulses in a turn of the crank",
-        "edge" => "rising or falling: the pulse edge that counts",
-        "sensitivity" => {
-            "m/s for one unit of the velocity channel: the file does not say that it is a velocity"
-        }
-        _ => "m/s² for one unit of the handle channels: the file does not say that they are accelerations",
+        "velocity" => ("a channel, by name or number", "1"),
+        "beam_angle" => ("degrees between the laser beam and the axis or normal", "0"),
+        "beam_from" => ("axis or normal: where the beam angle counts from", "\"axis\""),
+        "pulses_per_turn" => ("reference pulses in a turn of the crank", "1"),
+        "edge" => ("rising or falling: the pulse edge that counts", "\"rising\""),
+        "sensitivity" => ("m/s for one unit: the file does not say that the channel is a velocity", "1"),
+        _ => ("m/s² for one unit: the file does not say that the handle channels are accelerations", "1"),
     }
+}
+
+/// The channels of a file with their units, to choose one of.
+fn channels_of(source: &Source<'_>) -> Result<String> {
+    let (_, headers, _) = source.reader()?.survey(source.path)?;
+    let one = |(i, header): (usize, &Header)| format!("{} {} [{}]", i + 1, header.name, header.unit);
+    Ok(headers.iter().enumerate().map(one).collect::<Vec<_>>().join(", "))
 }
 
 /// The value of a key that has no default.
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     value.ok_or_else(|| {
-        Error::usage(format!("{} is not stated", key.replace('_', " ")), expected(key)).setting(key)
+        let (what, value) = expected(key);
+        Error::usage(format!("1 value is missing: {} ({what})", key.replace('_', " ")), "").set(key, value)
     })
 }
 
@@ -115,11 +122,8 @@ fn own_channels(channel: &Channel) -> Result<()> {
 }
 
 impl Keys {
-    /// Whether no key is missing that has no default, none is impossible, and none contradicts another.
-    ///
-    /// # Errors
-    /// With the key at fault.
-    pub fn usable(&self) -> Result<()> {
+    /// Whether no key is missing that has no default; the velocity is one of `channels`.
+    fn complete(&self, channels: &str) -> Result<()> {
         let stated = [
             ("velocity", self.velocity.is_some()),
             ("beam_angle", self.beam_angle.is_some()),
@@ -129,16 +133,26 @@ impl Keys {
         ];
         let missing: Vec<&'static str> =
             stated.iter().filter(|(_, stated)| !stated).map(|row| row.0).collect();
-        if let [first, more @ ..] = missing.as_slice() {
-            let expected = missing.iter().map(|key| format!("{}: {}", key.replace('_', " "), expected(key)));
-            let expected = expected.collect::<Vec<_>>().join("; ");
+        if !missing.is_empty() {
+            let what = |key| if key == "velocity" { channels } else { expected(key).0 };
+            let named = missing.iter().map(|key| format!("{} ({})", key.replace('_', " "), what(key)));
             let found = match missing.len() {
-                1 => "1 key without a default is not stated".to_owned(),
-                n => format!("{n} keys without a default are not stated"),
+                1 => "1 value is missing".to_owned(),
+                n => format!("{n} values are missing"),
             };
-            let error = Error::usage(found, expected).setting(first);
-            return Err(more.iter().fold(error, |error, key| error.setting(key)));
+            let found = format!("{found}: {}", named.collect::<Vec<_>>().join(", "));
+            let error = Error::usage(found, "");
+            return Err(missing.iter().fold(error, |error, key| error.set(key, expected(key).1)));
         }
+        Ok(())
+    }
+
+    /// Whether no key is missing that has no default, none is impossible, and none contradicts another.
+    ///
+    /// # Errors
+    /// With the key at fault.
+    pub fn usable(&self) -> Result<()> {
+        self.complete(expected("velocity").0)?;
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {
@@ -197,6 +211,9 @@ impl Keys {
         source: &Source<'_>,
         each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
     ) -> Result<Answer> {
+        if self.velocity.is_none() {
+            self.complete(&channels_of(source)?)?;
+        }
         self.usable()?;
         own_channels(source.channel)?;
         let options = self.options(Beam::new(

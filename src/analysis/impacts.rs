@@ -6,10 +6,11 @@ use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts};
+use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts, median};
 use crate::read::Reader;
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Table};
+use crate::units::notation::quantity;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -93,14 +94,6 @@ impl Keys {
 
 /// What the impacts of a trace repeat, in one row.
 fn summary(name: &str, found: &Impacts) -> Table {
-    let even = found.pattern.is_some() || found.spread.is_some_and(|s| s < REGULAR * found.median_interval);
-    let rhythm = match found.regular {
-        true => "regular",
-        false if found.n == 2 => "unknown (2 impacts)",
-        false if found.beat.is_some() => "drifts against the excitation",
-        false if even => "regular, not with the excitation",
-        false => "irregular",
-    };
     let needs = found.excitation.map_or("Impacts/cycles needs the excitation frequency. ", |_| "");
     table(
         "Impacts",
@@ -110,18 +103,37 @@ fn summary(name: &str, found: &Impacts) -> Table {
             ("impacts", "", &|f| f.n.into()),
             ("interval", "s", &|f| Cell::from(&f.interval)),
             ("frequency", "Hz", &|f| Cell::from(&f.frequency)),
-            ("median interval", "s", &|f| f.median_interval.into()),
-            ("interval spread", "s", &|f| f.spread.into()),
+            ("median interval", "s", &|f| pair(f.median_interval, None)),
+            ("interval spread", "s", &|f| f.spread.map(|s| pair(s, None)).into()),
             ("missed", "", &|f| f.missed.into()),
             ("double", "", &|f| f.doubled.into()),
             ("impacts/cycles", "", &|f| f.per_cycle.map(|p| format!("{}/{}", p.impacts, p.cycles)).into()),
-            ("rhythm", "", &|_| rhythm.into()),
+            ("rhythm", "", &|f| rhythm(f).into()),
         ],
     )
     .note(
         needs.to_owned()
             + "Missed: intervals of several periods. Double: a second impact within half an interval.",
     )
+}
+
+/// How the impacts repeat, in words.
+fn rhythm(found: &Impacts) -> String {
+    let unlike = found.pattern.filter(|_| found.missed + found.doubled == 0);
+    let even = found.pattern.is_some() || found.spread.is_some_and(|s| s < REGULAR * found.median_interval);
+    match (found.regular, unlike) {
+        (true, Some(length)) => {
+            let steps: Vec<f64> = found.times.windows(2).map(|w| w[1] - w[0]).collect();
+            let of = |place| steps.iter().skip(place).step_by(length).copied().collect::<Vec<f64>>();
+            let each: Vec<String> = (0..length).map(|place| quantity(median(&of(place)), "s", 3)).collect();
+            format!("regular, intervals in turn {}", each.join(", "))
+        }
+        (true, None) => "regular".to_owned(),
+        _ if found.n == 2 => "unknown (2 impacts)".to_owned(),
+        _ if found.beat.is_some() => "drifts against the excitation".to_owned(),
+        _ if even => "regular, not with the excitation".to_owned(),
+        _ => "irregular".to_owned(),
+    }
 }
 
 /// Every impact: time, height, phase.

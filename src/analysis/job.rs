@@ -328,6 +328,7 @@ pub fn run(
         (kind.run)(&mut job)?;
         parts.push(Part { title: kind.title, from, to: Extent::of(&job.all) });
     }
+    job.all.add("", campaign.commented());
     if campaign.is_empty() {
         job.all.add("", [Finding::caution("campaign-without-record")]);
     } else if job.answers == 0 {

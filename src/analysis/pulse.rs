@@ -8,7 +8,7 @@ use crate::campaign::{Entry, LowPass, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
-use crate::report::layout::{headed, table};
+use crate::report::layout::{headed, pair, table};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -131,28 +131,32 @@ fn contact(title: &str, result: &PulseResult) -> Table {
 
 /// The models that were fitted to the pulse.
 fn models(title: &str, result: &PulseResult) -> Table {
-    let columns = [("model", ""), ("RMS residual", ""), ("AICc", ""), ("whiteness p", ""), ("samples", "")];
     let all = result.fits.iter().flat_map(|f| &f.parameters);
     let parameters: BTreeMap<&str, &str> = all.map(|(name, e)| (*name, e.unit)).collect();
+    let unit = parameters.get("baseline").copied().unwrap_or_default();
+    let columns =
+        [("model", ""), ("RMS residual", unit), ("AICc", ""), ("residual is noise (p)", ""), ("samples", "")];
     let head = |name: &str| name.replace('_', " ").replace("xi", "damping ratio ξ");
     let own = |table: Table, (name, unit): (&&str, &&str)| table.column(head(name), *unit);
     let mut table = parameters.iter().fold(headed(named("Models", title), &columns), own);
     for fit in &result.fits {
         let whiteness = match fit.whiteness {
             Some(p) if p < 1e-6 => Cell::from("< 1e-6"),
-            p => Cell::from(p),
+            p => p.map_or(Cell::Missing, |p| pair(p, None)),
         };
         let known = [
             Cell::from(fit.model.name()),
-            Cell::Number(fit.residual),
-            Cell::Number(fit.aicc),
+            pair(fit.residual, None),
+            pair(fit.aicc, None),
             whiteness,
             Cell::from(fit.n),
         ];
         let own = parameters.keys().map(|name| fit.parameters.get(name).map_or(Cell::Missing, Cell::from));
         table.push(known.into_iter().chain(own));
     }
-    table
+    table.note(
+        "The lowest AICc fits best. A p below 0.01: the residual is no noise, the model misses the pulse.",
+    )
 }
 
 impl Analysis for Keys {

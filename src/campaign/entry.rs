@@ -93,8 +93,8 @@ impl Campaign {
 
     /// An error about a table: it points at the line of the key that the error names as its setting, else at the table.
     pub(crate) fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
-        let place = |key: &&str| entry.places.iter().find(|(name, _)| name == key);
-        let span = error.settings().iter().find_map(place).map_or(&entry.head, |(_, span)| span).clone();
+        let place = |key| entry.places.iter().find(|(name, _)| name == key);
+        let span = error.settings().find_map(place).map_or(&entry.head, |(_, span)| span).clone();
         self.pointed(error, span)
     }
 

@@ -1,6 +1,7 @@
 //! Errors of TOML with their place, a caret, and the nearest key that exists.
 
 use crate::error::{Error, Place};
+use crate::record::nearest;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ops::Range;
 use std::path::Path;
@@ -22,13 +23,15 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let (named, known) = names.split_first().map_or(("", &[][..]), |(first, rest)| (*first, rest));
+    let meant =
+        |known: &[&str]| nearest(named, known.iter().copied()).map(|near| format!("did you mean `{near}`?"));
     let begins = |with: &str| message.starts_with(with);
     if begins("unknown field") {
         let known = [beside, known].concat();
         let all = || format!("keys known here: {}", known.join(", "));
-        complaint(&format!("unknown key `{named}`"), "", nearest(named, &known).unwrap_or_else(all))
+        complaint(&format!("unknown key `{named}`"), "", meant(&known).unwrap_or_else(all))
     } else if begins("unknown variant") {
-        complaint(&format!("the name `{named}`"), expected, nearest(named, known).unwrap_or_default())
+        complaint(&format!("the name `{named}`"), expected, meant(known).unwrap_or_default())
     } else if begins("missing field") {
         complaint(found, "", format!("add {named} = …"))
     } else if begins("wanted string") {
@@ -87,22 +90,9 @@ pub fn find(table: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
     })
 }
 
-/// The question after the known name at the smallest edit distance, if that is small.
-fn nearest(wrong: &str, known: &[&str]) -> Option<String> {
-    let (distance, near) = known.iter().map(|k| (strsim::levenshtein(wrong, k), *k)).min()?;
-    (distance <= 1 + near.len() / 4).then(|| format!("did you mean `{near}`?"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn near_names() {
-        let near = nearest("calibraton", &["calibration", "window"]);
-        assert_eq!(near.as_deref(), Some("did you mean `calibration`?"));
-        assert_eq!(nearest("xyz", &["calibration", "window"]), None);
-    }
 
     #[test]
     fn a_key_is_found_in_the_table_that_has_it() {

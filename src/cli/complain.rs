@@ -1,16 +1,21 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
+use super::{Row, rows};
 use crate::error::Error;
-use crate::record::Severity;
+use crate::record::{Severity, nearest};
 use crate::report::words::Voice;
-use clap::error::{ContextKind, ErrorKind};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use serde_json::json;
+use std::error::Error as _;
 use std::io::Write;
 use std::path::Path;
 
 /// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
 pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
-    let text = error.spoken(|key| voice.setting(key));
+    let mut text = error.spoken(|key, value| voice.set(key, value));
+    if voice == Voice::Command && error.is_bare_usage() {
+        text = format!("{text}\n  try: {} --help", typed().0);
+    }
     line(&format!("vibro: {text}"));
     if json {
         object(&text, error.exit_code());
@@ -29,55 +34,115 @@ pub fn nothing(commands: &str, json: bool) -> u8 {
 
 /// Prints what clap has to say: help and version are no error, anything else is wrong usage, with `json` as an object on standard
 /// output as well.
-pub fn usage(error: &clap::Error, json: bool) -> u8 {
-    if !error.use_stderr() {
+pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
+    if !complaint.use_stderr() {
         // A closed pipe behind --help is no reason to complain.
-        let _ = error.print();
+        let _ = complaint.print();
         return 0;
     }
-    let text = NUMBERS.iter().fold(error.to_string(), |text, (of_std, ours)| text.replace(of_std, ours));
-    line(text.trim_end());
-    let tried = advice(error);
-    if let Some(tried) = &tried {
-        line(&format!("  try: {tried}"));
+    if complaint.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return nothing(&complaint.to_string(), json);
     }
-    if json {
-        let tried = tried.map_or_else(String::new, |t| format!("\n  try: {t}"));
-        object(&format!("{}{tried}", text.trim().trim_start_matches("error: ")), 2);
+    error(&plain(complaint), Voice::Command, json)
+}
+
+/// The command that was typed, with its row.
+fn typed() -> (String, Option<&'static Row>) {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let row = rows().find(|row| words.first().is_some_and(|word| word == row.name));
+    let all = super::command();
+    let of = row.and_then(|row| all.find_subcommand(row.name));
+    let part = words.get(1).filter(|word| of.is_some_and(|of| of.find_subcommand(word).is_some()));
+    let names = row.iter().map(|row| row.name).chain(part.map(String::as_str));
+    (["vibro"].into_iter().chain(names).collect::<Vec<_>>().join(" "), row)
+}
+
+/// What clap complains of, in our form.
+fn plain(complaint: &clap::Error) -> Error {
+    let context = |kind| complaint.get(kind).map(ToString::to_string);
+    let (command, row) = typed();
+    let of =
+        command.strip_prefix("vibro ").map_or_else(|| "there is".to_owned(), |name| format!("{name} has"));
+    let help = format!("{command} --help");
+    let argument = context(ContextKind::InvalidArg).unwrap_or_default();
+    // Without clap's brackets: an option and what it takes.
+    let argument = argument.replace(['<', '>', '[', ']'], "").replace("...", "");
+    let option = argument.split_whitespace().next().unwrap_or_default();
+    match complaint.kind() {
+        ErrorKind::InvalidSubcommand => {
+            let name = context(ContextKind::InvalidSubcommand).unwrap_or_default();
+            let known = rows().map(|row| row.name);
+            let near = context(ContextKind::SuggestedSubcommand);
+            let near = near.or_else(|| nearest(&name, known).map(str::to_owned));
+            let near = near.filter(|near| !near.contains(','));
+            let hint = near.map_or_else(|| help.clone(), |near| format!("{command} {near}"));
+            Error::usage(format!("no command is named {name:?}"), "").hint(hint)
+        }
+        ErrorKind::MissingRequiredArgument => {
+            let example = row.map(|row| format!("vibro {}", row.example));
+            let example = example.filter(|example| example.starts_with(&command)).unwrap_or(help);
+            Error::usage(format!("{} needs {argument}", command.trim_start_matches("vibro ")), "")
+                .hint(example)
+        }
+        ErrorKind::UnknownArgument if Path::new(option).exists() => {
+            Error::usage(format!("one file too many: {argument}"), "")
+                .hint("one file at a time; for all of a folder: vibro run FOLDER")
+        }
+        ErrorKind::UnknownArgument => {
+            let hint = context(ContextKind::SuggestedArg).unwrap_or(help);
+            let what = if option.starts_with('-') { "option" } else { "word" };
+            Error::usage(format!("{of} no {what} {argument}"), "").hint(hint)
+        }
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation => {
+            let value = context(ContextKind::InvalidValue).unwrap_or_default();
+            let why = complaint.source().map(ToString::to_string).unwrap_or_default();
+            value_of(&command, &argument, &value, &why, complaint.get(ContextKind::ValidValue))
+        }
+        _ => {
+            let text = complaint.to_string();
+            let first = text.lines().next().unwrap_or_default();
+            Error::usage(first.trim_start_matches("error: "), "").hint(help)
+        }
     }
-    2
+}
+
+/// A value that an option cannot take.
+fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option<&ContextValue>) -> Error {
+    let (help, option) = (format!("{command} --help"), argument.split(' ').next().unwrap_or_default());
+    if value.is_empty() {
+        return Error::usage(format!("{option} without a value"), argument).hint(help);
+    }
+    let expected = NUMBERS.iter().find(|(of_std, _)| why.contains(of_std)).map(|(_, ours)| *ours);
+    let names = match known {
+        Some(ContextValue::Strings(names)) => names.clone(),
+        _ if why.contains(" is not in ") => Vec::new(),
+        _ => why.split('`').skip(3).step_by(2).map(str::to_owned).collect(),
+    };
+    let listed = (!names.is_empty()).then(|| format!("one of {}", names.join(", ")));
+    let range = why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..="));
+    let range = range.map(|(low, high)| format!("a whole number from {low} to {high}"));
+    let expected = expected.map(str::to_owned).or(range).or(listed).unwrap_or_else(|| why.to_owned());
+    let point = value.replacen(',', ".", 1);
+    let near = nearest(value, names.iter().map(String::as_str)).or(names.first().map(String::as_str));
+    let typed = |value: &str| {
+        if option.starts_with('-') { format!("{option} {value}") } else { format!("{command} {value}") }
+    };
+    let hint = if why.contains("':'") {
+        typed(&value.replacen([',', '-', ';'], ":", 1))
+    } else if value != point && expected == NUMBERS[0].1 && point.parse::<f64>().is_ok() {
+        typed(&point)
+    } else {
+        near.map_or(help, typed)
+    };
+    Error::usage(format!("{option} is {value}"), expected).hint(hint)
 }
 
 /// What the standard library says of a value that is no number, and what a person needs to know.
-const NUMBERS: [(&str, &str); 4] = [
-    ("invalid float literal", "expected a number, such as 0.5 or 1e-3"),
-    ("invalid digit found in string", "expected a whole number"),
-    (" is not in 0..=4294967295", " is not a whole number from 0 to 4294967295"),
-    ("cannot parse integer from empty string", "expected a whole number"),
+const NUMBERS: [(&str, &str); 3] = [
+    ("invalid float literal", "a number, such as 0.5 or 1e-3"),
+    ("invalid digit found in string", "a whole number"),
+    ("cannot parse integer from empty string", "a whole number"),
 ];
-
-/// What to type: a number with a decimal comma with a point, in place of an unknown word the first that is known.
-fn advice(error: &clap::Error) -> Option<String> {
-    let argument = |kind| error.get(kind).map(ToString::to_string);
-    if error.kind() == ErrorKind::UnknownArgument
-        && argument(ContextKind::InvalidArg).is_some_and(|word| Path::new(&word).exists())
-    {
-        return Some("one file at a time; for all of a folder: vibro run FOLDER".to_owned());
-    }
-    let value = error.get(ContextKind::InvalidValue)?.to_string();
-    if error.to_string().contains("':'") {
-        return Some(value.replacen([',', '-', ';'], ":", 1));
-    }
-    let point = value.replacen(',', ".", 1);
-    if value != point && point.parse::<f64>().is_ok() {
-        return Some(format!("a decimal point: {point}"));
-    }
-    let argument = error.get(ContextKind::InvalidArg)?.to_string();
-    let option = argument.split(' ').next().filter(|o| o.starts_with("--"))?;
-    let text = error.to_string();
-    let word = text.split_once("expected one of `")?.1.split('`').next()?;
-    Some(format!("{option} {word}"))
-}
 
 /// What a program reads in place of an answer.
 fn object(error: &str, exit_code: u8) {

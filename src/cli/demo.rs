@@ -5,6 +5,7 @@ use super::{complain, print};
 use crate::analysis;
 use crate::error::{Error, Place, Result};
 use crate::proposal::Proposal;
+use crate::record::nearest;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -46,8 +47,7 @@ impl super::Run for Demo {
         };
         let demo = DEMOS.iter().find(|demo| demo.name == *name).ok_or_else(|| {
             let known: Vec<&str> = DEMOS.iter().map(|demo| demo.name).collect();
-            let like = |known: &&str| strsim::jaro(known, name);
-            let near = known.iter().copied().max_by(|a, b| like(a).total_cmp(&like(b))).unwrap_or_default();
+            let near = nearest(name, known.iter().copied()).unwrap_or(DEMOS[0].name);
             let error = Error::usage(format!("no example is named {name:?}"), known.join(", "));
             error.hint(format!("vibro demo {near}"))
         })?;
@@ -97,12 +97,13 @@ impl super::Run for Open {
         let is_page =
             |place: &&PathBuf| place.is_file() && place.extension().is_some_and(|ending| ending == "html");
         let page = places.iter().find(is_page).ok_or_else(|| {
-            let error = Error::input(
-                Place::file(&self.report),
-                "no report.html here, nor in results",
-                "a folder with a report",
-            );
-            error.hint(format!("vibro run {}", self.report.display()))
+            let shown = self.report.display();
+            if !self.report.exists() {
+                return Error::absent(format!("there is no {shown}"), &self.report);
+            }
+            let found = "no report.html here, nor in results";
+            let error = Error::input(Place::file(&self.report), found, "a folder with a report");
+            error.hint(format!("vibro run {shown}"))
         })?;
         let opens = |program: &&str| {
             let quiet = Stdio::null;

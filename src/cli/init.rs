@@ -5,8 +5,8 @@ use crate::analysis;
 use crate::campaign::Reading;
 use crate::error::{Error, Place, Result};
 use crate::proposal::{Known, Proposal, Row, Table};
-use crate::report::words::Voice;
-use serde_json::{Value, json};
+use crate::report::words::{Voice, graded, put};
+use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -35,7 +35,7 @@ impl super::Run for Init {
         if path.exists() {
             let error =
                 Error::input(Place::file(&path), "there is a campaign already", "a folder without one");
-            return Err(error.hint(format!("`vibro run {}` runs it", path.display())));
+            return Err(error.hint(format!("vibro run {}", path.display())));
         }
         let proposal =
             print::busy(json, "looking at files", |bar| Proposal::of(&self.folder, &self.reading, bar))?;
@@ -103,9 +103,15 @@ impl super::Run for Check {
         let campaign = analysis::open(if self.campaign.is_dir() { &of_folder } else { &self.campaign })?;
         let files = analysis::files(&campaign, self.allow_outside)?;
         analysis::channels(&campaign, self.allow_outside)?;
+        let commented: Vec<_> =
+            campaign.commented().into_iter().map(|found| (String::new(), found)).collect();
         if json {
-            print::object(json!({ "warnings": [], "findings": [], "files": files }))?;
+            let mut answer = Map::new();
+            answer.insert("files".to_owned(), json!(files));
+            put(&mut answer, &commented, Voice::Campaign);
+            print::object(answer)?;
         } else {
+            complain::warn(&graded(&commented, Voice::Campaign));
             print::text(&format!(
                 "{}: no fault, {} files are there\nnext: vibro run {0}\n",
                 self.campaign.display(),

@@ -187,7 +187,8 @@ impl Run for Measured<frf::Keys> {
         if answers.len() > 1 {
             let names: Vec<&str> = answers.iter().filter_map(|a| a.result["channel"].as_str()).collect();
             let found = format!("{} frequency response functions, and none was chosen", names.len());
-            return Err(Error::usage(found, format!("one of {}", names.join(", "))).setting("channel"));
+            let error = Error::usage(found, format!("one of {}", names.join(", ")));
+            return Err(error.set("channel", format!("{:?}", names.first().unwrap_or(&"1"))));
         }
         let mut answer = answers.pop().ok_or_else(|| Error::refused("no frequency response function"))?;
         answer.refused.take().map_or(Ok(()), Err)?;

@@ -4,6 +4,7 @@ use crate::measure::Estimate;
 use crate::units::notation::{
     decimals_needed, engineering, estimate, fixed, labelled, scaled_unit, significant,
 };
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use vibro_figure::escaped;
 
@@ -214,7 +215,8 @@ impl Table {
         let mut columns: Vec<(&Column, Vec<&Cell>)> =
             self.columns.iter().enumerate().map(|(i, c)| (c, self.cells(i).collect())).collect();
         // A column without a value is not shown.
-        let filled = |cell: &&Cell| matches!(cell, Cell::Text(_)) || cell.value().is_some();
+        let filled =
+            |cell: &&Cell| matches!(cell, Cell::Text(text) if !text.is_empty()) || cell.value().is_some();
         columns.retain(|(_, cells)| cells.is_empty() || cells.iter().any(filled));
         let shown = |(column, cells): &(&Column, Vec<&Cell>)| {
             // A limit has the unit of what it limits.
@@ -238,18 +240,24 @@ struct Formatted {
 fn power(column: &Column, cells: &[&Cell]) -> i32 {
     let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
     let largest = values.map(f64::abs).fold(0.0, f64::max);
-    // A degree and a per cent are scaled already. Counts and other bare numbers are not rescaled, as no unit would say so; a
+    // A degree, a radian and a per cent are scaled already. Counts and other bare numbers are not rescaled, as no unit would say so; a
     // power of ten stands with the number instead.
-    let bare = matches!(column.unit.as_str(), "°" | "%" | "" | "1");
+    let bare = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
     if bare { 0 } else { engineering(largest) }
 }
 
 impl Formatted {
     fn new(column: &Column, cells: &[&Cell], power: i32) -> Formatted {
         let scale = 10f64.powi(-power);
-        let bare =
-            cells.iter().filter(|c| c.std().is_none()).filter_map(|c| c.value()).filter(|v| v.is_finite());
-        let decimals = common_decimals(&bare.map(|v| v * scale).collect::<Vec<_>>());
+        let of = |kind: fn(&Cell) -> bool| -> Vec<f64> {
+            let bare = cells.iter().filter(|c| c.std().is_none() && kind(c)).filter_map(|c| c.value());
+            bare.filter(|v| v.is_finite()).map(|v| v * scale).collect()
+        };
+        let numbers = of(|cell| matches!(cell, Cell::Number(_)));
+        let unsure = of(|cell| matches!(cell, Cell::Estimate { .. }));
+        let known = (5, common_decimals(&numbers, 5));
+        let few = told_apart(&unsure);
+        let unsure = (few, common_decimals(&unsure, few));
         let written = |cell: &&Cell| match (cell, cell.value()) {
             (Cell::Text(text), _) => text.clone(),
             (_, None) => "–".to_owned(),
@@ -257,9 +265,9 @@ impl Formatted {
                 uncertain(value * scale, std * scale)
             }
             (_, Some(value)) if column.unit == "%" => percentage(value),
-            (_, Some(value)) => match decimals {
-                Some(decimals) if value.is_finite() => fixed(value * scale, decimals),
-                _ => significant(value * scale, 5),
+            (_, Some(value)) => match if matches!(cell, Cell::Number(_)) { known } else { unsure } {
+                (_, Some(decimals)) if value.is_finite() => fixed(value * scale, decimals),
+                (digits, _) => significant(value * scale, digits),
             },
         };
         Formatted {
@@ -287,16 +295,22 @@ impl Formatted {
     }
 }
 
-/// Decimals that show all values to five significant digits of the largest, or fewer where all are round;
+/// Significant digits for measured values of unknown uncertainty: three, or as many up to five as tell them apart.
+fn told_apart(values: &[f64]) -> usize {
+    let different = |digits| values.iter().map(|v| significant(*v, digits)).collect::<BTreeSet<_>>().len();
+    (3..5).find(|digits| different(*digits) == different(5)).unwrap_or(5)
+}
+
+/// Decimals that show all values to `digits` significant digits of the largest, or fewer where all are round;
 /// `None` where the values differ so much that small ones would lose their digits.
-fn common_decimals(values: &[f64]) -> Option<usize> {
+fn common_decimals(values: &[f64], digits: usize) -> Option<usize> {
     let sizes = || values.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
     let (smallest, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
     if largest == 0.0 {
         return Some(0);
     }
-    let needed = values.iter().map(|v| decimals_needed(*v, 5)).max().unwrap_or(0);
-    let room = 4 - largest.log10().floor() as i32;
+    let needed = values.iter().map(|v| decimals_needed(*v, digits)).max().unwrap_or(0);
+    let room = digits as i32 - 1 - largest.log10().floor() as i32;
     let decimals = needed.min(usize::try_from(room.max(0)).unwrap_or(0));
     // The smallest keeps two digits.
     let kept = smallest * 10f64.powi(decimals as i32) >= 10.0 || decimals == needed;
@@ -404,12 +418,24 @@ none           7.49            0.35                 –
 
     #[test]
     fn numbers_that_differ_in_size_keep_their_digits() {
-        assert_eq!(common_decimals(&[60.0, 7.0]), Some(0));
-        assert_eq!(common_decimals(&[5.5, 7.49, 11.1]), Some(2));
-        assert_eq!(common_decimals(&[1e-9, 1.0 / 3.0]), None);
-        assert_eq!(common_decimals(&[]), Some(0));
+        assert_eq!(common_decimals(&[60.0, 7.0], 5), Some(0));
+        assert_eq!(common_decimals(&[5.5, 7.49, 11.1], 5), Some(2));
+        assert_eq!(common_decimals(&[1e-9, 1.0 / 3.0], 5), None);
+        assert_eq!(common_decimals(&[], 5), Some(0));
         let table = Table::new("").column("error", "1").row([2e-12.into()]).row([0.031_25.into()]).text();
         assert!(table.contains("2.0000×10⁻¹²") && table.contains("0.031250"), "{table}");
+    }
+
+    #[test]
+    fn a_measured_value_of_unknown_uncertainty_has_few_digits() {
+        let of = |values: &[f64]| {
+            let cells = values.iter().map(|value| [Cell::Estimate { value: *value, std: None }]);
+            let text = cells.fold(Table::new("").column("a", "Hz"), Table::row).text();
+            text.lines().skip(1).map(|line| line.trim().to_owned()).collect::<Vec<_>>()
+        };
+        assert_eq!(of(&[0.119_54]), ["0.12"]);
+        assert_eq!(of(&[2099.8]), ["2100"]);
+        assert_eq!(of(&[10.02, 10.04]), ["10.02", "10.04"]);
     }
 
     #[test]

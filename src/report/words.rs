@@ -43,9 +43,17 @@ pub enum Voice {
 impl Voice {
     /// A setting, named by its key in a campaign, as this reader types it.
     pub fn setting(self, key: &str) -> String {
-        match self {
-            Voice::Command => format!("--{}", key.replace('_', "-")),
-            Voice::Campaign => format!("`{key}`"),
+        self.set(key, "")
+    }
+
+    /// A setting with its value, as this reader types them.
+    pub fn set(self, key: &str, value: &str) -> String {
+        match (self, value) {
+            (Voice::Command, "") => format!("--{}", key.replace('_', "-")),
+            (Voice::Command, value) if value.contains(' ') => format!("{} {value}", self.setting(key)),
+            (Voice::Command, value) => format!("{} {}", self.setting(key), value.trim_matches('"')),
+            (Voice::Campaign, "") => format!("`{key}`"),
+            (Voice::Campaign, value) => format!("`{key} = {value}`"),
         }
     }
 }

@@ -168,7 +168,7 @@ fn a_campaign_measures_both_channels() {
     std::fs::write(&campaign, text.replace("beam_from = \"normal\"", "")).unwrap();
     let without = run(&campaign);
     assert_eq!(without.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&without.stderr).contains("beam from: normal or axis"));
+    assert!(String::from_utf8_lossy(&without.stderr).contains("beam from (axis or normal"));
 }
 
 /// Text of two channels at 10 kHz with a name each.

@@ -72,12 +72,11 @@ impl Reader {
             if others.len() != 1 {
                 let names: Vec<&str> = others.iter().map(|i| all.channels()[*i].name.as_str()).collect();
                 let found = format!("{} channels to choose from, and none was chosen", others.len());
-                return Err(Error::input(Place::file(file), found, format!("one of {}", names.join(", ")))
-                    .hint(names.first().map_or_else(
-                        || "another file".to_owned(),
-                        |name| format!("{name:?}, or its number from 1"),
-                    ))
-                    .setting("channel"));
+                let error = Error::input(Place::file(file), found, format!("one of {}", names.join(", ")));
+                return Err(match names.first() {
+                    Some(name) => error.set("channel", format!("{name:?}")),
+                    None => error.hint("another file"),
+                });
             }
             all.keep(&reference.into_iter().chain(others).collect::<Vec<usize>>());
             all

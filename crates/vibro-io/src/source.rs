@@ -46,8 +46,8 @@ impl Source {
         }
         let info = std::fs::metadata(path).map_err(|e| {
             if path.to_string_lossy().contains(['*', '?']) {
-                return Error::input(Place::file(path), "not the name of one file", "a pattern of one file")
-                    .hint("vibro run FOLDER takes all files of a folder");
+                return Error::usage(format!("no single file matches {}", path.display()), "")
+                    .hint("name one file; vibro run FOLDER takes all files of a folder");
             }
             Error::io("open", path, e)
         })?;

@@ -56,9 +56,9 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
             .setting("rate"));
     };
     if let Some((low, high)) = options.band.filter(|(low, high)| !(*low >= 0.0 && low < high)) {
-        return Err(
-            Error::usage(format!("a band of {low}:{high} Hz"), "LO:HI with LO below HI").setting("band")
-        );
+        return Err(Error::usage(format!("a band of {low}:{high} Hz"), "LO:HI with LO below HI")
+            .hint("the lower limit first")
+            .setting("band"));
     }
     if let Some(count) = options.modes.filter(|n| !(1..=MOST).contains(n)) {
         return Err(Error::usage(format!("{count} modes"), format!("1 to {MOST}")).setting("modes"));

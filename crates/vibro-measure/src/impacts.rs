@@ -19,7 +19,7 @@ pub use interval::{Interval, interval};
 
 use super::Estimate;
 use super::mean::scatter;
-use background::median;
+pub use background::median;
 use interval::{Counted, count, evened, pattern};
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace};
@@ -97,8 +97,11 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
             .setting("envelope")
             .setting("none_missed"));
     }
-    let fitted = interval(&even, &counted.index)
-        .ok_or_else(|| Error::refused("one impact alone counts: an interval needs two"))?;
+    let fitted = interval(&even, &counted.index).ok_or_else(|| {
+        Error::refused("one impact alone counts: an interval needs two")
+            .hint("record longer, or lower the threshold")
+            .setting("threshold")
+    })?;
     findings.extend(fitted.wanders.then(|| Finding::caution("intervals-drift")));
     // First and last onset lie each anywhere within a sample. Where the interval is near a whole number of samples all lie alike between theirs:
     // the scatter of the intervals does not show it, and no number of impacts averages it.

@@ -76,9 +76,12 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
         }
     }
     if modes.is_empty() {
-        return Err(Error::refused("no peak of the function is supported as a mode")
-            .hint("choose a band around one peak, or check the sign of the phase")
-            .setting("band"));
+        let refused = Error::refused("no peak of the function is supported as a mode");
+        return Err(match options.band {
+            None => refused.hint("a band around one peak, or check the sign of the phase").setting("band"),
+            Some(_) => refused
+                .hint("longer records, for five lines or more in the peak; check the sign of the phase"),
+        });
     }
     // The highest peaks that are no modes are told one by one; many more are noise, of which each says nothing.
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");

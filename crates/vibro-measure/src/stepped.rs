@@ -108,7 +108,9 @@ impl Step {
         }
         let found = sine(force, None)?;
         let Some(tone) = found.tones.into_iter().next() else {
-            return Err(Error::refused("the force holds no sine"));
+            return Err(Error::refused("the force holds no sine")
+                .hint("name the channel of the force, or leave this step out")
+                .setting("force"));
         };
         let frequency = tone.frequency;
         let periods = samples as f64 / rate * frequency.value;

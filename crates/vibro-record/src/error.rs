@@ -3,6 +3,7 @@
 //! Every fallible function of this crate returns [`Error`]. What it is decides the exit code of the command: 1 where the data or the
 //! parameters do not allow an answer, 2 for wrong usage and for input that cannot be read.
 
+use crate::nearest;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -26,8 +27,8 @@ struct Inner {
     excerpt: String,
     /// What to try; empty where nothing would help.
     hint: String,
-    /// Keys of the settings that the hint is about.
-    settings: Vec<&'static str>,
+    /// Keys of the settings that help, each with a value that can be tried, where one is known.
+    settings: Vec<(&'static str, String)>,
 }
 
 /// The three ways in which a request fails.
@@ -102,34 +103,52 @@ impl Error {
     // By value, as `map_err` hands it out.
     #[allow(clippy::needless_pass_by_value)]
     pub fn io(action: &str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        let path = path.as_ref();
+        let absent = source.kind() == std::io::ErrorKind::NotFound && action != "write";
         let source = source.to_string();
         // Without Rust's ` (os error 2)`.
         let plain = source.split(" (os error").next().unwrap_or_default().to_lowercase();
-        let found = format!("cannot {action} {}: {plain}", path.as_ref().display());
-        Error::new(Kind::Io, Place::default(), found, String::new())
+        let found = format!("cannot {action} {}: {plain}", path.display());
+        let error = Error::new(Kind::Io, Place::default(), found, String::new());
+        if absent { error.hint(instead(path)) } else { error }
+    }
+
+    /// A name for which there is no file, with the name beside it that was meant.
+    pub fn absent(found: impl Into<String>, path: impl AsRef<Path>) -> Self {
+        Error::usage(found, "").hint(instead(path.as_ref()))
     }
 
     /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
-    pub fn setting(mut self, key: &'static str) -> Self {
-        self.0.settings.retain(|known| *known != key);
-        self.0.settings.push(key);
+    pub fn setting(self, key: &'static str) -> Self {
+        self.set(key, "")
+    }
+
+    /// Names the setting that is missing, as [`Error::setting`], with a value as it is written in a campaign.
+    pub fn set(mut self, key: &'static str, value: impl Into<String>) -> Self {
+        self.0.settings.retain(|known| known.0 != key);
+        self.0.settings.push((key, value.into()));
         self
     }
 
     /// Keys of the settings that it is about.
-    pub fn settings(&self) -> &[&'static str] {
-        &self.0.settings
+    pub fn settings(&self) -> impl DoubleEndedIterator<Item = &'static str> {
+        self.0.settings.iter().map(|known| known.0)
     }
 
-    /// The text of the error with settings named as `typed` says, such as `low_pass` as `--low-pass`.
-    pub fn spoken(&self, typed: impl Fn(&str) -> String) -> String {
+    /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as `--low-pass`.
+    pub fn spoken(&self, typed: impl Fn(&str, &str) -> String) -> String {
         let Inner { place, found, expected, excerpt, hint, settings, .. } = &*self.0;
         let part = |before: &str, text: &str, after: &str| {
             if text.is_empty() { String::new() } else { [before, text, after].concat() }
         };
-        let settings: Vec<String> = settings.iter().map(|key| typed(key)).collect();
         let what = part("", &place.to_string(), ": ") + found + &part("; expected ", expected, "");
-        let advice = part("\n  try: ", hint, "") + &part(" (", &settings.join(", "), ")");
+        let values = settings.iter().any(|(_, value)| !value.is_empty());
+        let settings: Vec<String> = settings.iter().map(|(key, value)| typed(key, value)).collect();
+        let advice = if hint.is_empty() && values {
+            format!("\n  try: {}", settings.join(" "))
+        } else {
+            part("\n  try: ", hint, "") + &part(" (", &settings.join(", "), ")")
+        };
         what + &part("\n", excerpt, "") + &advice
     }
 
@@ -217,6 +236,12 @@ impl Error {
         self
     }
 
+    /// Whether it is wrong usage, of no place in a file, that neither advice nor a setting stands beside.
+    pub fn is_bare_usage(&self) -> bool {
+        let Inner { kind, place, hint, settings, .. } = &*self.0;
+        *kind == Kind::Input && *place == Place::default() && hint.is_empty() && settings.is_empty()
+    }
+
     /// Why the data or the parameters do not allow an answer; nothing where it is another error.
     pub fn refusal(&self) -> Option<&str> {
         (self.0.kind == Kind::Refused).then_some(self.0.found.as_str())
@@ -225,6 +250,23 @@ impl Error {
     /// Exit code of the command: 1 no answer possible, 2 unreadable input or wrong usage.
     pub fn exit_code(&self) -> u8 {
         if self.0.kind == Kind::Refused { 1 } else { 2 }
+    }
+}
+
+/// What to type in place of a name that is not there: the nearest one in its folder.
+fn instead(path: &Path) -> String {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let beside = std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| {
+        let name = entry.ok()?.file_name().into_string().ok()?;
+        Some(name).filter(|name| !name.starts_with('.'))
+    });
+    let beside: Vec<String> = beside.collect();
+    let wrong = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    match nearest(&wrong, beside.iter().map(String::as_str)) {
+        Some(near) => path.with_file_name(near).display().to_string(),
+        None if folder == Path::new(".") => "ls".to_owned(),
+        None if folder.is_dir() => format!("ls {}", folder.display()),
+        None => format!("another folder: there is no {}", folder.display()),
     }
 }
 
@@ -247,7 +289,11 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.spoken(str::to_owned))
+        f.write_str(
+            &self.spoken(
+                |key, value| if value.is_empty() { key.to_owned() } else { format!("{key} = {value}") },
+            ),
+        )
     }
 }
 
@@ -275,7 +321,7 @@ mod tests {
     fn a_setting_is_shown_as_it_is_typed() {
         let error = Error::refused("no rate").hint("state the sampling rate").setting("base_band");
         assert_eq!(error.to_string(), "no rate\n  try: state the sampling rate (base_band)");
-        let option = |key: &str| format!("--{}", key.replace('_', "-"));
+        let option = |key: &str, _: &str| format!("--{}", key.replace('_', "-"));
         assert_eq!(error.spoken(option), "no rate\n  try: state the sampling rate (--base-band)");
     }
 

@@ -1,6 +1,6 @@
 //! Time traces block by block.
 
-use crate::{Error, Finding, Meta, Place, Result, Trace, units};
+use crate::{Error, Finding, Meta, Place, Result, Trace, nearest, units};
 use std::path::{Path, PathBuf};
 
 /// Frames of a block from memory.
@@ -239,6 +239,7 @@ pub fn find_channel<'a>(
         same = named(&|name| name.to_lowercase() == small);
     }
     let n = all.clone().count();
+    let near = nearest(wanted, all.clone());
     let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
     let list: Vec<String> = all.take(20).enumerate().map(|(i, name)| format!("{} {name:?}", i + 1)).collect();
     let (found, expected) = match (same.as_slice(), number) {
@@ -249,7 +250,11 @@ pub fn find_channel<'a>(
             (format!("{} channels are called {wanted:?}", several.len()), "the number of one".to_owned())
         }
     };
-    Err(Error::input(place(path), found, format!("{expected}: {}", list.join(", "))))
+    let error = Error::input(place(path), found, format!("{expected}: {}", list.join(", ")));
+    Err(match near {
+        Some(name) => error.hint(format!("{name:?}")),
+        None => error,
+    })
 }
 
 /// The file, where there is one.

@@ -116,7 +116,8 @@ pub fn from_blows(
         let why: Vec<String> = blows.iter().filter_map(named).take(8).collect();
         let (clean, all, why) = (kept.len(), blows.len(), why.join(", "));
         let found = format!("{clean} of {all} blows are clean; {why}");
-        return Err(Error::refused(found));
+        let hint = "name the channel of the force; strike once a record, without overload";
+        return Err(Error::refused(found).hint(hint).setting("reference"));
     }
     let (decay, weights) = windows(how, rate)?;
     let transform = Transform::new(how.length);

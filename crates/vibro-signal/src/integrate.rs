@@ -30,7 +30,7 @@ pub fn in_frequency(spectrum: &Spectrum, times: i8, fmin: f64) -> Result<Spectru
             "no line is left at or above {fmin} Hz: the highest is {} Hz",
             spectrum.axis.at(n.saturating_sub(1))
         );
-        return Err(Error::refused(why));
+        return Err(Error::refused(why).hint("a lower limit").setting("fmin"));
     };
     let omega = |k: usize| TAU * (start + k as f64 * step);
     let power = match spectrum.scaling {

@@ -2,7 +2,7 @@
 
 use crate::measure::Estimate;
 use crate::measure::drill::{Corner, Drill, Group};
-use crate::report::layout::headed;
+use crate::report::layout::{headed, pair};
 use crate::report::{Cell, Table};
 
 /// What was found, one row a number.
@@ -24,11 +24,11 @@ pub fn drill(name: &str, d: &Drill) -> Table {
     }
     let (x, b) = (&d.displacement, &d.bandwidth);
     row("stroke", Cell::from(&x.stroke), "m", x.stroke.n);
-    row("speed variation", Cell::Number(d.speed_variation), "Hz", d.cycles);
+    row("speed variation", pair(d.speed_variation, None), "Hz", d.cycles);
     row("drift of a turn", Cell::from(&x.drift), "m", x.drift.n);
-    row("largest acceleration", Cell::Number(b.acceleration), "m/s²", d.averaged);
-    row("f1", Cell::Number(b.f1), "Hz", d.averaged);
-    row("f2", Cell::Number(b.f2), "Hz", d.averaged);
+    row("largest acceleration", pair(b.acceleration, None), "m/s²", d.averaged);
+    row("bandwidth f1, of velocity", pair(b.f1, None), "Hz", d.averaged);
+    row("bandwidth f2, of acceleration", pair(b.f2, None), "Hz", d.averaged);
     if let Some(s) = &d.smoothing {
         let (what, corner) = match *s {
             Corner::ZeroPhaseLowPass(corner) => ("low-pass of the average", corner),
@@ -47,8 +47,8 @@ pub fn drill(name: &str, d: &Drill) -> Table {
         if let Some(a8) = &e.a8 {
             row("A(8)", Cell::from(a8), "m/s²", a8.n);
         }
-        row("crest factor, weighted", Cell::Number(e.crest_factor), "", e.a_hv.n);
-        row("peak, unweighted", Cell::Number(e.unweighted_peak), "m/s²", e.a_hv.n);
+        row("crest factor, weighted", pair(e.crest_factor, None), "", e.a_hv.n);
+        row("peak, unweighted", pair(e.unweighted_peak, None), "m/s²", e.a_hv.n);
     }
     table
 }

@@ -110,8 +110,7 @@ pub fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
     let mut files: Vec<PathBuf> =
         glob::glob(&text).map_err(wrong)?.filter_map(std::result::Result::ok).collect();
     if files.is_empty() {
-        return Err(Error::usage(format!("no file is named {text}"), "")
-            .hint("names are relative to the folder of the campaign file"));
+        return Err(Error::absent(format!("no file matches {text}"), pattern));
     }
     files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
     Ok(files)

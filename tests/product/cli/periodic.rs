@@ -255,9 +255,9 @@ fn impossible_counts_say_which_and_what_to_type() {
             ("--impacts 2 --cycles 0", "0 cycles in a period; expected 1 to 32", "try: 1 (--cycles)"),
             ("--impacts 33 --cycles 2", "33 impacts in a period; expected 1 to 32", "try: 32 (--impacts)"),
             ("--impacts 2 --cycles 33", "33 cycles in a period; expected 1 to 32", "try: 32 (--cycles)"),
-            ("--impacts 1.5", "'1.5' for '--impacts", "expected a whole number"),
-            ("--impacts=-1", "'-1' for '--impacts", "-1 is not a whole number from 0"),
-            ("--cycles two", "'two' for '--cycles", "expected a whole number"),
+            ("--impacts 1.5", "--impacts is 1.5", "expected a whole number"),
+            ("--impacts=-1", "--impacts is -1", "expected a whole number from 0"),
+            ("--cycles two", "--cycles is two", "expected a whole number"),
         ] {
             let said = refused(&format!("{command} {typed}"), 2);
             assert!(said.contains(found) && said.contains(hint), "{command} {typed}: {said}");
@@ -318,11 +318,11 @@ fn impossible_ranges_say_where_and_what_to_type() {
             "restitution is -0.5; expected a value from 0 to 1",
             "(--from)",
         ),
-        ("--over m1 --from 0.1 --to 0.2", "'m1' for '--over", "try: --over frequency"),
-        ("--over impulse --from 0.1 --to 0.2", "'impulse' for '--over", "try: --over frequency"),
+        ("--over m1 --from 0.1 --to 0.2", "--over is m1", "try: --over frequency"),
+        ("--over impulse --from 0.1 --to 0.2", "--over is impulse", "try: --over frequency"),
         ("--from 8 --to 14 --step 0", "steps of 0; expected a step from 1e-6 to 1", "try: 0.05 (--step)"),
         ("--from 8 --to 14 --step nan", "steps of NaN", "(--step)"),
-        ("--from 8", "--to <NUMBER>", "--to"),
+        ("--from 8", "needs --to NUMBER", "try: vibro model continue --help"),
     ] {
         let said = refused(&format!("continue --force 0.5 --frequency 11 {typed}"), 2);
         assert!(said.contains(found) && said.contains(hint), "{typed}: {said}");

@@ -118,7 +118,9 @@ fn prepared(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f6
     let mut values = trace.values.clone();
     if let Some((low, high)) = options.band {
         if low.partial_cmp(&high) != Some(Ordering::Less) {
-            return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI"));
+            return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI")
+                .hint("the lower limit first")
+                .setting("band"));
         }
         values = Filter::high_pass(low, ORDER, rate)?.zero_phase(&values)?;
         values = Filter::low_pass(high, ORDER, rate)?.zero_phase(&values)?;
@@ -169,16 +171,19 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
     let rate = rate_of(trace)?;
     if let Some(threshold) = options.threshold.filter(|t| !(0.0..1.0).contains(t)) {
         let found = format!("a threshold of {threshold}");
-        return Err(Error::usage(found, "a part of the median height, from 0 to 1"));
+        let expected = "a part of the median height, from 0 to 1";
+        return Err(Error::usage(found, expected).setting("threshold"));
     }
-    for (name, value) in [("a refractory time", options.refractory), ("an excitation", options.excitation)] {
+    for (key, value) in [("refractory", options.refractory), ("excitation", options.excitation)] {
         if let Some(v) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-            return Err(Error::usage(format!("{name} of {v}"), "a finite number above 0"));
+            return Err(Error::usage(format!("{key} is {v}"), "a finite number above 0").setting(key));
         }
     }
     no_gaps(trace, &trace.values, "the trace")?;
     if trace.values.iter().all(|v| Some(v) == trace.values.first()) {
-        return Err(Error::refused("all values of the trace are equal: it has no impacts"));
+        return Err(Error::refused("all values of the trace are equal: it has no impacts")
+            .hint("another channel, or check its cable")
+            .setting("channel"));
     }
     if let Some(reference) = &options.reference {
         let (n, expected) = (reference.len(), trace.values.len());

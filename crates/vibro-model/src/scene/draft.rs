@@ -9,7 +9,7 @@ use serde::de::IntoDeserializer;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table, Value};
-use vibro_record::{Error, Place, Result};
+use vibro_record::{Error, Place, Result, nearest};
 
 /// Kinds of excitation, each with the keys that belong to it.
 const KINDS: [(&str, &[&str]); 4] = [
@@ -207,7 +207,7 @@ impl Draft {
         let excitation = Excitation::deserialize(section).map_err(|e| complaint(&e, ""))?;
         let excitation = whole.map_or_else(|| excitation.clone(), |hz| excitation.at_frequency(hz));
         excitation.check().map_err(|error| {
-            let key = error.settings().first().map_or("kind", |key| *key);
+            let key = error.settings().next().unwrap_or("kind");
             self.at(&format!("excitation.{key}"), error)
         })?;
         Ok(excitation)
@@ -240,7 +240,11 @@ fn table(text: &str) -> Result<Table> {
         all.into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.get_ref().as_ref()));
     if let Some((key, _)) = own.iter().find(|(key, _)| !Parameter::is_of_rig(key.get_ref())) {
         let known = Parameter::of_rig().map(Parameter::name).chain(Scene::TABLES).collect::<Vec<_>>();
-        let error = Error::usage(format!("unknown key `{}`", key.get_ref()), known.join(", "));
+        let found = format!("unknown key `{}`", key.get_ref());
+        let error = match nearest(key.get_ref(), known.iter().copied()) {
+            Some(near) => Error::usage(found, "").hint(format!("did you mean `{near}`?")),
+            None => Error::usage(found, known.join(", ")),
+        };
         return Err(error.excerpt(text, key.span()));
     }
     let read = |table| Spanned::new(0..0, DeValue::Table(table)).into_deserializer();
