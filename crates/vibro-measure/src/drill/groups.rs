@@ -19,6 +19,10 @@ const CLEAR: f64 = 6.0;
 const ROUNDING: f64 = 1e-6;
 /// Part of the speed at an impact that an offset of the velocity may be.
 const LARGEST: f64 = 0.1;
+/// Part of their mean distance within which an impact follows another one closely: of impacts at random phases 3 % do.
+const CLOSE: f64 = 0.25;
+/// Part of the impacts that follow closely by accident.
+const ACCIDENTS: f64 = 0.1;
 /// Standard uncertainties beyond which a restitution outside 0 to 1 is no chance.
 const BEYOND: f64 = 2.0;
 
@@ -178,8 +182,13 @@ impl Group {
             }));
             clipped > 0 || moved.is_some()
         };
-        let (open_before, open_after) = (open(0, "before", &before), open(1, "after", &after));
+        let rings = followed(&own);
+        let (open_before, open_after) =
+            (open(0, "before", &before) || rings > 0, open(1, "after", &after) || rings > 0);
         let open = open_before || open_after;
+        if rings > 0 {
+            findings.push(Finding::doubt("drill-ringing").count("n", rings).count("all", own.len()));
+        }
         let estimate = |mean: Mean, open: bool, unit, method| {
             Estimate::new(mean.value, mean.std.filter(|_| !open), unit, mean.n, method)
         };
@@ -197,7 +206,7 @@ impl Group {
         let phase = if options.turns_from == TurnsFrom::Impacts && own.iter().all(|i| i.phase < ROUNDING) {
             Estimate::new(0.0, None, "1", own.len(), "turns begin at these impacts")
         } else {
-            estimate(phase, undirected, "1", "part of the turn, mean over impacts on the circle")
+            estimate(phase, undirected || rings > 0, "1", "part of the turn, mean over impacts on the circle")
         };
         let restitution = restitution(&own, front, options).map_err(|found| findings.push(found)).ok();
         Group {
@@ -218,6 +227,14 @@ impl Group {
             wanders: before.wanders || after.wanders || along.wanders,
         }
     }
+}
+
+/// How many impacts follow another one closely, where that is no accident: a velocity that rings has several jumps an impact.
+fn followed(impacts: &[&Impact]) -> usize {
+    let gaps: Vec<f64> = impacts.windows(2).map(|w| w[1].time - w[0].time).collect();
+    let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
+    let close = gaps.iter().filter(|gap| **gap < CLOSE * mean).count();
+    if close as f64 > ACCIDENTS * gaps.len() as f64 { close } else { 0 }
 }
 
 /// R = Σ(v₂⁺ − v₁⁺)/Σv₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before (W. J. Stronge,

@@ -8,12 +8,12 @@ fn options(masses: Option<(f64, f64)>) -> DrillOptions {
     options
 }
 
-/// Impacts of turns in a row from (phase, before, after).
+/// Impacts of turns in a row from (phase, before, after), a second apart whatever the phase.
 fn impacts(of: &[(f64, f64, f64)]) -> Vec<Impact> {
     let one = |(cycle, (phase, before, after)): (usize, &(f64, f64, f64))| Impact {
         cycle,
         group: 99,
-        time: cycle as f64 + phase,
+        time: cycle as f64,
         time_std: 0.0,
         phase: *phase,
         phase_std: 0.0,
@@ -195,4 +195,23 @@ fn what_is_not_known_of_an_offset_is_in_all_means_and_a_large_one_leaves_no_unce
     let large = group(-0.6);
     assert!(large.before.std.is_none() && large.energy_given.is_some_and(|e| e.std.is_none()));
     assert_eq!(large.findings[0].code, "drill-mean-velocity");
+}
+
+#[test]
+fn impacts_of_a_velocity_that_rings_have_no_uncertainty_and_two_a_turn_have() {
+    let of = |second: f64| {
+        let mut normal = Normal(7);
+        let mut all: Vec<Impact> = (0..20)
+            .flat_map(|cycle| {
+                let mut two = impacts(&[(0.3, 6.0 + 0.1 * normal.next(), -1.5), (second, 6.1, -1.4)]);
+                two.iter_mut().for_each(|i| (i.cycle, i.time) = (cycle, cycle as f64 + i.phase));
+                two
+            })
+            .collect();
+        let group = grouped(&mut all, 20, &options(None)).remove(0);
+        let rings = group.findings.iter().any(|found| found.code == "drill-ringing");
+        (rings, group.before.std.is_none(), group.phase.std.is_none())
+    };
+    assert_eq!(of(0.32), (true, true, true));
+    assert_eq!((of(0.7).0, of(0.7).1), (false, false));
 }
