@@ -54,26 +54,17 @@ impl<'a> Trial<'a> {
 
     /// The first of the tables that answers sensibly and without a doubt.
     fn first(&self, tables: &[Table]) -> Option<Table> {
-        let sure = |table: &&Table| self.sensibly(from_ref(*table));
-        let mut answering = tables.iter().filter(sure);
-        let first = answering.next()?;
-        Some(if self.is_brief(first) { answering.next().unwrap_or(first) } else { first }.clone())
+        let sure = |table| Some((table, self.sensibly(from_ref(table))?));
+        let mut answering = tables.iter().filter_map(sure);
+        let (first, heard) = answering.next()?;
+        let other = if is_brief(&heard) { answering.next() } else { None };
+        Some(other.map_or(first, |(table, _)| table).clone())
     }
 
-    /// Whether a table is a decay that takes a small part of its record: where impacts in a row ring down, one of them is a decay, too.
-    fn is_brief(&self, table: &Table) -> bool {
-        let used = |heard: Heard| {
-            let decay = heard.result.get("decays")?.get(0)?;
-            let [start, end, last] = ["start", "end", "last"].map(|key| decay[key].as_f64());
-            Some((end? - start?) / (last? - start?))
-        };
-        table.section == "decay" && self.answers(from_ref(table)).ok().and_then(used) < Some(MOSTLY)
-    }
-
-    /// Whether the tables answer sensibly and without a doubt.
-    fn sensibly(&self, tables: &[Table]) -> bool {
-        let sure = |heard: Heard| heard.worst() < Some(Severity::Doubt) && sensible(tables, &heard);
-        self.answers(tables).is_ok_and(sure)
+    /// The answers of the tables, where they are sensible and without a doubt.
+    fn sensibly(&self, tables: &[Table]) -> Option<Heard> {
+        let sure = |heard: &Heard| heard.worst() < Some(Severity::Doubt) && sensible(tables, heard);
+        self.answers(tables).ok().filter(sure)
     }
 
     /// Adds the tables of a series.
@@ -104,7 +95,7 @@ impl<'a> Trial<'a> {
         let tried = [drops(&|one| one.bounces(0, &series.name)), drops(&|one| one.fall(0, &series.name))];
         if series.files.len() > 1
             && series.headers.len() == 1
-            && let Some(drops) = tried.into_iter().find(|tables| self.sensibly(tables))
+            && let Some(drops) = tried.into_iter().find(|tables| self.sensibly(tables).is_some())
         {
             proposal.tables.extend(drops);
             return;
@@ -283,6 +274,16 @@ fn settled(heard: &Heard) -> bool {
         2 * sure >= points.len() && sure > 0
     };
     responses.is_some_and(|all| !all.is_empty() && all.iter().all(most))
+}
+
+/// Whether the answer is a decay that takes a small part of its record: where impacts in a row ring down, one of them is a decay, too.
+fn is_brief(heard: &Heard) -> bool {
+    let used = |decay: &Value| {
+        let [start, end, last] = ["start", "end", "last"].map(|key| decay[key].as_f64());
+        Some((end? - start?) / (last? - start?))
+    };
+    let decay = heard.result.get("decays").and_then(|all| all.get(0));
+    decay.is_some_and(|decay| used(decay) < Some(MOSTLY))
 }
 
 /// Whether impacts are as their tables have them: three or more in a row; two in a fall with one rebound; and none that return with
