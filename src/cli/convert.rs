@@ -46,6 +46,10 @@ impl Run for Convert {
                 "a file to write",
             ));
         }
+        if self.binary && matches!(target, Target::Csv | Target::Tsv) {
+            let found = format!("binary {}", target.name());
+            return Err(Error::usage(found, "UFF-58, NAME.uff").setting("binary"));
+        }
         if !piped {
             apart(&self.input, &self.output)?;
         }

@@ -71,7 +71,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
     if records.is_empty() {
         return Err(Error::usage("a LabVIEW measurement without values", "at least one segment with values"));
     }
-    findings.extend(missing::kept(missed.check("value(s) are missing:", options.allow_missing)?));
+    findings.extend(missing::kept(missed.check("missing value", "at", options.allow_missing)?));
     Ok(Contents::of(records, findings))
 }
 

@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 use rayon::prelude::*;
+use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result, Values, lanes};
 
 /// How many places a complaint lists.
@@ -48,7 +49,7 @@ pub(super) fn checked<'a>(
     for (name, i) in marked.iter().flat_map(|(name, odd)| odd.iter().map(move |i| (name, i))) {
         missing.take(&Place::default(), format!("{} of {name:?}", i + 1));
     }
-    Ok(kept(missing.check("value(s) are NaN or infinite:", allowed)?))
+    Ok(kept(missing.check("value", "NaN or infinite:", allowed)?))
 }
 
 /// Values that are missing: how many, and where the first of them stand.
@@ -72,16 +73,16 @@ impl Missing {
         }
     }
 
-    /// Refuses all of them at once; `what` stands between their number and their places.
+    /// Refuses all of them at once; behind their number stands a `noun`, before their places `what`.
     ///
     /// # Errors
     /// If there are any and they are not `allowed`.
-    pub fn check(self, what: &str, allowed: bool) -> Result<usize> {
+    pub fn check(self, noun: &str, what: &str, allowed: bool) -> Result<usize> {
         if self.count == 0 || allowed {
             return Ok(self.count);
         }
         let listed = self.listed[..self.listed.len().min(LISTED)].join(", ");
         let more = if self.listed.len() > LISTED { ", …" } else { "" };
-        Err(refusal(self.first, format!("{} {what} {listed}{more}", self.count)))
+        Err(refusal(self.first, format!("{} {what} {listed}{more}", counted(self.count, noun))))
     }
 }

@@ -180,7 +180,7 @@ impl Stream for Wave {
                     let frame = first + i as u64;
                     missing.take(&Place::file(&self.path), format!("{frame} of channel {}", channel + 1));
                 }
-                missing.check("sample(s) are NaN or infinite: frame", self.allow_missing)?;
+                missing.check("sample", "NaN or infinite: frame", self.allow_missing)?;
                 values.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = f64::NAN);
             }
             let factor = self.factors.get(*channel).copied().unwrap_or(1.0);

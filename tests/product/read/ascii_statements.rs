@@ -160,7 +160,7 @@ fn what_a_person_states_wins_with_a_doubt_that_names_both() {
         .from_reader("x.csv", &b"f [Hz],a\n0,1\n1,2\n"[..])
         .unwrap_err()
         .to_string();
-    assert!(csv.contains("1 column(s) of values, where complex"), "{csv}");
+    assert!(csv.contains("1 column of values, where complex"), "{csv}");
 }
 
 #[test]

@@ -102,12 +102,12 @@ fn no_row_is_lost() {
     };
     // A row of separators only.
     let gap = text("\t1.0\n\t\n\t3.0\n\t\n");
-    assert!(recording(&gap).unwrap_err().to_string().contains("1 value(s) are missing: 2 of \"a\""));
+    assert!(recording(&gap).unwrap_err().to_string().contains("1 missing value at 2 of \"a\""));
     let kept = crate::Reader::new().allow_missing(true).from_reader("x.lvm", gap.as_bytes()).unwrap();
     let values = &traces(&kept)[0].values;
     assert_eq!((values.len(), values[2]), (3, 3.0));
     let said = recording(&text("\t1.0\n\n\t3.0\n")).unwrap_err().to_string();
-    assert!(said.contains("missing: 2 of"), "{said}");
+    assert!(said.contains("missing value at 2 of"), "{said}");
     let said = recording(&text("\t1.0\n\nChannels\t1\n")).unwrap_err().to_string();
     assert!(said.contains("line 14") && said.contains("begins no head"), "{said}");
     assert!(recording(&text("\t1.0\n\n\n\t\n")).is_ok());

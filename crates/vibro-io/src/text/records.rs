@@ -12,6 +12,7 @@ use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::units::Unit;
+use vibro_record::units::notation::counted;
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
 /// Records of all columns but the abscissa; findings about the file as a whole are added.
@@ -336,7 +337,7 @@ impl Made<'_> {
         }
         if stated && out.iter().all(|column| matches!(column.values, Values::Real(_))) {
             let over = if axis.kind == AxisKind::Time { " over time" } else { " of values" };
-            let found = format!("{} column(s){over}, where complex values were stated", out.len());
+            let found = counted(out.len(), "column") + over + ", where complex values were stated";
             return Err(Error::usage(found, "two columns over frequency, real and imaginary part")
                 .hint("leave out that values are complex, or state the base band")
                 .setting("complex")

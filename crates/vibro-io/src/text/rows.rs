@@ -9,6 +9,7 @@ use super::{in_line, shorten};
 use crate::missing::Missing;
 use crate::{Format, number};
 use num_complex::Complex64;
+use vibro_record::units::notation::counted;
 use vibro_record::{Error, Result, Values};
 
 /// Columns of numbers and what was met on the way.
@@ -104,7 +105,7 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
         let end_early = columns.iter().all(|values| gaps(values) == behind(values));
         let checked =
-            missing.check("missing value(s) (NaN, Inf, over-range or blank) in line(s)", allow_missing);
+            missing.check("missing value", "(NaN, Inf, over-range or blank), in line", allow_missing);
         checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })?;
     }
     rows.missing = gaps;
@@ -181,7 +182,7 @@ impl Reader<'_> {
             return self.not_a_number(line, *at, field);
         }
         let at = fields.get(n).map_or(line.text.len(), |(at, _)| *at);
-        let found = format!("{} field(s) in this row", fields.len());
+        let found = counted(fields.len(), "field") + " in this row";
         let expected = format!("{n}, as many as in line {}", self.dialect.columns_from);
         fault(line, at, &found, &expected).hint(self.hint(line, "mend or remove the row"))
     }
@@ -260,10 +261,10 @@ mod tests {
         );
         let ragged = complaint("t,a\n0,1\n1,2,3\n");
         assert!(
-            ragged.contains("line 3, column 5: 3 field(s) in this row; expected 2, as many as in line 1"),
+            ragged.contains("line 3, column 5: 3 fields in this row; expected 2, as many as in line 1"),
             "{ragged}"
         );
-        assert!(complaint("t,a\n0,1\n1\n").contains("line 3, column 2: 1 field(s)"));
+        assert!(complaint("t,a\n0,1\n1\n").contains("line 3, column 2: 1 field in"));
         assert!(complaint("t,a\n0,1\n1,\"2\"3\n").contains("line 3, column 6: text behind a closing quote"));
         assert!(complaint("t,a\n0,1\nNaN,3\n").contains("line 3, column 1: found \"NaN\""));
     }
@@ -273,7 +274,7 @@ mod tests {
         let text = "t,a,b\n0,1,2\n1,,NaN\n2,-inf,1\n";
         let error = complaint(text);
         assert!(
-            error.contains("line 3: 3 missing value(s)") && error.contains("3 (\"a\"), 3 (\"b\"), 4 (\"a\")"),
+            error.contains("line 3: 3 missing values") && error.contains("3 (\"a\"), 3 (\"b\"), 4 (\"a\")"),
             "{error}"
         );
         let kept = rows(text, true).unwrap();

@@ -10,6 +10,7 @@ use crate::source::ReadSeek;
 use crate::text::encoding;
 use std::fmt;
 use std::io::{Read, SeekFrom};
+use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result};
 
 /// How many bytes of texts are looked at in one chunk.
@@ -207,7 +208,8 @@ fn kind(format: &[u8]) -> std::result::Result<(Sample, usize, f64, usize), (Stri
         3 => "floats".to_owned(),
         other => format!("samples of format tag {other:#06x}"),
     };
-    let found = format!("{kind} of {bits} bits, {channels} channel(s), {frame} bytes a frame");
+    let found =
+        format!("{kind} of {bits} bits, {}, {frame} bytes a frame", counted(channels.into(), "channel"));
     Err((found, "integers of 8, 16, 24 or 32 bits or floats of 32 or 64 bits, whole bytes a channel"))
 }
 

@@ -8,6 +8,7 @@
 use super::{Precision, failed, label, together};
 use crate::wav::{Scale, Scales};
 use std::io::Write;
+use vibro_record::units::notation::counted;
 use vibro_record::{AxisKind, Error, Record, Result, Trace};
 
 /// Writes traces as the channels of one file.
@@ -93,7 +94,8 @@ fn head(scales: &Scales, rate: u32, frames: usize, precision: Precision) -> Resu
     let frame = channels * bytes;
     let too_large = || {
         Error::refused(format!(
-            "{frames} frames of {channels} channel(s) are more than a wave file holds (4 GiB)"
+            "{frames} frames of {} are more than a wave file holds (4 GiB)",
+            counted(channels, "channel")
         ))
         .hint("write .npy, or fewer channels")
     };

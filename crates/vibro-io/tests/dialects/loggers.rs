@@ -235,7 +235,7 @@ pub const ALL: &[Dialect] = &[
             })
         },
         outcome: super::Outcome::Refused(super::Refusal {
-            words: &["line 9", "1 missing value(s)"],
+            words: &["line 9", "1 missing value "],
             option: "`--allow-missing`",
             state: |reader| reader.allow_missing(true),
             edit: |text| text,
@@ -277,7 +277,7 @@ pub const ALL: &[Dialect] = &[
             })
         },
         outcome: super::Outcome::Refused(super::Refusal {
-            words: &["line 22", "2 missing value(s)"],
+            words: &["line 22", "2 missing values"],
             option: "`--allow-missing`",
             state: |reader| reader.allow_missing(true),
             edit: |text| text,
@@ -351,7 +351,7 @@ pub const ALL: &[Dialect] = &[
             })
         },
         outcome: super::Outcome::Refused(super::Refusal {
-            words: &["line 53", "1 missing value(s)"],
+            words: &["line 53", "1 missing value "],
             option: "`--allow-missing`",
             state: |reader| reader.allow_missing(true),
             edit: |text| text,

@@ -98,6 +98,11 @@ pub fn estimate(value: f64, std: Option<f64>) -> String {
     if scale == 1.0 { both } else { format!("({both})×{}", power_of_ten(exponent)) }
 }
 
+/// A number of things: `1 field`, `3 fields`.
+pub fn counted(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
 /// Decimals that show `value` to `digits` significant digits, none of them a trailing zero.
 pub fn decimals_needed(value: f64, digits: usize) -> usize {
     let (mantissa, exponent) = scientific(value, digits);
