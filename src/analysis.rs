@@ -70,6 +70,11 @@ pub(crate) trait Analysis: DeserializeOwned {
         None
     }
 
+    /// Keys that name channels of its first file beside `channel`.
+    fn channels(&self) -> Vec<(&'static str, &String)> {
+        Vec::new()
+    }
+
     /// The files of a table.
     ///
     /// # Errors
@@ -201,17 +206,22 @@ fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
 
 fn channels_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<()> {
     for entry in entries::<A>(campaign)? {
-        let Some(file) = &entry.file else { continue };
-        let path = campaign.file(&entry, "file", file, allow_outside)?;
+        let named = entry.channel.channel.iter().map(|name| ("channel", name));
+        let named: Vec<_> = named.chain(entry.keys.channels()).collect();
+        if entry.file.is_none() && named.is_empty() {
+            continue;
+        }
+        let Some(path) = A::files(campaign, &entry, allow_outside)?.into_iter().next() else { continue };
         let (_, headers, _) = entry.reading.reader()?.survey(&path)?;
         // Values that are numbered, as a step without a rate shows.
         if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
             let error = Error::usage(format!("{} has no sampling rate", path.display()), "rate = HZ");
             return Err(campaign.fault(&entry, error.setting("rate").setting("file")));
         }
-        let Some(channel) = &entry.channel.channel else { continue };
         let names = headers.iter().map(|h| h.name.as_str());
-        find_channel(&path, channel, names).map_err(|e| campaign.fault(&entry, e.setting("channel")))?;
+        for (key, name) in named {
+            find_channel(&path, name, names.clone()).map_err(|e| campaign.fault(&entry, e.setting(key)))?;
+        }
     }
     Ok(())
 }

@@ -90,7 +90,7 @@ impl Campaign {
         let other = |found: &str, expected: &str| Error::input(Place::file(path), found, expected);
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || path.is_dir() {
             if !path.exists() {
-                return Err(Error::absent(format!("there is no {}", path.display()), path));
+                return Err(Error::absent(format!("there is no file or folder {}", path.display()), path));
             }
             return Err(other("not a campaign", "a campaign file, NAME.toml, or a folder of recordings")
                 .hint("a list of files goes to `vibro response`; docs/campaign.md shows a campaign"));
@@ -142,13 +142,32 @@ impl Campaign {
         Ok(parsed.into_inner())
     }
 
-    /// The tables that stand in it as comments, and so are left out.
+    /// What its comments leave out: tables that lack a value, and files that were not used.
     pub(crate) fn commented(&self) -> Vec<Finding> {
-        let table = |(i, line): (usize, &str)| {
-            let name = line.strip_prefix('#')?.trim_start().strip_prefix("[[")?.split("]]").next()?;
-            Some(Finding::note("table-in-comment").about(format!("[[{name}]]")).count("line", i + 1))
+        let lines: Vec<&str> = self.text.lines().collect();
+        let comment = |line: &&str| line.strip_prefix('#').map(|text| text.trim_start().to_owned());
+        let below = |i: usize| lines[i..].iter().map_while(comment);
+        let table = |i: usize| {
+            let head = comment(&lines[i]).filter(|text| text.starts_with("[["))?;
+            let keys: Vec<(String, String)> = below(i + 1)
+                .map_while(|row| row.split_once('=').map(|(k, v)| (k.trim().to_owned(), v.trim().to_owned())))
+                .collect();
+            let file = keys.iter().find(|(key, _)| key == "file").map(|(_, name)| name.trim_matches('"'));
+            if file.is_some_and(|file| lines.iter().any(|line| !line.starts_with('#') && line.contains(file)))
+            {
+                return None;
+            }
+            let lacking = keys.iter().filter(|(_, value)| value.is_empty() || value.starts_with('#'));
+            let lacking: Vec<&str> = lacking.map(|(key, _)| key.as_str()).collect();
+            let found = Finding::note("table-in-comment").about(file.unwrap_or(&head)).count("line", i + 1);
+            Some(if lacking.is_empty() { found } else { found.name("keys", lacking.join(", ")) })
         };
-        self.text.lines().enumerate().filter_map(table).collect()
+        let unused = lines.iter().position(|line| *line == "# Not used:");
+        let unused = unused.into_iter().flat_map(|i| below(i + 1)).filter_map(|line| {
+            let (file, why) = line.split_once(": ")?;
+            Some(Finding::note("file-not-used").about(file).name("why", why))
+        });
+        (0..lines.len()).filter_map(table).chain(unused).collect()
     }
 
     /// Its text.

@@ -6,9 +6,10 @@ use super::job::Marks;
 use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::Entry;
 use crate::error::Result;
+use crate::measure::Estimate;
 use crate::measure::decay::{DecayOptions, DecayResult, decay};
 use crate::record::units::notation;
-use crate::report::layout::table;
+use crate::report::layout::{pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 
@@ -35,7 +36,7 @@ impl OfFile for Keys {
         answer.add("", &trace.meta.findings);
         answer.table("modes", modes(source.name, &found));
         if !found.levels.is_empty() {
-            answer.table("levels", levels(&found));
+            answer.table("levels", levels(source.name, &found));
         }
         answer.figure("decay", figures::decay(source.name, &trace.meta, &found));
         Ok(answer)
@@ -43,15 +44,15 @@ impl OfFile for Keys {
 }
 
 fn modes(name: &str, found: &DecayResult) -> Table {
-    let title = if name.is_empty() { "Modes".to_owned() } else { format!("Modes, {name}") };
+    let degrees = |e: &Estimate| pair(e.value.to_degrees(), e.std.map(f64::to_degrees));
     let table = table(
-        title,
+        titled("Modes", name),
         &found.modes,
         &[
             ("frequency", "Hz", &|mode| Cell::from(&mode.frequency)),
             ("damping ratio", "1", &|mode| Cell::from(&mode.zeta)),
             ("amplitude", unit(found), &|mode| Cell::from(&mode.amplitude)),
-            ("phase", "rad", &|mode| Cell::from(&mode.phase)),
+            ("phase", "°", &|mode| degrees(&mode.phase)),
         ],
     );
     let (start, end) = (found.start, found.end);
@@ -69,9 +70,9 @@ fn unit(found: &DecayResult) -> &'static str {
 }
 
 /// The strongest mode over its amplitude.
-fn levels(found: &DecayResult) -> Table {
+fn levels(name: &str, found: &DecayResult) -> Table {
     table(
-        "Damping over amplitude",
+        titled("Damping over amplitude", name),
         &found.levels,
         &[
             ("from", "s", &|level| level.start.into()),

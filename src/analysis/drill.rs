@@ -269,6 +269,12 @@ impl Analysis for Keys {
         entry.keys.usable()
     }
 
+    fn channels(&self) -> Vec<(&'static str, &String)> {
+        let handles = self.handle.iter().map(|name| ("handle", name));
+        let one = [("velocity", &self.velocity), ("reference", &self.reference)];
+        one.into_iter().filter_map(|(key, name)| Some((key, name.as_ref()?))).chain(handles).collect()
+    }
+
     fn beside(&self) -> Option<(&'static str, &PathBuf)> {
         Some(("noise_record", self.noise_record.as_ref()?))
     }

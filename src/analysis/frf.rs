@@ -6,17 +6,22 @@ pub mod tables;
 
 pub use function::Function;
 
+use super::answer::left_out;
 use super::job::Marks;
 use super::spectrum::{self, Detrend};
 use super::{Analysis, Answer, Job, Source, no_file, sweep};
 use crate::campaign::{Entry, above_zero, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
-use crate::record::{Finding, Meta, Record, Window};
+use crate::record::{Meta, Record, Window};
 use crate::report::files;
+use crate::report::words::About;
 use crate::signal::transfer::Estimator;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+
+/// Code of the finding that a sweep jumps.
+const JUMPS: &str = "modal-sweep-jumps";
 
 /// How modes are found, and how the function is taken where a file has two channels.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -41,7 +46,7 @@ pub struct Keys {
     /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
-    /// Samples of a segment [default: 8192, or the whole of a shorter record]
+    /// Samples of a segment [default: 8192, or the whole of a shorter record; of blows, as they ring and are apart]
     pub segment: Option<usize>,
     /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
@@ -125,7 +130,10 @@ impl Keys {
         let functions = self.functions(source, &mut of_file)?;
         let answers = functions.into_iter().map(|function| {
             let mut answer = self.modes(source.name, &function)?;
-            answer.findings.splice(0..0, of_file.findings.iter().cloned());
+            // What is left of a blow is said once.
+            let of_modes = answer.findings.iter().any(|(_, found)| found.code == "modal-blow-cut-off");
+            let said = |(_, found): &&About| !(of_modes && found.code == "response-cut-off");
+            answer.findings.splice(0..0, of_file.findings.iter().filter(said).cloned());
             Ok(answer)
         });
         answers.collect()
@@ -225,6 +233,10 @@ impl Analysis for Keys {
         }
     }
 
+    fn channels(&self) -> Vec<(&'static str, &String)> {
+        self.reference.iter().map(|name| ("reference", name)).collect()
+    }
+
     fn beside(&self) -> Option<(&'static str, &PathBuf)> {
         Some(("coherence", self.coherence.as_ref()?))
     }
@@ -240,9 +252,12 @@ impl Analysis for Keys {
                 None => entry.keys.measure(source)?,
             };
             for answer in &mut answers {
-                let none =
-                    answer.refused.take().map(|e| Finding::caution("no-modes").name("why", e.to_string()));
-                answer.add("", none);
+                let jumps = answer.findings.iter().any(|(_, found)| found.code == JUMPS);
+                if let Some(error) = answer.refused.take() {
+                    let of_jumps =
+                        || Error::refused("the sweep jumps, so its motion is not that of linear modes");
+                    answer.add("", [left_out("no-modes", if jumps { of_jumps() } else { error })?]);
+                }
             }
             Ok(answers)
         })

@@ -92,7 +92,11 @@ pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
             fixed => fixed.to_owned(),
         };
         let empty = Table::new(headline.title).column("record", "");
-        let empty = headline.columns.iter().fold(empty, |table, (name, _, of)| table.column(*name, unit(of)));
+        let empty = headline
+            .columns
+            .iter()
+            .fold(empty, |table, (name, _, of)| table.column(*name, unit(of)))
+            .column("doubt", "");
         let rows: Vec<Vec<Cell>> = records.iter().flat_map(|record| rows(headline, record)).collect();
         let more = rows.len().saturating_sub(ROWS);
         let table = rows.into_iter().take(ROWS).fold(empty, Table::row);
@@ -109,11 +113,14 @@ pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
 
 fn rows(headline: &Headline, record: &Value) -> Vec<Vec<Cell>> {
     let name = record["name"].as_str().unwrap_or_default();
+    let doubtful =
+        record["findings"].as_array().is_some_and(|all| all.iter().any(|found| found["severity"] == "doubt"));
+    let doubt = if doubtful { "see the doubt" } else { "" };
     let own = vec![record.clone()];
     let items = if headline.list.is_empty() { Some(&own) } else { record[headline.list].as_array() };
     let row = |item: &Value| {
         let cells = headline.columns.iter().map(|(_, key, _)| cell(item, key));
-        std::iter::once(name.into()).chain(cells).collect()
+        std::iter::once(name.into()).chain(cells).chain([doubt.into()]).collect()
     };
     items.map_or_else(Vec::new, |items| items.iter().map(row).collect())
 }

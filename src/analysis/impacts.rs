@@ -159,6 +159,10 @@ impl Analysis for Keys {
         entry.keys.usable()
     }
 
+    fn channels(&self) -> Vec<(&'static str, &String)> {
+        self.reference.iter().map(|name| ("reference", name)).collect()
+    }
+
     fn beside(&self) -> Option<(&'static str, &PathBuf)> {
         Some(("shape", self.shape.as_ref()?))
     }

@@ -96,7 +96,7 @@ impl<'a> Job<'a> {
         match found {
             Ok(found) => Ok(Some(found)),
             Err(error) => {
-                self.all.add(record, [left_out(error)?]);
+                self.all.add(record, [left_out("left-out", error)?]);
                 Ok(None)
             }
         }

@@ -21,9 +21,14 @@ pub fn page(
 ) -> Page {
     let mut page = Page::new(job.title.as_str()).heading("Answers");
     page = headlines(&all.result).iter().fold(page, Page::table);
-    let worst: Vec<_> = graded(&all.findings, Voice::Campaign).into_iter().take(MATTER).collect();
-    let worst: Vec<_> = worst.into_iter().filter(|(severity, _)| *severity > Severity::Note).collect();
-    page = page.findings(&worst);
+    let mut worst = graded(&all.findings, Voice::Campaign);
+    worst.retain(|(severity, _)| *severity > Severity::Note);
+    let doubts = worst.iter().filter(|(severity, _)| *severity == Severity::Doubt).count();
+    let shown = doubts.clamp(MATTER, MOST).min(worst.len());
+    page = page.findings(&worst[..shown]);
+    if worst.len() > shown {
+        page = page.paragraph(&format!("{} more beside the records below.", worst.len() - shown));
+    }
     for Part { title, from, to } in parts {
         let findings = graded(&all.findings[from.findings..to.findings], Voice::Campaign);
         let tables = &all.tables[from.tables..to.tables];
@@ -102,8 +107,9 @@ fn what_if(job: &Job<'_>, results: &Map<String, Value>) -> Option<Value> {
     })
 }
 
-/// Findings that the page begins with, at most.
+/// Findings that the page begins with: so many, or all doubts up to the most.
 const MATTER: usize = 3;
+const MOST: usize = 8;
 
 fn history(steps: &[Step]) -> String {
     let mut text = String::new();

@@ -8,7 +8,7 @@ use crate::campaign::{Entry, LowPass, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::Estimate;
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
-use crate::report::layout::{headed, pair, table};
+use crate::report::layout::{headed, pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -107,15 +107,11 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     Ok(answer)
 }
 
-fn named(what: &str, title: &str) -> String {
-    if title.is_empty() { what.to_owned() } else { format!("{what}, {title}") }
-}
-
 /// What a pulse says, one row a quantity, in SI units.
 fn contact(title: &str, result: &PulseResult) -> Table {
     let known = |e: &Option<Estimate>| e.as_ref().map_or(Cell::Missing, Cell::from);
     table(
-        named("Contact", title),
+        titled("Contact", title),
         [result],
         &[
             ("damping ratio ξ", "1", &|r| Cell::from(&r.xi)),
@@ -138,7 +134,7 @@ fn models(title: &str, result: &PulseResult) -> Table {
         [("model", ""), ("RMS residual", unit), ("AICc", ""), ("residual is noise (p)", ""), ("samples", "")];
     let head = |name: &str| name.replace('_', " ").replace("xi", "damping ratio ξ");
     let own = |table: Table, (name, unit): (&&str, &&str)| table.column(head(name), *unit);
-    let mut table = parameters.iter().fold(headed(named("Models", title), &columns), own);
+    let mut table = parameters.iter().fold(headed(titled("Models", title), &columns), own);
     for fit in &result.fits {
         let whiteness = match fit.whiteness {
             Some(p) if p < 1e-6 => Cell::from("< 1e-6"),

@@ -23,7 +23,7 @@ pub struct Keys {
     pub method: Option<Method>,
     /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
     pub tones: Option<usize>,
-    /// Samples of a segment [default: 8192, or the whole of a shorter record]
+    /// Samples of a segment [default: 8192, or the whole of a shorter record; of blows, as they ring and are apart]
     pub segment: Option<usize>,
     /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
@@ -160,9 +160,9 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
     );
     let low = LOW.iter().find(|(window, _)| *window == found.window).map_or("", |(_, low)| low);
     match &found.found {
-        Lines::Spectrum(_) if !low.is_empty() && found.tones.is_empty() => {
-            peaks.note(format!("A sine between two lines reads low, by up to {low}; tones fits it."))
-        }
+        Lines::Spectrum(_) if !low.is_empty() && found.tones.is_empty() => peaks.note(format!(
+            "A sine between two lines reads low, by up to {low}: --tones N gives the amplitudes of N sines."
+        )),
         _ => peaks,
     }
 }
@@ -211,6 +211,10 @@ impl Analysis for Keys {
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;
         entry.keys.options().map(drop)
+    }
+
+    fn channels(&self) -> Vec<(&'static str, &String)> {
+        self.reference.iter().map(|name| ("reference", name)).collect()
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {

@@ -267,6 +267,13 @@ impl Analysis for Keys {
         entry.keys.usable()
     }
 
+    fn channels(&self) -> Vec<(&'static str, &String)> {
+        // Without traces these are files.
+        let of_traces = [("force", &self.force), ("response", &self.response)];
+        let all = of_traces.into_iter().flat_map(|(key, names)| names.iter().map(move |name| (key, name)));
+        all.filter(|_| !self.traces.is_empty()).collect()
+    }
+
     fn files(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<Vec<PathBuf>> {
         let files = match Listed::of(campaign, entry, allow_outside)?.files {
             Files::Spectra(list) => [list.force, list.response].concat(),

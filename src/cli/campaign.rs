@@ -192,7 +192,7 @@ impl super::Run for Compare {
 
     /// Prints measured responses over the model.
     fn run(&self, json: bool) -> Result<u8> {
-        let mut campaign = analysis::open(&self.campaign)?;
+        let mut campaign = opened(&self.campaign, json)?;
         if !self.fit.is_empty() {
             let names = self.fit.iter().map(|name| FitEntry::parameter(name.trim()));
             campaign.fit.parameters = names.collect::<Result<_>>()?;

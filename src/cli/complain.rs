@@ -46,21 +46,25 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     error(&plain(complaint), Voice::Command, json)
 }
 
-/// The command that was typed, with its row.
-fn typed() -> (String, Option<&'static Row>) {
+/// The command that was typed, with its row and the names of its own commands.
+fn typed() -> (String, Option<&'static Row>, Vec<String>) {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let row = rows().find(|row| words.first().is_some_and(|word| word == row.name));
-    let all = super::command();
-    let of = row.and_then(|row| all.find_subcommand(row.name));
-    let part = words.get(1).filter(|word| of.is_some_and(|of| of.find_subcommand(word).is_some()));
-    let names = row.iter().map(|row| row.name).chain(part.map(String::as_str));
-    (["vibro"].into_iter().chain(names).collect::<Vec<_>>().join(" "), row)
+    let mut command = super::command();
+    let mut names = vec!["vibro"];
+    for word in words.iter().take(2) {
+        let Some(part) = command.find_subcommand(word).cloned() else { break };
+        command = part;
+        names.push(word);
+    }
+    let own = command.get_subcommands().map(|part| part.get_name().to_owned()).collect();
+    (names.join(" "), row, own)
 }
 
 /// What clap complains of, in our form.
 fn plain(complaint: &clap::Error) -> Error {
     let context = |kind| complaint.get(kind).map(ToString::to_string);
-    let (command, row) = typed();
+    let (command, row, own) = typed();
     let of =
         command.strip_prefix("vibro ").map_or_else(|| "there is".to_owned(), |name| format!("{name} has"));
     let help = format!("{command} --help");
@@ -71,10 +75,7 @@ fn plain(complaint: &clap::Error) -> Error {
     match complaint.kind() {
         ErrorKind::InvalidSubcommand => {
             let name = context(ContextKind::InvalidSubcommand).unwrap_or_default();
-            let known = rows().map(|row| row.name);
-            let near = context(ContextKind::SuggestedSubcommand);
-            let near = near.or_else(|| nearest(&name, known).map(str::to_owned));
-            let near = near.filter(|near| !near.contains(','));
+            let near = nearest(&name, own.iter().map(String::as_str));
             let hint = near.map_or_else(|| help.clone(), |near| format!("{command} {near}"));
             Error::usage(format!("no command is named {name:?}"), "").hint(hint)
         }
@@ -140,7 +141,7 @@ fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option
 /// What the standard library says of a value that is no number, and what a person needs to know.
 const NUMBERS: [(&str, &str); 3] = [
     ("invalid float literal", "a number, such as 0.5 or 1e-3"),
-    ("invalid digit found in string", "a whole number"),
+    ("invalid digit found in string", "a whole number, 0 or more"),
     ("cannot parse integer from empty string", "a whole number"),
 ];
 

@@ -53,6 +53,9 @@ impl super::Run for Init {
             }))?;
         } else {
             tell(&proposal);
+            for (file, why) in &proposal.left {
+                complain::line(&format!("not used: {file}: {why}"));
+            }
             print::text(&format!("wrote {0}\nnext: vibro run {0}\n", path.display()))?;
         }
         Ok(0)
@@ -78,19 +81,15 @@ pub fn tell(proposal: &Proposal) {
             continue;
         }
         series.push((table.section, table.name()));
-        complain::line(&format!("{} -> [[{}]]", table.in_words(), table.section));
+        let filled = if table.lacks() { ", left out until it is filled in" } else { "" };
+        complain::line(&format!("{} -> [[{}]]{filled}", table.in_words(), table.section));
         for Row { key, value, known } in &table.rows {
             match known {
                 Known::Found | Known::Open(_) => {}
                 Known::Guessed(why) => complain::line(&format!("  guessed: {key} = {value} ({why})")),
-                Known::Missing(what) => {
-                    complain::line(&format!("  missing: {key}, {what}; left out until it is filled in"));
-                }
+                Known::Missing(what) => complain::line(&format!("  missing: {key}, {what}")),
             }
         }
-    }
-    for (file, why) in &proposal.left {
-        complain::line(&format!("not used: {file}: {why}"));
     }
 }
 
@@ -100,6 +99,11 @@ impl super::Run for Check {
     /// Checks keys, values and files.
     fn run(&self, json: bool) -> Result<u8> {
         let of_folder = self.campaign.join(Proposal::FILE);
+        if self.campaign.is_dir() && !of_folder.exists() {
+            let shown = self.campaign.display();
+            let error = Error::usage(format!("{shown} has no {}", Proposal::FILE), "");
+            return Err(error.hint(format!("vibro init {shown}")));
+        }
         let campaign = analysis::open(if self.campaign.is_dir() { &of_folder } else { &self.campaign })?;
         let files = analysis::files(&campaign, self.allow_outside)?;
         analysis::channels(&campaign, self.allow_outside)?;

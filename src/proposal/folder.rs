@@ -84,7 +84,11 @@ impl Folder {
                     found.left.push((within(path), "no records".to_owned()));
                 }
                 Ok((_, headers, _)) if untimed(&headers) => {
-                    let why = "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder";
+                    let why = if headers.iter().any(|h| h.dx.is_none()) {
+                        "its samples are unevenly spaced; cut the file where samples are lost, or fill them in"
+                    } else {
+                        "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder"
+                    };
                     found.left.push((within(path), why.to_owned()));
                 }
                 Ok((_, headers, _)) => {

@@ -22,12 +22,18 @@ const LONGEST_CONTACT: f64 = 0.1;
 /// What is said where a pulse is not the only one.
 const ANOTHER: &str = "pulse-not-alone";
 
+/// What is said of a decay whose amplitude falls by as much in every swing.
+const FRICTION: &str = "decay-unexplained";
+
 /// Segments side by side that a function should have at least, and samples of a segment that are enough.
 const AVERAGES: usize = 4;
 const LONG: usize = 8192;
 
 /// Share of a record from the beginning of its decay on that is the decay, at least, where impacts in a row are possible too.
 const MOSTLY: f64 = 0.2;
+
+/// Square of the crest factor up to which a trace is a sine: 2, and what noise adds.
+const SINE: f64 = 2.7;
 
 /// Files that may be steps of a sweep.
 const STEPS: usize = 5;
@@ -59,6 +65,18 @@ impl<'a> Trial<'a> {
         let (first, heard) = answering.next()?;
         let other = if is_brief(&heard) { answering.next() } else { None };
         Some(other.map_or(first, |(table, _)| table).clone())
+    }
+
+    /// A decay that no modes explain, as one with friction.
+    fn unexplained(&self, tables: &[Table]) -> Option<Table> {
+        let friction = |table: &&Table| {
+            let doubts = |heard: &Heard| {
+                heard.findings.iter().all(|f| f.severity < Severity::Doubt || f.code == FRICTION)
+            };
+            table.section == "decay"
+                && self.answers(from_ref(*table)).is_ok_and(|h| doubts(&h) && !is_brief(&h))
+        };
+        tables.iter().find(friction).cloned()
     }
 
     /// The answers of the tables, where they are sensible and without a doubt.
@@ -144,7 +162,7 @@ impl<'a> Trial<'a> {
                 proposal.tables.push(pulse);
                 continue;
             }
-            match self.first(&others) {
+            match self.first(&others).or_else(|| self.unexplained(&others)) {
                 Some(table) => proposal.tables.push(table),
                 None => self.add(series.channel_table(k, name, "spectrum", "a time record"), file, proposal),
             }
@@ -200,6 +218,14 @@ impl<'a> Trial<'a> {
         let shares: Vec<f64> = recording.records.iter().map(at_two_levels).collect();
         let most = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
         let Some(pulses) = most.filter(|k| shares[*k] > 0.9) else { return Vec::new() };
+        // A contact circuit beside what drives it.
+        if let [sine] = velocities.iter().copied().filter(|k| *k != pulses).collect::<Vec<_>>()[..]
+            && is_sine(&recording.records[sine])
+        {
+            let table = series.channel_table(pulses, name, "impacts", "impacts in a row").surmised();
+            let table = table.guessed("reference", series.channel(sine), "the channel of a sine");
+            return self.answers(from_ref(&table)).map_or_else(|_| Vec::new(), |_| vec![table]);
+        }
         let table = |k: usize| {
             let header = &series.headers[k];
             let about = "a hammer drill with the pulses of its crank";
@@ -297,6 +323,16 @@ fn sensible(tables: &[Table], heard: &Heard) -> bool {
     let of_each = drop.and_then(|drop| drop["intervals"].as_array());
     let several = tables.iter().any(Table::lacks) && of_each.is_some_and(|all| !all.iter().all(one));
     !few && !lossless && !several
+}
+
+/// Whether a trace reaches no further than a sine of its power does, noise included.
+fn is_sine(record: &Record) -> bool {
+    let Record::Trace(trace) = record else { return false };
+    let n = trace.values.len() as f64;
+    let mean = trace.values.iter().sum::<f64>() / n;
+    let reach = trace.values.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);
+    let power = trace.values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
+    reach > 0.0 && reach * reach < SINE * power
 }
 
 /// Share of the values that lie in the lowest or highest tenth of the range, where some do in each.

@@ -20,6 +20,11 @@ pub fn table<T>(
     items.into_iter().fold(head, |table, item| table.row(columns.iter().map(|c| c.2(&item))))
 }
 
+/// A title, with the record's name where it has one.
+pub fn titled(what: &str, name: &str) -> String {
+    if name.is_empty() { what.to_owned() } else { format!("{what}, {name}") }
+}
+
 /// A value with its standard uncertainty.
 pub fn pair(value: f64, std: Option<f64>) -> Cell {
     Cell::Estimate { value, std }

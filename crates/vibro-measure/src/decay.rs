@@ -50,11 +50,7 @@ const CHANGED: f64 = 1e-3;
 /// If the trace is not evenly sampled, its band is none, it holds too few periods, no mode stands out of the noise, or the strongest line does
 /// not decay: a motion that is driven, grows, or was not seen for long enough.
 pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
-    let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
-        return Err(Error::refused("a decay needs evenly spaced samples over time")
-            .hint("state the sampling rate in Hz")
-            .setting("rate"));
-    };
+    let rate = trace.sampling_rate()?;
     if let Some((low, high)) = options.band.filter(|(low, high)| !(*low >= 0.0 && low < high)) {
         return Err(Error::usage(format!("a band of {low}:{high} Hz"), "LO:HI with LO below HI")
             .hint("the lower limit first")

@@ -11,7 +11,6 @@ mod hum;
 mod interval;
 mod onset;
 
-pub(crate) use detect::rate_of;
 pub use detect::{Detected, ImpactsOptions, detect};
 pub use excitation::{PerCycle, Phase};
 pub use hum::Hum;
@@ -146,7 +145,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
         times,
         findings,
     };
-    excitation::compare(&mut answer, &counted, (trace.axis.start(), rate_of(trace)?), options)?;
+    excitation::compare(&mut answer, &counted, (trace.axis.start(), trace.sampling_rate()?), options)?;
     let of_train = of_train(&answer);
     answer.findings.extend(of_train);
     Ok(answer)

@@ -108,7 +108,7 @@ pub fn contact_times(trace: &Trace) -> Result<ContactTimes> {
         );
         return Err(Error::refused(why).hint("without `legacy` header lines are skipped"));
     }
-    let rate = super::impacts::rate_of(trace)?;
+    let rate = trace.sampling_rate()?;
     let s = &trace.values;
     let rises = |i: &usize| s[i - 1] > 0.0 && s[*i] > s[i - 1] && s[*i] > s[i + 1];
     let maxima: Vec<(usize, f64)> = (1..s.len().saturating_sub(1)).filter(rises).map(|i| (i, s[i])).collect();

@@ -87,11 +87,7 @@ const FEWEST: f64 = 10.0 / 3.0;
 /// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
 /// parameters; if the mass is not above 0.
 pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
-    let Some(rate) = trace.rate().filter(|r| r.is_finite() && *r > 0.0) else {
-        return Err(Error::refused("a pulse needs evenly spaced samples over time")
-            .hint("state the sampling rate in Hz")
-            .setting("rate"));
-    };
+    let rate = trace.sampling_rate()?;
     let quantity = trace.meta.quantity;
     if matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
         return Err(Error::refused(format!("the record is one of {quantity}")).hint(

@@ -11,9 +11,10 @@ use super::tones;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Traces, Window};
-use vibro_signal::impact::{Blows, from_blows};
+use vibro_record::{Axis, Error, Finding, Meta, Result, Scaling, Spectrum, Trace, Traces, Window};
+use vibro_signal::impact::{BlowTransfer, Blows, from_blows, spacing};
 use vibro_signal::integrate::in_frequency;
+use vibro_signal::rails::Rails;
 use vibro_signal::segment::Segments;
 use vibro_signal::spectrum;
 use vibro_signal::transfer::{Estimator, transfer};
@@ -23,6 +24,8 @@ use vibro_signal::welch::{Averages, Welch};
 const SEGMENT: usize = 8192;
 /// Half the span of a reference over its RMS from which on it rests but for blows: noise has 3 to 5, and the impacts of a machine at a duty of one in 200 have 10.
 const BLOWS: f64 = 15.0;
+/// Fewest samples of a blow's record that are taken unasked.
+const SHORTEST: usize = 256;
 /// One part in so many of a hammer record stands before the blow.
 const BEFORE: usize = 50;
 
@@ -70,9 +73,10 @@ fn lines(
     progress: impl FnMut(usize) + Send,
 ) -> Result<SpectralResult> {
     let (scaling, window) = (options.scaling.unwrap_or(Scaling::Peak), options.window());
-    let mut tones = None;
+    let (mut tones, mut cut) = (None, Vec::new());
     let (spectrum, averages, independent, mut scatter) = if options.method() == Method::Welch {
         let averages = averages(traces, options, progress)?;
+        cut = clipped(&averages.ranges, traces);
         let meta = traces.channels().first().cloned().unwrap_or_else(|| Meta::new("", Unit::opaque("")));
         let scatter = spectrum::scatter(&averages, scaling);
         (
@@ -83,6 +87,12 @@ fn lines(
         )
     } else {
         let [trace] = whole(traces, progress)?;
+        let mut range = Rails::default();
+        range.extend(&trace.values);
+        // The sines that are fitted know of it themselves.
+        if options.tones.is_none() {
+            cut = clipped(&[range], traces);
+        }
         let spectrum = spectrum::plain(&trace, window, scaling, options.detrended())?;
         tones = options.tones.map(|count| tones::tones(&trace, count)).transpose()?;
         let unknown = vec![f64::NAN; spectrum.axis.len()];
@@ -100,11 +110,27 @@ fn lines(
     found.clear = (0..found.value.len()).map(clear).collect();
     found.false_alarms = Some(FALSE_ALARMS);
     found.value_std = found.value.iter().zip(scatter).map(|(v, part)| v * part).collect();
+    if !cut.is_empty() {
+        found.value_std.fill(f64::NAN);
+    }
+    found.findings.extend(cut);
     if let Some(tones) = tones {
         found.findings.extend(tones.findings);
         found.tones = tones.tones;
     }
     Ok(found)
+}
+
+/// Channels that rest at an end of their range. One that is at it half of the time is of two levels, or rests between pulses.
+fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
+    let of = |(range, meta): (&Rails, &Meta)| {
+        let [high, low] = range.range();
+        let at = range.clipped(0.5 * (high - low)).filter(|(_, n)| 2 * n < traces.frames());
+        let (n, level) = at.fold((0, 0.0), |(n, _), (level, more)| (n + more, level));
+        let found = Finding::doubt("spectrum-clipped").count("n", n).number("level", level);
+        (n > 0).then(|| found.name("unit", meta.unit.symbol()).about(&meta.name))
+    };
+    ranges.iter().zip(traces.channels()).filter_map(of).collect()
 }
 
 /// Powers of the lines.
@@ -131,25 +157,16 @@ fn response(
     progress: impl FnMut(usize) + Send,
 ) -> Result<SpectralResult> {
     let (found, step, blows) = if options.hammer {
-        let length = options.segment.unwrap_or(SEGMENT);
-        let how = Blows {
-            length,
-            before: length / BEFORE,
-            force_window: options.force_window,
-            left_at_end: options.left_at_end,
-        };
         let [force, response] = whole(traces, progress)?;
-        let found = from_blows(&force, &response, &how, estimator)?;
+        let (found, length) = of_blows(&force, &response, options, estimator)?;
         let blows = (found.window, found.enbw, found.blows);
         (found.transfer, traces.rate() / length as f64, Some(blows))
     } else {
         let averages = averages(traces, options, progress)?;
         if let Some(crest) = averages.crest(0).filter(|crest| *crest > BLOWS) {
-            let why = format!(
-                "the force rests but for blows (half its span is {crest:.0} times its RMS): segments would cut their responses"
-            );
+            let why = format!("the force comes in blows (half its span is {crest:.0} times its RMS)");
             return Err(Error::refused(why)
-                .hint("cut spikes out, or for a hammer test take one segment a blow")
+                .hint("take one segment a blow, or cut spikes out")
                 .setting("hammer"));
         }
         if averages.count == 1 {
@@ -158,6 +175,7 @@ fn response(
                 .setting("segment"));
         }
         let mut found = transfer(&averages, 1, traces.channels(), estimator)?;
+        found.findings.extend(clipped(&averages.ranges, traces));
         found.frf.meta.step("segments", &[("window", &options.window().name())]);
         (found, averages.step(), None)
     };
@@ -176,6 +194,35 @@ fn response(
         result.response.iter_mut().for_each(|r| r.blows.clone_from(&blows));
     }
     Ok(result)
+}
+
+/// The function of blows, and the length of their records: as stated, or as long as the response rings and the next blow allows.
+fn of_blows(
+    force: &Trace,
+    response: &Trace,
+    options: &SpectralOptions,
+    estimator: Estimator,
+) -> Result<(BlowTransfer, usize)> {
+    // A part of a record stands before its blow.
+    let longest = spacing(force) / (BEFORE - 1) * BEFORE;
+    let mut length = options.segment.unwrap_or(SEGMENT);
+    while options.segment.is_none() && length > longest && length > SHORTEST {
+        length /= 2;
+    }
+    loop {
+        let how = Blows {
+            length,
+            before: length / BEFORE,
+            force_window: options.force_window,
+            left_at_end: options.left_at_end,
+        };
+        let found = from_blows(force, response, &how, estimator)?;
+        let rings = found.transfer.findings.iter().any(|found| found.code == "response-cut-off");
+        if options.segment.is_some() || !rings || 2 * length > longest {
+            return Ok((found, length));
+        }
+        length *= 2;
+    }
 }
 
 /// Averages over segments, with products where there is a second channel.

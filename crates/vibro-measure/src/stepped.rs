@@ -94,11 +94,7 @@ impl Step {
         let together = || {
             Error::refused("force and response are not sampled together").hint("export both with one clock")
         };
-        let rate = force.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
-            Error::refused("a step needs evenly spaced samples over time")
-                .hint("state the sampling rate in Hz")
-                .setting("rate")
-        })?;
+        let rate = force.sampling_rate()?;
         let samples = force.values.len();
         if response.rate() != Some(rate) || response.values.len() != samples {
             return Err(together());

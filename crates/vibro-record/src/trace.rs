@@ -1,6 +1,6 @@
 //! Samples over time.
 
-use super::{Axis, Meta};
+use super::{Axis, Grid, Meta};
 use crate::units::{self, Unit};
 use crate::{Error, Result};
 
@@ -19,6 +19,27 @@ impl Trace {
     /// Sampling rate in Hz; `None` if the axis is uneven or not time.
     pub fn rate(&self) -> Option<f64> {
         matches!(self.axis.kind, super::AxisKind::Time).then(|| self.axis.step().map(|dt| 1.0 / dt)).flatten()
+    }
+
+    /// The sampling rate in Hz that a measurement needs.
+    ///
+    /// # Errors
+    /// If samples are uneven in time, or no rate is known.
+    pub fn sampling_rate(&self) -> Result<f64> {
+        self.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
+            let name = &self.meta.name;
+            let of = if name.is_empty() { String::new() } else { format!(" of channel {name:?}") };
+            if matches!(self.axis.grid, Grid::Uneven(_)) {
+                return Error::refused(format!(
+                    "the samples{of} are unevenly spaced: they have no sampling rate"
+                ))
+                .hint("cut the file where samples are lost, or fill in the lost samples");
+            }
+            Error::usage(format!("the sampling rate{of} is not known"), "")
+                .hint("state it in Hz, or the base band of an analyser: it samples at 2.56 times that")
+                .setting("rate")
+                .setting("base_band")
+        })
     }
 
     /// Code of the finding that the values are fractions of a recorder's full scale.

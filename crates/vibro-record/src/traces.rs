@@ -245,6 +245,7 @@ pub fn find_channel<'a>(
     let (found, expected) = match (same.as_slice(), number) {
         ([one], _) => return Ok(*one),
         ([], Some(number)) => return Ok(number - 1),
+        ([], None) if n == 1 => (format!("no channel {wanted:?}"), "the only one".to_owned()),
         ([], None) => (format!("no channel {wanted:?}"), format!("one of the {n}")),
         (several, _) => {
             (format!("{} channels are called {wanted:?}", several.len()), "the number of one".to_owned())
@@ -271,12 +272,8 @@ fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
 /// The sampling rate and the start that all traces have.
 fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
     let rate_of = |trace: &Trace| {
-        trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
-            let found = format!("the sampling rate of channel {:?} is not known", trace.meta.name);
-            Error::input(place(path), found, "samples at even distances in time")
-                .hint("state the sampling rate")
-                .setting("rate")
-        })
+        let named = |e: Error| if path.as_os_str().is_empty() { e } else { e.in_file(path) };
+        trace.sampling_rate().map_err(named)
     };
     let first = traces.first().ok_or_else(|| Error::input(place(path), "no channel", "at least one"))?;
     let (rate, start) = (rate_of(first)?, first.axis.start());

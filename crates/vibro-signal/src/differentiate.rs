@@ -1,6 +1,6 @@
 //! From displacement to velocity, in time.
 
-use super::sound::{no_gaps, rate_of};
+use super::sound::no_gaps;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result, Trace};
 
@@ -26,7 +26,7 @@ pub fn in_time(trace: &Trace, times: u8) -> Result<Differentiated> {
     if !(1..=2).contains(&times) {
         return Err(Error::usage(format!("{times} differentiations"), "1 or 2"));
     }
-    let rate = rate_of(trace)?;
+    let rate = trace.sampling_rate()?;
     if trace.values.len() < 5 {
         let why =
             format!("{} samples are too few to differentiate: at least 5 are needed", trace.values.len());

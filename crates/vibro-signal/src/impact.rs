@@ -6,8 +6,9 @@
 mod left;
 
 use super::fft::Transform;
+use super::rails::Rails;
 use super::segment::Segments;
-use super::sound::{no_gaps, rate_of};
+use super::sound::no_gaps;
 use super::transfer::{Estimator, Transfer, transfer};
 use super::welch::Sums;
 use left::Left;
@@ -19,19 +20,15 @@ use vibro_record::{Error, Finding, Meta, Result, Trace};
 
 /// Part of the largest force, above the level before it, at which a blow is noticed, and of a blow's own peak at which a second one is.
 const TRIGGER: f64 = 0.2;
+/// A hammer that bounces does so within this part of the longest time between blows.
+const BOUNCE: usize = 4;
 /// A blow has ended below this part of its peak, or below so many standard deviations of the noise before it.
 const ENDED: f64 = 0.05;
 const SIGMAS: f64 = 3.0;
 /// A force that stands less than this factor (10 dB) above its noise tells nothing of the response to it.
 const AUDIBLE: f64 = 10.0;
-/// So many samples in a row at the very extreme are a clipped signal.
-const CLIPPED: usize = 3;
 /// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
 const RAIL: f64 = 0.1;
-/// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)² for three, and noise.
-const ROUNDED: f64 = 8.0;
-/// Steps in a record of which only few different values are known: at least so many up to its extreme.
-const COARSEST: f64 = 250.0;
 
 const CUT_OFF: &str = "the record cuts it off";
 const DOUBLE: &str = "double hit";
@@ -90,7 +87,7 @@ pub fn from_blows(
     how: &Blows,
     estimator: Estimator,
 ) -> Result<BlowTransfer> {
-    let (rate, other, n) = (rate_of(force)?, rate_of(response)?, force.values.len());
+    let (rate, other, n) = (force.sampling_rate()?, response.sampling_rate()?, force.values.len());
     if rate != other || n != response.values.len() {
         let (rate, other, m) = (shortest(rate), shortest(other), response.values.len());
         let why = format!("the force has {n} samples at {rate} Hz, the response {m} at {other} Hz");
@@ -116,8 +113,15 @@ pub fn from_blows(
         let why: Vec<String> = blows.iter().filter_map(named).take(8).collect();
         let (clean, all, why) = (kept.len(), blows.len(), why.join(", "));
         let found = format!("{clean} of {all} blows are clean; {why}");
-        let hint = "name the channel of the force; strike once a record, without overload";
-        return Err(Error::refused(found).hint(hint).setting("reference"));
+        let refused = |why| blows.iter().all(|b| b.rejected == Some(why));
+        let error = Error::refused(found);
+        return Err(if refused(OVERLOAD) {
+            error.hint("set a larger range of force and response, and strike again")
+        } else if how.length > spacing(force) {
+            error.hint("a segment shorter than the time between blows").setting("segment")
+        } else {
+            error.hint("name the channel of the force; strike once a record").setting("reference")
+        });
     }
     let (decay, weights) = windows(how, rate)?;
     let transform = Transform::new(how.length);
@@ -165,6 +169,24 @@ pub fn from_blows(
             [usize::from(how.force_window.is_some()) + 2 * usize::from(how.left_at_end.is_some())],
         enbw: how.length as f64 * squares / (sum * sum),
     })
+}
+
+/// Samples from a blow to the next, or from the last one to the end of the record: what a record that holds one blow alone may have.
+///
+/// A blow that bounces comes again within a small part of the time to the next one. What is behind the last blow counts where it is not much
+/// shorter than what is behind the others.
+pub fn spacing(force: &Trace) -> usize {
+    let values = &force.values;
+    let rest = Quiet::of(values);
+    let push = values.iter().map(|v| v - rest.level);
+    let extreme = push.clone().fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
+    let above: Vec<bool> = push.map(|v| v * extreme.signum() > TRIGGER * extreme.abs()).collect();
+    let begins: Vec<usize> = (0..above.len()).filter(|i| above[*i] && (*i == 0 || !above[i - 1])).collect();
+    let gaps = begins.windows(2).map(|w| w[1] - w[0]);
+    let widest = gaps.clone().max().unwrap_or(0);
+    let between = gaps.filter(|gap| *gap > widest / BOUNCE).min();
+    let behind = values.len() - begins.last().copied().unwrap_or(0);
+    between.filter(|gap| behind < gap / 2).unwrap_or_else(|| between.map_or(behind, |gap| gap.min(behind)))
 }
 
 /// How many blows are left out, and why.
@@ -257,25 +279,12 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each rail on its own, since
 /// an offset takes a signal to one of them first.
-///
-/// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one leaves it as steeply
-/// as it came.
 fn overloaded(values: &[f64], before: usize) -> Option<f64> {
     let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
-    let lanes::Survey { low: lowest, high: highest, .. } = lanes::survey(values);
-    let reach = (highest - level).max(level - lowest);
-    let step =
-        values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(reach / COARSEST, f64::min);
-    [highest, lowest].into_iter().filter(|rail| (rail - level).abs() > RAIL * reach).find(|rail| {
-        let mut at = 0;
-        values.chunk_by(|a, b| a == b).any(|run| {
-            let (first, next) = (at, at + run.len());
-            at = next;
-            let beside = [first.checked_sub(1).and_then(|i| values.get(i)), values.get(next)];
-            let falls = |v: &f64| (v - rail).abs() > ROUNDED * step;
-            run.len() >= CLIPPED && run[0] == *rail && beside.into_iter().flatten().any(falls)
-        })
-    })
+    let mut rails = Rails::default();
+    rails.extend(values);
+    let reach = rails.range().map(|end| (end - level).abs()).into_iter().fold(0.0, f64::max);
+    rails.clipped(reach).map(|(rail, _)| rail).find(|rail| (rail - level).abs() > RAIL * reach)
 }
 
 /// Decay in 1/s, and the weights of force and response.

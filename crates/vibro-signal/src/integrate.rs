@@ -1,7 +1,6 @@
 //! From velocity to displacement and back: in frequency line by line, in time with a high-pass.
 
 use super::filter::Filter;
-use super::sound::rate_of;
 use super::spectrum;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -121,7 +120,7 @@ pub struct Integrated {
 /// band.
 pub fn in_time(trace: &Trace, how: &InTime) -> Result<Integrated> {
     check(how.times, 1)?;
-    let rate = rate_of(trace)?;
+    let rate = trace.sampling_rate()?;
     let filter = Filter::high_pass(how.corner, how.order, rate)?;
     let band = band(how, rate);
     if band[0] >= band[1] {

@@ -20,6 +20,7 @@ pub mod fft;
 pub mod filter;
 pub mod impact;
 pub mod integrate;
+pub mod rails;
 pub mod segment;
 mod sound;
 pub mod spectrum;

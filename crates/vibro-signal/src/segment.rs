@@ -1,7 +1,8 @@
 //! Records cut into overlapping segments, a batch of them at a time.
 
+use super::rails::Rails;
 use super::sound::no_gaps;
-use vibro_record::lanes::{self, Survey};
+use vibro_record::lanes;
 use vibro_record::{Error, Result, Traces};
 
 /// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache holds.
@@ -53,14 +54,14 @@ pub(crate) struct Batches<'a> {
     segments: Segments,
     /// Samples of each channel read so far.
     pub frames: usize,
-    /// Smallest and largest value of each channel so far.
-    pub ranges: Vec<Survey>,
+    /// The range of each channel so far.
+    pub ranges: Vec<Rails>,
 }
 
 impl<'a> Batches<'a> {
     /// All channels from the place at which `traces` stands.
     pub fn new(traces: &'a mut Traces, segments: Segments) -> Batches<'a> {
-        let ranges = vec![lanes::survey(&[]); traces.channels().len()];
+        let ranges = vec![Rails::default(); traces.channels().len()];
         Batches { traces, segments, frames: 0, ranges }
     }
 
@@ -80,9 +81,8 @@ impl<'a> Batches<'a> {
             // Missing samples are refused, for a transform would spread them over all lines.
             for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
                 let values = &column[column.len() - new..];
-                let seen = lanes::survey(values);
-                (range.low, range.high) = (range.low.min(seen.low), range.high.max(seen.high));
-                if !seen.finite {
+                range.extend(values);
+                if !lanes::survey(values).finite {
                     let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
                     no_gaps(values, name, self.frames)?;
                 }
@@ -134,7 +134,7 @@ mod tests {
                 std::mem::swap(&mut batch, &mut next);
             }
             assert_eq!(seen, segments.count(n), "{length} {overlap}");
-            assert_eq!((batches.frames, batches.ranges[0].high), (n, (n - 1) as f64));
+            assert_eq!((batches.frames, batches.ranges[0].range()[0]), (n, (n - 1) as f64));
         }
     }
 

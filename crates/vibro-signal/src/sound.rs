@@ -1,15 +1,6 @@
 //! What a transform or a filter asks of samples.
 
-use vibro_record::{Error, Result, Trace};
-
-/// The sampling rate in Hz.
-pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
-    trace.rate().ok_or_else(|| {
-        Error::refused(format!("the sampling rate of {:?} is not known", trace.meta.name))
-            .hint("state the sampling rate in Hz")
-            .setting("rate")
-    })
-}
+use vibro_record::{Error, Result};
 
 /// Refuses missing samples of a channel, the first of them `before` samples behind its start: they would spread over all of the
 /// result.

@@ -7,7 +7,7 @@
 
 use super::fft::Transform;
 use super::segment::Segments;
-use super::sound::{constant, no_gaps, rate_of};
+use super::sound::{constant, no_gaps};
 use super::welch::{Averages, Sums};
 use super::window;
 use num_complex::Complex64;
@@ -36,7 +36,7 @@ use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Values, 
 /// If the trace has no sampling rate, fewer than 8 samples, missing ones or a single value, or the scaling is not one that a
 /// transform gives.
 pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> Result<Spectrum> {
-    let rate = rate_of(trace)?;
+    let rate = trace.sampling_rate()?;
     let n = trace.values.len();
     if n < 8 {
         return Err(Error::refused(format!("{n} samples are too few for a spectrum: at least 8 are needed")));

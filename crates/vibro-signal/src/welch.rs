@@ -4,6 +4,7 @@
 //! are formed in a fixed order: the same record gives the same digits on any number of cores.
 
 use super::fft::{Transform, Workspace};
+use super::rails::Rails;
 use super::segment::{Batches, Segments};
 use super::sound::constant;
 use super::window;
@@ -47,8 +48,8 @@ pub struct Averages {
     pub auto: Vec<Vec<f64>>,
     /// Mean of conj(X₀) X for each channel behind the first, where products were asked for.
     pub cross: Vec<Vec<Complex64>>,
-    /// Smallest and largest sample of each channel; empty where they were not looked at.
-    pub extremes: Vec<(f64, f64)>,
+    /// The range of each channel; empty where it was not looked at.
+    pub ranges: Vec<Rails>,
 }
 
 impl Averages {
@@ -59,7 +60,8 @@ impl Averages {
 
     /// Half of what a channel spans, over its root mean square without the mean, by Parseval's theorem.
     pub fn crest(&self, channel: usize) -> Option<f64> {
-        let ((low, high), lines) = self.extremes.get(channel).zip(self.auto.get(channel))?;
+        let (range, lines) = self.ranges.get(channel).zip(self.auto.get(channel))?;
+        let [high, low] = range.range();
         let squares = 2.0 * lines.iter().skip(1).sum::<f64>() / (self.length as f64 * self.squares);
         Some(0.5 * (high - low) / squares.sqrt())
     }
@@ -103,12 +105,13 @@ impl Welch {
             count = read?;
         }
         for (name, range) in names.iter().zip(&batches.ranges) {
-            if range.low == range.high {
-                return Err(constant(name, range.low));
+            let [high, low] = range.range();
+            if low == high {
+                return Err(constant(name, low));
             }
         }
-        let extremes = batches.ranges.iter().map(|range| (range.low, range.high)).collect();
-        Ok(Averages { extremes, ..total.mean(&kernel.weights, self.segments, rate, self.detrend) })
+        let ranges = batches.ranges;
+        Ok(Averages { ranges, ..total.mean(&kernel.weights, self.segments, rate, self.detrend) })
     }
 }
 
@@ -176,7 +179,7 @@ impl Sums {
             squares: weights.iter().map(|w| w * w).sum(),
             auto: self.auto,
             cross: self.cross,
-            extremes: Vec::new(),
+            ranges: Vec::new(),
         }
     }
 }

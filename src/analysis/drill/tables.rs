@@ -23,9 +23,10 @@ pub fn drill(name: &str, d: &Drill) -> Table {
         }
     }
     let (x, b) = (&d.displacement, &d.bandwidth);
-    row("stroke", Cell::from(&x.stroke), "m", x.stroke.n);
+    let millimetres = |e: &Estimate| pair(1e3 * e.value, e.std.map(|std| 1e3 * std));
+    row("stroke", millimetres(&x.stroke), "mm", x.stroke.n);
     row("speed variation", pair(d.speed_variation, None), "Hz", d.cycles);
-    row("drift of a turn", Cell::from(&x.drift), "m", x.drift.n);
+    row("drift of a turn", millimetres(&x.drift), "mm", x.drift.n);
     row("largest acceleration", pair(b.acceleration, None), "m/s²", d.averaged);
     row("bandwidth f1, of velocity", pair(b.f1, None), "Hz", d.averaged);
     row("bandwidth f2, of acceleration", pair(b.f2, None), "Hz", d.averaged);

@@ -108,7 +108,7 @@ fn restitution_of_numbers_and_of_records() {
 
 #[test]
 fn restitution_refuses_what_cannot_be() {
-    assert!(complaint(&["restitution", "--height", "0", "--interval", "0.144"], 1).contains("above 0"));
+    assert!(complaint(&["restitution", "--height", "0", "--interval", "0.144"], 2).contains("above 0"));
     assert!(complaint(&["restitution", "--height", "0.57", "--interval", "0.9"], 1).contains("at most"));
     assert!(complaint(&["restitution", "--before", "1,2", "--after", "1,2"], 1).contains("do not approach"));
     assert!(complaint(&["restitution"], 2).contains("--height"));

@@ -218,7 +218,7 @@ fn a_hammer_names_the_windows_applied() {
     };
     // Segments that know nothing of blows are refused, and what is advised is what was asked above.
     assert!(
-        complaint(&hammer[..4], 1).contains("rests but for blows")
+        complaint(&hammer[..4], 1).contains("comes in blows")
             && complaint(&hammer[..4], 1).contains("--hammer")
     );
     assert_eq!(ask(&[]), ("rectangular".to_owned(), 1.0));

@@ -99,7 +99,7 @@ fn a_file_without_a_clock_asks_for_the_rate() {
     let path = folder.path().join("x.txt");
     std::fs::write(&path, "1\n2\n3\n4\n").unwrap();
     let error = Reader::new().stream(&path).err().unwrap().to_string();
-    assert!(error.contains("(rate)"), "{error}");
+    assert!(error.contains("(rate, base_band)"), "{error}");
     assert_eq!(Reader::new().rate(Some(100.0)).stream(&path).unwrap().rate(), 100.0);
 }
 

@@ -159,7 +159,7 @@ pub(super) fn findings(
         (phases.len() > 1, several.numbers("phases", phases)),
         (assumed, Finding::caution("drill-struck-mass-unknown")),
         (d.beam.per_degree > STEEP, Finding::caution("drill-beam-angle").number("share", d.beam.per_degree)),
-        (bandwidth.sampling_limited, Finding::doubt("drill-sampling-limited").number("f2", bandwidth.f2)),
+        (bandwidth.sampling_limited, Finding::caution("drill-sampling-limited").number("f2", bandwidth.f2)),
         (bandwidth.f2 > limit, limited.number("limit", limit)),
         (still && d.noise_floor.is_none(), Finding::caution("drill-noise-floor-short")),
     ];

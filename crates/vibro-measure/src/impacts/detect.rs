@@ -7,7 +7,7 @@ use super::{Hum, hum};
 use std::cmp::Ordering;
 use std::ops::Range;
 use vibro_record::units::notation::{quantity, shortest};
-use vibro_record::{Error, Finding, Grid, Result, Trace};
+use vibro_record::{Error, Finding, Result, Trace};
 use vibro_signal::envelope::envelope;
 use vibro_signal::filter::Filter;
 
@@ -130,7 +130,7 @@ fn prepared(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f6
 
 /// The shape of a recorded pulse, for a trace of this sampling rate in Hz.
 fn recorded(pulse: &Trace, rate: f64) -> Result<Shape> {
-    let own = rate_of(pulse).map_err(|error| error.setting("shape_rate"))?;
+    let own = pulse.sampling_rate().map_err(|error| error.setting("shape_rate"))?;
     Shape::recorded(&pulse.values, rate / own).ok_or_else(|| {
         let name = &pulse.meta.name;
         Error::refused(format!("{name:?} is no shape of a pulse: its samples have no rising flank"))
@@ -168,7 +168,7 @@ pub struct ImpactsOptions {
 
 /// Checks options and trace, and gives the sampling rate in Hz.
 pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
-    let rate = rate_of(trace)?;
+    let rate = trace.sampling_rate()?;
     if let Some(threshold) = options.threshold.filter(|t| !(0.0..1.0).contains(t)) {
         let found = format!("a threshold of {threshold}");
         let expected = "a part of the median height, from 0 to 1";
@@ -194,21 +194,6 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
         no_gaps(trace, reference, "the reference channel")?;
     }
     Ok(rate)
-}
-
-/// Sampling rate of a trace in Hz.
-///
-/// # Errors
-/// Where it has none.
-pub(crate) fn rate_of(trace: &Trace) -> Result<f64> {
-    trace.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| match trace.axis.grid {
-        Grid::Uneven(_) => Error::refused("the trace is sampled unevenly: it has no sampling rate")
-            .hint("cut the file where samples are lost, or fill in the lost samples"),
-        Grid::Even { .. } => Error::usage("the sampling rate of the trace is not known", "")
-            .hint("state the sampling rate in Hz, or the base band of an analyser: it samples at 2.56 times that")
-            .setting("rate")
-            .setting("base_band"),
-    })
 }
 
 /// Refuses missing values: an impact, or the begin of a cycle, may stand in any of them.

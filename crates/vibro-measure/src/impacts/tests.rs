@@ -232,7 +232,7 @@ fn uneven_times_and_missing_values_are_named() {
     times[300..].iter_mut().for_each(|t| *t += 0.03);
     odd.axis.grid = Grid::Uneven(times);
     let why = impacts(&odd, &ImpactsOptions::default()).unwrap_err().to_string();
-    assert!(why.contains("sampled unevenly"), "{why}");
+    assert!(why.contains("unevenly spaced"), "{why}");
 }
 
 /// A bearing with a fault of its outer ring: three rises a ball passage that ring at 3.2 kHz, with slip, under a shaft and noise.

@@ -332,3 +332,17 @@ fn short_blows_at_the_ceiling_are_overloads() {
     let strong = Some("overload");
     assert_eq!(rejected(&cut), [None, strong, strong, None, strong]);
 }
+
+#[test]
+fn the_next_blow_is_no_bounce_and_a_long_rest_counts() {
+    let of = |blows: &[usize], n| {
+        let blows: Vec<(usize, f64)> = blows.iter().map(|at| (*at, 100.0)).collect();
+        spacing(&bench(&blows, n)[0])
+    };
+    // The first of five samples of a half-sine is above a fifth of its peak: blows begin where they are put.
+    assert_eq!(of(&[500, 6500, 13_500], 20_000), 6000);
+    assert_eq!(of(&[500, 6500, 6600, 13_500], 20_000), 6000);
+    assert_eq!(of(&[500, 6500, 13_500], 17_500), 4000);
+    assert_eq!(of(&[500, 6500, 13_500], 14_000), 6000);
+    assert_eq!(of(&[500], 9000), 8500);
+}

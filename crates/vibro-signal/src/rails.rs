@@ -1,0 +1,125 @@
+//! The ends of a channel's range, and whether it rests at one of them as at a rail.
+
+/// So many samples in a row at the very extreme are a clipped signal.
+const CLIPPED: usize = 3;
+/// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)² for three, and noise.
+const ROUNDED: f64 = 8.0;
+/// Steps in a record of which only few different values are known: at least so many up to its extreme.
+const COARSEST: f64 = 250.0;
+
+/// Smallest and largest value of samples that come one by one, and how they are left.
+///
+/// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one leaves it as steeply as it came.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rails {
+    /// Largest and smallest value.
+    ends: [End; 2],
+    /// The value before the run of equal ones that is under way, that value, and how often it came.
+    before: f64,
+    last: f64,
+    run: usize,
+    /// Smallest step between neighbours that differ.
+    step: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct End {
+    value: f64,
+    /// Samples there.
+    count: usize,
+    /// Largest step beside a run of them that is no crest.
+    fall: f64,
+}
+
+impl Default for Rails {
+    fn default() -> Rails {
+        let end = |value| End { value, count: 0, fall: 0.0 };
+        let ends = [end(f64::NEG_INFINITY), end(f64::INFINITY)];
+        Rails { ends, before: f64::NAN, last: f64::NAN, run: 0, step: f64::INFINITY }
+    }
+}
+
+impl Rails {
+    /// Takes samples that follow those before.
+    pub fn extend(&mut self, values: &[f64]) {
+        for v in values {
+            if *v != self.last {
+                self.leave(*v);
+                self.step = self.step.min((v - self.last).abs());
+                (self.before, self.last, self.run) = (self.last, *v, 0);
+            }
+            self.run += 1;
+            let [high, low] = &mut self.ends;
+            if *v >= high.value {
+                high.reach(*v);
+            }
+            if *v <= low.value {
+                low.reach(*v);
+            }
+        }
+    }
+
+    /// Largest and smallest value.
+    pub fn range(&self) -> [f64; 2] {
+        self.ends.map(|end| end.value)
+    }
+
+    /// Ends at which samples rest, with their number: rails, where the signal is clipped. `reach` is how far it goes from its own level.
+    pub fn clipped(&self, reach: f64) -> impl Iterator<Item = (f64, usize)> {
+        let mut all = *self;
+        all.leave(f64::NAN);
+        let step = self.step.min(reach / COARSEST).max(0.0);
+        all.ends.into_iter().filter(move |end| end.fall > ROUNDED * step).map(|end| (end.value, end.count))
+    }
+
+    /// The run under way ends before `next`.
+    fn leave(&mut self, next: f64) {
+        if self.run < CLIPPED {
+            return;
+        }
+        // What is not a number, before the first and behind the last run, counts as no step.
+        let fall = (self.before - self.last).abs().max((next - self.last).abs());
+        for end in self.ends.iter_mut().filter(|end| end.value == self.last) {
+            end.fall = end.fall.max(fall);
+        }
+    }
+}
+
+impl End {
+    fn reach(&mut self, value: f64) {
+        if value != self.value {
+            *self = End { value, count: 0, fall: 0.0 };
+        }
+        self.count += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn of(values: &[f64]) -> Vec<(f64, usize)> {
+        let mut rails = Rails::default();
+        // In blocks of any length.
+        values.chunks(7).for_each(|block| rails.extend(block));
+        let [high, low] = rails.range();
+        rails.clipped(high.max(-low)).collect()
+    }
+
+    #[test]
+    fn a_flat_top_is_a_rail_and_a_coarse_crest_is_none() {
+        let sine = |period: f64| (0..4000).map(move |i| (TAU * f64::from(i) / period).sin());
+        let cut: Vec<f64> = sine(40.3).map(|v| v.min(0.7)).collect();
+        assert_eq!(of(&cut), [(0.7, cut.iter().filter(|v| **v == 0.7).count())]);
+        let both: Vec<f64> = sine(40.3).map(|v| v.clamp(-0.7, 0.7)).collect();
+        assert_eq!(of(&both).len(), 2);
+        assert!(of(&sine(40.3).collect::<Vec<f64>>()).is_empty());
+        // Eight bits at 400 samples a period: a crest rests for 25 samples on its last step.
+        let coarse: Vec<f64> = sine(400.0).map(|v| (127.0 * v).round()).collect();
+        assert!(of(&coarse).is_empty(), "{:?}", of(&coarse));
+        // A rail that is reached once more than three times in a row, at the end.
+        assert_eq!(of(&[0.0, 0.5, 1.0, 1.0, 1.0]), [(1.0, 3)]);
+        assert!(of(&[]).is_empty() && of(&[1.0; 9]).is_empty());
+    }
+}
