@@ -27,6 +27,12 @@ const HEADLINES: &[Headline] = &[
         ],
     },
     Headline {
+        title: "Jumps",
+        records: "responses",
+        list: "jumps",
+        columns: &[("change", "change", ""), ("frequency", "frequency", "Hz")],
+    },
+    Headline {
         title: "Modes",
         records: "frf",
         list: "modes",
@@ -78,7 +84,8 @@ const HEADLINES: &[Headline] = &[
 ];
 
 /// Why the modes of a sweep differ from its resonances.
-const OF_SWEEP: &str = "Modes of a sweep use all its points and their phase; its resonances above are by the points around each peak.";
+const OF_SWEEP: &str =
+    "Modes of a sweep use all its points and their phase; its resonances are by the points around each peak.";
 
 /// Rows of a headline, at most.
 const ROWS: usize = 10;
@@ -100,7 +107,8 @@ pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
         let rows: Vec<Vec<Cell>> = records.iter().flat_map(|record| rows(headline, record)).collect();
         let more = rows.len().saturating_sub(ROWS);
         let table = rows.into_iter().take(ROWS).fold(empty, Table::row);
-        let of_sweep = records.iter().any(|record| record["file"] == "");
+        let has_modes = |record: &Value| record["modes"].as_array().is_some_and(|modes| !modes.is_empty());
+        let of_sweep = records.iter().any(|record| record["file"] == "" && has_modes(record));
         Some(match more {
             0 if headline.records == "frf" && of_sweep => table.note(OF_SWEEP),
             0 => table,

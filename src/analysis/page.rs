@@ -20,7 +20,7 @@ pub fn page(
     parts: &[Part],
 ) -> Page {
     let mut page = Page::new(job.title.as_str()).heading("Answers");
-    page = headlines(&all.result).iter().fold(page, Page::table);
+    page = page.answers(&headlines(&all.result));
     let mut worst = graded(&all.findings, Voice::Campaign);
     worst.retain(|(severity, _)| *severity > Severity::Note);
     let doubts = worst.iter().filter(|(severity, _)| *severity == Severity::Doubt).count();

@@ -141,7 +141,7 @@ fn models(title: &str, result: &PulseResult) -> Table {
             p => p.map_or(Cell::Missing, |p| pair(p, None)),
         };
         let known = [
-            Cell::from(fit.model.name()),
+            Cell::from(figures::called(fit.model)),
             pair(fit.residual, None),
             pair(fit.aicc, None),
             whiteness,

@@ -48,6 +48,12 @@ impl Page {
         self.element(&format!("<h2 id=\"part-{number}\">{}</h2>", escaped(text)))
     }
 
+    /// Adds short tables side by side, as many as fit.
+    pub fn answers(self, tables: &[Table]) -> Page {
+        let all: String = tables.iter().map(Table::html).collect();
+        self.element(&format!("<div class=\"answers\">{all}</div>"))
+    }
+
     /// Adds a paragraph.
     pub fn paragraph(self, text: &str) -> Page {
         self.element(&format!("<p>{}</p>", escaped(text)))

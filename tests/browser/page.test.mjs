@@ -171,6 +171,8 @@ test("print opens what is folded, on white paper of A4 and of Letter", () => ope
     assert.equal(ink, "#1a1a1a");
     const pdf = await page.pdf({ format });
     assert.ok(pdf.length > 50_000, String(pdf.length));
+    // The end of this print must not come after the begin of the next.
+    await page.waitForFunction(() => !document.documentElement.classList.contains("printing"));
   }
   assert.equal(await page.locator("details:not([open])").count(), 0);
 }));

@@ -5,6 +5,17 @@ use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
 
+/// A model of the contact in words.
+pub(super) fn called(model: ContactModel) -> &'static str {
+    match model {
+        ContactModel::KelvinVoigt => "spring and damper",
+        ContactModel::Hertz => "Hertz",
+        ContactModel::HuntCrossley => "Hunt and Crossley",
+        ContactModel::PowerLaw => "any exponents",
+        ContactModel::Yielding => "yielding spring",
+    }
+}
+
 /// Samples from which on single markers would hide the models.
 const DENSE: usize = 120;
 
@@ -50,13 +61,8 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
         let shifted = |points: &[(f64, f64)]| -> (Vec<f64>, Vec<f64>) {
             points.iter().map(|p| (p.0 - start, p.1)).unzip()
         };
-        let name = match curve.model {
-            ContactModel::KelvinVoigt => format!("spring and damper{rejected}"),
-            ContactModel::Hertz => "Hertz".to_owned(),
-            ContactModel::HuntCrossley => "Hunt and Crossley".to_owned(),
-            ContactModel::PowerLaw => "any exponents".to_owned(),
-            ContactModel::Yielding => "yielding spring".to_owned(),
-        };
+        let of_linear = if curve.model == ContactModel::KelvinVoigt { rejected } else { "" };
+        let name = format!("{}{of_linear}", called(curve.model));
         let (t, v) = shifted(&curve.points);
         above = above.with(Series { stroke, ..Series::line(name, t, v).ink(Ink::Nth(i)) });
         let inside: Vec<(f64, f64)> =

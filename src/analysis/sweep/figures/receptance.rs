@@ -6,12 +6,20 @@ use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Plot, Series, Stroke};
 use num_complex::Complex64;
 
-/// Points of a receptance in the order of frequency.
+/// Points of a receptance in the order of frequency; one that is not a number breaks the line at a jump.
 fn points(response: &Response) -> Vec<(f64, Receptance)> {
     let known = response.points.iter().filter_map(|p| Some((p.excitation, p.receptance?)));
     let mut known: Vec<(f64, Receptance)> = known.collect();
     known.sort_by(|a, b| a.0.total_cmp(&b.0));
-    known
+    let jumps = |a: f64, b: f64| response.jumps.iter().any(|j| (j.frequency - a) * (j.frequency - b) < 0.0);
+    let gap = (f64::NAN, Receptance { re: f64::NAN, im: f64::NAN, std: None });
+    let mut broken: Vec<(f64, Receptance)> = Vec::new();
+    for point in known {
+        let before = broken.last().copied();
+        broken.extend(before.filter(|before| jumps(before.0, point.0)).map(|_| gap));
+        broken.push(point);
+    }
+    broken
 }
 
 /// Receptances in the plane are shown in µm/N on both axes.

@@ -204,7 +204,9 @@ fn impacts_of_a_velocity_that_rings_have_no_uncertainty_and_two_a_turn_have() {
         let mut all: Vec<Impact> = (0..20)
             .flat_map(|cycle| {
                 let mut two = impacts(&[(0.3, 6.0 + 0.1 * normal.next(), -1.5), (second, 6.1, -1.4)]);
-                two.iter_mut().for_each(|i| (i.cycle, i.time) = (cycle, cycle as f64 + i.phase));
+                for impact in &mut two {
+                    (impact.cycle, impact.time) = (cycle, cycle as f64 + impact.phase);
+                }
                 two
             })
             .collect();
