@@ -90,7 +90,11 @@ impl Campaign {
         let other = |found: &str, expected: &str| Error::input(Place::file(path), found, expected);
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || path.is_dir() {
             if !path.exists() {
-                return Err(Error::absent(format!("there is no file or folder {}", path.display()), path));
+                return Err(Error::absent(
+                    format!("there is no file or folder {}", path.display()),
+                    Path::new(""),
+                    path,
+                ));
             }
             return Err(other("not a campaign", "a campaign file, NAME.toml, or a folder of recordings")
                 .hint("a list of files goes to `vibro response`; docs/campaign.md shows a campaign"));
@@ -148,16 +152,20 @@ impl Campaign {
         let comment = |line: &&str| line.strip_prefix('#').map(|text| text.trim_start().to_owned());
         let below = |i: usize| lines[i..].iter().map_while(comment);
         let table = |i: usize| {
-            let head = comment(&lines[i]).filter(|text| text.starts_with("[["))?;
-            let keys: Vec<(String, String)> = below(i + 1)
-                .map_while(|row| row.split_once('=').map(|(k, v)| (k.trim().to_owned(), v.trim().to_owned())))
-                .collect();
+            let head = comment(&lines[i])
+                .filter(|text| text.starts_with("[[") && text.trim_end().ends_with("]]"))?;
+            let row = |row: String| {
+                let (key, value) = row.split_once('=')?;
+                Some((key.trim().to_owned(), value.split('#').next()?.trim().to_owned()))
+            };
+            let keys: Vec<(String, String)> = below(i + 1).map_while(row).collect();
             let file = keys.iter().find(|(key, _)| key == "file").map(|(_, name)| name.trim_matches('"'));
-            if file.is_some_and(|file| lines.iter().any(|line| !line.starts_with('#') && line.contains(file)))
-            {
+            if file.is_some_and(|file| {
+                lines.iter().any(|line| !line.starts_with('#') && line.contains(&format!("\"{file}\"")))
+            }) {
                 return None;
             }
-            let lacking = keys.iter().filter(|(_, value)| value.is_empty() || value.starts_with('#'));
+            let lacking = keys.iter().filter(|(_, value)| value.is_empty());
             let lacking: Vec<&str> = lacking.map(|(key, _)| key.as_str()).collect();
             let found = Finding::note("table-in-comment").about(file.unwrap_or(&head)).count("line", i + 1);
             Some(if lacking.is_empty() { found } else { found.name("keys", lacking.join(", ")) })
@@ -253,7 +261,7 @@ impl Campaign {
         if path.exists() {
             return Ok(path);
         }
-        let error = Error::absent(format!("the file {} does not exist", path.display()), &path);
+        let error = Error::absent(format!("the file {} does not exist", path.display()), self.folder(), name);
         let error = match &self.made_by {
             Some(command) => error.hint(format!("`{command}` makes it")),
             None => error,

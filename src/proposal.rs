@@ -193,7 +193,8 @@ impl Proposal {
     pub fn of(folder: &Path, reading: &Reading, progress: &dyn Progress) -> Result<Proposal> {
         if !folder.is_dir() {
             let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
-            let absent = || Error::absent(format!("there is no folder {}", folder.display()), folder);
+            let absent =
+                || Error::absent(format!("there is no folder {}", folder.display()), Path::new(""), folder);
             return Err(if folder.exists() { error.hint("name the folder that holds it") } else { absent() });
         }
         let found = folder::Folder::of(folder, reading)?;

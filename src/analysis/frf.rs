@@ -115,8 +115,8 @@ impl Keys {
         }
         let estimator = self.estimator.map(|_| "estimator");
         let Some(key) = estimator.or_else(|| taken.unchecked().first()) else { return Ok(()) };
-        let expected = "the channel of the excitation as reference: the function is taken from two channels";
-        Err(Error::usage(format!("{key} without a reference"), expected).setting(key))
+        let expected = "the channel of the force as reference";
+        Err(Error::usage(format!("{key} without a reference"), expected).setting(key).set("reference", "1"))
     }
 
     /// The functions of a file with their modes, figures, tables and files; the one that is taken from two of its channels, where a

@@ -27,7 +27,8 @@ pub fn page(
     let shown = doubts.clamp(MATTER, MOST).min(worst.len());
     page = page.findings(&worst[..shown]);
     if worst.len() > shown {
-        page = page.paragraph(&format!("{} more beside the records below.", worst.len() - shown));
+        let (n, stand) = (worst.len() - shown, if worst.len() - shown == 1 { " stands" } else { "s stand" });
+        page = page.paragraph(&format!("{n} more caution{stand} with the records below."));
     }
     for Part { title, from, to } in parts {
         let findings = graded(&all.findings[from.findings..to.findings], Voice::Campaign);

@@ -17,9 +17,6 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     let complaint = |found: &str, expected: &str, hint: String| {
         Error::input(Place::file(path), found, expected).excerpt(text, span.clone()).hint(hint)
     };
-    if let Some((stated, point)) = decimal_comma(line) {
-        return complaint(&stated, "a number with a decimal point", format!("write {point}"));
-    }
     let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let (named, known) = names.split_first().map_or(("", &[][..]), |(first, rest)| (*first, rest));
@@ -34,27 +31,53 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
         complaint(&format!("the name `{named}`"), expected, meant(known).unwrap_or_default())
     } else if begins("missing field") {
         complaint(found, "", format!("add {named} = …"))
-    } else if begins("wanted string") {
-        let stated = line.split('#').next().unwrap_or_default().trim_end();
-        complaint(stated, "a name between quotes", String::new())
     } else if begins("invalid type: map") && line.starts_with("[[") {
         let single = line.replace("[[", "[").replace("]]", "]");
         complaint(&format!("{line} begins one table of several"), "a single table", format!("write {single}"))
+    } else if let Some((key, stated, expected, meant)) = mended(line, expected) {
+        complaint(&format!("{key} = {stated}"), expected, format!("write {key} = {meant}"))
+    } else if begins("wanted string") {
+        complaint(
+            line.split('#').next().unwrap_or_default().trim_end(),
+            "a name between quotes",
+            String::new(),
+        )
     } else {
         complaint(found, plain(expected), String::new())
     }
 }
 
-/// A number with a decimal comma on this line, and the same with a point.
-fn decimal_comma(line: &str) -> Option<(String, String)> {
+/// A line that is no TOML, or has a value of another kind: its key, what stands there, what was to stand there, and the value that is meant.
+fn mended<'a>(line: &'a str, expected: &str) -> Option<(&'a str, &'a str, &'static str, String)> {
     let (key, value) = line.split_once('=')?;
-    let (whole, decimals) = value.split('#').next()?.trim().split_once(',')?;
-    let digit = |text: &str| text.starts_with(|c: char| c.is_ascii_digit());
-    let is_number = digit(whole.trim_start_matches(['+', '-']))
-        && digit(decimals)
-        && decimals.chars().all(|c| c.is_ascii_digit() || "eE+-".contains(c));
-    let key = key.trim();
-    is_number.then(|| (format!("{key} = {whole},{decimals}"), format!("{key} = {whole}.{decimals}")))
+    let stated = value.split('#').next()?.trim();
+    let bare = stated.trim_matches('"').trim();
+    let number = |text: &str| text.trim().parse::<f64>().is_ok_and(f64::is_finite);
+    let point = bare.replacen(',', ".", 1);
+    let word = bare.to_lowercase();
+    let truth = expected == "a boolean";
+    let is = |words: [&str; 2], more: [&str; 2]| {
+        !stated.starts_with('"') && words.contains(&&*word)
+            || truth && (words.contains(&&*word) || more.contains(&&*word))
+    };
+    let (expected, meant) = if point != bare && number(&point) {
+        ("a number with a decimal point", point)
+    } else if is(["yes", "on"], ["1", "true"]) {
+        ("true or false", "true".to_owned())
+    } else if is(["no", "off"], ["0", "false"]) {
+        ("true or false", "false".to_owned())
+    } else if bare != stated && number(bare) {
+        ("a number without quotes", bare.to_owned())
+    } else if let Some((low, high)) = bare.split_once(':').filter(|(low, high)| number(low) && number(high)) {
+        ("two values between square brackets", format!("[{low}, {high}]"))
+    } else if let Some((of, _)) = bare.split_once(' ').filter(|(of, _)| number(of)) {
+        ("a number without its unit", of.to_owned())
+    } else if bare.starts_with(char::is_alphabetic) && bare.len() + 2 != stated.len() {
+        ("text between quotes", format!("\"{bare}\""))
+    } else {
+        return None;
+    };
+    Some((key.trim(), stated, expected, meant))
 }
 
 /// What the parser expects, without the names of Rust's types.
@@ -117,6 +140,10 @@ mod tests {
             ),
             ("starts = 3\nstarts = 4", &["duplicate key"]),
             ("scatter = 0,01", &["scatter = 0,01", "a number with a decimal point", "write scatter = 0.01"]),
+            ("scatter = 3 %", &["scatter = 3 %", "a number without its unit", "write scatter = 3"]),
+            ("scatter = \"0.1\"", &["a number without quotes", "write scatter = 0.1"]),
+            ("starts = three", &["text between quotes", "write starts = \"three\""]),
+            ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),
         ] {
             let error = toml::from_str::<crate::campaign::FitEntry>(text).unwrap_err();
             let said = toml_error(Path::new("campaign.toml"), text, &error, &[]).to_string();

@@ -16,8 +16,8 @@ pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> Result<T, String> {
 /// # Errors
 /// With what stands there.
 pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
-    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is not a number"));
     let expected = || format!("two numbers with {MARK:?} between them");
+    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| expected());
     let (a, b) = typed.split_once(MARK).ok_or_else(expected)?;
     Ok((number(a)?, number(b)?))
 }

@@ -56,7 +56,7 @@ fn opened(path: &Path, json: bool) -> Result<Campaign> {
     }
     let proposal = print::busy(json, "looking at files", |bar| Proposal::of(path, &Reading::default(), bar))?;
     init::tell(&proposal);
-    complain::line(&format!("to change any of it: vibro init {}", path.display()));
+    complain::line(&format!("to change any of it: vibro init {}", print::typed(path)));
     proposal.campaign()
 }
 

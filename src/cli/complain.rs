@@ -1,6 +1,7 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use super::{Row, rows};
+use crate::campaign::two;
 use crate::error::Error;
 use crate::record::{Severity, nearest};
 use crate::report::words::Voice;
@@ -48,7 +49,8 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
 
 /// The command that was typed, with its row and the names of its own commands.
 fn typed() -> (String, Option<&'static Row>, Vec<String>) {
-    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
     let row = rows().find(|row| words.first().is_some_and(|word| word == row.name));
     let mut command = super::command();
     let mut names = vec!["vibro"];
@@ -111,7 +113,8 @@ fn plain(complaint: &clap::Error) -> Error {
 fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option<&ContextValue>) -> Error {
     let (help, option) = (format!("{command} --help"), argument.split(' ').next().unwrap_or_default());
     if value.is_empty() {
-        return Error::usage(format!("{option} without a value"), argument).hint(help);
+        let expected = if option.starts_with('-') { argument } else { "a name" };
+        return Error::usage(format!("{option} without a value"), expected).hint(help);
     }
     let expected = NUMBERS.iter().find(|(of_std, _)| why.contains(of_std)).map(|(_, ours)| *ours);
     let names = match known {
@@ -124,12 +127,14 @@ fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option
     let range = range.map(|(low, high)| format!("a whole number from {low} to {high}"));
     let expected = expected.map(str::to_owned).or(range).or(listed).unwrap_or_else(|| why.to_owned());
     let point = value.replacen(',', ".", 1);
-    let near = nearest(value, names.iter().map(String::as_str)).or(names.first().map(String::as_str));
+    let near = nearest(value, names.iter().map(String::as_str));
+    let range = value.replacen([',', '-', ';'], ":", 1);
+    let is_range = why.contains("':'") && two::<':'>(&range).is_ok();
     let typed = |value: &str| {
         if option.starts_with('-') { format!("{option} {value}") } else { format!("{command} {value}") }
     };
-    let hint = if why.contains("':'") {
-        typed(&value.replacen([',', '-', ';'], ":", 1))
+    let hint = if is_range {
+        typed(&range)
     } else if value != point && expected == NUMBERS[0].1 && point.parse::<f64>().is_ok() {
         typed(&point)
     } else {

@@ -99,7 +99,7 @@ impl super::Run for Open {
         let page = places.iter().find(is_page).ok_or_else(|| {
             let shown = self.report.display();
             if !self.report.exists() {
-                return Error::absent(format!("there is no {shown}"), &self.report);
+                return Error::absent(format!("there is no {shown}"), Path::new(""), &self.report);
             }
             let found = "no report.html here, nor in results";
             let error = Error::input(Place::file(&self.report), found, "a folder with a report");

@@ -35,7 +35,7 @@ impl super::Run for Init {
         if path.exists() {
             let error =
                 Error::input(Place::file(&path), "there is a campaign already", "a folder without one");
-            return Err(error.hint(format!("vibro run {}", path.display())));
+            return Err(error.hint(format!("vibro run {}", print::typed(&path))));
         }
         let proposal =
             print::busy(json, "looking at files", |bar| Proposal::of(&self.folder, &self.reading, bar))?;
@@ -56,7 +56,7 @@ impl super::Run for Init {
             for (file, why) in &proposal.left {
                 complain::line(&format!("not used: {file}: {why}"));
             }
-            print::text(&format!("wrote {0}\nnext: vibro run {0}\n", path.display()))?;
+            print::text(&format!("wrote {}\nnext: vibro run {}\n", path.display(), print::typed(&path)))?;
         }
         Ok(0)
     }
@@ -100,7 +100,7 @@ impl super::Run for Check {
     fn run(&self, json: bool) -> Result<u8> {
         let of_folder = self.campaign.join(Proposal::FILE);
         if self.campaign.is_dir() && !of_folder.exists() {
-            let shown = self.campaign.display();
+            let shown = print::typed(&self.campaign);
             let error = Error::usage(format!("{shown} has no {}", Proposal::FILE), "");
             return Err(error.hint(format!("vibro init {shown}")));
         }
@@ -116,11 +116,8 @@ impl super::Run for Check {
             print::object(answer)?;
         } else {
             complain::warn(&graded(&commented, Voice::Campaign));
-            print::text(&format!(
-                "{}: no fault, {} files are there\nnext: vibro run {0}\n",
-                self.campaign.display(),
-                files.len()
-            ))?;
+            let (shown, n) = (print::typed(&self.campaign), files.len());
+            print::text(&format!("{shown}: no fault, {n} files are there\nnext: vibro run {shown}\n"))?;
         }
         Ok(0)
     }

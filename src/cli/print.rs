@@ -84,6 +84,12 @@ pub(crate) fn printable(text: &str) -> String {
     text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
 }
 
+/// A path as a shell takes it.
+pub fn typed(path: &Path) -> String {
+    let text = path.display().to_string();
+    if text.contains(char::is_whitespace) { format!("\"{text}\"") } else { text }
+}
+
 /// Works with a bar on standard error, where that is a terminal and no JSON was asked for.
 ///
 /// # Errors

@@ -7,6 +7,7 @@ use crate::campaign::Reading;
 use crate::read::Header;
 use crate::record::{Record, Severity};
 use serde_json::Value;
+use std::ops::Range;
 use std::path::Path;
 use std::slice::from_ref;
 
@@ -32,8 +33,11 @@ const LONG: usize = 8192;
 /// Share of a record from the beginning of its decay on that is the decay, at least, where impacts in a row are possible too.
 const MOSTLY: f64 = 0.2;
 
-/// Square of the crest factor up to which a trace is a sine: 2, and what noise adds.
-const SINE: f64 = 2.7;
+/// Part of a record before a decay that begins at once.
+const AT_ONCE: f64 = 0.01;
+
+/// Square of the crest factor of a sine: 2, and what noise adds; a square wave has 1.
+const SINE: Range<f64> = 1.8..2.7;
 
 /// Files that may be steps of a sweep.
 const STEPS: usize = 5;
@@ -63,7 +67,10 @@ impl<'a> Trial<'a> {
         let sure = |table| Some((table, self.sensibly(from_ref(table))?));
         let mut answering = tables.iter().filter_map(sure);
         let (first, heard) = answering.next()?;
-        let other = if is_brief(&heard) { answering.next() } else { None };
+        let other = if is_brief(&heard) || first.lacks() { answering.next() } else { None };
+        // What rests before its first impact is a fall; what decays from the beginning on is none.
+        let other =
+            other.filter(|(_, heard)| !first.lacks() || begins(heard).is_some_and(|part| part < AT_ONCE));
         Some(other.map_or(first, |(table, _)| table).clone())
     }
 
@@ -234,7 +241,7 @@ impl<'a> Trial<'a> {
             let table = table.guessed("velocity", series.channel(k), "not the channel of two levels");
             let table = table.guessed("reference", series.channel(pulses), "the channel of two levels");
             let table = table.missing("pulses_per_turn", "1", "pulses in a turn of the crank");
-            let table = table.guessed("edge", "rising", "either does");
+            let table = table.guessed("edge", "rising", "the speed is the same with falling");
             let table =
                 table.missing("beam_angle", "0", "degrees between the beam and the axis of the motion");
             let table = table.guessed("beam_from", "axis", "as beam_angle is stated");
@@ -302,6 +309,12 @@ fn settled(heard: &Heard) -> bool {
     responses.is_some_and(|all| !all.is_empty() && all.iter().all(most))
 }
 
+/// Part of the record before a decay begins; nothing where the answer is no decay.
+fn begins(heard: &Heard) -> Option<f64> {
+    let decay = heard.result.get("decays")?.get(0)?;
+    Some(decay["start"].as_f64()? / decay["last"].as_f64()?)
+}
+
 /// Whether the answer is a decay that takes a small part of its record: where impacts in a row ring down, one of them is a decay, too.
 fn is_brief(heard: &Heard) -> bool {
     let used = |decay: &Value| {
@@ -325,14 +338,14 @@ fn sensible(tables: &[Table], heard: &Heard) -> bool {
     !few && !lossless && !several
 }
 
-/// Whether a trace reaches no further than a sine of its power does, noise included.
+/// Whether a trace reaches as far as a sine of its power does, noise included.
 fn is_sine(record: &Record) -> bool {
     let Record::Trace(trace) = record else { return false };
     let n = trace.values.len() as f64;
     let mean = trace.values.iter().sum::<f64>() / n;
     let reach = trace.values.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);
     let power = trace.values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
-    reach > 0.0 && reach * reach < SINE * power
+    reach > 0.0 && SINE.contains(&(reach * reach / power))
 }
 
 /// Share of the values that lie in the lowest or highest tenth of the range, where some do in each.

@@ -74,7 +74,10 @@ impl Reader {
                 let found = format!("{} channels to choose from, and none was chosen", others.len());
                 let error = Error::input(Place::file(file), found, format!("one of {}", names.join(", ")));
                 return Err(match names.first() {
-                    Some(name) => error.set("channel", format!("{name:?}")),
+                    Some(name) if names.iter().filter(|other| *other == name).count() == 1 => {
+                        error.set("channel", format!("{name:?}"))
+                    }
+                    Some(_) => error.set("channel", (others[0] + 1).to_string()),
                     None => error.hint("another file"),
                 });
             }
@@ -121,8 +124,10 @@ impl Recording {
             (None, 1) => Ok(0),
             (None, n) => {
                 let names: Vec<&str> = traces.iter().map(|t| t.meta.name.as_str()).collect();
-                let found = format!("{n} records of kind trace, and none was chosen");
-                Err(Error::input(Place::file(&self.path), found, names.join(", ")))
+                let found = format!("{n} channels, and none was chosen");
+                let error =
+                    Error::input(Place::file(&self.path), found, format!("one of {}", names.join(", ")));
+                return Err(error.set("channel", format!("{:?}", names[0])));
             }
             (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.name.as_str())),
         };

@@ -53,7 +53,7 @@ impl Source {
         })?;
         if info.is_dir() {
             return Err(Error::input(Place::file(path), "this is a folder", "a measurement file")
-                .hint("name a file in it"));
+                .hint(format!("vibro run {}", path.display())));
         }
         if !info.is_file() {
             return Err(Error::input(Place::file(path), "not a regular file", "a measurement file")

@@ -121,16 +121,18 @@ fn lines(
     Ok(found)
 }
 
-/// Channels that rest at an end of their range. One that is at it half of the time is of two levels, or rests between pulses.
+/// Ends of the range at which channels rest. A channel that is at one half of the time is of two levels, or rests between pulses.
 fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
     let of = |(range, meta): (&Rails, &Meta)| {
-        let [high, low] = range.range();
-        let at = range.clipped(0.5 * (high - low)).filter(|(_, n)| 2 * n < traces.frames());
-        let (n, level) = at.fold((0, 0.0), |(n, _), (level, more)| (n + more, level));
-        let found = Finding::doubt("spectrum-clipped").count("n", n).number("level", level);
-        (n > 0).then(|| found.name("unit", meta.unit.symbol()).about(&meta.name))
+        let ends: Vec<(f64, usize)> = range.clipped(f64::INFINITY).collect();
+        let levels = ends.iter().any(|(_, n)| 2 * n >= traces.frames());
+        let found = |(level, n)| {
+            let found = Finding::doubt("spectrum-clipped").count("n", n).number("level", level);
+            found.name("unit", meta.unit.symbol()).about(&meta.name)
+        };
+        ends.into_iter().filter(|_| !levels).map(found).collect::<Vec<Finding>>()
     };
-    ranges.iter().zip(traces.channels()).filter_map(of).collect()
+    ranges.iter().zip(traces.channels()).flat_map(of).collect()
 }
 
 /// Powers of the lines.
@@ -156,6 +158,7 @@ fn response(
     estimator: Estimator,
     progress: impl FnMut(usize) + Send,
 ) -> Result<SpectralResult> {
+    let mut cut = Vec::new();
     let (found, step, blows) = if options.hammer {
         let [force, response] = whole(traces, progress)?;
         let (found, length) = of_blows(&force, &response, options, estimator)?;
@@ -175,7 +178,8 @@ fn response(
                 .setting("segment"));
         }
         let mut found = transfer(&averages, 1, traces.channels(), estimator)?;
-        found.findings.extend(clipped(&averages.ranges, traces));
+        cut = clipped(&averages.ranges, traces);
+        found.findings.extend(cut.iter().cloned());
         found.frf.meta.step("segments", &[("window", &options.window().name())]);
         (found, averages.step(), None)
     };
@@ -189,6 +193,9 @@ fn response(
         found.frf.meta.step("delay", &[("seconds", &delay)]);
     }
     let mut result = SpectralResult::of(Lines::Transfer(found), options, fmin, traces.findings());
+    if !cut.is_empty() {
+        result.value_std.fill(f64::NAN);
+    }
     if let Some((window, enbw, blows)) = blows {
         (result.window, result.enbw, result.detrend) = (window, enbw, "level before the blow");
         result.response.iter_mut().for_each(|r| r.blows.clone_from(&blows));
@@ -204,25 +211,25 @@ fn of_blows(
     estimator: Estimator,
 ) -> Result<(BlowTransfer, usize)> {
     // A part of a record stands before its blow.
-    let longest = spacing(force) / (BEFORE - 1) * BEFORE;
+    let longest = spacing(force)? / (BEFORE - 1) * BEFORE;
     let mut length = options.segment.unwrap_or(SEGMENT);
     while options.segment.is_none() && length > longest && length > SHORTEST {
         length /= 2;
     }
-    loop {
-        let how = Blows {
-            length,
-            before: length / BEFORE,
-            force_window: options.force_window,
-            left_at_end: options.left_at_end,
-        };
-        let found = from_blows(force, response, &how, estimator)?;
-        let rings = found.transfer.findings.iter().any(|found| found.code == "response-cut-off");
-        if options.segment.is_some() || !rings || 2 * length > longest {
-            return Ok((found, length));
-        }
-        length *= 2;
+    let of = |length| {
+        let before = length / BEFORE;
+        let (force_window, left_at_end) = (options.force_window, options.left_at_end);
+        from_blows(force, response, &Blows { length, before, force_window, left_at_end }, estimator)
+    };
+    let clean = |found: &BlowTransfer| found.blows.iter().filter(|blow| blow.rejected.is_none()).count();
+    let rings = |found: &BlowTransfer| found.transfer.findings.iter().any(|f| f.code == "response-cut-off");
+    let mut found = of(length)?;
+    while options.segment.is_none() && rings(&found) && 2 * length <= longest {
+        // What would lose a blow stays as it is.
+        let Some(longer) = of(2 * length).ok().filter(|longer| clean(longer) >= clean(&found)) else { break };
+        (found, length) = (longer, 2 * length);
     }
+    Ok((found, length))
 }
 
 /// Averages over segments, with products where there is a second channel.

@@ -67,9 +67,18 @@ pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) ->
         step.overrule(point, options.times(&sweep), found.unit);
         found.findings.extend(step.findings.iter().cloned());
     }
+    let restless = taken.iter().filter(|step| step.wanders).map(|step| step.frequency.value);
+    let restless: Vec<f64> = restless.collect();
+    if !restless.is_empty() {
+        let found_there = Finding::caution("step-wanders").count("n", restless.len());
+        found.findings.push(found_there.numbers("frequencies", &restless[..restless.len().min(NAMED)]));
+    }
     let direction = sweep.direction;
     Ok((sweep, found.curve(direction)))
 }
+
+/// Steps that a finding names, at most.
+const NAMED: usize = 4;
 
 /// What the traces of a step say.
 struct Step {
@@ -85,6 +94,8 @@ struct Step {
     response: Phasor,
     /// Response over force.
     ratio: Phasor,
+    /// Whether the response changes from one stretch to the next by more than its noise.
+    wanders: bool,
     findings: Vec<Finding>,
 }
 
@@ -151,16 +162,14 @@ impl Step {
                 (response, ratio) = (response.doubted(), ratio.doubted());
             }
         }
-        if response.wanders && response.std.is_some() {
-            findings.push(about(Finding::caution, "step-wanders"));
-        }
+        let wanders = response.wanders && response.std.is_some();
         if cut + cut_force > 0 {
             findings.push(about(Finding::doubt, "step-clipped").count("n", cut + cut_force));
             (response, ratio) = (response.doubted(), ratio.doubted());
             force.1 = force.1.filter(|_| cut_force == 0);
         }
         let begins = blocks.start(begins);
-        Ok(Step { rate, samples, begins, frequency, force, response, ratio, findings })
+        Ok(Step { rate, samples, begins, frequency, force, response, ratio, wanders, findings })
     }
 
     fn excitation(&self, step: &StepTraces) -> Excitation {

@@ -110,12 +110,12 @@ impl Error {
         let plain = source.split(" (os error").next().unwrap_or_default().to_lowercase();
         let found = format!("cannot {action} {}: {plain}", path.display());
         let error = Error::new(Kind::Io, Place::default(), found, String::new());
-        if absent { error.hint(instead(path)) } else { error }
+        if absent { error.hint(instead(Path::new(""), path)) } else { error }
     }
 
-    /// A name for which there is no file, with the name beside it that was meant.
-    pub fn absent(found: impl Into<String>, path: impl AsRef<Path>) -> Self {
-        Error::usage(found, "").hint(instead(path.as_ref()))
+    /// A name for which there is no file in a folder, with the name there that was meant.
+    pub fn absent(found: impl Into<String>, folder: &Path, name: &Path) -> Self {
+        Error::usage(found, "").hint(instead(folder, name))
     }
 
     /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
@@ -253,17 +253,18 @@ impl Error {
     }
 }
 
-/// What to type in place of a name that is not there: the nearest one in its folder.
-fn instead(path: &Path) -> String {
+/// What to type in place of a name that is not there in a folder: the nearest one beside it.
+fn instead(folder: &Path, name: &Path) -> String {
+    let path = folder.join(name);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let beside = std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| {
         let name = entry.ok()?.file_name().into_string().ok()?;
-        Some(name).filter(|name| !name.starts_with('.'))
+        Some(name).filter(|name| !name.starts_with('.') && path.file_name() != Some(name.as_ref()))
     });
     let beside: Vec<String> = beside.collect();
     let wrong = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     match nearest(&wrong, beside.iter().map(String::as_str)) {
-        Some(near) => path.with_file_name(near).display().to_string(),
+        Some(near) => name.with_file_name(near).display().to_string(),
         None if folder == Path::new(".") => "ls".to_owned(),
         None if folder.is_dir() => format!("ls {}", folder.display()),
         None => format!("another folder: there is no {}", folder.display()),

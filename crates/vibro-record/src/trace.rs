@@ -36,7 +36,7 @@ impl Trace {
                 .hint("cut the file where samples are lost, or fill in the lost samples");
             }
             Error::usage(format!("the sampling rate{of} is not known"), "")
-                .hint("state it in Hz, or the base band of an analyser: it samples at 2.56 times that")
+                .hint("state the samples per second, or the base band of an analyser")
                 .setting("rate")
                 .setting("base_band")
         })

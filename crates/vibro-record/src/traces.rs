@@ -239,7 +239,7 @@ pub fn find_channel<'a>(
         same = named(&|name| name.to_lowercase() == small);
     }
     let n = all.clone().count();
-    let near = nearest(wanted, all.clone());
+    let mut near = nearest(wanted, all.clone());
     let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
     let list: Vec<String> = all.take(20).enumerate().map(|(i, name)| format!("{} {name:?}", i + 1)).collect();
     let (found, expected) = match (same.as_slice(), number) {
@@ -248,6 +248,7 @@ pub fn find_channel<'a>(
         ([], None) if n == 1 => (format!("no channel {wanted:?}"), "the only one".to_owned()),
         ([], None) => (format!("no channel {wanted:?}"), format!("one of the {n}")),
         (several, _) => {
+            near = None;
             (format!("{} channels are called {wanted:?}", several.len()), "the number of one".to_owned())
         }
     };
@@ -272,7 +273,8 @@ fn apart(path: &Path, [a, b]: [&Trace; 2], of_a: &str, of_b: &str) -> Error {
 /// The sampling rate and the start that all traces have.
 fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
     let rate_of = |trace: &Trace| {
-        let named = |e: Error| if path.as_os_str().is_empty() { e } else { e.in_file(path) };
+        let of = |e: Error| e.in_file(path).of_record(&path.display().to_string());
+        let named = |e: Error| if path.as_os_str().is_empty() { e } else { of(e) };
         trace.sampling_rate().map_err(named)
     };
     let first = traces.first().ok_or_else(|| Error::input(place(path), "no channel", "at least one"))?;

@@ -20,8 +20,8 @@ use vibro_record::{Error, Finding, Meta, Result, Trace};
 
 /// Part of the largest force, above the level before it, at which a blow is noticed, and of a blow's own peak at which a second one is.
 const TRIGGER: f64 = 0.2;
-/// A hammer that bounces does so within this part of the longest time between blows.
-const BOUNCE: usize = 4;
+/// A hammer that bounces does so within this time in s; nobody strikes again so soon.
+const BOUNCE: f64 = 0.1;
 /// A blow has ended below this part of its peak, or below so many standard deviations of the noise before it.
 const ENDED: f64 = 0.05;
 const SIGMAS: f64 = 3.0;
@@ -117,7 +117,7 @@ pub fn from_blows(
         let error = Error::refused(found);
         return Err(if refused(OVERLOAD) {
             error.hint("set a larger range of force and response, and strike again")
-        } else if how.length > spacing(force) {
+        } else if how.length > spacing(force)? {
             error.hint("a segment shorter than the time between blows").setting("segment")
         } else {
             error.hint("name the channel of the force; strike once a record").setting("reference")
@@ -173,20 +173,25 @@ pub fn from_blows(
 
 /// Samples from a blow to the next, or from the last one to the end of the record: what a record that holds one blow alone may have.
 ///
-/// A blow that bounces comes again within a small part of the time to the next one. What is behind the last blow counts where it is not much
-/// shorter than what is behind the others.
-pub fn spacing(force: &Trace) -> usize {
+/// What is behind the last blow counts where it is not much shorter than what is behind the others.
+///
+/// # Errors
+/// If the force has no sampling rate.
+pub fn spacing(force: &Trace) -> Result<usize> {
+    let bounce = (BOUNCE * force.sampling_rate()?) as usize;
     let values = &force.values;
     let rest = Quiet::of(values);
     let push = values.iter().map(|v| v - rest.level);
     let extreme = push.clone().fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
     let above: Vec<bool> = push.map(|v| v * extreme.signum() > TRIGGER * extreme.abs()).collect();
     let begins: Vec<usize> = (0..above.len()).filter(|i| above[*i] && (*i == 0 || !above[i - 1])).collect();
-    let gaps = begins.windows(2).map(|w| w[1] - w[0]);
-    let widest = gaps.clone().max().unwrap_or(0);
-    let between = gaps.filter(|gap| *gap > widest / BOUNCE).min();
+    let between = begins.windows(2).map(|w| w[1] - w[0]).filter(|gap| *gap > bounce).min();
     let behind = values.len() - begins.last().copied().unwrap_or(0);
-    between.filter(|gap| behind < gap / 2).unwrap_or_else(|| between.map_or(behind, |gap| gap.min(behind)))
+    Ok(match between {
+        Some(gap) if behind < gap / 2 => gap,
+        Some(gap) => gap.min(behind),
+        None => behind,
+    })
 }
 
 /// How many blows are left out, and why.

@@ -30,7 +30,7 @@ pub fn decay(title: &str, meta: &Meta, found: &DecayResult) -> Figure {
         .legend(Legend::Hidden);
     let mut figure = Figure::double(title).height(110.0).panel(above).panel(below);
     let mut caption =
-        "(a) The part of the record that was used, and the sum of its modes with an offset. (b) What they leave.".to_owned();
+        "(a) The part of the record that was used, and the sum of its modes with an offset. (b) Residual: record minus modes.".to_owned();
     if shown < times.len() {
         let _ = write!(
             caption,

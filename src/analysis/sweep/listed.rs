@@ -110,7 +110,7 @@ pub fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
     let mut files: Vec<PathBuf> =
         glob::glob(&text).map_err(wrong)?.filter_map(std::result::Result::ok).collect();
     if files.is_empty() {
-        return Err(Error::absent(format!("no file matches {text}"), pattern));
+        return Err(Error::absent(format!("no file matches {text}"), Path::new(""), pattern));
     }
     files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
     Ok(files)

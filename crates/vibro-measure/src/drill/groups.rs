@@ -231,10 +231,15 @@ impl Group {
 
 /// How many impacts follow another one closely, where that is no accident: a velocity that rings has several jumps an impact.
 fn followed(impacts: &[&Impact]) -> usize {
-    let gaps: Vec<f64> = impacts.windows(2).map(|w| w[1].time - w[0].time).collect();
-    let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
-    let close = gaps.iter().filter(|gap| **gap < CLOSE * mean).count();
-    if close as f64 > ACCIDENTS * gaps.len() as f64 { close } else { 0 }
+    let ([first, .., last], gaps) = (impacts, impacts.windows(2).map(|w| w[1].time - w[0].time)) else {
+        return 0;
+    };
+    // A turn that has none, as in a pause, has no distance.
+    let turns = 1 + impacts.windows(2).filter(|w| w[1].cycle > w[0].cycle).count();
+    let period = (last.time - first.time) / last.cycle.saturating_sub(first.cycle).max(1) as f64;
+    let distance = period * turns as f64 / impacts.len() as f64;
+    let close = gaps.filter(|gap| *gap < CLOSE * distance).count();
+    if close > 1 && close as f64 > ACCIDENTS * impacts.len() as f64 { close } else { 0 }
 }
 
 /// R = Σ(v₂⁺ − v₁⁺)/Σv₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before (W. J. Stronge,

@@ -26,10 +26,27 @@ function short(value) {
   return first === "1" ? `10${raised}` : `${first}×10${raised}`;
 }
 
-/** Whether a tick of a logarithmic axis is 1, 2 or 5 times a power of ten: those have numbers. */
-function plain(value, log) {
-  const first = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
-  return !log || [1, 2, 5].some((k) => Math.abs(first - k) < 1e-6);
+/** Ticks of a logarithmic axis: all multiples of its powers of ten, on a short one even steps, on a long one the powers. */
+function logTicks(low, high) {
+  const decades = Math.log10(high / low), ticks = [];
+  if (decades < 0.7) {
+    const size = 10 ** Math.floor(Math.log10((high - low) / 3));
+    const step = [5, 2, 1].map((k) => k * size).find((s) => s <= (high - low) / 3) ?? size;
+    for (let i = Math.ceil(low / step); i * step <= high; i++) ticks.push(Number((i * step).toPrecision(12)));
+    return ticks;
+  }
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++) {
+    for (let k = 1; k < (decades > 6 ? 2 : 10); k++) ticks.push(Number(`${k}e${power}`));
+  }
+  return ticks.filter((tick) => tick >= low && tick <= high);
+}
+
+/** What an axis has at its ticks: on a logarithmic one of more than a few, only 1, 2 and 5 times a power of ten have numbers. */
+function marks(log) {
+  const first = (v) => Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9));
+  const shown = (v, ticks) => v != null && (!log || ticks.at(-1) < 5 * ticks[0] || [1, 2, 5].includes(first(v)));
+  const values = (_, ticks) => ticks.map((v) => (shown(v, ticks) ? short(v) : ""));
+  return log ? { values, splits: (_, axis, low, high) => logTicks(low, high), filter: (_, ticks) => ticks } : { values };
 }
 
 /** Paths of markers of half width `s` around points. */
@@ -196,7 +213,7 @@ class Plot {
         x: { time: false, range: [x.low, x.high] },
         y: { distr: y.log ? 3 : 1, range: [y.low, y.high] },
       },
-      axes: [{ ...axis, size: 34, label: x.title }, { ...axis, size: 58, label: y.title, values: (_, ticks) => ticks.map((v) => (v == null || !plain(v, y.log) ? "" : short(v))) }],
+      axes: [{ ...axis, size: 34, label: x.title }, { ...axis, size: 58, label: y.title, ...marks(y.log) }],
       series: [{}, { stroke: "#0072b2", width: 1.2, points: { show: false } }],
     }, data, this.below);
   }
@@ -241,7 +258,7 @@ class Plot {
     });
     const rule = (axis, size, log) => ({
       label: axis.title, labelSize: 22, size, stroke: ink, font, labelFont: font, grid: { show: !this.map, stroke: faint, width: 1 },
-      ticks: { stroke: faint, width: 1 }, values: (_, ticks) => ticks.map((v) => (v == null || !plain(v, log) ? "" : short(v))),
+      ticks: { stroke: faint, width: 1 }, ...marks(log),
     });
     const width = Math.max(this.host.clientWidth, 200);
     this.plot = new uPlot({
