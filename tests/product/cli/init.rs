@@ -251,3 +251,25 @@ fn odd_names_and_one_bad_step_still_give_a_campaign_that_runs() {
     let responses = answer["results"]["responses"].as_array().unwrap();
     assert_eq!(responses.iter().map(|r| r["points"].as_array().unwrap().len()).collect::<Vec<_>>(), [8, 8]);
 }
+
+#[test]
+fn a_check_names_channels_that_are_not_there_and_tables_that_are_comments() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    fs::write(folder.path().join("a.csv"), "t [s],force [N],a [m/s2]\n0,1,2\n0.1,2,1\n0.2,1,0\n").unwrap();
+    let with = |text: &str| fs::write(&path, text).unwrap();
+    with("[[frf]]\nfile = \"a.csv\"\nreference = \"forc\"\n");
+    let found = complaint(&["check", text(folder.path())], 2);
+    assert!(found.contains("line 3") && found.contains("try: \"force\""), "{found}");
+    with(
+        "[[frf]]\nfile = \"a.csv\"\nreference = \"force\"\n\n# [[drill]] of Monday\n#[[drill]]\n#file = \"drill.csv\" # left\n#beam_angle =   # missing: degrees\n#edge = \"rising\"\n\n#[[pulse]]\n#file = \"a.csv\"\n",
+    );
+    let value = json(&["check", text(folder.path())]);
+    let found = value["findings"].as_array().unwrap();
+    assert_eq!(found.len(), 1, "{value}");
+    let (subject, numbers) = (&found[0]["subject"], &found[0]["numbers"]);
+    assert_eq!(
+        (subject, &numbers["keys"], &numbers["line"]),
+        (&"drill.csv".into(), &"beam_angle".into(), &6.0.into())
+    );
+}

@@ -216,6 +216,9 @@ fn a_hammer_names_the_windows_applied() {
         );
         (value["window"].as_str().unwrap().to_owned(), value["enbw"].as_f64().unwrap())
     };
+    // Records as long as the next blow allows: 2500 samples lie behind the last one.
+    let free = json(&hammer[..5]);
+    assert_eq!((free["averages"].as_u64(), free["value"].as_array().unwrap().len()), (Some(3), 1024));
     // Segments that know nothing of blows are refused, and what is advised is what was asked above.
     assert!(
         complaint(&hammer[..4], 1).contains("comes in blows")
@@ -348,4 +351,21 @@ fn blows_left_out_are_named_and_records_too_short_are_said() {
     }
     let own = complaint(&["spectrum", text(&path), "--reference", "force", "--channel", "force"], 2);
     assert!(own.contains("its own reference"), "{own}");
+}
+
+#[test]
+fn a_channel_that_rests_at_an_end_of_its_range_is_clipped_and_one_of_two_levels_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    let of = |value: &dyn Fn(f64) -> f64| {
+        let rows = (0..9000).map(|i| format!("{i},{}\n", value(f64::from(i))));
+        fs::write(&path, format!("time [ms],voltage [V]\n{}", rows.collect::<String>())).unwrap();
+        let value = json(&["spectrum", text(&path)]);
+        let found = value["findings"].as_array().unwrap().iter().any(|f| f["code"] == "spectrum-clipped");
+        (found, value["value_std"][181].is_null())
+    };
+    let sine = |i: f64| (std::f64::consts::TAU * 0.0221 * i).sin();
+    assert_eq!(of(&|i| sine(i).min(0.7)), (true, true));
+    assert!(!of(&|i| if sine(i) > 0.5 { 5.0 } else { 0.0 }).0);
+    assert!(!of(&|i| (100.0 * sine(i)).round()).0);
 }
