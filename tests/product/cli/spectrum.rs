@@ -364,7 +364,7 @@ fn a_channel_that_rests_at_an_end_of_its_range_is_clipped_and_one_of_two_levels_
         let found = value["findings"].as_array().unwrap().iter().any(|f| f["code"] == "spectrum-clipped");
         (found, value["value_std"][181].is_null())
     };
-    let sine = |i: f64| (std::f64::consts::TAU * 0.0221 * i).sin();
+    let sine = |i: f64| (TAU * 0.0221 * i).sin();
     assert_eq!(of(&|i| sine(i).min(0.7)), (true, true));
     assert!(!of(&|i| if sine(i) > 0.5 { 5.0 } else { 0.0 }).0);
     assert!(!of(&|i| (100.0 * sine(i)).round()).0);
