@@ -92,8 +92,8 @@ impl Keys {
             (
                 !file && !interval && !intervals && !before,
                 &["height"],
-                "no measured value",
-                "trace files, height and interval, intervals, or velocities before and after",
+                "no recording and no numbers",
+                "recordings of drops, height and interval, intervals, or velocities before and after",
             ),
             (before && !after, &["before"], "before without velocities after the impact", velocities),
         ];

@@ -6,7 +6,7 @@ use super::{Answer, Job};
 use crate::record::{Severity, Step};
 use crate::report::words::{Voice, graded};
 use crate::report::{Drawing, Page};
-use crate::units::notation::shortest;
+use crate::units::notation::{counted, shortest};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -27,8 +27,8 @@ pub fn page(
     let shown = doubts.clamp(MATTER, MOST).min(worst.len());
     page = page.findings(&worst[..shown]);
     if worst.len() > shown {
-        let (n, stand) = (worst.len() - shown, if worst.len() - shown == 1 { " stands" } else { "s stand" });
-        page = page.paragraph(&format!("{n} more caution{stand} with the records below."));
+        let more = counted(worst.len() - shown, "more caution");
+        page = page.paragraph(&format!("{more} below, at the records."));
     }
     for Part { title, from, to } in parts {
         let findings = graded(&all.findings[from.findings..to.findings], Voice::Campaign);

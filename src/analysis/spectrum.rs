@@ -161,7 +161,7 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
     let low = LOW.iter().find(|(window, _)| *window == found.window).map_or("", |(_, low)| low);
     match &found.found {
         Lines::Spectrum(_) if !low.is_empty() && found.tones.is_empty() => peaks.note(format!(
-            "A sine between two lines reads low, by up to {low}; the setting tones gives its true amplitude."
+            "A sine between two lines reads low, by up to {low}; tones = 1 gives its true amplitude."
         )),
         _ => peaks,
     }

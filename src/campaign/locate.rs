@@ -47,11 +47,28 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     }
 }
 
+/// Units that keys of a campaign have, and parts of them as powers of ten.
+const UNITS: [(&str, i32); 13] = [
+    ("Hz", 0),
+    ("kHz", 3),
+    ("s", 0),
+    ("ms", -3),
+    ("us", -6),
+    ("µs", -6),
+    ("m", 0),
+    ("cm", -2),
+    ("mm", -3),
+    ("N", 0),
+    ("kN", 3),
+    ("kg", 0),
+    ("m/s", 0),
+];
+
 /// A line that is no TOML, or has a value of another kind: its key, what stands there, what was to stand there, and the value that is meant.
 fn mended<'a>(line: &'a str, expected: &str) -> Option<(&'a str, &'a str, &'static str, String)> {
     let (key, value) = line.split_once('=')?;
     let stated = value.split('#').next()?.trim();
-    let bare = stated.trim_matches('"').trim();
+    let bare = stated.trim_matches(['"', '\'', '“', '”']).trim();
     let number = |text: &str| text.trim().parse::<f64>().is_ok_and(f64::is_finite);
     let point = bare.replacen(',', ".", 1);
     let word = bare.to_lowercase();
@@ -68,10 +85,17 @@ fn mended<'a>(line: &'a str, expected: &str) -> Option<(&'a str, &'a str, &'stat
         ("true or false", "false".to_owned())
     } else if bare != stated && number(bare) {
         ("a number without quotes", bare.to_owned())
-    } else if let Some((low, high)) = bare.split_once(':').filter(|(low, high)| number(low) && number(high)) {
+    } else if let Some((low, high)) =
+        bare.split_once([':', '-']).filter(|(low, high)| number(low) && number(high))
+    {
         ("two values between square brackets", format!("[{low}, {high}]"))
-    } else if let Some((of, _)) = bare.split_once(' ').filter(|(of, _)| number(of)) {
-        ("a number without its unit", of.to_owned())
+    } else if let Some((of, unit)) = bare.split_once(' ').filter(|(of, _)| number(of)) {
+        let (_, decimals) = UNITS.iter().find(|(name, _)| *name == unit.trim())?;
+        // By its text, so that no digit is lost.
+        let meant = format!("{of}e{decimals}").parse::<f64>().ok()?;
+        ("a number in the unit of this key, without it", meant.to_string())
+    } else if stated.starts_with('"') && bare.contains('\\') {
+        ("a path between single quotes", format!("'{bare}'"))
     } else if bare.starts_with(char::is_alphabetic) && bare.len() + 2 != stated.len() {
         ("text between quotes", format!("\"{bare}\""))
     } else {
@@ -140,7 +164,9 @@ mod tests {
             ),
             ("starts = 3\nstarts = 4", &["duplicate key"]),
             ("scatter = 0,01", &["scatter = 0,01", "a number with a decimal point", "write scatter = 0.01"]),
-            ("scatter = 3 %", &["scatter = 3 %", "a number without its unit", "write scatter = 3"]),
+            ("scatter = 3.5 ms", &["scatter = 3.5 ms", "without it", "write scatter = 0.0035"]),
+            ("scatter = \"40 cm\"", &["write scatter = 0.4"]),
+            ("prior.gap = \"20-30\"", &["write prior.gap = [20, 30]"]),
             ("scatter = \"0.1\"", &["a number without quotes", "write scatter = 0.1"]),
             ("starts = three", &["text between quotes", "write starts = \"three\""]),
             ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),

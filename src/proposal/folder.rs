@@ -126,7 +126,7 @@ impl Folder {
                 0 => within(first),
                 n => format!("{} and {n} more", within(first)),
             };
-            found.left.push((names, "no recording by its ending".to_owned()));
+            found.left.push((names, "not a recording, by the ending".to_owned()));
         }
         Ok(found)
     }

@@ -202,7 +202,7 @@ impl<'a> Trial<'a> {
             ),
             _ => steady,
         };
-        let blows = table("a hammer test").guessed("hammer", true, "the force rests but for blows");
+        let blows = table("a hammer test").guessed("hammer", true, "the force is zero between blows");
         match self.first(&[steady.clone(), blows]) {
             Some(table) => proposal.tables.push(table),
             None => self.add(steady, file, proposal),

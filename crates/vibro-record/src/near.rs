@@ -1,11 +1,11 @@
 //! The known name that was meant by one that is not known.
 
-/// The known name at the smallest edit distance (Levenshtein 1966), where that is small beside its length.
+/// The known name at the smallest edit distance (Damerau 1964, each letter changed once), where that is small beside its length.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wrong = wrong.to_lowercase();
-    let distance = |name: &str| strsim::levenshtein(&wrong, &name.to_lowercase());
+    let distance = |name: &str| strsim::osa_distance(&wrong, &name.to_lowercase());
     let (distance, near) = known.into_iter().map(|name| (distance(name), name)).min()?;
-    (distance <= 1 + near.chars().count() / 4).then_some(near)
+    (distance <= 1 + near.chars().count() / 6).then_some(near)
 }
 
 #[cfg(test)]
@@ -16,6 +16,8 @@ mod tests {
     fn a_slip_is_seen_and_another_word_is_not() {
         assert_eq!(nearest("calibraton", ["window", "calibration"]), Some("calibration"));
         assert_eq!(nearest("Sweep_1.CSV", ["sweep_01.csv", "drop_1.csv"]), Some("sweep_01.csv"));
+        assert_eq!(nearest("bnech", ["bench"]), Some("bench"));
+        assert_eq!(nearest("nofile.csv", ["norate.csv"]), None);
         assert_eq!(nearest("xyz", ["calibration", "window"]), None);
     }
 }

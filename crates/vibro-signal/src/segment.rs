@@ -2,7 +2,6 @@
 
 use super::rails::Rails;
 use super::sound::no_gaps;
-use vibro_record::lanes;
 use vibro_record::{Error, Result, Traces};
 
 /// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache holds.
@@ -81,8 +80,7 @@ impl<'a> Batches<'a> {
             // Missing samples are refused, for a transform would spread them over all lines.
             for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
                 let values = &column[column.len() - new..];
-                range.extend(values);
-                if !lanes::survey(values).finite {
+                if !range.extend(values).finite {
                     let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
                     no_gaps(values, name, self.frames)?;
                 }

@@ -59,7 +59,7 @@ impl Beam {
         if alpha.cos() < SQUARE {
             let why = format!("a beam at {degrees}° is square to the motion: it sees no velocity");
             let hint = "check whether the angle counts from the normal or from the axis of the motion";
-            return Err(Error::refused(why).hint(hint).setting("from"));
+            return Err(Error::refused(why).hint(hint).setting("beam_from"));
         }
         Ok(Beam { factor: 1.0 / alpha.cos(), per_degree: alpha.tan() * 1f64.to_radians() })
     }
