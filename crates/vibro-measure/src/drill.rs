@@ -125,7 +125,9 @@ pub fn drill_each(
         Jumps::of(&around, &states, (options.contact * rate, options.fit * rate), whole, options.turns_from);
     let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
     let (mut impacts, residuals) = jumps.finish(rate, edge);
+    let reach = around.iter().fold(0.0f64, |reach, v| reach.max(v.abs()));
     let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options, &offset);
+    let groups: Vec<Group> = groups.into_iter().map(|group| group.within(reach)).collect();
     let strongest = groups.first();
     let average = cycles.phases();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();

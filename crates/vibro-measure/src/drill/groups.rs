@@ -19,6 +19,10 @@ const CLEAR: f64 = 6.0;
 const ROUNDING: f64 = 1e-6;
 /// Part of the speed at an impact that an offset of the velocity may be.
 const LARGEST: f64 = 0.1;
+/// Findings about the velocities at impacts.
+const OF_VELOCITIES: [&str; 3] = ["drill-lack-of-fit", "drill-not-striking", "drill-restitution-impossible"];
+/// Times the largest velocity of a record that a parabola, continued to the middle of a contact, may give.
+const EXTRAPOLATED: f64 = 1.3;
 /// Part of their mean distance within which an impact follows another one closely: of impacts at random phases 3 % do.
 const CLOSE: f64 = 0.25;
 /// Part of the impacts that follow closely by accident.
@@ -155,6 +159,24 @@ impl Group {
         add(&mut self.after, unknown);
         let found = Finding::doubt("drill-mean-velocity").number("mean", offset.value);
         self.findings.extend(doubted.then_some(found));
+        self
+    }
+
+    /// The same without velocities where the fits lead beyond what the record has, `reach` in m/s: they are no parabolas.
+    pub(super) fn within(mut self, reach: f64) -> Group {
+        let largest = self.before.value.abs().max(self.after.value.abs());
+        if largest.is_nan() || largest <= EXTRAPOLATED * reach {
+            return self;
+        }
+        let energies = [self.energy.as_mut(), self.energy_given.as_mut()].into_iter().flatten();
+        for estimate in [&mut self.before, &mut self.after].into_iter().chain(energies) {
+            (estimate.value, estimate.std) = (f64::NAN, None);
+        }
+        self.restitution = None;
+        // What is said of these velocities is said of nothing.
+        self.findings.retain(|found| !OF_VELOCITIES.contains(&found.code));
+        let found = Finding::doubt("drill-velocity-impossible").number("velocity", largest);
+        self.findings.push(found.number("reach", reach));
         self
     }
 

@@ -217,3 +217,13 @@ fn impacts_of_a_velocity_that_rings_have_no_uncertainty_and_two_a_turn_have() {
     assert_eq!(of(0.32), (true, true, true));
     assert_eq!((of(0.7).0, of(0.7).1), (false, false));
 }
+
+#[test]
+fn fits_that_lead_beyond_the_record_give_no_velocities() {
+    let group = |reach: f64| grouped(&mut twenty(6.0, -1.5, 0.1), 20, &options(None)).remove(0).within(reach);
+    // The strongest of twenty impacts lie near 6 m/s.
+    let (kept, refused) = (group(5.5), group(4.0));
+    assert!((kept.before.value - 6.0).abs() < 0.2 && kept.restitution.is_some());
+    assert!(refused.before.value.is_nan() && refused.after.value.is_nan() && refused.restitution.is_none());
+    assert!(refused.findings.iter().any(|found| found.code == "drill-velocity-impossible"));
+}
