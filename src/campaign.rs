@@ -37,7 +37,7 @@ pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
 pub(crate) use entry::Entry;
 pub(crate) use reading::{Channel, Reading, above_zero};
-pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
+pub(crate) use value::{LowPass, channel, channels, one_or_more, two, without_unit, word};
 
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Parameter, Rig, Scene};

@@ -195,7 +195,13 @@ pub fn named(campaign: &Campaign, name: Option<&str>, allow_outside: bool) -> Re
         (None, [only]) => only,
         (None, all) => {
             let error = none(format!("{} sweeps and none was chosen", all.len()));
-            return Err(error.hint(format!("name one: {}#NAME", campaign.path().display())));
+            let path = campaign.path();
+            let files = || "name the files of one sweep, by a pattern such as up*.csv".to_owned();
+            return Err(error.hint(if path.is_file() {
+                format!("name one: {}#NAME", path.display())
+            } else {
+                files()
+            }));
         }
     };
     Listed::of(campaign, entry, allow_outside)

@@ -1,5 +1,6 @@
 //! Errors of TOML with their place, a caret, and the nearest key that exists.
 
+use super::value::without_unit;
 use crate::error::{Error, Place};
 use crate::record::nearest;
 use serde::de::{DeserializeOwned, IntoDeserializer};
@@ -47,23 +48,6 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     }
 }
 
-/// Units that keys of a campaign have, and parts of them as powers of ten.
-const UNITS: [(&str, i32); 13] = [
-    ("Hz", 0),
-    ("kHz", 3),
-    ("s", 0),
-    ("ms", -3),
-    ("us", -6),
-    ("µs", -6),
-    ("m", 0),
-    ("cm", -2),
-    ("mm", -3),
-    ("N", 0),
-    ("kN", 3),
-    ("kg", 0),
-    ("m/s", 0),
-];
-
 /// A line that is no TOML, or has a value of another kind: its key, what stands there, what was to stand there, and the value that is meant.
 fn mended<'a>(line: &'a str, expected: &str) -> Option<(&'a str, &'a str, &'static str, String)> {
     let (key, value) = line.split_once('=')?;
@@ -89,10 +73,7 @@ fn mended<'a>(line: &'a str, expected: &str) -> Option<(&'a str, &'a str, &'stat
         bare.split_once([':', '-']).filter(|(low, high)| number(low) && number(high))
     {
         ("two values between square brackets", format!("[{low}, {high}]"))
-    } else if let Some((of, unit)) = bare.split_once(' ').filter(|(of, _)| number(of)) {
-        let (_, decimals) = UNITS.iter().find(|(name, _)| *name == unit.trim())?;
-        // By its text, so that no digit is lost.
-        let meant = format!("{of}e{decimals}").parse::<f64>().ok()?;
+    } else if let Some(meant) = without_unit(bare) {
         ("a number in the unit of this key, without it", meant.to_string())
     } else if stated.starts_with('"') && bare.contains('\\') {
         ("a path between single quotes", format!("'{bare}'"))

@@ -22,6 +22,32 @@ pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
     Ok((number(a)?, number(b)?))
 }
 
+/// Units that keys of a campaign have, and parts of them as powers of ten.
+const UNITS: [(&str, i32); 13] = [
+    ("Hz", 0),
+    ("kHz", 3),
+    ("s", 0),
+    ("ms", -3),
+    ("us", -6),
+    ("µs", -6),
+    ("m", 0),
+    ("cm", -2),
+    ("mm", -3),
+    ("N", 0),
+    ("kN", 3),
+    ("kg", 0),
+    ("m/s", 0),
+];
+
+/// The number that is meant by one with its unit.
+pub fn without_unit(text: &str) -> Option<f64> {
+    let meant = |(unit, decimals): &(&str, i32)| {
+        // By its text, so that no digit is lost.
+        format!("{}e{decimals}", text.trim().strip_suffix(unit)?.trim_end()).parse().ok()
+    };
+    UNITS.iter().find_map(meant)
+}
+
 /// Low-pass of average and displacement of a drill, or of the instrument of a pulse.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "expected a corner in Hz, or \"none\"")]

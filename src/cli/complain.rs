@@ -1,7 +1,7 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use super::{Row, rows};
-use crate::campaign::two;
+use crate::campaign::{two, without_unit};
 use crate::error::Error;
 use crate::record::{Severity, nearest};
 use crate::report::words::Voice;
@@ -137,6 +137,8 @@ fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option
         typed(&range)
     } else if value != point && expected == NUMBERS[0].1 && point.parse::<f64>().is_ok() {
         typed(&point)
+    } else if let Some(number) = without_unit(value) {
+        typed(&number.to_string())
     } else {
         near.map_or(help, typed)
     };

@@ -238,8 +238,9 @@ impl<'a> Trial<'a> {
             let about = "a hammer drill with the pulses of its crank";
             let table = Table::new("drill", about, file).surmised();
             let table = table.found("name", format!("{name} {}", header.name)).found("file", file);
-            let table = table.guessed("velocity", series.channel(k), "not the channel of two levels");
-            let table = table.guessed("reference", series.channel(pulses), "the channel of two levels");
+            let table =
+                table.guessed("velocity", series.channel(k), "the other channel has two levels, as a tacho");
+            let table = table.guessed("reference", series.channel(pulses), "two levels, as a tacho has");
             let table = table.missing("pulses_per_turn", "1", "pulses in a turn of the crank");
             let table = table.guessed("edge", "rising", "the speed is the same with falling");
             let table =

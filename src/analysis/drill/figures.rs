@@ -76,7 +76,9 @@ fn marks(
         let own = thin(&own, MARKERS);
         marked += own.len();
         let of = if drill.groups.len() > 1 { format!(", group {number}") } else { String::new() };
-        if own.is_empty() {
+        // Refused velocities have no place.
+        let refused = drill.groups.get(number).is_some_and(|group| group.before.value.is_nan());
+        if own.is_empty() || refused {
             continue;
         }
         for (side, (ink, marker)) in ["before", "after"].into_iter().zip(*forms) {
