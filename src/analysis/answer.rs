@@ -3,8 +3,7 @@
 use crate::error::{Error, Result};
 use crate::record::Finding;
 use crate::report::files::Files;
-use crate::report::words::About;
-use crate::report::words::Voice;
+use crate::report::words::{About, Voice};
 use crate::report::{Figure, Table};
 use serde::Serialize;
 use serde_json::{Map, Value};

@@ -11,6 +11,7 @@ use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
 use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Slices, Smoothing, drill_each};
 use crate::read::Header;
+use crate::units::notation::counted;
 use file::Channels;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -103,10 +104,17 @@ fn channels_of(source: &Source<'_>) -> Result<String> {
 
 /// The value of a key that has no default.
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
-    value.ok_or_else(|| {
-        let (what, value) = expected(key);
-        Error::usage(format!("1 value is missing: {} ({what})", key.replace('_', " ")), "").set(key, value)
-    })
+    value.ok_or_else(|| missing(&[key], expected(key).0))
+}
+
+/// The complaint that values are missing; the velocity is one of `channels`.
+fn missing(keys: &[&'static str], channels: &str) -> Error {
+    let what = |key| if key == "velocity" { channels } else { expected(key).0 };
+    let named = keys.iter().map(|key| format!("{} ({})", key.replace('_', " "), what(*key)));
+    let are = if keys.len() == 1 { "is" } else { "are" };
+    let named = named.collect::<Vec<_>>().join(", ");
+    let error = Error::usage(format!("{} {are} missing: {named}", counted(keys.len(), "value")), "");
+    keys.iter().fold(error, |error, key| error.set(key, expected(key).1))
 }
 
 /// A drill names its channels, and what they measure, by keys of its own.
@@ -131,20 +139,8 @@ impl Keys {
             ("pulses_per_turn", self.pulses_per_turn.is_some() || self.reference.is_none()),
             ("edge", self.edge.is_some() || self.reference.is_none()),
         ];
-        let missing: Vec<&'static str> =
-            stated.iter().filter(|(_, stated)| !stated).map(|row| row.0).collect();
-        if !missing.is_empty() {
-            let what = |key| if key == "velocity" { channels } else { expected(key).0 };
-            let named = missing.iter().map(|key| format!("{} ({})", key.replace('_', " "), what(key)));
-            let found = match missing.len() {
-                1 => "1 value is missing".to_owned(),
-                n => format!("{n} values are missing"),
-            };
-            let found = format!("{found}: {}", named.collect::<Vec<_>>().join(", "));
-            let error = Error::usage(found, "");
-            return Err(missing.iter().fold(error, |error, key| error.set(key, expected(key).1)));
-        }
-        Ok(())
+        let keys: Vec<&'static str> = stated.iter().filter(|(_, stated)| !stated).map(|row| row.0).collect();
+        if keys.is_empty() { Ok(()) } else { Err(missing(&keys, channels)) }
     }
 
     /// Whether no key is missing that has no default, none is impossible, and none contradicts another.

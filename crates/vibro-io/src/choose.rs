@@ -70,16 +70,8 @@ impl Reader {
             let reference = reference.map(|name| all.channel(name)).transpose()?;
             let others: Vec<usize> = (0..all.channels().len()).filter(|i| Some(*i) != reference).collect();
             if others.len() != 1 {
-                let names: Vec<&str> = others.iter().map(|i| all.channels()[*i].name.as_str()).collect();
-                let found = format!("{} channels to choose from, and none was chosen", others.len());
-                let error = Error::input(Place::file(file), found, format!("one of {}", names.join(", ")));
-                return Err(match names.first() {
-                    Some(name) if names.iter().filter(|other| *other == name).count() == 1 => {
-                        error.set("channel", format!("{name:?}"))
-                    }
-                    Some(_) => error.set("channel", (others[0] + 1).to_string()),
-                    None => error.hint("another file"),
-                });
+                let names = others.iter().map(|i| (*i, all.channels()[*i].name.as_str()));
+                return Err(none_chosen(file, &names.collect::<Vec<_>>()));
             }
             all.keep(&reference.into_iter().chain(others).collect::<Vec<usize>>());
             all
@@ -88,6 +80,20 @@ impl Reader {
             traces.calibrate(usize::from(reference.is_some()), factor)?;
         }
         Ok(traces)
+    }
+}
+
+/// The complaint that none of several channels, each with its place in the file, was chosen; one whose name is not its own goes by its number.
+fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
+    let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
+    let found = format!("{} channels, and none was chosen", names.len());
+    let error = Error::input(Place::file(path), found, format!("one of {}", names.join(", ")));
+    match channels {
+        [(_, name), others @ ..] if others.iter().all(|other| other.1 != *name) => {
+            error.set("channel", format!("{name:?}"))
+        }
+        [(i, _), ..] => error.set("channel", (i + 1).to_string()),
+        [] => error.hint("another file"),
     }
 }
 
@@ -122,12 +128,9 @@ impl Recording {
         let chosen = match (channel, traces.len()) {
             (_, 0) => return Err(self.no_trace()),
             (None, 1) => Ok(0),
-            (None, n) => {
-                let names: Vec<&str> = traces.iter().map(|t| t.meta.name.as_str()).collect();
-                let found = format!("{n} channels, and none was chosen");
-                let error =
-                    Error::input(Place::file(&self.path), found, format!("one of {}", names.join(", ")));
-                return Err(error.set("channel", format!("{:?}", names[0])));
+            (None, _) => {
+                let names = traces.iter().map(|t| t.meta.name.as_str()).enumerate();
+                return Err(none_chosen(&self.path, &names.collect::<Vec<_>>()));
             }
             (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.name.as_str())),
         };

@@ -87,10 +87,10 @@ fn lines(
         )
     } else {
         let [trace] = whole(traces, progress)?;
-        let mut range = Rails::default();
-        range.extend(&trace.values);
         // The sines that are fitted know of it themselves.
         if options.tones.is_none() {
+            let mut range = Rails::default();
+            range.extend(&trace.values);
             cut = clipped(&[range], traces);
         }
         let spectrum = spectrum::plain(&trace, window, scaling, options.detrended())?;

@@ -8,6 +8,7 @@ use crate::model::{Branch, Parameter, PeriodicOrbit, Rig, Sine, follow, orbits, 
 use crate::record::Finding;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
+use crate::units::notation::counted;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -106,11 +107,10 @@ impl Keys {
     /// There is no motion to start from at this value.
     fn none_at(&self, value: f64) -> Error {
         let over = Parameter::from(self.over);
-        let of = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
         let found = format!(
             "no motion with {} in {} at {} {value} {}",
-            of(self.impacts, "impact"),
-            of(self.cycles, "cycle"),
+            counted(self.impacts as usize, "impact"),
+            counted(self.cycles as usize, "cycle"),
             over.name(),
             if over.unit() == "1" { "" } else { over.unit() }
         );

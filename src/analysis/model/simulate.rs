@@ -10,6 +10,7 @@ use crate::model::{Motion, Regime, Rig, Simulation, State};
 use crate::record::Finding;
 use crate::report::Table;
 use crate::report::layout::table;
+use crate::units::notation::counted;
 use serde_json::json;
 
 /// What is asked.
@@ -151,10 +152,9 @@ impl Keys {
 
 fn summary(seen: &Seen) -> Table {
     let Portrait { impacts, pattern, sticks, reaction, .. } = &seen.portrait;
-    let many = |n: u32, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let regime = match pattern.regime {
         Regime::Periodic { impacts, cycles } => {
-            format!("{} in {}", many(impacts, "impact"), many(cycles, "cycle"))
+            format!("{} in {}", counted(impacts as usize, "impact"), counted(cycles as usize, "cycle"))
         }
         other => other.to_string(),
     };

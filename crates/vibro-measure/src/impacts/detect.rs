@@ -6,7 +6,7 @@ use super::onset::{Onsets, onsets};
 use super::{Hum, hum};
 use std::cmp::Ordering;
 use std::ops::Range;
-use vibro_record::units::notation::{quantity, shortest};
+use vibro_record::units::notation::{counted, quantity, shortest};
 use vibro_record::{Error, Finding, Result, Trace};
 use vibro_signal::envelope::envelope;
 use vibro_signal::filter::Filter;
@@ -80,10 +80,9 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     if each.len() < 2 {
         let highest = values.iter().fold(0.0f64, |h, v| h.max(v.abs()));
         let [noise, highest] = [quiet.reach, highest].map(|v| quantity(v, unit, 3));
-        let n = each.len();
         let why = format!(
-            "{n} impact{} found, an interval needs two; an impact must rise {noise} above the level; the trace rises at most {highest}",
-            if n == 1 { "" } else { "s" }
+            "{} found, an interval needs two; an impact must rise {noise} above the level; the trace rises at most {highest}",
+            counted(each.len(), "impact")
         );
         let refused = Error::refused(why);
         return Err(match low {
