@@ -7,8 +7,10 @@ use ndarray::Array2;
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 use vibroimpact::Result;
-use vibroimpact::figure::{AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Plot, Series, Stroke, Waterfall};
-use vibroimpact::report::{Cell, Output, Page, Table};
+use vibroimpact::figure::{
+    AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Medium, Plot, Series, Stroke, Waterfall,
+};
+use vibroimpact::report::{Cell, Output, Page, Picture, Table};
 
 fn main() -> Result<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "gallery".to_owned());
@@ -18,20 +20,16 @@ fn main() -> Result<()> {
         .heading("Figures");
     for (name, figure) in figures()? {
         let start = Instant::now();
-        let drawing = figure.draw();
-        let svg = drawing.svg();
-        let drawn = start.elapsed();
-        let png = drawing.png(300.0)?;
-        let (drawn, all) = (drawn.as_secs_f64() * 1e3, start.elapsed().as_secs_f64() * 1e3);
+        let picture = Picture::of(&figure, Medium::Report)?;
         println!(
-            "{name}: SVG {drawn:.1} ms, {} kB; PNG {:.1} ms, {} kB",
-            svg.len() / 1000,
-            all - drawn,
-            png.len() / 1000
+            "{name}: {:.1} ms, SVG {} kB, PNG {} kB",
+            start.elapsed().as_secs_f64() * 1e3,
+            picture.svg.len() / 1000,
+            picture.png.len() / 1000
         );
-        out.write(&format!("{name}.svg"), svg)?;
-        out.write(&format!("{name}.png"), png)?;
-        page = page.figure(&figure, &drawing, &[&format!("{name}.svg"), &format!("{name}.png")]);
+        out.write(&format!("{name}.svg"), &picture.svg)?;
+        out.write(&format!("{name}.png"), &picture.png)?;
+        page = page.figure(&figure, &picture, &[&format!("{name}.svg"), &format!("{name}.png")]);
     }
     let table = resonances();
     print!("{}", table.text());

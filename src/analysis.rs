@@ -11,6 +11,7 @@ pub(crate) mod frf;
 pub(crate) mod impacts;
 mod inputs;
 pub(crate) mod job;
+mod kept;
 pub(crate) mod model;
 pub(crate) mod precision;
 pub(crate) mod pulse;
@@ -22,8 +23,8 @@ mod headline;
 mod page;
 
 pub use answer::Answer;
-pub use inputs::inputs;
-pub use job::{Heard, INPUTS, JobOptions, Progress, REPORT, RESULTS, SUMMARY, answers, run};
+pub use job::{Heard, INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
+pub use kept::Kept;
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 
@@ -58,6 +59,11 @@ pub(crate) trait Analysis: DeserializeOwned {
     const TITLE: &'static str;
     /// Whether records lie in files: their tables then have the keys of how a file is read.
     const OF_FILES: bool = true;
+
+    /// Whether its tables are answered together, not each by itself.
+    const TOGETHER: bool = false;
+    /// Other sections that tables without a file name.
+    const RESTS_ON: &'static [&'static str] = &[];
 
     /// Whether a table can be, after those before it and before anything is measured. An error names the key at fault as its setting.
     ///
@@ -234,6 +240,9 @@ fn files_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<Vec
 
 fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
     let entries = entries::<A>(job.campaign)?;
+    if A::TOGETHER && !entries.is_empty() {
+        return job.together(A::SECTION, |job| A::run(&entries, job));
+    }
     A::run(&entries, job)
 }
 

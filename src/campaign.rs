@@ -146,6 +146,17 @@ impl Campaign {
         Ok(parsed.into_inner())
     }
 
+    /// What it states but for these sections, without comments and blanks.
+    ///
+    /// # Errors
+    /// If it is no TOML.
+    pub(crate) fn stated_without(&self, left_out: impl Fn(&str) -> bool) -> Result<String> {
+        let mut all: toml::Table =
+            toml::from_str(&self.text).map_err(|e| locate::toml_error(&self.path, &self.text, &e, &[]))?;
+        all.retain(|key, _| !left_out(key));
+        Ok(format!("{all:?}"))
+    }
+
     /// What its comments leave out: tables that lack a value, and files that were not used.
     pub(crate) fn commented(&self) -> Vec<Finding> {
         let lines: Vec<&str> = self.text.lines().collect();

@@ -7,7 +7,7 @@ mod trial;
 
 use folder::Series;
 
-use crate::analysis::{self, Progress};
+use crate::analysis::{self, Kept, Progress};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Place, Result};
 use serde::Serialize;
@@ -190,7 +190,7 @@ impl Proposal {
     ///
     /// # Errors
     /// If it is no folder, cannot be listed, or holds no recording.
-    pub fn of(folder: &Path, reading: &Reading, progress: &dyn Progress) -> Result<Proposal> {
+    pub fn of(folder: &Path, reading: &Reading, kept: &Kept, progress: &dyn Progress) -> Result<Proposal> {
         if !folder.is_dir() {
             let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
             let absent =
@@ -213,7 +213,7 @@ impl Proposal {
         for series in &found.series {
             let reading = if series.timed { reading.untimed() } else { reading.clone() };
             let before = proposal.tables.len();
-            trial::Trial::new(folder, &reading, progress).series(series, &mut proposal);
+            trial::Trial::new(folder, &reading, kept, progress).series(series, &mut proposal);
             for table in &mut proposal.tables[before..] {
                 *table = table.stated(&reading);
             }

@@ -8,10 +8,11 @@ mod html;
 mod output;
 mod table;
 
+pub use files::Picture;
 pub use html::Page;
 pub use output::Output;
 pub use table::{Cell, Column, Table};
 pub(crate) use vibro_figure::{
-    AxisSpec, Drawing, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Medium, Panel, Plot, Series, Stroke,
+    AxisSpec, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Medium, Panel, Plot, Series, Stroke,
     Waterfall, colour,
 };

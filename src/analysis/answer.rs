@@ -5,13 +5,13 @@ use crate::record::Finding;
 use crate::report::files::Files;
 use crate::report::words::{About, Voice};
 use crate::report::{Figure, Table};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::borrow::Borrow;
 
 /// What an analysis found, for programs and for people. Names of figures and files are those of a record alone, `impacts`; a campaign
 /// adds a number or a name.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Answer {
     /// All numbers by their keys.
     pub result: Map<String, Value>,
@@ -26,6 +26,7 @@ pub struct Answer {
     /// Files of numbers.
     pub files: Files,
     /// Why its main part is missing, where the rest can be shown all the same.
+    #[serde(skip)]
     pub refused: Option<Error>,
 }
 
@@ -57,6 +58,17 @@ impl Answer {
     pub fn table(&mut self, name: &str, table: Table) {
         self.csv(name, &table);
         self.tables.push(table);
+    }
+
+    /// Adds tables for a person; those with the same columns are one.
+    pub(super) fn join(&mut self, tables: Vec<Table>) {
+        for table in tables.into_iter().filter(|table| !table.rows.is_empty()) {
+            let same = |known: &&mut Table| known.title == table.title && known.columns == table.columns;
+            match self.tables.iter_mut().find(same) {
+                Some(known) => known.rows.extend(table.rows),
+                None => self.tables.push(table),
+            }
+        }
     }
 
     /// Adds a table as a file of numbers.

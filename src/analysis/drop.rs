@@ -267,6 +267,7 @@ fn by_method(name: &str, found: &Restitution) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "drop";
     const TITLE: &'static str = "Restitution";
+    const TOGETHER: bool = true;
 
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {
         entry.keys.usable(entry.file.is_some())?;
@@ -311,7 +312,7 @@ impl Analysis for Keys {
             let found = series.answer(&name);
             let Some(mut answer) = job.found(&name, found)? else { continue };
             // Its drops are numbered already.
-            job.all.figures.append(&mut answer.figures);
+            job.found.all.figures.append(&mut answer.figures);
             let mark = (records.len() + 1).to_string();
             records.push(Record { name, file: files, mark, answer });
         }

@@ -217,6 +217,7 @@ impl Keys {
 impl Analysis for Keys {
     const SECTION: &'static str = "frf";
     const TITLE: &'static str = "Frequency response functions";
+    const RESTS_ON: &'static [&'static str] = &["sweep"];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         match (&entry.file, &entry.keys.sweep) {

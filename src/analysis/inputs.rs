@@ -1,20 +1,19 @@
-//! What a campaign is computed from, by content: whether a second run would give the same.
+//! What a campaign is computed from, by content.
 
+use super::kept::Kept;
 use super::{file_name, files};
 use crate::campaign::Campaign;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
+use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 /// A line for the program, the campaign and each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
 ///
 /// # Errors
 /// As [`files`]; if a file cannot be read.
-pub fn inputs(campaign: &Campaign, allow_outside: bool) -> Result<String> {
+pub fn inputs(campaign: &Campaign, allow_outside: bool, kept: &Kept) -> Result<String> {
     let mut all = files(campaign, allow_outside)?;
     all.sort();
     all.dedup();
@@ -23,11 +22,10 @@ pub fn inputs(campaign: &Campaign, allow_outside: bool) -> Result<String> {
     let own = line(Sha256::digest(campaign.text()).as_slice(), &file_name(campaign.path()));
     // One that was proposed is no file that could be checked.
     let own = if campaign.path().is_file() { own } else { format!("# {own}") };
-    let program = std::env::current_exe().and_then(|path| digest(&path)).unwrap_or_default();
-    let program = line(&program, concat!("vibro ", env!("CARGO_PKG_VERSION")));
+    let program = line(&kept.program().unwrap_or_default(), concat!("vibro ", env!("CARGO_PKG_VERSION")));
     let of_file = |path: &Path| {
         let name = path.strip_prefix(campaign.folder()).unwrap_or(path).display().to_string();
-        digest(path).map(|digest| line(&digest, &name)).map_err(|e| Error::io("read", path, e))
+        kept.file(path).map(|digest| line(&digest, &name))
     };
     let lines: Result<Vec<String>> = all.par_iter().map(|path| of_file(path)).collect();
     Ok(format!("# {program}{own}{}", lines?.concat()))
@@ -39,14 +37,4 @@ fn line(digest: &[u8], name: &str) -> String {
         let _ = write!(line, "{byte:02x}");
     }
     line + "  " + name + "\n"
-}
-
-fn digest(path: &Path) -> std::io::Result<Vec<u8>> {
-    let (mut file, mut hash, mut part) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut part)? {
-            0 => return Ok(hash.finalize().to_vec()),
-            n => hash.update(&part[..n]),
-        }
-    }
 }

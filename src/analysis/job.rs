@@ -2,14 +2,17 @@
 
 use super::answer::{left_out, unwritten};
 use super::inputs::inputs;
+use super::kept::{Digest, Kept, digest, packed};
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, Answer, KINDS, page};
+use super::{Analysis, Answer, KINDS, Kind, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::Result;
 use crate::record::{Fact, Finding, Severity, Step};
-use crate::report::words::{About, Voice, graded, put};
-use crate::report::{Medium, Output, Table, files};
-use serde::Serialize;
+use crate::report::Picture;
+use crate::report::words::{About, Voice, put};
+use crate::report::{Output, files};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
@@ -17,18 +20,8 @@ use std::path::{Path, PathBuf};
 pub const RESULTS: &str = "results.json";
 /// The page.
 pub const REPORT: &str = "report.html";
-/// Findings and tables, as the terminal shows them.
-pub const SUMMARY: &str = "summary.txt";
 /// What the results were computed from.
 pub const INPUTS: &str = "inputs.sha256";
-
-/// Findings and tables, for a person.
-fn summary(all: &Answer) -> String {
-    let findings = graded(&all.findings, Voice::Campaign);
-    let findings = findings.iter().map(|(severity, sentence)| format!("{}: {sentence}\n", severity.name()));
-    let tables: Vec<String> = all.tables.iter().map(Table::text).collect();
-    format!("{}\n{}", findings.collect::<String>(), tables.join("\n"))
-}
 
 /// Told how far a job is.
 pub trait Progress: Sync {
@@ -49,9 +42,24 @@ impl Progress for () {
 
 /// How a job may go about its files.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct JobOptions {
+pub struct JobOptions<'a> {
     /// Allow names that lead outside the campaign's folder.
     pub allow_outside: bool,
+    /// Answers and pictures of the last run.
+    pub kept: Option<&'a Kept>,
+}
+
+/// What the records of a campaign, or of one kind, gave.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct Gathered {
+    /// All answers, long tables as details.
+    pub all: Answer,
+    /// Values that were assumed.
+    pub constants: Vec<(String, String)>,
+    /// Steps by the name of their record.
+    pub histories: Vec<(String, Vec<Step>)>,
+    /// How many records answered.
+    pub answers: usize,
 }
 
 /// A campaign at work: what its analyses ask, and where they put what they find.
@@ -59,33 +67,26 @@ pub struct Job<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
     /// How it may go about its files.
-    pub options: JobOptions,
+    pub options: JobOptions<'a>,
+    kept: &'a Kept,
     /// Told how far it is.
     pub progress: &'a dyn Progress,
     /// Title of the report.
     pub title: String,
-    /// All answers, long tables as details.
-    pub(super) all: Answer,
-    /// Values that were assumed.
-    pub(super) constants: Vec<(String, String)>,
-    /// Steps by the name of their record.
-    pub(super) histories: Vec<(String, Vec<Step>)>,
-    pub(super) answers: usize,
+    pub(super) found: Gathered,
+    /// How many answers are those of the last run.
+    again: usize,
 }
 
 impl<'a> Job<'a> {
-    fn new(campaign: &'a Campaign, options: JobOptions, progress: &'a dyn Progress) -> Job<'a> {
+    fn new(
+        campaign: &'a Campaign,
+        options: JobOptions<'a>,
+        kept: &'a Kept,
+        progress: &'a dyn Progress,
+    ) -> Job<'a> {
         let title = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
-        Job {
-            campaign,
-            options,
-            progress,
-            title,
-            all: Answer::default(),
-            constants: Vec::new(),
-            histories: Vec::new(),
-            answers: 0,
-        }
+        Job { campaign, options, kept, progress, title, found: Gathered::default(), again: 0 }
     }
 
     /// What a record gave; `None` and a finding where it allows no answer.
@@ -96,7 +97,7 @@ impl<'a> Job<'a> {
         match found {
             Ok(found) => Ok(Some(found)),
             Err(error) => {
-                self.all.add(record, [left_out("left-out", error)?]);
+                self.found.all.add(record, [left_out("left-out", error)?]);
                 Ok(None)
             }
         }
@@ -107,13 +108,13 @@ impl<'a> Job<'a> {
     /// # Errors
     /// If it cannot be written as JSON.
     pub fn put(&mut self, key: &str, value: &impl Serialize) -> Result<()> {
-        self.all.result.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
+        self.found.all.result.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
         Ok(())
     }
 
     /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record behind their name.
     pub fn answer(&mut self, kind: &str, records: Vec<Record>) {
-        self.answers += records.len();
+        self.found.answers += records.len();
         let mut list = Vec::new();
         for Record { name, file, mark, answer } in records {
             let result = self.show(&name, &mark, answer);
@@ -125,7 +126,7 @@ impl<'a> Job<'a> {
             }
             list.push(Value::Object(object));
         }
-        self.all.result.insert(kind.to_owned(), Value::Array(list));
+        self.found.all.result.insert(kind.to_owned(), Value::Array(list));
     }
 
     /// Shows what an answer has and gives its result; a mark stands behind the names of figures and files.
@@ -134,22 +135,64 @@ impl<'a> Job<'a> {
         put(&mut result, &findings, Voice::Campaign);
         let about =
             |(record, finding): About| (if record.is_empty() { name.to_owned() } else { record }, finding);
-        self.all.findings.extend(findings.into_iter().map(about));
-        for table in tables.into_iter().filter(|t| !t.rows.is_empty()) {
-            let same = |t: &&mut Table| t.title == table.title && t.columns == table.columns;
-            match self.all.tables.iter_mut().find(same) {
-                Some(known) => known.rows.extend(table.rows),
-                None => self.all.tables.push(table),
-            }
-        }
+        self.found.all.findings.extend(findings.into_iter().map(about));
+        self.found.all.join(tables);
         let marked = |name: String| match name.rsplit_once('.') {
             _ if mark.is_empty() => name,
             Some((stem, ending)) => format!("{stem}_{mark}.{ending}"),
             None => format!("{name}_{mark}"),
         };
-        self.all.figures.extend(figures.into_iter().map(|(name, figure)| (marked(name), figure)));
-        self.all.files.extend(files.into_iter().map(|(name, bytes)| (marked(name), bytes)));
+        self.found.all.figures.extend(figures.into_iter().map(|(name, figure)| (marked(name), figure)));
+        self.found.all.files.extend(files.into_iter().map(|(name, bytes)| (marked(name), bytes)));
         result
+    }
+
+    /// Answers a section as a whole, or as the last run did.
+    ///
+    /// # Errors
+    /// Those of `measure`.
+    pub(super) fn together(
+        &mut self,
+        section: &str,
+        measure: impl FnOnce(&mut Job<'_>) -> Result<()>,
+    ) -> Result<()> {
+        let on = self.rests_on(&[section])?;
+        let Gathered { mut all, constants, histories, answers } = self.kept.or_make(on, || {
+            let mut own = Job::new(self.campaign, self.options, self.kept, self.progress);
+            measure(&mut own)?;
+            Ok(own.found)
+        })?;
+        if self.kept.is_old(&on) {
+            self.again += answers;
+        }
+        let own = &mut self.found;
+        own.constants.extend(constants);
+        own.histories.extend(histories);
+        own.answers += answers;
+        own.all.join(all.tables);
+        own.all.result.append(&mut all.result);
+        own.all.findings.append(&mut all.findings);
+        own.all.details.append(&mut all.details);
+        own.all.figures.append(&mut all.figures);
+        own.all.files.append(&mut all.files);
+        Ok(())
+    }
+
+    /// All that records of these sections rest on: their files, and what the campaign states but for other records.
+    fn rests_on(&self, sections: &[&str]) -> Result<Digest> {
+        let (these, others): (Vec<&Kind>, Vec<&Kind>) =
+            KINDS.iter().partition(|kind| sections.contains(&kind.section));
+        let files: Result<Vec<_>> =
+            these.iter().map(|kind| (kind.files)(self.campaign, self.options.allow_outside)).collect();
+        let stated = self.campaign.stated_without(|key| others.iter().any(|kind| kind.section == key))?;
+        self.digest([sections.concat(), stated], &files?.concat())
+    }
+
+    /// The digest of words and of what files hold.
+    fn digest(&self, words: impl IntoIterator<Item = String>, files: &[PathBuf]) -> Result<Digest> {
+        let words = words.into_iter().map(String::into_bytes);
+        let files: Result<Vec<_>> = files.par_iter().map(|file| Ok(self.kept.file(file)?.to_vec())).collect();
+        Ok(digest(words.chain(files?)))
     }
 
     /// Measures the record of each table by itself.
@@ -168,8 +211,26 @@ impl<'a> Job<'a> {
             let name = name_of(entry, i + 1);
             // Numbers alone have no file.
             let path = entry.file.as_ref().map_or_else(|| Ok(PathBuf::new()), |_| self.path(entry))?;
-            let found = self.measured(entry, &name, &path, |source| measure(entry, source));
-            for answer in self.found(&name, found)?.unwrap_or_default() {
+            let files = K::files(self.campaign, entry, self.options.allow_outside)?;
+            let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
+            let mut on = self.digest(own, &files)?;
+            if entry.file.is_none() && !K::RESTS_ON.is_empty() {
+                on = digest([on, self.rests_on(K::RESTS_ON)?]);
+            }
+            let found = self.kept.or_make(on, || {
+                match self.measured(entry, &name, &path, |source| measure(entry, source)) {
+                    Ok(found) => Ok(Ok(found)),
+                    Err(error) => left_out("left-out", error).map(Err),
+                }
+            })?;
+            let found = found.unwrap_or_else(|left_out: Finding| {
+                self.found.all.add(&name, [left_out]);
+                Vec::new()
+            });
+            if self.kept.is_old(&on) {
+                self.again += found.len();
+            }
+            for answer in found {
                 let file = Value::String(file_name(&path));
                 records.push(Record { name: name.clone(), file, mark: String::new(), answer });
             }
@@ -290,14 +351,18 @@ impl Heard {
 ///
 /// # Errors
 /// As [`run`].
-pub fn answers(campaign: &Campaign, progress: &dyn Progress) -> Result<std::result::Result<Heard, String>> {
-    let mut job = Job::new(campaign, JobOptions::default(), progress);
+pub fn answers(
+    campaign: &Campaign,
+    kept: &Kept,
+    progress: &dyn Progress,
+) -> Result<std::result::Result<Heard, String>> {
+    let mut job = Job::new(campaign, JobOptions::default(), kept, progress);
     for kind in KINDS {
         (kind.run)(&mut job)?;
     }
-    let findings: Vec<Finding> = job.all.findings.into_iter().map(|(_, finding)| finding).collect();
-    if job.answers > 0 {
-        return Ok(Ok(Heard { result: job.all.result, findings }));
+    let findings: Vec<Finding> = job.found.all.findings.into_iter().map(|(_, finding)| finding).collect();
+    if job.found.answers > 0 {
+        return Ok(Ok(Heard { result: job.found.all.result, findings }));
     }
     let why = findings.iter().find_map(|finding| match finding.fact("why") {
         Some(Fact::Name(why)) => Some(why.clone()),
@@ -306,49 +371,66 @@ pub fn answers(campaign: &Campaign, progress: &dyn Progress) -> Result<std::resu
     Ok(Err(why.unwrap_or_else(|| "no answer".to_owned())))
 }
 
-/// Does all that a campaign asks for, and writes it to `output`. Gives what was found, and whether any record was answered.
+/// What a campaign gave.
+#[derive(Debug)]
+pub struct Ran {
+    /// All answers.
+    pub answer: Answer,
+    /// Whether any record was answered.
+    pub answered: bool,
+    /// How many answers are those of the last run, because all that they rest on is the same.
+    pub again: usize,
+}
+
+/// Does all that a campaign asks for, and writes it to `output`.
 ///
 /// # Errors
 /// If a file cannot be read; if the overlay is not possible; if a file cannot be written.
 pub fn run(
     campaign: &Campaign,
-    options: JobOptions,
+    options: JobOptions<'_>,
     output: &mut Output,
     progress: &dyn Progress,
-) -> Result<(Answer, bool)> {
-    let mut job = Job::new(campaign, options, progress);
+) -> Result<Ran> {
+    let none = Kept::default();
+    let kept = options.kept.unwrap_or(&none);
+    let mut job = Job::new(campaign, options, kept, progress);
     // Before anything is read: what changes meanwhile is for the next run.
-    let inputs = inputs(campaign, options.allow_outside)?;
+    let inputs = inputs(campaign, options.allow_outside, kept)?;
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;
     job.put("version", &version)?;
     let mut parts = Vec::new();
     for kind in KINDS {
-        let from = Extent::of(&job.all);
+        let from = Extent::of(&job.found.all);
         (kind.run)(&mut job)?;
-        parts.push(Part { title: kind.title, from, to: Extent::of(&job.all) });
+        parts.push(Part { title: kind.title, from, to: Extent::of(&job.found.all) });
     }
-    job.all.add("", campaign.commented());
+    job.found.all.add("", campaign.commented());
     if campaign.is_empty() {
-        job.all.add("", [Finding::caution("campaign-without-record")]);
-    } else if job.answers == 0 {
-        job.all.add("", [Finding::caution("no-record-answers")]);
+        job.found.all.add("", [Finding::caution("campaign-without-record")]);
+    } else if job.found.answers == 0 {
+        job.found.all.add("", [Finding::caution("no-record-answers")]);
     }
-    let mut all = std::mem::take(&mut job.all);
+    let mut all = std::mem::take(&mut job.found.all);
     progress.start("drawing figures", all.figures.len());
-    let drawings = files::figures(output, &all.figures, &|| progress.step())?;
+    let medium = output.medium;
+    let pictures = files::figures(output, &all.figures, |figure| {
+        let on = digest([packed(&(medium as u8, figure)).unwrap_or_default()]);
+        let picture = kept.or_make(on, || Picture::of(figure, medium));
+        progress.step();
+        picture
+    })?;
     for (name, bytes) in &all.files {
         output.write(name, bytes)?;
     }
     put(&mut all.result, &all.findings, Voice::Campaign);
-    output.write(SUMMARY, summary(&all))?;
-    // Figures of another style are not those of a run without it.
-    let style = if output.medium == Medium::Report { "" } else { "# with figures of another style\n" };
-    output.write(INPUTS, format!("{inputs}{style}"))?;
+    output.write(INPUTS, &inputs)?;
     let names = output.written().iter().map(String::as_str).chain([RESULTS, REPORT]);
     all.result.insert("files".to_owned(), names.collect());
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
     output.write(RESULTS, json + "\n")?;
-    output.write(REPORT, page::page(&job, version, &inputs, &all, &drawings, &parts).html())?;
-    Ok((all, job.answers > 0))
+    output.write(REPORT, page::page(&job, version, &inputs, &all, &pictures, &parts).html())?;
+    output.write(Kept::FILE, kept.bytes())?;
+    Ok(Ran { answer: all, answered: job.found.answers > 0, again: job.again })
 }

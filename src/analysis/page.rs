@@ -4,19 +4,20 @@ use super::headline::headlines;
 use super::job::Part;
 use super::{Answer, Job};
 use crate::record::{Severity, Step};
+use crate::report::Page;
+use crate::report::Picture;
 use crate::report::words::{Voice, graded};
-use crate::report::{Drawing, Page};
 use crate::units::notation::{counted, shortest};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// Lays out all that is shown, with the drawings of its figures: answers first, then kind by kind, then where they come from.
+/// Lays out all that is shown, with the pictures of its figures: answers first, then kind by kind, then where they come from.
 pub fn page(
     job: &Job<'_>,
     version: &str,
     inputs: &str,
     all: &Answer,
-    drawings: &[Drawing],
+    pictures: &[Picture],
     parts: &[Part],
 ) -> Page {
     let mut page = Page::new(job.title.as_str()).heading("Answers");
@@ -38,9 +39,9 @@ pub fn page(
             continue;
         }
         page = page.heading(title).findings(&findings);
-        for ((name, figure), drawing) in all.figures[figures.clone()].iter().zip(&drawings[figures]) {
+        for ((name, figure), picture) in all.figures[figures.clone()].iter().zip(&pictures[figures]) {
             let files = [format!("{name}.svg"), format!("{name}.png")];
-            page = page.figure(figure, drawing, &files.each_ref().map(String::as_str));
+            page = page.figure(figure, picture, &files.each_ref().map(String::as_str));
         }
         page = tables.iter().chain(details).fold(page, Page::table);
     }
@@ -50,12 +51,12 @@ pub fn page(
     let rest = parts.last().map_or(0, |part| part.to.findings);
     page =
         page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
-    if !job.constants.is_empty() {
-        let values = job.constants.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+    if !job.found.constants.is_empty() {
+        let values = job.found.constants.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         page = page.details("Rig of the comparison", values);
     }
     let steps: Vec<(&str, String)> =
-        job.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
+        job.found.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
     let files = inputs
         .lines()
         .filter(|line| !line.starts_with('#'))

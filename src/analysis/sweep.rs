@@ -224,7 +224,11 @@ fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
 ///
 /// # Errors
 /// If a list or a spectrum cannot be read, or an excitation cannot be found.
-pub fn responses(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> Result<Vec<Response>> {
+pub fn responses(
+    campaign: &Campaign,
+    options: JobOptions<'_>,
+    progress: &dyn Progress,
+) -> Result<Vec<Response>> {
     let taken = taken(campaign, entries(campaign)?, options, progress)?;
     Ok(taken.into_iter().map(|(_, response, _)| response).collect())
 }
@@ -234,7 +238,7 @@ type Taken = (Sweep, Response, ResponseOptions);
 fn taken(
     campaign: &Campaign,
     entries: Vec<Entry<Keys>>,
-    options: JobOptions,
+    options: JobOptions<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<Taken>> {
     let entries = each(entries);
@@ -263,6 +267,7 @@ impl Analysis for Keys {
     const SECTION: &'static str = "sweep";
     const TITLE: &'static str = "Sweeps";
     const OF_FILES: bool = false;
+    const TOGETHER: bool = true;
 
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {
         let name = &entry.keys.name;
@@ -304,7 +309,7 @@ impl Analysis for Keys {
         };
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
-        job.answers += responses.len();
+        job.found.answers += responses.len();
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
         job.put("crossings", &pairing::all_crossings(&responses))?;
         let mut all = Answer { findings: pairing::twice(&responses), ..Answer::default() };
@@ -330,8 +335,8 @@ impl Analysis for Keys {
             one.csv("response", &tables::response(response));
             one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
             shown.push(job.show(&response.name, slug, one));
-            job.all.details.push(tables::curve(response));
-            job.histories.push((response.name.clone(), response.history.clone()));
+            job.found.all.details.push(tables::curve(response));
+            job.found.histories.push((response.name.clone(), response.history.clone()));
         }
         job.put("responses", &shown)
     }

@@ -83,7 +83,7 @@ fn a_missing_recording_is_made_by_the_command_that_is_named() {
 fn a_fit_without_a_rig_is_not_passed_over_in_silence() {
     let campaign = of("[fit]\nparameters = [\"gap\"]\n").unwrap();
     let mut output = crate::report::Output::new(tempfile::tempdir().unwrap().path()).unwrap();
-    let (answer, _) = run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
+    let Ran { answer, .. } = run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
     let said = sentences(&answer.findings, Voice::Campaign, true);
     assert!(said.iter().any(|s| s.contains("`fit` needs a table `rig`")), "{said:?}");
 }

@@ -91,6 +91,12 @@ impl Campaign {
         Ok(Entry { name, file, channel, reading, keys, head, places })
     }
 
+    /// What a table states, word by word.
+    pub(crate) fn stated_in<K>(&self, entry: &Entry<K>) -> String {
+        let words = entry.places.iter().map(|(_, span)| &self.text[span.clone()]);
+        words.collect::<Vec<&str>>().join("\n")
+    }
+
     /// An error about a table: it points at the line of the key that the error names as its setting, else at the table.
     pub(crate) fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
         let place = |key| entry.places.iter().find(|(name, _)| name == key);

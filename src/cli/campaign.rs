@@ -3,12 +3,14 @@
 use super::convert::folder_of;
 use super::{complain, init, print};
 use crate::analysis::sweep::modelled;
-use crate::analysis::{self, INPUTS, JobOptions, REPORT, RESULTS, SUMMARY};
+use crate::analysis::{self, JobOptions, Kept, REPORT, RESULTS, Ran};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
+use crate::report::Table;
 use crate::report::words::{Voice, graded};
-use crate::report::{Output, Table};
+use crate::units::notation::counted;
+use indicatif::ProgressBar;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -23,7 +25,7 @@ pub struct Run {
     out: Option<PathBuf>,
     /// Allow files outside the folder of the campaign
     allow_outside: bool,
-    /// Compute anew, also where nothing has changed since the last run
+    /// Compute all anew, also what has not changed since the last run
     again: bool,
     /// Run again whenever a file of the folder changes, until Ctrl+C
     watch: bool,
@@ -45,18 +47,28 @@ pub struct Compare {
     out: Option<PathBuf>,
 }
 
-/// A campaign file, that of a folder, or one proposed for what lies there.
-fn opened(path: &Path, json: bool) -> Result<Campaign> {
+/// A campaign file, or that of a folder; an empty one where the folder has none.
+fn opened(path: &Path) -> Result<Campaign> {
     let of_folder = path.join(Proposal::FILE);
     if !path.is_dir() {
-        return analysis::open(path);
+        analysis::open(path)
+    } else if of_folder.exists() {
+        analysis::open(of_folder)
+    } else {
+        analysis::parse(&of_folder, String::new())
     }
-    if of_folder.exists() {
-        return analysis::open(of_folder);
+}
+
+/// The campaign; one proposed for what lies in its folder where it has no file.
+fn proposed(campaign: Campaign, kept: &Kept, json: bool) -> Result<Campaign> {
+    if campaign.path().exists() {
+        return Ok(campaign);
     }
-    let proposal = print::busy(json, "looking at files", |bar| Proposal::of(path, &Reading::default(), bar))?;
+    let folder = campaign.folder();
+    let look = |bar: &ProgressBar| Proposal::of(folder, &Reading::default(), kept, bar);
+    let proposal = print::busy(json, "looking at files", look)?;
     init::tell(&proposal);
-    complain::line(&format!("to change any of it: vibro init {}", print::typed(path)));
+    complain::line(&format!("to change any of it: vibro init {}", print::typed(folder)));
     proposal.campaign()
 }
 
@@ -122,47 +134,31 @@ fn stamps(folder: &Path) -> Vec<(PathBuf, u64, Option<SystemTime>)> {
 impl Run {
     /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
     fn once(&self, json: bool) -> Result<u8> {
-        let campaign = opened(&self.campaign, json)?;
+        let campaign = opened(&self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
-        let options = JobOptions { allow_outside: self.allow_outside };
-        let held =
-            if self.again || print::STYLE.get().is_some() { None } else { held(&folder, &campaign, options) };
-        if let Some((found, summary)) = held {
-            complain::line("nothing has changed since the last run; --again computes anew");
-            let code = found["findings"]
-                .as_array()
-                .is_some_and(|f| f.iter().any(|f| f["code"] == "no-record-answers"));
-            if json {
-                of_results(&found, &folder)?;
-            } else {
-                // Findings stand before the first empty line.
-                let (said, tables) = summary
-                    .split_once("\n\n")
-                    .filter(|_| !summary.starts_with('\n'))
-                    .unwrap_or(("", summary.trim_start()));
-                said.lines().for_each(complain::line);
-                tables_of(tables, found["files"].as_array().map_or(0, Vec::len), &folder)?;
-            }
-            return Ok(u8::from(code));
-        }
+        let kept = if self.again { Kept::default() } else { Kept::of(&folder) };
+        let campaign = proposed(campaign, &kept, json)?;
+        let options = JobOptions { allow_outside: self.allow_outside, kept: Some(&kept) };
         let mut output = print::output(&folder)?;
-        let (found, answered) =
-            print::busy(json, "campaign", |bar| analysis::run(&campaign, options, &mut output, bar))?;
-        let files = output.commit()?;
+        let run = |bar: &ProgressBar| analysis::run(&campaign, options, &mut output, bar);
+        let Ran { answer, answered, again } = print::busy(json, "campaign", run)?;
+        output.commit()?;
+        if again > 0 {
+            let kept = counted(again, "answer");
+            complain::line(&format!(
+                "{kept} of the last run kept: same files, same keys; --again computes anew"
+            ));
+        }
+        let files = answer.result["files"].as_array().map_or(0, Vec::len);
         if json {
-            of_results(&found.result.into(), &folder)?;
+            of_results(&answer.result.into(), &folder)?;
         } else {
-            complain::warn(&graded(&found.findings, Voice::Campaign));
-            let tables = found.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
-            tables_of(&tables, files.len(), &folder)?;
+            complain::warn(&graded(&answer.findings, Voice::Campaign));
+            let tables = answer.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
+            print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", folder.display()))?;
         }
         Ok(u8::from(!answered && !campaign.is_empty()))
     }
-}
-
-/// Prints the tables of a campaign.
-fn tables_of(tables: &str, files: usize, folder: &Path) -> Result<()> {
-    print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", folder.display()))
 }
 
 /// Prints the results of a campaign as one object.
@@ -172,33 +168,18 @@ fn of_results(results: &Value, folder: &Path) -> Result<()> {
     print::object(json!({ "warnings": warnings, "results": results, "files": files, "folder": folder }))
 }
 
-/// The results in a folder and their summary, where they are of the same campaign, recordings and program, and complete.
-fn held(folder: &Path, campaign: &Campaign, options: JobOptions) -> Option<(Value, String)> {
-    let made = |path: &Path| std::fs::metadata(path).and_then(|meta| meta.modified()).ok();
-    let text = |name| std::fs::read_to_string(folder.join(name)).ok();
-    let same = text(INPUTS)? == analysis::inputs(campaign, options.allow_outside).ok()?;
-    let results: Value = serde_json::from_str(&text(RESULTS).filter(|_| same)?).ok()?;
-    // The page is written last: what is younger was changed by somebody else.
-    let page = made(&folder.join(REPORT))?;
-    let whole =
-        |name: &Value| name.as_str().and_then(|name| made(&folder.join(name))).is_some_and(|at| at <= page);
-    let complete =
-        results["files"].as_array()?.iter().all(whole) && !folder.join(Output::INCOMPLETE).exists();
-    complete.then_some((results, text(SUMMARY)?))
-}
-
 impl super::Run for Compare {
     const VOICE: Voice = Voice::Campaign;
 
     /// Prints measured responses over the model.
     fn run(&self, json: bool) -> Result<u8> {
-        let mut campaign = opened(&self.campaign, json)?;
+        let mut campaign = proposed(opened(&self.campaign)?, &Kept::default(), json)?;
         if !self.fit.is_empty() {
             let names = self.fit.iter().map(|name| FitEntry::parameter(name.trim()));
             campaign.fit.parameters = names.collect::<Result<_>>()?;
             campaign.fit.usable()?;
         }
-        let options = JobOptions { allow_outside: self.allow_outside };
+        let options = JobOptions { allow_outside: self.allow_outside, ..JobOptions::default() };
         let answer = print::busy(json, "comparing", |bar| modelled::compared(&campaign, options, bar))?;
         print::answer(answer, self.out.as_deref(), json)
     }

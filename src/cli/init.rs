@@ -2,6 +2,7 @@
 
 use super::{complain, print};
 use crate::analysis;
+use crate::analysis::Kept;
 use crate::campaign::Reading;
 use crate::error::{Error, Place, Result};
 use crate::proposal::{Known, Proposal, Row, Table};
@@ -37,8 +38,9 @@ impl super::Run for Init {
                 Error::input(Place::file(&path), "there is a campaign already", "a folder without one");
             return Err(error.hint(format!("vibro run {}", print::typed(&path))));
         }
-        let proposal =
-            print::busy(json, "looking at files", |bar| Proposal::of(&self.folder, &self.reading, bar))?;
+        let proposal = print::busy(json, "looking at files", |bar| {
+            Proposal::of(&self.folder, &self.reading, &Kept::default(), bar)
+        })?;
         let mut file = std::fs::File::create_new(&path).map_err(|e| Error::io("write", &path, e))?;
         file.write_all(proposal.toml().as_bytes()).map_err(|e| Error::io("write", &path, e))?;
         if json {

@@ -3,6 +3,7 @@
 use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
+use crate::report::Picture;
 use crate::report::words::{Voice, graded, put};
 use crate::report::{Medium, Output, Table, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -21,7 +22,8 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> 
     let mut written = Vec::new();
     if let Some(folder) = out {
         let mut output = output(folder)?;
-        files::figures(&mut output, &answer.figures, &|| ())?;
+        let medium = output.medium;
+        files::figures(&mut output, &answer.figures, |figure| Picture::of(figure, medium))?;
         for (name, bytes) in &answer.files {
             output.write(name, bytes)?;
         }

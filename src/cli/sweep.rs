@@ -2,6 +2,7 @@
 
 use super::convert::{apart, write_beside};
 use super::{Run, init, print};
+use crate::analysis::Kept;
 use crate::analysis::sweep::{Files, Listed, Stored, figures, matching, named, tables};
 use crate::analysis::{self, Answer};
 use crate::campaign::{Reading, above_zero};
@@ -79,7 +80,7 @@ impl Source {
         let is_pattern = |path: &Path| !path.exists() && path.to_string_lossy().contains(['*', '?']);
         Ok(match typed.as_slice() {
             [folder] if folder.is_dir() => {
-                let mut proposal = Proposal::of(folder, &Reading::default(), &())?;
+                let mut proposal = Proposal::of(folder, &Reading::default(), &Kept::default(), &())?;
                 proposal.tables.retain(|table| table.section == "sweep");
                 proposal.left.clear();
                 Some(proposal)

@@ -2,7 +2,7 @@
 
 use super::folder::{Series, short};
 use super::{Proposal, Table};
-use crate::analysis::{self, Heard, Progress};
+use crate::analysis::{self, Heard, Kept, Progress};
 use crate::campaign::Reading;
 use crate::read::Header;
 use crate::record::{Record, Severity};
@@ -46,19 +46,26 @@ const STEPS: usize = 5;
 pub(super) struct Trial<'a> {
     folder: &'a Path,
     reading: &'a Reading,
+    kept: &'a Kept,
     progress: &'a dyn Progress,
 }
 
 impl<'a> Trial<'a> {
-    pub fn new(folder: &'a Path, reading: &'a Reading, progress: &'a dyn Progress) -> Trial<'a> {
-        Trial { folder, reading, progress }
+    pub fn new(
+        folder: &'a Path,
+        reading: &'a Reading,
+        kept: &'a Kept,
+        progress: &'a dyn Progress,
+    ) -> Trial<'a> {
+        Trial { folder, reading, kept, progress }
     }
 
     /// The answers of the records of tables; else why there is none.
     fn answers(&self, tables: &[Table]) -> Result<Heard, String> {
         let path = self.folder.join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml()).collect();
-        let answered = analysis::parse(&path, text).and_then(|c| analysis::answers(&c, self.progress));
+        let answered =
+            analysis::parse(&path, text).and_then(|c| analysis::answers(&c, self.kept, self.progress));
         answered.map_err(|error| short(&error))?
     }
 

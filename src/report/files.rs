@@ -1,43 +1,55 @@
 //! Figures and matrices as files.
 
-use super::{Drawing, Figure, Output};
+use super::{Figure, Medium, Output};
 use crate::error::Result;
 use crate::measure::waterfall::Waterfall;
 use crate::record::{Finding, Record};
 use crate::write::{Storage, Target};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
 /// Resolution of the PNG figures in dots an inch: enough for print.
 const DPI: f64 = 300.0;
 
-/// Draws figures in parallel and writes each as `NAME.svg` and `NAME.png`; `step` is called for each that is drawn. Gives the
-/// drawings in order.
+/// A figure as it stands in files.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Picture {
+    /// Its width in mm.
+    pub width: f64,
+    /// As SVG.
+    pub svg: String,
+    /// As PNG.
+    pub png: Vec<u8>,
+}
+
+impl Picture {
+    /// Draws a figure.
+    ///
+    /// # Errors
+    /// If it is too large to be held in memory as pixels.
+    pub fn of(figure: &Figure, medium: Medium) -> Result<Picture> {
+        let drawing = figure.draw_for(medium);
+        Ok(Picture { width: drawing.size.0, svg: drawing.svg(), png: drawing.png(DPI)? })
+    }
+}
+
+/// Draws figures in parallel and writes each as `NAME.svg` and `NAME.png`. Gives the pictures in order.
 ///
 /// # Errors
-/// If a file cannot be written.
+/// Those of drawing; if a file cannot be written.
 pub fn figures(
     output: &mut Output,
     figures: &[(String, Figure)],
-    step: &(dyn Fn() + Sync),
-) -> Result<Vec<Drawing>> {
-    let medium = output.medium;
-    let drawn: Vec<(Drawing, Vec<u8>)> = figures
-        .par_iter()
-        .map(|(_, figure)| {
-            let drawing = figure.draw_for(medium);
-            let png = drawing.png(DPI)?;
-            step();
-            Ok((drawing, png))
-        })
-        .collect::<Result<_>>()?;
-    let mut drawings = Vec::with_capacity(drawn.len());
-    for ((name, _), (drawing, png)) in figures.iter().zip(drawn) {
-        output.write(&format!("{name}.svg"), drawing.svg())?;
-        output.write(&format!("{name}.png"), png)?;
-        drawings.push(drawing);
+    draw: impl Fn(&Figure) -> Result<Picture> + Sync,
+) -> Result<Vec<Picture>> {
+    let drawn: Result<Vec<Picture>> = figures.par_iter().map(|(_, figure)| draw(figure)).collect();
+    let drawn = drawn?;
+    for ((name, _), picture) in figures.iter().zip(&drawn) {
+        output.write(&format!("{name}.svg"), &picture.svg)?;
+        output.write(&format!("{name}.png"), &picture.png)?;
     }
-    Ok(drawings)
+    Ok(drawn)
 }
 
 /// Matrix as CSV: a column of line frequencies, then one column a spectrum, headed by its excitation frequency.
@@ -153,7 +165,10 @@ mod tests {
         let (files, finding) = records("y", &gaps(1e-4)).unwrap();
         let finding = finding.unwrap();
         assert!(matches!(finding.fact("why"), Some(Fact::Name(why)) if why.contains("too few digits")));
-        assert_eq!((finding.code, files.len(), files[0].0.as_str()), ("uff-not-written", 1, "y.csv"));
+        assert_eq!(
+            (finding.code.as_ref(), files.len(), files[0].0.as_str()),
+            ("uff-not-written", 1, "y.csv")
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! One page that holds a whole report, to be explored: no network, no other file.
 
-use super::Drawing;
+use super::files::Picture;
 use super::table::Table;
 use crate::record::Severity;
 use base64::Engine;
@@ -103,9 +103,9 @@ impl Page {
 
     /// Adds a figure with its title and a caption below, as drawn for print and as data for the script; `files` are names of files beside
     /// the page that hold the same picture.
-    pub fn figure(mut self, figure: &Figure, drawing: &Drawing, files: &[&str]) -> Page {
+    pub fn figure(mut self, figure: &Figure, picture: &Picture, files: &[&str]) -> Page {
         let mut below =
-            format!("<b>{}.</b> {}", escaped(drawing.name.trim_end_matches('.')), escaped(&figure.caption));
+            format!("<b>{}.</b> {}", escaped(figure.title.trim_end_matches('.')), escaped(&figure.caption));
         for file in files {
             let _ = write!(below, " <a href=\"./{0}\">{0}</a>", escaped(file));
         }
@@ -114,15 +114,15 @@ impl Page {
         let heavy =
             data["panels"].as_array().is_some_and(|all| all.iter().any(|panel| panel["map"].is_object()));
         self.share(&mut data);
-        let svg = drawing.svg();
-        let width = drawing.size.0.round();
+        let svg = &picture.svg;
+        let width = picture.width.round();
         let inside = match (drawn, files.first()) {
-            (false, _) => svg,
+            (false, _) => svg.clone(),
             // A map would be half of the page.
             (true, Some(file)) if heavy => {
                 self.place(data, &format!("<p>The map is in {}.</p>\n", escaped(file)))
             }
-            (true, _) => self.place(data, &svg),
+            (true, _) => self.place(data, svg),
         };
         self.element(&format!(
             "<figure style=\"--width:{width}\">\n{inside}<figcaption>{}</figcaption>\n</figure>",
@@ -251,7 +251,7 @@ fn code(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{AxisSpec, Figure, Plot, Series};
+    use crate::report::{AxisSpec, Figure, Medium, Plot, Series};
 
     fn page() -> Page {
         let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("<y>", "m")).with(Series::line(
@@ -260,7 +260,7 @@ mod tests {
             [1.0, 2.0],
         ));
         let figure = Figure::single("A \"title\" <i>").panel(plot).caption("caption <b>");
-        let drawing = figure.draw();
+        let drawing = Picture::of(&figure, Medium::Report).unwrap();
         Page::new("Rig <1> & more")
             .findings(&[
                 (Severity::Doubt, "<script>alert(1)</script>".to_owned()),
@@ -317,7 +317,7 @@ mod tests {
         let height = AxisSpec::new("Displacement", "m");
         let waterfall = Waterfall::new(&lines, &[1.0, 2.0, 3.0], &matrix, height).unwrap();
         let figure = Figure::single("w").panel(waterfall);
-        let drawing = figure.draw();
+        let drawing = Picture::of(&figure, Medium::Report).unwrap();
         let page = Page::new("").figure(&figure, &drawing, &[]).figure(&figure, &drawing, &[]);
         assert_eq!((page.matrices.len(), page.figures.len()), (1, 2));
     }

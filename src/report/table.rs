@@ -4,6 +4,7 @@ use crate::measure::Estimate;
 use crate::units::notation::{
     decimals_needed, engineering, estimate, fixed, labelled, scaled_unit, significant,
 };
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use vibro_figure::escaped;
@@ -24,7 +25,7 @@ use vibro_figure::escaped;
 /// assert!(table.text().contains("5.583 ± 0.012"));
 /// assert!(table.csv().starts_with("Kind,Frequency (Hz),Frequency std (Hz)\n"));
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Table {
     /// What the table shows.
     pub title: String,
@@ -37,7 +38,7 @@ pub struct Table {
 }
 
 /// Head of a column.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Column {
     /// Quantity.
     pub name: String,
@@ -46,7 +47,7 @@ pub struct Column {
 }
 
 /// One result.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// Words.
     Text(String),

@@ -18,6 +18,7 @@
 use crate::record::{Fact, Finding, Severity};
 use crate::units::notation::{quantity, significant};
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -60,7 +61,9 @@ impl Voice {
 
 /// The sentence of a finding. A code without a sentence shows itself.
 pub fn sentence(finding: &Finding, voice: Voice) -> String {
-    SENTENCES.get(finding.code).map_or_else(|| finding.code.to_owned(), |text| filled(text, finding, voice))
+    SENTENCES
+        .get(finding.code.as_ref())
+        .map_or_else(|| finding.code.to_string(), |text| filled(text, finding, voice))
 }
 
 /// A finding, and the record that it is about: empty for all of them.
@@ -113,7 +116,7 @@ impl Said<'_> {
     fn takes(&self, other: &Said<'_>) -> bool {
         let (a, b) = (self.finding, other.finding);
         let about = |record: &&str| record.is_empty() || self.of.contains(record);
-        let name = |(_, fact): &&(&str, Fact)| matches!(fact, Fact::Name(_));
+        let name = |(_, fact): &&(Cow<'_, str>, Fact)| matches!(fact, Fact::Name(_));
         let alike = a.subject == b.subject && a.facts.iter().filter(name).eq(b.facts.iter().filter(name));
         let apart = a.severity < Severity::Doubt && !self.of.contains(&"") && !other.of.iter().any(about);
         a.code == b.code && (self.text == other.text || alike && apart)
@@ -145,7 +148,7 @@ fn names(records: &[&str]) -> String {
 
 /// The numbers in which a finding differs from another one of its code, as the sentence shows them.
 fn differing(from: &Finding, finding: &Finding) -> Vec<String> {
-    let template = SENTENCES.get(finding.code).copied().unwrap_or_default();
+    let template = SENTENCES.get(finding.code.as_ref()).copied().unwrap_or_default();
     let places = template.split('{').skip(1).filter_map(|part| part.split('}').next());
     let shown = places.filter(|place| !place.contains('?')).filter_map(|place| {
         let (own, other) = (shown(place, finding)?, shown(place, from));

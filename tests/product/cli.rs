@@ -9,6 +9,7 @@ mod convert;
 mod documents;
 mod impacts;
 mod init;
+mod kept;
 mod model;
 mod modes;
 mod periodic;

@@ -27,7 +27,7 @@ fn the_campaign_gives_back_the_truth() {
     let mut output = Output::new(out.path()).unwrap();
     let results = analysis::run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
     output.commit().unwrap();
-    let results = Value::Object(results.0.result);
+    let results = Value::Object(results.answer.result);
     let estimate = |found: &Value| (found["value"].as_f64().unwrap(), found["std"].as_f64().unwrap());
     let drops = &results["drops"][0];
     assert_eq!(drops["files"].as_array().unwrap().len(), 5);
@@ -76,7 +76,7 @@ fn drops_of_one_name_with_other_heights_are_refused_with_their_line() {
         analysis::run(&campaign, JobOptions::default(), &mut output, &())
     };
     let name = "name = \"a\"\n";
-    let drops = |names| run(names, 0.001).unwrap().0.result["drops"].as_array().unwrap().len();
+    let drops = |names| run(names, 0.001).unwrap().answer.result["drops"].as_array().unwrap().len();
     assert_eq!((drops([name, name]), drops(["", ""])), (1, 2));
     let error = run([name, name], 0.01).err().unwrap();
     assert_eq!(error.exit_code(), 2);

@@ -18,11 +18,12 @@ fn results(campaign: &str) -> (Value, tempfile::TempDir) {
     fs::write(&path, campaign).unwrap();
     let campaign = open(&path).unwrap();
     let mut output = Output::new(folder.path().join("out")).unwrap();
-    let found = run(&campaign, JobOptions { allow_outside: true }, &mut output, &()).unwrap();
+    let found = run(&campaign, JobOptions { allow_outside: true, ..JobOptions::default() }, &mut output, &())
+        .unwrap();
     for name in &output.commit().unwrap() {
         assert!(folder.path().join("out").join(name).is_file(), "{name}");
     }
-    (Value::Object(found.0.result), folder)
+    (Value::Object(found.answer.result), folder)
 }
 
 /// The modes of a function.

@@ -5,9 +5,9 @@ use ndarray::Array2;
 use proptest::prelude::*;
 use resvg::usvg::{self, roxmltree};
 use vibroimpact::figure::{
-    AxisSpec, Drawing, Figure, Heatmap, Legend, Panel, Plot, Series, Shape, Stroke, Waterfall,
+    AxisSpec, Drawing, Figure, Heatmap, Legend, Medium, Panel, Plot, Series, Shape, Stroke, Waterfall,
 };
-use vibroimpact::report::{Output, Page, Table};
+use vibroimpact::report::{Output, Page, Picture, Table};
 
 /// Parses a drawing as XML and as a picture, and returns the texts it shows.
 fn texts(drawing: &Drawing) -> Vec<String> {
@@ -153,7 +153,8 @@ fn markup_in_names_stays_text() {
     let drawing = figure.draw();
     assert!(!drawing.svg().contains("<script"));
     assert!(texts(&drawing).iter().any(|t| t.starts_with("</text><script>")));
-    let page = Page::new(evil).figure(&figure, &drawing, &[evil]).table(&Table::new(evil).column(evil, evil));
+    let picture = Picture::of(&figure, Medium::Report).unwrap();
+    let page = Page::new(evil).figure(&figure, &picture, &[evil]).table(&Table::new(evil).column(evil, evil));
     assert!(!page.html().contains("<script>alert"));
 }
 
@@ -214,10 +215,10 @@ fn a_legend_covers_no_data_even_where_there_is_no_free_corner() {
 fn a_folder_of_results_is_written_whole() {
     let dir = tempfile::tempdir().unwrap();
     let mut out = Output::new(dir.path().join("results")).unwrap();
-    let drawing = everything().draw();
-    out.write("all.svg", drawing.svg()).unwrap();
-    out.write("all.png", drawing.png(100.0).unwrap()).unwrap();
-    let page = Page::new("Report").figure(&everything(), &drawing, &["all.svg"]);
+    let picture = Picture::of(&everything(), Medium::Report).unwrap();
+    out.write("all.svg", &picture.svg).unwrap();
+    out.write("all.png", &picture.png).unwrap();
+    let page = Page::new("Report").figure(&everything(), &picture, &["all.svg"]);
     out.write("report.html", page.html()).unwrap();
     assert!(out.write("../report.html", "").is_err());
     let folder = out.folder().to_owned();

@@ -1,10 +1,11 @@
 //! Axes: what a caller asks for, and what it becomes once the data are known.
 
 use crate::{Ticks, ticks};
+use serde::{Deserialize, Serialize};
 use vibro_record::units::notation::{self, engineering, labelled, scaled_unit};
 
 /// How values are laid out along an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Scale {
     /// In proportion.
     #[default]
@@ -38,7 +39,7 @@ impl Scale {
 ///
 /// Data are given in SI units; a linear axis finds its own prefix, so that displacements of 0.002 m are drawn
 /// as 2 with the label `Displacement (mm)`.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct AxisSpec {
     /// Quantity, e.g. `Displacement amplitude`.
     pub label: String,

@@ -1,7 +1,9 @@
 //! Colours that survive colour blindness and a grey printer.
 
+use serde::{Deserialize, Serialize};
+
 /// sRGB, 8 bits a channel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Rgb(pub u8, pub u8, pub u8);
 
 /// Colours of series in their order: the palette of Okabe and Ito (2008), *Color Universal Design*, without

@@ -1,6 +1,7 @@
 //! Figures as data: what is shown, with which labels, in which arrangement.
 
 use crate::{AxisSpec, Grid, Heatmap, Series, Waterfall};
+use serde::{Deserialize, Serialize};
 
 /// Panels in a grid, at the size in which they are printed.
 ///
@@ -12,7 +13,7 @@ use crate::{AxisSpec, Grid, Heatmap, Series, Waterfall};
 /// let drawing = Figure::single("Response of the passive mass").panel(plot).draw();
 /// assert!(drawing.svg().starts_with("<svg"));
 /// ```
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// What the figure shows, in a few words. It is not drawn: it is the figure's name for readers that
     /// cannot see it, and stands over its caption on a page.
@@ -32,7 +33,7 @@ pub struct Figure {
 }
 
 /// One part of a figure.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 // A figure has a few panels.
 #[allow(clippy::large_enum_variant)]
 pub enum Panel {
@@ -45,7 +46,7 @@ pub enum Panel {
 }
 
 /// Series over two axes, on a map where wanted.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Plot {
     /// Title over the frame; empty for none.
     pub title: String,
@@ -64,7 +65,7 @@ pub struct Plot {
 }
 
 /// A text with a line to the point that it names.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
     /// The text.
     pub text: String,
@@ -75,7 +76,7 @@ pub struct Note {
 }
 
 /// Where the names of the series stand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Legend {
     /// In the frame where no data are; beside or over the frame where there is no such place.
     #[default]

@@ -2,9 +2,10 @@
 
 use crate::style::{FRAME, GAP, SMALL};
 use crate::{Anchor, Canvas, GREY, Pen, Rect, Rgb, WHITE, font};
+use serde::{Deserialize, Serialize};
 
 /// What a cell can be.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Kind {
     /// Name in the key.
     pub name: String,
@@ -14,7 +15,7 @@ pub struct Kind {
     pub colour: Rgb,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 struct Row {
     group: String,
     name: String,
@@ -23,7 +24,7 @@ struct Row {
 }
 
 /// A grid of classes.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Grid {
     columns: Vec<String>,
     kinds: Vec<Kind>,

@@ -3,13 +3,14 @@
 use crate::style::{FRAME, GAP, LARGE, LEADING, TICK, TICKS};
 use crate::{Axis, AxisSpec, Canvas, Extent, Place, Rect, Rgb, Room, Ruler, Scale, Side, colour, frame};
 use ndarray::{Array2, ArrayRef2};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use vibro_record::{Error, Result};
 
 /// Values over a grid, row by row, such as magnitudes over excitation (rows) and frequency (columns).
 ///
 /// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. A missing value (NaN) stays white.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Heatmap {
     x: Vec<f64>,
     y: Vec<f64>,
@@ -24,7 +25,7 @@ const WIDTH: f64 = 8.0;
 const CELLS: f64 = 300.0 / 72.0;
 
 /// What the colours mean.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) enum Key {
     /// A quantity, on a colour bar.
     Quantity(AxisSpec),

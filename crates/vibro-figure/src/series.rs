@@ -1,11 +1,13 @@
 //! What a plot can show over its axes.
 
+use serde::{Deserialize, Serialize};
+
 /// One entry of a plot: its data in the unit of the axes, the form in which they are drawn, its name in the
 /// legend and its look.
 ///
 /// Lists of different lengths are drawn as far as the shortest reaches. A value that is missing (NaN), or has
 /// no place on its axis, breaks a line and leaves out a point.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     /// Name in the legend, or beside a reference line; empty for none.
     pub name: String,
@@ -29,7 +31,7 @@ pub struct Series {
 }
 
 /// Form of a series.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Shape {
     /// Line through points, in their order.
     #[default]
@@ -49,7 +51,7 @@ pub enum Shape {
 }
 
 /// Colour of a series.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Ink {
     /// The next of [`super::colour::SERIES`], with its own dashes and marker.
     #[default]
@@ -66,7 +68,7 @@ pub enum Ink {
 }
 
 /// Dashes and width of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stroke {
     /// Unbroken.
     Solid,
@@ -81,7 +83,7 @@ pub enum Stroke {
 }
 
 /// Form of a marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Marker {
     /// Filled circle.
     Circle,

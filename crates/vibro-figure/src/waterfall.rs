@@ -6,6 +6,7 @@ use crate::{
     ascending, fits, fitted, font, frame, thinned,
 };
 use ndarray::ArrayRef2;
+use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
 /// Room for numbers and a name at either side, before these are known.
@@ -25,7 +26,7 @@ struct Cube {
 }
 
 /// Spectra in oblique projection with hidden lines, one for each excitation frequency.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Waterfall {
     /// Axis to the right.
     x: AxisSpec,

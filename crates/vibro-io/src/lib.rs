@@ -78,6 +78,7 @@ pub(crate) use source::Source;
 #[cfg(test)]
 mod tests {
     use crate::{Header, Reader, Recording, Source};
+    use std::borrow::Cow;
     use vibro_record::{Fact, Finding, Result};
 
     /// Reads a source, and holds that a survey says of it what reading says.
@@ -98,7 +99,7 @@ mod tests {
 
     /// Findings as text, numbers with six digits: `axis-uneven column=column "t" smallest=0.1`.
     pub fn texts(findings: &[Finding]) -> Vec<String> {
-        let fact = |(name, fact): &(&str, Fact)| match fact {
+        let fact = |(name, fact): &(Cow<'static, str>, Fact)| match fact {
             Fact::Number(value) => format!("{name}={}", crate::assemble::short(*value)),
             Fact::Numbers(values) => format!("{name}={values:?}"),
             Fact::Name(text) => format!("{name}={text}"),

@@ -273,7 +273,7 @@ fn scaled(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Values> {
 fn gather(recording: &Recording, findings: &mut Vec<Finding>) {
     const SETTLED: [&str; 4] = ["scaling-unsaid", "unit-unsaid", "axis-unit-assumed", "abscissa-unsaid"];
     for found in recording.all_findings() {
-        if !SETTLED.contains(&found.code) && findings.len() < 50 && !findings.contains(&found) {
+        if !SETTLED.contains(&found.code.as_ref()) && findings.len() < 50 && !findings.contains(&found) {
             findings.push(found);
         }
     }

@@ -1,9 +1,13 @@
 //! What an analysis, a model or a reader reports, as data: numbers with their uncertainty, and what a person should know of them.
 
-use serde::{Serialize, Serializer, ser::SerializeMap};
+use serde::de::{MapAccess, Visitor};
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt::Formatter;
 
 /// How much a finding weighs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// What was done or assumed, as it should be.
@@ -22,7 +26,7 @@ impl Severity {
 }
 
 /// A fact of a finding: a number in SI units, several, or a name.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Fact {
     /// A number in SI units, or a count.
@@ -38,23 +42,23 @@ pub enum Fact {
 /// ```
 /// use vibro_record::{Finding, Severity};
 /// let hum = Finding::note("mains-hum-removed").number("frequency", 50.0).number("amplitude", 0.3).name("unit", "V");
-/// assert_eq!((hum.code, hum.severity), ("mains-hum-removed", Severity::Note));
+/// assert_eq!((&*hum.code, hum.severity), ("mains-hum-removed", Severity::Note));
 /// assert_eq!(hum.get("frequency"), Some(50.0));
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// Stable code in kebab-case, listed in the documentation.
-    pub code: &'static str,
+    pub code: Cow<'static, str>,
     /// How much it weighs.
     pub severity: Severity,
     /// What it is about: a channel, a file, a sweep; `None` for the whole answer.
     pub subject: Option<String>,
     /// Numbers in SI units and names, in the order in which they were added.
-    #[serde(rename = "numbers", serialize_with = "as_map")]
-    pub facts: Vec<(&'static str, Fact)>,
+    #[serde(rename = "numbers", serialize_with = "as_map", deserialize_with = "of_map")]
+    pub facts: Vec<(Cow<'static, str>, Fact)>,
 }
 
-fn as_map<S: Serializer>(facts: &[(&'static str, Fact)], serializer: S) -> Result<S::Ok, S::Error> {
+fn as_map<S: Serializer>(facts: &[(Cow<'static, str>, Fact)], serializer: S) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(Some(facts.len()))?;
     for (name, fact) in facts {
         map.serialize_entry(name, fact)?;
@@ -62,9 +66,29 @@ fn as_map<S: Serializer>(facts: &[(&'static str, Fact)], serializer: S) -> Resul
     map.end()
 }
 
+fn of_map<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(Cow<'static, str>, Fact)>, D::Error> {
+    struct Facts;
+    impl<'de> Visitor<'de> for Facts {
+        type Value = Vec<(Cow<'static, str>, Fact)>;
+
+        fn expecting(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+            f.write_str("facts by their names")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut facts = Vec::new();
+            while let Some(fact) = map.next_entry()? {
+                facts.push(fact);
+            }
+            Ok(facts)
+        }
+    }
+    deserializer.deserialize_map(Facts)
+}
+
 impl Finding {
     fn new(code: &'static str, severity: Severity) -> Finding {
-        Finding { code, severity, subject: None, facts: Vec::new() }
+        Finding { code: code.into(), severity, subject: None, facts: Vec::new() }
     }
 
     /// What was done or assumed.
@@ -84,7 +108,7 @@ impl Finding {
 
     /// Adds a number in SI units, or a count.
     pub fn number(mut self, name: &'static str, value: f64) -> Finding {
-        self.facts.push((name, Fact::Number(value)));
+        self.facts.push((name.into(), Fact::Number(value)));
         self
     }
 
@@ -95,13 +119,13 @@ impl Finding {
 
     /// Adds several numbers in SI units.
     pub fn numbers(mut self, name: &'static str, values: impl Into<Vec<f64>>) -> Finding {
-        self.facts.push((name, Fact::Numbers(values.into())));
+        self.facts.push((name.into(), Fact::Numbers(values.into())));
         self
     }
 
     /// Adds a name.
     pub fn name(mut self, name: &'static str, text: impl Into<String>) -> Finding {
-        self.facts.push((name, Fact::Name(text.into())));
+        self.facts.push((name.into(), Fact::Name(text.into())));
         self
     }
 

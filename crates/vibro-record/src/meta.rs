@@ -4,7 +4,7 @@ use crate::units::{Quantity, Unit};
 use crate::{Finding, Window};
 
 /// One step that made a record: its name, its arguments, the version of this crate.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Step {
     /// Name of the step, e.g. `read`, `to_si`, `integrate`.
     pub name: String,

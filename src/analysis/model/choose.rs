@@ -125,8 +125,8 @@ fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()
     let all = || survey.points.iter().flat_map(|c| c.findings.iter().map(move |f| (c.frequency, f)));
     let mut seen: Vec<&str> = Vec::new();
     for (first, finding) in all().filter(|(_, f)| f.severity != Severity::Note) {
-        if !seen.contains(&finding.code) {
-            seen.push(finding.code);
+        if !seen.contains(&finding.code.as_ref()) {
+            seen.push(finding.code.as_ref());
             let n = all().filter(|(_, f)| f.code == finding.code).count();
             let first = significant(first, 6);
             answer.add(&format!("At {n} of {points} frequencies, first at {first} Hz"), [finding]);

@@ -39,7 +39,7 @@ fn predicting(campaign: &Campaign) -> Predicting {
 ///
 /// # Errors
 /// If the campaign has no rig, a sweep cannot be read, or the data allow no overlay or no fit.
-pub fn compared(campaign: &Campaign, options: JobOptions, progress: &dyn Progress) -> Result<Answer> {
+pub fn compared(campaign: &Campaign, options: JobOptions<'_>, progress: &dyn Progress) -> Result<Answer> {
     let rig = campaign.rig.ok_or_else(|| {
         Error::input(Place::file(campaign.path()), "the campaign has no [rig]", "the rig to compare with")
             .hint("add a [rig] table; keys left out take the values of the thesis' rig")
@@ -82,18 +82,18 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
     let campaign = job.campaign;
     let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());
     if rig.is_some() && responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
-        job.all.add("", [Finding::caution("no-mass-named")]);
+        job.found.all.add("", [Finding::caution("no-mass-named")]);
         rig = None;
     }
     if rig.is_none() && !campaign.fit.parameters.is_empty() {
-        job.all.add("", [Finding::caution("fit-without-rig")]);
+        job.found.all.add("", [Finding::caution("fit-without-rig")]);
     }
     let (mut laid, mut found) = (None, None);
     if let Some(rig) = &rig {
         let overlay = overlaid(campaign, rig, responses)?;
         found = job.found("fit", fit(campaign, rig, responses))?.flatten();
         job.show("", "", shown(campaign, responses, &overlay, found.as_ref()));
-        job.constants = constants(rig);
+        job.found.constants = constants(rig);
         laid = Some(overlay);
     }
     job.put("rig", &rig)?;

@@ -10,6 +10,7 @@ use crate::measure::residuals::student;
 use crate::model::{Parameter, Rig};
 use crate::record::{Direction, Finding};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// A parameter as it was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -108,7 +109,7 @@ pub struct Fit {
     /// Points of the fit.
     pub points: Vec<FitPoint>,
     /// Code of the first finding that takes the uncertainty of all parameters away, where there is one.
-    pub doubt: Option<&'static str>,
+    pub doubt: Option<Cow<'static, str>>,
     /// What a person must know; doubts of the whole answer come first.
     pub findings: Vec<Finding>,
 }
@@ -161,7 +162,7 @@ impl Answer<'_> {
                 })
             });
         let (far, wavering, findings) = (self.found.far, self.found.wavering, self.doubts());
-        let doubt = findings.first().map(|doubt| doubt.code);
+        let doubt = findings.first().map(|doubt| doubt.code.clone());
         Fit {
             parameters: (0..n).map(|i| self.fitted(base, i, doubt.is_some())).collect(),
             correlations: (0..n).map(row).collect(),

@@ -59,7 +59,7 @@ impl Ring {
 /// Whether a finding says that the number of impacts is doubtful.
 fn doubted(found: &Impacts) -> bool {
     let doubts = ["count-depends-on-ringing", "impacts-lost-in-noise"];
-    found.missed > 0 || found.findings.iter().any(|f| doubts.contains(&f.code))
+    found.missed > 0 || found.findings.iter().any(|f| doubts.contains(&f.code.as_ref()))
 }
 
 fn ringing_impacts_are_counted_once(draws: Draws) {

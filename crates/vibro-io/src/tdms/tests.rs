@@ -516,7 +516,7 @@ fn times_of_other_units_and_digits() {
     assert!(has_finding(&found, "axis-rounded", &[]) && found.len() == 1);
     // An uneven clock is said once.
     let (_, found) = of(&[0.0, 1.0, 5.0], "s");
-    assert_eq!(found.iter().map(|found| found.code).collect::<Vec<_>>(), ["axis-uneven"]);
+    assert_eq!(found.iter().map(|found| found.code.as_ref()).collect::<Vec<_>>(), ["axis-uneven"]);
 }
 
 #[test]

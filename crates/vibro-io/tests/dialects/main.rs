@@ -153,7 +153,7 @@ fn faults(found: &Recording, right: &Right) -> Vec<String> {
         }
     }
     let all = found.all_findings();
-    let codes: Vec<&str> = all.iter().map(|f| f.code).collect();
+    let codes: Vec<&str> = all.iter().map(|f| f.code.as_ref()).collect();
     faults.extend(
         right.findings.iter().filter(|c| !codes.contains(c)).map(|c| format!("no finding {c} in {codes:?}")),
     );

@@ -65,7 +65,7 @@ fn check(found: &DecayResult, modes: &[(f64, f64, f64, f64)]) {
 }
 
 fn codes(found: &DecayResult) -> Vec<&str> {
-    found.findings.iter().map(|f| f.code).collect()
+    found.findings.iter().map(|f| f.code.as_ref()).collect()
 }
 
 /// A record of one mode with 0.3 % of noise, changed.

@@ -174,7 +174,7 @@ impl Group {
         }
         self.restitution = None;
         // What is said of these velocities is said of nothing.
-        self.findings.retain(|found| !OF_VELOCITIES.contains(&found.code));
+        self.findings.retain(|found| !OF_VELOCITIES.contains(&found.code.as_ref()));
         let found = Finding::doubt("drill-velocity-impossible").number("velocity", largest);
         self.findings.push(found.number("reach", reach));
         self

@@ -186,7 +186,7 @@ impl Measured {
             Finding::caution("frf-lines-impossible-coherence"),
             Finding::caution("frf-lines-low-coherence").number("least", least),
         ] {
-            let lines: Vec<usize> = (0..n).filter(|i| wrong(*i) == Some(finding.code)).collect();
+            let lines: Vec<usize> = (0..n).filter(|i| wrong(*i) == Some(finding.code.as_ref())).collect();
             if let [from, more @ ..] = lines.as_slice() {
                 let first: Vec<f64> = lines.iter().take(NAMED).map(|i| self.frequency[*i]).collect();
                 let found = finding.count("n", lines.len()).numbers("lines", first);

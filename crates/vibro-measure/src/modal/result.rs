@@ -75,7 +75,7 @@ pub struct ByMethod {
 // serde hands over the field as it is.
 #[allow(clippy::ref_option)]
 fn code<S: Serializer>(note: &Option<Finding>, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(note.as_ref().map_or("", |n| n.code))
+    serializer.serialize_str(note.as_ref().map_or("", |n| n.code.as_ref()))
 }
 
 /// A mode of viscous damping: receptance A/(ωᵣ² − ω² + 2iζωᵣω).

@@ -176,8 +176,12 @@ fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution()
         let restitution = &result.restitution;
         let std = restitution.std.unwrap();
         assert!((restitution.value - contact.restitution).abs() < 5.0 * std && std < 0.03, "{restitution:?}");
-        let doubts: Vec<&str> =
-            result.findings.iter().filter(|f| f.severity == Severity::Doubt).map(|f| f.code).collect();
+        let doubts: Vec<&str> = result
+            .findings
+            .iter()
+            .filter(|f| f.severity == Severity::Doubt)
+            .map(|f| f.code.as_ref())
+            .collect();
         assert_eq!(doubts, ["pulse-other-model"]);
     }
 }

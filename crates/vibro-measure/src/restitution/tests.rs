@@ -328,7 +328,7 @@ fn findings_of_steady_trains_do_not_concern_bounces() {
     let meta = Meta::new("contact", vibro_record::units::Unit::parse("V").unwrap());
     let trace = Trace { meta, axis: Axis::time(0.0, 1e-4, 15_000), values };
     let irregular = |findings: &[Finding]| {
-        findings.iter().any(|f| ["impacts-irregular", "intervals-drift"].contains(&f.code))
+        findings.iter().any(|f| ["impacts-irregular", "intervals-drift"].contains(&f.code.as_ref()))
     };
     assert!(irregular(&impacts(&trace, &ImpactsOptions::default()).unwrap().findings));
     let found = Train::of(&trace, &ImpactsOptions::default()).unwrap().1;

@@ -2,6 +2,7 @@
 
 use crate::{Found, Measured, Outcome, Question, median, timed};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::Arc;
 use vibro_math::Noise;
 use vibro_measure::Estimate;
@@ -15,13 +16,13 @@ pub struct Answer {
     /// Its standard uncertainty, where the method states one.
     pub std: Option<f64>,
     /// Code of the doubt that takes the uncertainty away.
-    pub doubt: Option<&'static str>,
+    pub doubt: Option<Cow<'static, str>>,
 }
 
 impl Answer {
     /// An estimate with its findings.
     pub fn found(estimate: &Estimate, findings: &[Finding]) -> Answer {
-        let doubt = findings.iter().find(|f| f.severity == Severity::Doubt).map(|f| f.code);
+        let doubt = findings.iter().find(|f| f.severity == Severity::Doubt).map(|f| f.code.clone());
         Answer { value: estimate.value, std: estimate.std, doubt }
     }
 }
@@ -176,7 +177,7 @@ pub fn questions<D: Send + 'static>(
 /// beside: what is doubted has none. One without is held to what is allowed, and so is the uncertainty itself.
 fn off(answer: &Answer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
     let off = (answer.value - truth).abs();
-    match (answer.std, answer.doubt) {
+    match (answer.std, &answer.doubt) {
         (None, Some(doubt)) => Err(format!("no uncertainty: {doubt}")),
         (None, None) => Ok(off / tolerance),
         (Some(std), _) if std > tolerance => {
@@ -238,7 +239,9 @@ mod tests {
 
     #[test]
     fn an_answer_is_held_to_its_uncertainty_whatever_is_found_beside() {
-        let of = |value, std, doubt| off(&Answer { value, std, doubt }, 10.0, 1.0);
+        let of = |value, std, doubt: Option<&'static str>| {
+            off(&Answer { value, std, doubt: doubt.map(Into::into) }, 10.0, 1.0)
+        };
         let near = |found: std::result::Result<f64, String>, off: f64| (found.unwrap() - off).abs() < 1e-9;
         assert!(near(of(10.3, Some(0.1), None), 1.0));
         assert!(near(of(10.6, Some(0.1), Some("noise-not-white")), 2.0));

@@ -146,7 +146,7 @@ fn motions_that_strike_less_than_once_a_cycle_are_warned_of() {
     let linear = asked(0.7, 0.05, 13.5986, None);
     assert_eq!(linear.chosen, Some(Model::Linear));
     let searched = ["other-motions-searched", "search-cut"];
-    assert_eq!(linear.findings.iter().filter(|f| searched.contains(&f.code)).count(), 1);
+    assert_eq!(linear.findings.iter().filter(|f| searched.contains(&f.code.as_ref())).count(), 1);
 }
 
 #[test]

@@ -1,0 +1,119 @@
+//! Answers and pictures that are kept for the next run: asked again is only what rests on other words, other files or another program.
+
+use crate::error::{Error, Result};
+use rmp_serde::config::BytesMode;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use sha2::{Digest as _, Sha256};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A SHA-256.
+pub type Digest = [u8; 32];
+
+/// Answers and pictures by the digest of all that they rest on.
+#[derive(Debug, Default)]
+pub struct Kept {
+    /// Those of the last run.
+    old: BTreeMap<Digest, Vec<u8>>,
+    /// Those of this run.
+    now: Mutex<BTreeMap<Digest, Vec<u8>>>,
+    /// Digests of files.
+    files: Mutex<BTreeMap<PathBuf, Digest>>,
+}
+
+impl Kept {
+    /// The file of a folder of results in which they are kept.
+    pub const FILE: &str = ".kept";
+
+    /// What the last run of this very program kept in a folder of results; nothing where that cannot be read.
+    pub fn of(folder: &Path) -> Kept {
+        let kept = Kept::default();
+        let old = std::fs::read(folder.join(Kept::FILE)).ok().and_then(|bytes| {
+            let (program, old) = rmp_serde::from_slice::<(Digest, BTreeMap<Digest, Vec<u8>>)>(&bytes).ok()?;
+            (Some(program) == kept.program()).then_some(old)
+        });
+        Kept { old: old.unwrap_or_default(), ..kept }
+    }
+
+    /// Whether the last run left this.
+    pub fn is_old(&self, on: &Digest) -> bool {
+        self.old.contains_key(on)
+    }
+
+    /// What rests on this, as it was kept; else it is made, and kept.
+    ///
+    /// # Errors
+    /// Those of making it; they are not kept.
+    pub fn or_make<T>(&self, on: Digest, make: impl FnOnce() -> Result<T>) -> Result<T>
+    where
+        T: Serialize + DeserializeOwned,
+    {
+        let known = locked(&self.now).get(&on).or_else(|| self.old.get(&on)).cloned();
+        let known = known.and_then(|bytes| Some((rmp_serde::from_slice(&bytes).ok()?, bytes)));
+        if let Some((found, bytes)) = known {
+            locked(&self.now).insert(on, bytes);
+            return Ok(found);
+        }
+        let made = make()?;
+        locked(&self.now).extend(packed(&made).map(|bytes| (on, bytes)));
+        Ok(made)
+    }
+
+    /// What this run keeps for the next.
+    pub fn bytes(&self) -> Vec<u8> {
+        packed(&(self.program(), &*locked(&self.now))).unwrap_or_default()
+    }
+
+    /// The digest of a file, which is read once.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn file(&self, path: &Path) -> Result<Digest> {
+        if let Some(known) = locked(&self.files).get(path) {
+            return Ok(*known);
+        }
+        let digest = content(path).map_err(|e| Error::io("read", path, e))?;
+        locked(&self.files).insert(path.to_owned(), digest);
+        Ok(digest)
+    }
+
+    /// The digest of the program that runs.
+    pub fn program(&self) -> Option<Digest> {
+        std::env::current_exe().ok().and_then(|path| self.file(&path).ok())
+    }
+}
+
+/// The digest of several things, told apart by their lengths.
+pub fn digest<T: AsRef<[u8]>>(parts: impl IntoIterator<Item = T>) -> Digest {
+    let mut hash = Sha256::new();
+    for part in parts {
+        hash.update((part.as_ref().len() as u64).to_le_bytes());
+        hash.update(part);
+    }
+    hash.finalize().into()
+}
+
+/// A value as `MessagePack`, which holds numbers that are missing.
+pub fn packed(value: &impl Serialize) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut packer = rmp_serde::Serializer::new(&mut bytes).with_bytes(BytesMode::ForceIterables);
+    value.serialize(&mut packer).ok().map(|()| bytes)
+}
+
+fn content(path: &Path) -> std::io::Result<Digest> {
+    let (mut file, mut hash, mut part) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(hash.finalize().into()),
+            n => hash.update(&part[..n]),
+        }
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,95 @@
+//! What a second run computes, and what it keeps.
+
+use super::{json, text, vibro};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Records of every kind but drills, as a campaign has them.
+fn records(folder: &Path) -> String {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let mut campaign = String::from("name = \"all\"\n");
+    for example in ["bench", "drop_test"] {
+        for entry in fs::read_dir(examples.join(example)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+            }
+        }
+        let text = fs::read_to_string(examples.join(example).join("campaign.toml")).unwrap();
+        campaign.extend(
+            text.lines()
+                .filter(|line| *line != "name = \"Bench\"" && *line != "name = \"Drop test\"")
+                .flat_map(|line| [line, "\n"]),
+        );
+    }
+    for step in 0..6_i32 {
+        let f = 20.0 + 3.0 * f64::from(step);
+        let mut table = "time [s],F [N],v [m/s]\n".to_owned();
+        for i in 0..1200 {
+            let t = f64::from(i) / 600.0;
+            let (sin, cos) = (TAU * f * t).sin_cos();
+            writeln!(table, "{t:.6},{:.6},{:.6}", 3.0 * cos, sin / (1.0 + f64::from((step - 3).pow(2))))
+                .unwrap();
+        }
+        fs::write(folder.join(format!("step{step}.csv")), table).unwrap();
+    }
+    campaign
+        + "[[sweep]]\nname = \"s\"\ntraces = \"step*.csv\"\nforce = \"F\"\nresponse = \"v\"\n[[frf]]\nname = \"modes of s\"\nsweep = \"s\"\n"
+}
+
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    files
+        .map(|path| (path.file_name().unwrap().into(), fs::read(&path).unwrap()))
+        .filter(|(name, _): &(PathBuf, _)| name != Path::new(".kept"))
+        .collect()
+}
+
+#[test]
+fn a_second_run_computes_what_changed_and_gives_what_a_first_would() {
+    let root = tempfile::tempdir().unwrap();
+    let (out, anew) = (root.path().join("results"), root.path().join("anew"));
+    let path = root.path().join("campaign.toml");
+    let campaign = records(root.path());
+    // How many answers were kept, where the results are those of a run that keeps none.
+    let kept = |campaign: &str| {
+        fs::write(&path, campaign).unwrap();
+        let output = vibro(&["run", text(&path)]);
+        assert_eq!(output.status.code(), Some(0));
+        json(&["run", text(&path), "--again", "--out", text(&anew)]);
+        assert!(contents(&out) == contents(&anew));
+        let said = String::from_utf8(output.stderr).unwrap();
+        let line = said.lines().find(|line| line.contains("of the last run kept"));
+        line.map_or(0, |line| line.split_whitespace().find_map(|word| word.parse::<usize>().ok()).unwrap())
+    };
+    assert_eq!(kept(&campaign), 0);
+    let all = kept(&campaign);
+    // Sweep, modes, spectrum, function, decay, three pulses, impacts, three series of drops.
+    assert_eq!(all, 12);
+    // A key of one table, and its place in the file.
+    let segment = campaign.replacen("segment = 1024", "segment = 2048", 1);
+    assert_eq!(kept(&segment), all - 1);
+    assert_eq!(kept(&format!("# remarks\n\n{segment}")), all);
+    // A key of the head: sweeps, what names one, and series of drops rest on it.
+    assert_eq!(kept(&format!("{segment}\n[compute]\nfmax = 30\n")), all - 5);
+    assert_eq!(kept(&campaign), all - 6);
+    // A recording.
+    let pulse = fs::read_to_string(root.path().join("PULSE.CSV")).unwrap();
+    fs::write(root.path().join("PULSE.CSV"), pulse.trim_end().rsplit_once('\n').unwrap().0).unwrap();
+    assert_eq!(kept(&campaign), all - 1);
+    // A step of the sweep: its response and its modes.
+    let step = fs::read_to_string(root.path().join("step2.csv")).unwrap();
+    fs::write(root.path().join("step2.csv"), step.replace(",3.0", ",3.1")).unwrap();
+    assert_eq!(kept(&campaign), all - 2);
+    // What was kept is damaged, in part or as a whole.
+    let file = out.join(".kept");
+    let bytes = fs::read(&file).unwrap();
+    fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
+    assert_eq!(kept(&campaign), 0);
+    fs::write(&file, "no answers").unwrap();
+    assert_eq!(kept(&campaign), 0);
+    assert_eq!(kept(&campaign), all);
+}
