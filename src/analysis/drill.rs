@@ -86,6 +86,7 @@ pub struct Keys {
 fn expected(key: &str) -> (&'static str, &'static str) {
     match key {
         "velocity" => ("a channel, by name or number", "1"),
+        "reference" => ("the channel of the crank's pulses", "2"),
         "beam_angle" => ("degrees between the laser beam and the axis or normal", "0"),
         "beam_from" => ("axis or normal: where the beam angle counts from", "\"axis\""),
         "pulses_per_turn" => ("reference pulses in a turn of the crank", "1"),
@@ -132,12 +133,16 @@ fn own_channels(channel: &Channel) -> Result<()> {
 impl Keys {
     /// Whether no key is missing that has no default; the velocity is one of `channels`.
     fn complete(&self, channels: &str) -> Result<()> {
+        let (pulses, edge) = (self.pulses_per_turn.is_some(), self.edge.is_some());
+        let reference = self.reference.is_some();
+        let wanted = reference || pulses || edge || self.level.is_some() || self.delay.is_some();
         let stated = [
             ("velocity", self.velocity.is_some()),
+            ("reference", reference || !wanted),
             ("beam_angle", self.beam_angle.is_some()),
             ("beam_from", self.beam_from.is_some()),
-            ("pulses_per_turn", self.pulses_per_turn.is_some() || self.reference.is_none()),
-            ("edge", self.edge.is_some() || self.reference.is_none()),
+            ("pulses_per_turn", pulses || !wanted),
+            ("edge", edge || !wanted),
         ];
         let keys: Vec<&'static str> = stated.iter().filter(|(_, stated)| !stated).map(|row| row.0).collect();
         if keys.is_empty() { Ok(()) } else { Err(missing(&keys, channels)) }
@@ -164,16 +169,6 @@ impl Keys {
             let pulses = needed("pulses_per_turn", self.pulses_per_turn)?;
             DrillOptions::new(sensitivity, beam, pulses, needed("edge", self.edge)?)
         } else {
-            let of_reference = [
-                ("pulses_per_turn", self.pulses_per_turn.is_some()),
-                ("edge", self.edge.is_some()),
-                ("level", self.level.is_some()),
-                ("delay", self.delay.is_some()),
-            ];
-            if let Some((key, _)) = of_reference.into_iter().find(|(_, stated)| *stated) {
-                let found = format!("{} is stated without a reference", key.replace('_', " "));
-                return Err(Error::usage(found, "both or neither").setting(key).setting("reference"));
-            }
             DrillOptions::of_impacts(sensitivity, beam)
         };
         Ok(DrillOptions {

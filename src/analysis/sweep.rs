@@ -16,7 +16,7 @@ use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};
 use crate::measure::waterfall::{Waterfall, gathered};
 use crate::read::SweepReader;
-use crate::record::{Direction, Scaling, Sweep};
+use crate::record::{Direction, Scaling, Sweep, nearest};
 use crate::report::files;
 use crate::report::words::About;
 use crate::units::Quantity;
@@ -188,10 +188,13 @@ pub fn named(campaign: &Campaign, name: Option<&str>, allow_outside: bool) -> Re
     let names = || all.iter().map(|s| s.keys.name.as_str()).collect::<Vec<_>>().join(", ");
     let none = |found: String| Error::input(Place::file(campaign.path()), found, names());
     let entry = match (name, all.as_slice()) {
-        (Some(name), all) => all
-            .iter()
-            .find(|s| s.keys.name == name)
-            .ok_or_else(|| none(format!("no sweep is named {name:?}")))?,
+        (Some(name), all) => all.iter().find(|s| s.keys.name == name).ok_or_else(|| {
+            let error = none(format!("no sweep is named {name:?}"));
+            match nearest(name, all.iter().map(|s| s.keys.name.as_str())) {
+                Some(near) => error.hint(format!("{}#{near}", campaign.path().display())),
+                None => error,
+            }
+        })?,
         (None, [only]) => only,
         (None, all) => {
             let error = none(format!("{} sweeps and none was chosen", all.len()));

@@ -42,7 +42,7 @@ fn mistakes_point_at_their_line() {
         ("name = ", "line 1", ""),
         ("[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
         ("[[rig]]\nm1 = 1.0", "line 1", "write [rig]"),
-        ("[[sweep]\nname = \"a\"", "line 1", "unclosed array table"),
+        ("[[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
         ("sweep = \"a\"", "line 1", "double brackets"),
         (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected a name between quotes"),
         (&format!("{SWEEP}direction = \"left\""), "line 4", "`up` or `down`"),

@@ -18,7 +18,10 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     let complaint = |found: &str, expected: &str, hint: String| {
         Error::input(Place::file(path), found, expected).excerpt(text, span.clone()).hint(hint)
     };
-    let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
+    let (found, expected) = match message.strip_prefix("expected ") {
+        Some(expected) => (line, expected),
+        None => message.split_once(", expected ").unwrap_or((message, "")),
+    };
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let (named, known) = names.split_first().map_or(("", &[][..]), |(first, rest)| (*first, rest));
     let meant =
@@ -29,12 +32,17 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
         let all = || format!("keys known here: {}", known.join(", "));
         complaint(&format!("unknown key `{named}`"), "", meant(&known).unwrap_or_else(all))
     } else if begins("unknown variant") {
-        complaint(&format!("the name `{named}`"), expected, meant(known).unwrap_or_default())
+        let of_value = line.split_once('=').filter(|(_, value)| value.contains(named));
+        let near = of_value.and_then(|(key, _)| Some((key.trim(), nearest(named, known.iter().copied())?)));
+        let write = near.map(|(key, near)| format!("write {key} = \"{near}\""));
+        complaint(&format!("the name `{named}`"), expected, write.or(meant(known)).unwrap_or_default())
     } else if begins("missing field") {
         complaint(found, "", format!("add {named} = …"))
     } else if begins("invalid type: map") && line.starts_with("[[") {
         let single = line.replace("[[", "[").replace("]]", "]");
         complaint(&format!("{line} begins one table of several"), "a single table", format!("write {single}"))
+    } else if begins("unclosed array table") {
+        complaint(line, "two brackets at the end, too", format!("write {line}]"))
     } else if let Some((key, stated, expected, meant)) = mended(line, expected) {
         complaint(&format!("{key} = {stated}"), expected, format!("write {key} = {meant}"))
     } else if begins("wanted string") {
@@ -49,7 +57,7 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
 }
 
 /// A line that is no TOML, or has a value of another kind: its key, what stands there, what was to stand there, and the value that is meant.
-fn mended<'a>(line: &'a str, expected: &str) -> Option<(&'a str, &'a str, &'static str, String)> {
+fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, &'a str, String)> {
     let (key, value) = line.split_once('=')?;
     let stated = value.split('#').next()?.trim();
     let bare = stated.trim_matches(['"', '\'', '“', '”']).trim();
@@ -61,7 +69,10 @@ fn mended<'a>(line: &'a str, expected: &str) -> Option<(&'a str, &'a str, &'stat
         !stated.starts_with('"') && words.contains(&&*word)
             || truth && (words.contains(&&*word) || more.contains(&&*word))
     };
-    let (expected, meant) = if point != bare && number(&point) {
+    let near = nearest(bare, expected.split('"').skip(1).step_by(2));
+    let (expected, meant) = if let Some(near) = near {
+        (expected, format!("\"{near}\""))
+    } else if point != bare && number(&point) {
         ("a number with a decimal point", point)
     } else if is(["yes", "on"], ["1", "true"]) {
         ("true or false", "true".to_owned())
@@ -145,6 +156,7 @@ mod tests {
             ),
             ("starts = 3\nstarts = 4", &["duplicate key"]),
             ("scatter = 0,01", &["scatter = 0,01", "a number with a decimal point", "write scatter = 0.01"]),
+            ("scatter = 35k", &["write scatter = 35000"]),
             ("scatter = 3.5 ms", &["scatter = 3.5 ms", "without it", "write scatter = 0.0035"]),
             ("scatter = \"40 cm\"", &["write scatter = 0.4"]),
             ("prior.gap = \"20-30\"", &["write prior.gap = [20, 30]"]),

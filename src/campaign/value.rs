@@ -23,7 +23,8 @@ pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
 }
 
 /// Units that keys of a campaign have, and parts of them as powers of ten.
-const UNITS: [(&str, i32); 13] = [
+const UNITS: [(&str, i32); 14] = [
+    ("k", 3),
     ("Hz", 0),
     ("kHz", 3),
     ("s", 0),

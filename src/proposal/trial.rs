@@ -233,7 +233,7 @@ impl<'a> Trial<'a> {
         let most = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
         let Some(pulses) = most.filter(|k| shares[*k] > 0.9) else { return Vec::new() };
         // A contact circuit beside what drives it.
-        if let [sine] = velocities.iter().copied().filter(|k| *k != pulses).collect::<Vec<_>>()[..]
+        if let [sine] = (0..series.headers.len()).filter(|k| *k != pulses).collect::<Vec<_>>()[..]
             && is_sine(&recording.records[sine])
         {
             let table = series.channel_table(pulses, name, "impacts", "impacts in a row").surmised();

@@ -63,9 +63,12 @@ pub struct Transfer {
 impl Transfer {
     /// Leaves no function where the power of the excitation, from 0 Hz on, is not above a floor.
     pub(super) fn silence(&mut self, excitation: &[f64], floor: f64) {
-        let mut silent = 0;
+        let (mut silent, mut lowest) = (0, f64::INFINITY);
         for (k, _) in excitation.iter().skip(1).enumerate().filter(|(_, power)| **power <= floor) {
-            silent += usize::from(self.frf.values[k].is_finite());
+            if self.frf.values[k].is_finite() {
+                silent += 1;
+                lowest = lowest.min(self.frf.axis.at(k));
+            }
             self.frf.values[k] = NOWHERE;
             let beside = [&mut self.magnitude_std, &mut self.phase_std, &mut self.coherence];
             beside.into_iter().filter_map(|of| of.get_mut(k)).for_each(|v| *v = f64::NAN);
@@ -77,6 +80,7 @@ impl Transfer {
             self.findings.extend(low(&self.coherence, lines - silent));
         }
         let found = Finding::caution("frf-not-excited").count("n", silent).count("lines", lines);
+        let found = found.number("from", lowest);
         self.findings.extend((silent > 0).then_some(found));
     }
 

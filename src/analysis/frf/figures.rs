@@ -109,7 +109,7 @@ pub(crate) fn phase_plot(
     let phase: Vec<f64> =
         values.zip(known).map(|(v, known)| if known { v.arg().to_degrees() } else { f64::NAN }).collect();
     let some = phase.iter().any(|p| p.is_nan());
-    let label = if some { "Phase where γ² ≥ 0.5" } else { "Phase" };
+    let label = if some { "Phase where coherence ≥ 0.5" } else { "Phase" };
     let shown = if f.len() <= DOTS {
         Series::points("", f, phase).marker(Marker::Circle)
     } else {

@@ -151,7 +151,7 @@ fn every_complaint_has_a_place_and_a_way_on() {
         (b"1 2\n3 4\n5\n", "line 3", "1 field in this row"),
         (b"1 2\n3 4\n5 x\n", "line 3, column 3", "\"x\""),
         (b"1.5\n2.5\n3,5\n", "line 3", "2 fields in this row"),
-        (b"no numbers here\n", "x.txt", "no row of numbers"),
+        (b"no numbers here\n", "x.txt", "no table of numbers"),
         (b"1\n2\n1e999\n", "line 3", "1e999"),
     ] {
         let error = complaint(bytes);

@@ -55,8 +55,8 @@ pub fn detect(text: &Text, options: &Options) -> Result<Dialect> {
             return Err(error);
         }
         let found = match header.first() {
-            Some(line) => format!("no row of numbers (the first line is {:?})", shorten(line)),
-            None => "no row of numbers".to_owned(),
+            Some(line) => format!("no table of numbers; the first line is {:?}", shorten(line)),
+            None => "no table of numbers".to_owned(),
         };
         return Err(Error::usage(found, "one or more numbers a line")
             .hint("export it again as a table: names in the first line, then rows of numbers between commas or tabs"));
