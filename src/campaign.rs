@@ -161,7 +161,8 @@ impl Campaign {
     pub(crate) fn commented(&self) -> Vec<Finding> {
         let lines: Vec<&str> = self.text.lines().collect();
         let comment = |line: &&str| line.strip_prefix('#').map(|text| text.trim_start().to_owned());
-        let below = |i: usize| lines[i..].iter().map_while(comment);
+        // Of a table in a comment, keys that need not be stated are comments themselves.
+        let below = |i: usize| lines[i..].iter().map_while(comment).filter(|text| !text.starts_with('#'));
         let table = |i: usize| {
             let head = comment(&lines[i])
                 .filter(|text| text.starts_with("[[") && text.trim_end().ends_with("]]"))?;

@@ -186,18 +186,24 @@ impl Proposal {
     /// Name of the file of a campaign in a folder.
     pub const FILE: &str = "campaign.toml";
 
-    /// A campaign for what lies in a folder and up to two levels below it.
+    /// A campaign for what lies in a folder and up to two levels below it, and is not named by one that is `known`.
     ///
     /// # Errors
     /// If it is no folder, cannot be listed, or holds no recording.
-    pub fn of(folder: &Path, reading: &Reading, kept: &Kept, progress: &dyn Progress) -> Result<Proposal> {
+    pub fn of(
+        folder: &Path,
+        reading: &Reading,
+        known: Option<&Campaign>,
+        kept: &Kept,
+        progress: &dyn Progress,
+    ) -> Result<Proposal> {
         if !folder.is_dir() {
             let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
             let absent =
                 || Error::absent(format!("there is no folder {}", folder.display()), Path::new(""), folder);
             return Err(if folder.exists() { error.hint("name the folder that holds it") } else { absent() });
         }
-        let found = folder::Folder::of(folder, reading)?;
+        let found = folder::Folder::of(folder, reading, known)?;
         let mut proposal = Proposal { folder: folder.to_owned(), tables: Vec::new(), left: found.left };
         let all = found.lists.len() + found.series.len();
         progress.start("looking at files", all);
@@ -219,7 +225,7 @@ impl Proposal {
             }
             progress.step();
         }
-        if proposal.tables.is_empty() {
+        if proposal.tables.is_empty() && known.is_none() {
             let mut error = Error::input(
                 Place::file(folder),
                 "no recording that can be measured",
@@ -244,6 +250,13 @@ impl Proposal {
             "# Proposed by `vibro init`. Check what is guessed, fill in what is missing, then: vibro run {}\n# docs/campaign.md lists every key.\nname = {name}\n",
             Proposal::FILE
         );
+        text += &self.tables();
+        text
+    }
+
+    /// Its tables, and the files that are not used.
+    pub fn tables(&self) -> String {
+        let mut text = String::new();
         for table in &self.tables {
             text += "\n";
             text += &table.toml();

@@ -1,13 +1,14 @@
 //! What a campaign is computed from, by content.
 
 use super::kept::Kept;
-use super::{file_name, files};
+use super::{RESULTS, file_name, files};
 use crate::campaign::Campaign;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::record::Finding;
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A line for the program, the campaign and each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
 ///
@@ -38,3 +39,92 @@ fn line(digest: &[u8], name: &str) -> String {
     }
     line + "  " + name + "\n"
 }
+
+/// Levels below a folder that are looked into.
+const LEVELS: usize = 2;
+
+/// Files that nobody takes for recordings.
+const NO_RECORDINGS: [&str; 23] = [
+    "toml",
+    "json",
+    "md",
+    "html",
+    "pdf",
+    "png",
+    "jpg",
+    "jpeg",
+    "svg",
+    "gif",
+    "doc",
+    "docx",
+    "ppt",
+    "pptx",
+    "py",
+    "m",
+    "rs",
+    "zip",
+    "exe",
+    "bak",
+    "log",
+    "ini",
+    "tdms_index",
+];
+
+/// The files of a folder and up to two levels below it that may be recordings, numbers by value, and those that are none by their endings. Hidden
+/// files and folders of results are passed over.
+///
+/// # Errors
+/// If a folder cannot be listed.
+pub fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
+    let (mut found, mut others) = (Vec::new(), Vec::new());
+    list(folder, LEVELS, &mut found, &mut others)?;
+    found.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    Ok((found, others))
+}
+
+fn list(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {
+    if levels < LEVELS && folder.join(RESULTS).exists() {
+        return Ok(());
+    }
+    let list_of = |e| Error::io("list", folder, e);
+    let mut below = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(list_of)? {
+        let entry = entry.map_err(list_of)?;
+        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
+        if name.starts_with('.') {
+            continue;
+        }
+        if path.is_dir() {
+            below.push(path);
+        } else if path.is_file() {
+            let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+            let list = if NO_RECORDINGS.contains(&ending.as_str()) { &mut *others } else { &mut *found };
+            list.push(path);
+        }
+    }
+    below.iter().filter(|_| levels > 0).try_for_each(|folder| list(folder, levels - 1, found, others))
+}
+
+/// Those of the recordings that the campaign names in no table and in no comment.
+pub fn unnamed(campaign: &Campaign, recordings: &[PathBuf]) -> Vec<PathBuf> {
+    // A table at fault is complained of where it is measured.
+    let files = files(campaign, true).unwrap_or_default();
+    let said =
+        |path: &Path| path.file_name().is_some_and(|name| campaign.text().contains(&*name.to_string_lossy()));
+    recordings.iter().filter(|path| !files.contains(path) && !said(path)).cloned().collect()
+}
+
+/// What is said of recordings beside a campaign that it does not name.
+pub fn beside(campaign: &Campaign) -> Option<Finding> {
+    // One that was proposed names them all, and what cannot be listed cannot be told of.
+    let (all, _) = campaign.path().is_file().then(|| recordings(campaign.folder()).ok()).flatten()?;
+    let new = unnamed(campaign, &all);
+    let names: Vec<String> = new.iter().take(SHOWN).map(|path| file_name(path)).collect();
+    let more = new.len().saturating_sub(SHOWN);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let found = Finding::note("recordings-not-named").count("n", new.len());
+    (!new.is_empty()).then(|| found.name("files", names.join(", ") + &more))
+}
+
+/// Files that are named one by one.
+const SHOWN: usize = 5;

@@ -1,7 +1,7 @@
 //! All that a campaign asks for, and its files.
 
 use super::answer::{left_out, unwritten};
-use super::inputs::inputs;
+use super::inputs::{beside, inputs};
 use super::kept::{Digest, Kept, digest, packed};
 use super::source::{Source, file_name, name_of};
 use super::{Analysis, Answer, KINDS, Kind, page};
@@ -407,6 +407,7 @@ pub fn run(
         parts.push(Part { title: kind.title, from, to: Extent::of(&job.found.all) });
     }
     job.found.all.add("", campaign.commented());
+    job.found.all.add("", beside(campaign));
     if campaign.is_empty() {
         job.found.all.add("", [Finding::caution("campaign-without-record")]);
     } else if job.found.answers == 0 {

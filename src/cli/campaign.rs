@@ -65,7 +65,7 @@ fn proposed(campaign: Campaign, kept: &Kept, json: bool) -> Result<Campaign> {
         return Ok(campaign);
     }
     let folder = campaign.folder();
-    let look = |bar: &ProgressBar| Proposal::of(folder, &Reading::default(), kept, bar);
+    let look = |bar: &ProgressBar| Proposal::of(folder, &Reading::default(), None, kept, bar);
     let proposal = print::busy(json, "looking at files", look)?;
     init::tell(&proposal);
     complain::line(&format!("to change any of it: vibro init {}", print::typed(folder)));

@@ -4,7 +4,7 @@ use super::{complain, print};
 use crate::analysis;
 use crate::analysis::Kept;
 use crate::campaign::Reading;
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Result};
 use crate::proposal::{Known, Proposal, Row, Table};
 use crate::report::words::{Voice, graded, put};
 use serde_json::{Map, Value, json};
@@ -30,19 +30,17 @@ pub struct Check {
 }
 
 impl super::Run for Init {
-    /// Writes the campaign; never over one that is there.
+    /// Writes the campaign; to one that is there it adds tables for recordings that it does not name.
     fn run(&self, json: bool) -> Result<u8> {
         let path = self.folder.join(Proposal::FILE);
-        if path.exists() {
-            let error =
-                Error::input(Place::file(&path), "there is a campaign already", "a folder without one");
-            return Err(error.hint(format!("vibro run {}", print::typed(&path))));
-        }
+        let known = if path.exists() { Some(analysis::open(&path)?) } else { None };
         let proposal = print::busy(json, "looking at files", |bar| {
-            Proposal::of(&self.folder, &self.reading, &Kept::default(), bar)
+            Proposal::of(&self.folder, &self.reading, known.as_ref(), &Kept::default(), bar)
         })?;
-        let mut file = std::fs::File::create_new(&path).map_err(|e| Error::io("write", &path, e))?;
-        file.write_all(proposal.toml().as_bytes()).map_err(|e| Error::io("write", &path, e))?;
+        let text = if known.is_some() { proposal.tables() } else { proposal.toml() };
+        let file = std::fs::OpenOptions::new().append(true).create(true).open(&path);
+        file.and_then(|mut file| file.write_all(text.as_bytes()))
+            .map_err(|e| Error::io("write", &path, e))?;
         if json {
             print::object(json!({
                 "written": path.display().to_string(),
@@ -58,7 +56,12 @@ impl super::Run for Init {
             for (file, why) in &proposal.left {
                 complain::line(&format!("not used: {file}: {why}"));
             }
-            print::text(&format!("wrote {}\nnext: vibro run {}\n", path.display(), print::typed(&path)))?;
+            let done = match (&known, text.is_empty()) {
+                (None, _) => "wrote",
+                (Some(_), false) => "added to the end of",
+                (Some(_), true) => "every recording of the folder stands in",
+            };
+            print::text(&format!("{done} {}\nnext: vibro run {}\n", path.display(), print::typed(&path)))?;
         }
         Ok(0)
     }

@@ -80,7 +80,7 @@ impl Source {
         let is_pattern = |path: &Path| !path.exists() && path.to_string_lossy().contains(['*', '?']);
         Ok(match typed.as_slice() {
             [folder] if folder.is_dir() => {
-                let mut proposal = Proposal::of(folder, &Reading::default(), &Kept::default(), &())?;
+                let mut proposal = Proposal::of(folder, &Reading::default(), None, &Kept::default(), &())?;
                 proposal.tables.retain(|table| table.section == "sweep");
                 proposal.left.clear();
                 Some(proposal)

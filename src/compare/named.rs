@@ -45,7 +45,7 @@ fn curve(points: &[Point], mass: u8, direction: Direction) -> NamedCurve {
         1 => (p.frequency, p.x1, p.x1_scatter),
         _ => (p.frequency, p.x2, p.x2_scatter),
     };
-    NamedCurve::new(points.iter().map(read).collect(), direction, Some(mass))
+    NamedCurve::new(points.iter().map(read).collect(), &[], direction, Some(mass))
 }
 
 #[cfg(test)]

@@ -1,12 +1,11 @@
 //! The recordings of a folder: lists of sweeps, and files in series.
 
 use super::{Known, Table};
-use crate::analysis::RESULTS;
-use crate::campaign::Reading;
+use crate::analysis;
+use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Header, SweepList};
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What lies in a folder.
@@ -38,25 +37,16 @@ pub struct Series {
 /// A file and its channels.
 type Member = (PathBuf, Vec<Header>);
 
-/// Levels below a folder that are looked into.
-const LEVELS: usize = 2;
-
-/// Files that nobody takes for recordings.
-const NO_RECORDINGS: [&str; 20] = [
-    "toml", "json", "md", "html", "pdf", "png", "jpg", "jpeg", "svg", "gif", "doc", "docx", "ppt", "pptx",
-    "py", "m", "rs", "zip", "exe", "bak",
-];
-
 impl Folder {
-    /// Lists and sorts the files of a folder; a sampling rate that is stated is that of files without one. Hidden files, folders of results and what is no recording are passed over.
+    /// Lists and sorts the files of a folder that no table of `known` names; a sampling rate that is stated is that of files without one.
     ///
     /// # Errors
     /// If a folder cannot be listed.
-    pub fn of(root: &Path, reading: &Reading) -> Result<Folder> {
+    pub fn of(root: &Path, reading: &Reading, known: Option<&Campaign>) -> Result<Folder> {
         let (reader, with_rate) = (reading.untimed().reader()?, reading.reader()?);
-        let (mut paths, mut others) = (Vec::new(), Vec::new());
-        files(root, LEVELS, &mut paths, &mut others)?;
-        paths.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+        let (all, others) = analysis::recordings(root)?;
+        let new = known.map(|campaign| analysis::unnamed(campaign, &all));
+        let mut paths = new.unwrap_or_else(|| all.clone());
         let within = |path: &Path| {
             let inside = path.strip_prefix(root).unwrap_or(path);
             inside.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
@@ -111,7 +101,7 @@ impl Folder {
                 own.len() > before.len() + after.len() && own.starts_with(&before) && own.ends_with(&after)
             };
             let plain = !key.0.replacen('*', "", 1).contains(['*', '?', '[']);
-            let pattern = (plain && paths.iter().filter(meant).count() == files.len()).then(|| key.0.clone());
+            let pattern = (plain && all.iter().filter(meant).count() == files.len()).then(|| key.0.clone());
             let mut headers = members[0].1.clone();
             for (k, header) in headers.iter_mut().enumerate() {
                 // Channels of several names go by their numbers.
@@ -121,7 +111,7 @@ impl Folder {
             }
             found.series.push(Series { name, files, headers, pattern, timed: key.2 });
         }
-        if let [first, more @ ..] = others.as_slice() {
+        if let ([first, more @ ..], None) = (others.as_slice(), known) {
             let names = match more.len() {
                 0 => within(first),
                 n => format!("{} and {n} more", within(first)),
@@ -245,32 +235,6 @@ pub(super) fn short(error: &Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();
     line.split_once(": ").map_or(line, |(_, rest)| rest).to_owned()
-}
-
-fn files(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {
-    if levels < LEVELS && folder.join(RESULTS).exists() {
-        return Ok(());
-    }
-    let list = fs::read_dir(folder).map_err(|e| Error::io("list", folder, e))?;
-    let mut below = Vec::new();
-    for entry in list {
-        let entry = entry.map_err(|e| Error::io("list", folder, e))?;
-        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
-        if name.starts_with('.') {
-            continue;
-        }
-        if path.is_dir() {
-            below.push(path);
-        } else if path.is_file() {
-            let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
-            let list = if NO_RECORDINGS.contains(&ending.as_str()) { &mut *others } else { &mut *found };
-            list.push(path);
-        }
-    }
-    for folder in below.iter().filter(|_| levels > 0) {
-        files(folder, levels - 1, found, others)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

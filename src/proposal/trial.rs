@@ -24,7 +24,7 @@ const LONGEST_CONTACT: f64 = 0.1;
 const ANOTHER: &str = "pulse-not-alone";
 
 /// What is said of a decay whose amplitude falls by as much in every swing.
-const FRICTION: &str = "decay-unexplained";
+const FRICTION: [&str; 2] = ["decay-unexplained", "decay-changes"];
 
 /// Segments side by side that a function should have at least, and samples of a segment that are enough.
 const AVERAGES: usize = 4;
@@ -85,7 +85,7 @@ impl<'a> Trial<'a> {
     fn unexplained(&self, tables: &[Table]) -> Option<Table> {
         let friction = |table: &&Table| {
             let doubts = |heard: &Heard| {
-                heard.findings.iter().all(|f| f.severity < Severity::Doubt || f.code == FRICTION)
+                heard.findings.iter().all(|f| f.severity < Severity::Doubt || FRICTION.contains(&&*f.code))
             };
             table.section == "decay"
                 && self.answers(from_ref(*table)).is_ok_and(|h| doubts(&h) && !is_brief(&h))

@@ -106,33 +106,40 @@ impl Sines {
             options.band.map_or(all.clone(), |(low, high)| line(low).max(1)..(line(high) + 1).min(all.end));
         let mut sines = Sines { n, rate, band: band.clone(), groups: Vec::new(), odd: Vec::new() };
         let beside = [1..band.start, band.end..all.end];
-        for (range, wanted) in [(&band, options.modes), (&beside[0], None), (&beside[1], None)]
-            .into_iter()
-            .filter(|r| !r.0.is_empty())
-        {
-            while sines.count() < MOST
-                && sines.odd.len() < ODD
-                && wanted.is_none_or(|count| sines.decaying() < count)
-            {
-                let rest = sines.rest(&spectrum, None);
-                let Some(top) = sines.next(&rest, range.clone()) else { break };
-                sines.add(&spectrum, &rest, top);
+        let ranges = [(&band, options.modes), (&beside[0], None), (&beside[1], None)];
+        // What stood out beside a sine while another one was not known yet is looked at again.
+        for _ in 0..2 {
+            sines.odd.clear();
+            for (range, wanted) in ranges.iter().filter(|(range, _)| !range.is_empty()) {
+                while sines.count() < MOST
+                    && sines.odd.len() < ODD
+                    && wanted.is_none_or(|count| sines.decaying() < count)
+                {
+                    let rest = sines.rest(&spectrum, None);
+                    let Some(top) = sines.next(&rest, (*range).clone()) else { break };
+                    sines.add(&spectrum, &rest, top);
+                }
             }
-        }
-        for at in (0..sines.groups.len()).cycle().take(2 * sines.groups.len()) {
-            let rest = sines.rest(&spectrum, Some(at));
-            let old = &sines.groups[at];
-            let starts: Vec<(f64, f64)> = old.sines.iter().map(|s| (s.periods, s.decay)).collect();
-            if let Ok(better) = Group::fit(&rest, range(&old.sines, rest.len()), n, &starts) {
-                sines.groups[at] = better;
-            }
+            sines.settle(&spectrum);
         }
         // What still stands out beside a sine was not asked for, or is none.
         let rest = sines.rest(&spectrum, None);
         let beside = |k: &usize| sines.groups.iter().any(|group| group.lines.contains(k));
-        let left: Vec<usize> = sines.next(&rest, band).into_iter().filter(beside).collect();
+        let left: Vec<usize> = sines.next(&rest, band.clone()).into_iter().filter(beside).collect();
         sines.odd.extend(left);
         sines
+    }
+
+    /// Fits each group again without the sines of all others.
+    fn settle(&mut self, spectrum: &[Complex64]) {
+        for at in (0..self.groups.len()).cycle().take(2 * self.groups.len()) {
+            let rest = self.rest(spectrum, Some(at));
+            let old = &self.groups[at];
+            let starts: Vec<(f64, f64)> = old.sines.iter().map(|s| (s.periods, s.decay)).collect();
+            if let Ok(better) = Group::fit(&rest, range(&old.sines, rest.len()), self.n, &starts) {
+                self.groups[at] = better;
+            }
+        }
     }
 
     fn count(&self) -> usize {
@@ -311,13 +318,19 @@ impl Sines {
             findings.push(Finding::caution("decay-fewer").count("n", modes.len()).count("count", count));
         }
         let at = |i: usize| trace.axis.at(i);
-        let (levels, decrement) = self.levels(&trace.values[part.clone()], at(part.start), unit);
-        if let Some((group, m)) = self.strongest()
-            && let Some(strongest) = decaying.iter().position(|(g, k)| std::ptr::eq(*g, group) && *k == m)
-            && let Some(found) = changed(&levels)
-        {
-            modes[strongest] = modes[strongest].clone().without_uncertainty();
-            findings.push(found.number("frequency", modes[strongest].frequency.value));
+        let (levels, mut decrement) = self.levels(&trace.values[part.clone()], at(part.start), unit);
+        let same = |(group, m): (&Group, usize)| {
+            decaying.iter().position(|(other, k)| std::ptr::eq(*other, group) && *k == m)
+        };
+        if let Some(strongest) = self.strongest().and_then(same) {
+            if let Some(found) = changed(&levels) {
+                modes[strongest] = modes[strongest].clone().without_uncertainty();
+                findings.push(found.number("frequency", modes[strongest].frequency.value));
+            }
+            // What is not known of a mode is not known of its decrement.
+            if modes[strongest].zeta.std.is_none() {
+                decrement.iter_mut().for_each(|decrement| decrement.std = None);
+            }
         }
         modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));
         let left = self.left(&trace.values[part.clone()]);

@@ -1,5 +1,6 @@
 //! Jumps of a response curve.
 
+use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::Direction;
 
@@ -49,25 +50,34 @@ pub(super) fn differ(a: &Point, b: &Point) -> bool {
     (a.1 - b.1).abs() > SIGMA * noise[0].hypot(noise[1])
 }
 
-/// Jumps between neighbouring steps, in the order in which the sweep was run.
-pub(crate) fn jumps(curve: &[Point], direction: Direction) -> Vec<Jump> {
+/// A jump turns the motion against the force by at least this angle in rad, where its amplitude alone does not tell it from a flank.
+const TURN: f64 = 1.0;
+
+/// Jumps between neighbouring steps, in the order in which the sweep was run. `receptances` are those of the points; none where they are not
+/// known.
+pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direction) -> Vec<Jump> {
     let step = |i: usize| (curve[i + 1].1 / curve[i].1).ln();
     let width = |i: usize| (curve[i + 1].0 - curve[i].0).abs();
     let steps = curve.len().saturating_sub(1);
+    // What the curve does on its own over the distance of a step: the steepest of two steps on each side. Without a step on both sides,
+    // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
+    let stands_out = |i: usize, change: &dyn Fn(usize) -> f64| {
+        [i.saturating_sub(2)..i, i + 1..(i + 3).min(steps)].into_iter().all(|side| {
+            let apart = side.filter(|k| width(*k) > 1e-5 * curve[*k].0);
+            let usual = apart.map(|k| change(k) * width(i) / width(k)).fold(f64::NAN, f64::max);
+            change(i) > JUMP_AGAINST_NEIGHBOURS * usual
+        })
+    };
+    // Near a pole of a linear motion its inverse is a straight line over f², near a zero the motion itself: one of them is smooth.
+    let turns = |i: usize| {
+        receptances.len() == curve.len()
+            && (receptances[i + 1] / receptances[i]).arg().abs() > TURN
+            && stands_out(i, &|k| (receptances[k + 1] - receptances[k]).norm())
+            && stands_out(i, &|k| (receptances[k + 1].inv() - receptances[k].inv()).norm())
+    };
     let is_jump = |i: &usize| {
-        let i = *i;
-        // What the curve does on its own over this distance: the steepest of two steps on each side. Without a step on both sides,
-        // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
-        let usual = [i.saturating_sub(2)..i, i + 1..(i + 3).min(steps)].map(|side| {
-            side.filter(|k| width(*k) > 1e-5 * curve[*k].0)
-                .map(|k| (step(k) * width(i) / width(k)).abs())
-                .fold(f64::NAN, f64::max)
-        });
-        let s = step(i).abs();
-        s.is_finite()
-            && s > JUMP.ln()
-            && usual.iter().all(|u| s > JUMP_AGAINST_NEIGHBOURS * u)
-            && differ(&curve[i], &curve[i + 1])
+        let leaps = step(*i).abs() > JUMP.ln() && stands_out(*i, &|k| step(k).abs());
+        step(*i).is_finite() && (leaps || turns(*i)) && differ(&curve[*i], &curve[i + 1])
     };
     (0..steps).filter(is_jump).map(|i| jump([curve[i], curve[i + 1]], direction)).collect()
 }

@@ -3,6 +3,7 @@
 use super::crossing::at;
 use super::jump::{Jump, Point, SIGMA, differ, echo, jumps, known};
 use super::peaks::{Maximum, Vertex, apex, local_maxima};
+use num_complex::Complex64;
 use serde::Serialize;
 
 use vibro_record::Direction;
@@ -248,8 +249,14 @@ pub struct NamedCurve {
 
 impl NamedCurve {
     /// Finds jumps and resonances of a curve whose points come in the order in which they were measured.
-    pub fn new(mut curve: Vec<Point>, direction: Direction, mass: Option<u8>) -> NamedCurve {
-        let jumps = jumps(&curve, direction);
+    /// `receptances` are those of the points; none where they are not known.
+    pub fn new(
+        mut curve: Vec<Point>,
+        receptances: &[Complex64],
+        direction: Direction,
+        mass: Option<u8>,
+    ) -> NamedCurve {
+        let jumps = jumps(&curve, receptances, direction);
         curve.sort_by(|a, b| a.0.total_cmp(&b.0));
         let resonances = resonances(&curve, &jumps, mass);
         NamedCurve { mass, direction, curve, jumps, resonances }

@@ -221,7 +221,10 @@ impl Response {
         if let Some(direction) = direction.filter(|_| points.len() >= 3) {
             let at =
                 |p: &ResponsePoint| (p.excitation, p.amplitude.value, p.amplitude.std.unwrap_or(f64::NAN));
-            let curve = NamedCurve::new(points.iter().map(at).collect(), direction, self.mass);
+            let receptance = |p: &ResponsePoint| p.receptance.as_ref().map(|r| Complex64::new(r.re, r.im));
+            let receptances: Option<Vec<Complex64>> = points.iter().map(receptance).collect();
+            let receptances = receptances.unwrap_or_default();
+            let curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, self.mass);
             (self.jumps, self.resonances) = (curve.jumps, curve.resonances);
         } else {
             findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));

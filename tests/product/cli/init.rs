@@ -90,13 +90,29 @@ fn each_record_of_a_folder_gets_the_table_of_its_kind() {
     };
     assert_eq!([keys("guessed", "force"), keys("guessed", "response"), keys("missing", "height")], [1, 1, 4]);
     assert_eq!(answer["left"][0][0], "notes.txt");
-    // It runs as it stands, and is never written over.
+    // It runs as it stands, and what it says stays.
     let found = json(&["check", text(&campaign)]);
     assert_eq!(found["files"].as_array().unwrap().len(), 12 + 4);
     let run = json(&["run", text(&campaign)]);
     assert_eq!(run["results"]["frf"][0]["modes"].as_array().unwrap().len(), 2);
-    assert!(complaint(&["init", text(root.path())], 2).contains("there is a campaign already"));
+    assert!(json(&["init", text(root.path())])["found"].as_array().unwrap().is_empty());
     assert_eq!(fs::read_to_string(&campaign).unwrap(), written);
+    assert!(!run.to_string().contains("recordings-not-named"));
+    // A recording that comes later is named, and gets a table behind the others.
+    fs::copy(root.path().join("release.csv"), root.path().join("later.csv")).unwrap();
+    let said = vibro(&["run", text(&campaign)]).stderr;
+    assert!(
+        String::from_utf8(said).unwrap().contains("1 recording of the folder stands in no table: later.csv.")
+    );
+    json(&["init", text(root.path())]);
+    let longer = fs::read_to_string(&campaign).unwrap();
+    assert!(
+        longer.starts_with(&written) && longer[written.len()..].contains("file = \"later.csv\""),
+        "{longer}"
+    );
+    let later = json(&["run", text(&campaign)]);
+    let decays = |run: &serde_json::Value| run["results"]["decays"].as_array().unwrap().len();
+    assert_eq!(decays(&later), 1 + decays(&run));
 }
 
 #[test]

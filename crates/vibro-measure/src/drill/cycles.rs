@@ -86,6 +86,8 @@ pub(super) struct Cycles {
     tops: [Vec<f64>; 3],
     /// Peak-to-peak displacement of each turn, in m.
     pub stroke: Vec<f64>,
+    /// How much more it is where the velocity is not smoothed, in m.
+    pub blunted: Vec<f64>,
     /// Displacement left over at the end of each turn, in m; it was taken away evenly before the stroke was taken.
     pub drift: Vec<f64>,
 }
@@ -128,13 +130,19 @@ impl Cycles {
         self.tops.iter_mut().zip(top).for_each(|(all, top)| all.push(top));
     }
 
-    /// Integrates the same turn, which may be smoothed here: trapezoids from edge to edge; the mean velocity of the turn is
-    /// what drifts.
-    pub fn integrate(&mut self, values: &[f64], turn: Turn) {
+    /// Integrates the same turn, `smooth` and as it is.
+    pub fn integrate(&mut self, smooth: &[f64], values: &[f64], turn: Turn) {
+        if let Some((stroke, drift)) = self.path(smooth, turn) {
+            self.stroke.push(stroke);
+            self.drift.push(drift);
+            self.blunted.extend(self.path(values, turn).map(|whole| whole.0 - stroke));
+        }
+    }
+
+    /// Stroke and drift of a turn: trapezoids from edge to edge; the mean velocity of the turn is what drifts.
+    fn path(&self, values: &[f64], turn: Turn) -> Option<(f64, f64)> {
         let Turn { start, end } = turn;
-        let (Some(first), Some(last)) = (turns::value(values, start), turns::value(values, end)) else {
-            return;
-        };
+        let (first, last) = (turns::value(values, start)?, turns::value(values, end)?);
         let inside = (start.ceil() as usize..=end.floor() as usize).map(|i| (i as f64, values[i]));
         let (mut at, mut v, mut x) = (start, first, 0.0);
         let mut path = vec![(0.0, 0.0)];
@@ -146,8 +154,7 @@ impl Cycles {
         let slope = x / (end - start);
         let level = path.iter().map(|(t, x)| x - slope * t);
         let (low, high) = level.fold((0.0f64, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
-        self.drift.push(x);
-        self.stroke.push(high - low);
+        Some((high - low, x))
     }
 
     /// What was averaged; NaN where there is no value.
@@ -201,7 +208,7 @@ mod tests {
             let start = 3.7 + f64::from(k) * period;
             let turn = Turn { start, end: start + period };
             motion.differentiate(&values, &vec![State::Good; 2000], turn);
-            motion.integrate(&values, turn);
+            motion.integrate(&values, &values, turn);
         }
         // Trapezoids of a sine fall short by (2πf/rate)²/12 = 7e-5; the top lies between samples, by (2πf/rate)²/8.
         let stroke = 2.0 * amplitude / (TAU * f);

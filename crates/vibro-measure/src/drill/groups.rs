@@ -172,7 +172,7 @@ impl Group {
         for estimate in [&mut self.before, &mut self.after].into_iter().chain(energies) {
             (estimate.value, estimate.std) = (f64::NAN, None);
         }
-        self.restitution = None;
+        (self.restitution, self.phase.std) = (None, None);
         // What is said of these velocities is said of nothing.
         self.findings.retain(|found| !OF_VELOCITIES.contains(&found.code.as_ref()));
         let found = Finding::doubt("drill-velocity-impossible").number("velocity", largest);

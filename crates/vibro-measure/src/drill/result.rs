@@ -112,6 +112,9 @@ const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
 const STEEP: f64 = 0.005;
 
+/// One turn in so many may have no impact without a word.
+const FEW: usize = 10;
+
 /// Of a result and its velocity; `sharp`: edges of the reference rise within one sample; `still`: a noise floor was asked for.
 pub(super) fn findings(
     d: &Drill,
@@ -142,6 +145,8 @@ pub(super) fn findings(
     let turned = Finding::caution("drill-turns-from-impacts").number("rpm", 60.0 * d.speed.value);
     let turned = if r.extra > 0 { turned.count("others", r.extra) } else { turned };
     let missing = if own { "drill-impacts-missing" } else { "drill-edges-missing" };
+    let without = d.groups.first().map_or(0, |group| d.averaged.saturating_sub(group.n));
+    let missed = Finding::caution("drill-turns-without-impact").count("turns", d.averaged);
     let found = [
         (own, turned),
         (r.missing > 0, Finding::caution(missing).count("n", r.missing)),
@@ -154,6 +159,7 @@ pub(super) fn findings(
         (f.clipped > 0, over_range.number("low", velocity.low).number("high", velocity.high)),
         (d.hidden > 0, Finding::caution("drill-impacts-hidden").count("n", d.hidden)),
         (drift.abs() > DRIFTING * stroke, drifts),
+        (without > d.hidden && without > d.averaged / FEW, missed.count("n", without)),
         (d.impacts.is_empty(), Finding::caution("drill-no-impact").number("contact", options.contact)),
         (few.is_some(), Finding::caution("drill-few-values").count("n", few.unwrap_or(0))),
         (phases.len() > 1, several.numbers("phases", phases)),

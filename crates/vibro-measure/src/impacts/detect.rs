@@ -97,6 +97,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         let within = 1.0 / (12f64.sqrt() * rate);
         findings.push(Finding::caution("onset-within-sample").number("std", within));
         std = std.hypot(within);
+        findings.extend(chatter(&values, &bursts, least, rate).filter(|_| pause.is_none()));
     }
     Ok(Detected {
         times: each.iter().map(|o| trace.axis.start() + o.time / rate).collect(),
@@ -107,6 +108,20 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         method,
         resolution: sharp.then_some(1.0 / rate),
     })
+}
+
+/// Contacts that close again within an impact; where pulses rise slowly, it is their ringing that comes again.
+fn chatter(values: &[f64], bursts: &[Range<usize>], least: f64, rate: f64) -> Option<Finding> {
+    let again = |burst: &Range<usize>| {
+        let closes = |i: &usize| values[i - 1] <= least && values[*i] > least;
+        let mut closing = (burst.start.max(1)..burst.end).filter(closes);
+        let first = closing.next()?;
+        closing.last().map(|last| (last - first) as f64 / rate)
+    };
+    let longest: Vec<f64> = bursts.iter().filter_map(again).collect();
+    let found = Finding::note("contact-chatter").count("n", longest.len()).count("all", bursts.len());
+    let within = longest.iter().copied().fold(0.0, f64::max);
+    (!longest.is_empty()).then(|| found.number("within", within))
 }
 
 /// Order of one pass of a filter.

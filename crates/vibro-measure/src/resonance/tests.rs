@@ -10,7 +10,7 @@ fn points(f: &[f64], a: &[f64], std: &[f64]) -> Vec<Point> {
 }
 
 fn jumps(f: &[f64], a: &[f64], std: &[f64], direction: Direction) -> Vec<Jump> {
-    crate::jump::jumps(&points(f, a, std), direction)
+    crate::jump::jumps(&points(f, a, std), &[], direction)
 }
 
 fn resonances(f: &[f64], a: &[f64], std: &[f64], jumps: &[Jump], mass: Option<u8>) -> Vec<Resonance> {
@@ -152,11 +152,48 @@ fn a_coarse_sweep_of_a_linear_resonance_has_no_jump() {
                     .collect();
                 let a: Vec<f64> =
                     f.iter().map(|f| 1.0 / (1.0 - (f / 5.6f64).powi(2)).hypot(f / 5.6 / q)).collect();
-                let found = jumps(&f, &a, &vec![1e-6; f.len()], Direction::Up);
+                let std = vec![1e-6; f.len()];
+                // With a second mode at 6.5 Hz, a zero between them or none, the phase is no jump either.
+                for second in [0.0, 0.3, -0.3] {
+                    let motion: Vec<Complex64> = f
+                        .iter()
+                        .map(|f| oscillator(*f, 5.6, 0.5 / q) + second * oscillator(*f, 6.5, 0.5 / q))
+                        .collect();
+                    let a: Vec<f64> = motion.iter().map(|h| h.norm()).collect();
+                    let turned = crate::jump::jumps(&points(&f, &a, &std), &motion, Direction::Up);
+                    let alone = jumps(&f, &a, &std, Direction::Up);
+                    assert_eq!(
+                        turned.len(),
+                        alone.len(),
+                        "Q {q}, {n} points, {offset}, {second}: {turned:?}"
+                    );
+                }
+                let found = jumps(&f, &a, &std, Direction::Up);
                 assert!(found.is_empty(), "Q {q}, {n} points, {offset}: {found:?}");
             }
         }
     }
+}
+
+/// Receptance of an oscillator of stiffness 1.
+fn oscillator(f: f64, natural: f64, zeta: f64) -> Complex64 {
+    let r = f / natural;
+    Complex64::new(1.0 - r * r, 2.0 * zeta * r).inv()
+}
+
+/// A mass that strikes a stop moves as one on a stiffer spring, until it lets go near the resonance without the stop: the amplitude is no more
+/// than halved there and falls steeply behind, but the motion turns round.
+#[test]
+fn a_motion_that_turns_round_within_a_step_has_jumped() {
+    let f: Vec<f64> = (16..27).map(f64::from).collect();
+    let motion: Vec<Complex64> =
+        f.iter().map(|f| oscillator(*f, if *f < 23.5 { 26.0 } else { 22.0 }, 0.03)).collect();
+    let a: Vec<f64> = motion.iter().map(|h| h.norm()).collect();
+    let curve = points(&f, &a, &[1e-4; 11]);
+    assert!(crate::jump::jumps(&curve, &[], Direction::Up).is_empty());
+    let found = NamedCurve::new(curve, &motion, Direction::Up, None);
+    assert_eq!(found.jumps.iter().map(|j| (j.from, j.to)).collect::<Vec<_>>(), [(23.0, 24.0)]);
+    assert!(found.resonances.iter().all(|r| r.at_jump), "{:?}", found.resonances);
 }
 
 #[test]
