@@ -123,11 +123,15 @@ fn rows(headline: &Headline, record: &Value) -> Vec<Vec<Cell>> {
     let name = record["name"].as_str().unwrap_or_default();
     let doubtful =
         record["findings"].as_array().is_some_and(|all| all.iter().any(|found| found["severity"] == "doubt"));
-    let doubt = if doubtful { "see the doubt" } else { "" };
     let own = vec![record.clone()];
     let items = if headline.list.is_empty() { Some(&own) } else { record[headline.list].as_array() };
     let row = |item: &Value| {
         let cells = headline.columns.iter().map(|(_, key, _)| cell(item, key));
+        let doubt = match item["at_jump"].as_bool() {
+            _ if doubtful => "see the doubt",
+            Some(true) => "ends in a jump",
+            _ => "",
+        };
         std::iter::once(name.into()).chain(cells).chain([doubt.into()]).collect()
     };
     items.map_or_else(Vec::new, |items| items.iter().map(row).collect())

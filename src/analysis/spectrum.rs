@@ -145,12 +145,14 @@ const SHOWN: usize = 8;
 fn peaks(name: &str, found: &SpectralResult) -> Table {
     let of = |values: &[f64], k: usize| values.get(k).copied().filter(|v| v.is_finite());
     let response = found.response.as_ref();
+    // A peak lies anywhere between the middles of its line and those beside it.
+    let line = found.frequency.windows(2).next().map_or(f64::NAN, |w| (w[1] - w[0]) / f64::sqrt(12.0));
     let peaks = table(
         "Largest peaks of spectra",
         found.peaks(SHOWN),
         &[
             ("record", "", &|_| Cell::from(name)),
-            ("frequency", "Hz", &|k| Cell::from(of(&found.frequency, *k))),
+            ("frequency", "Hz", &|k| Cell::Estimate { value: found.frequency[*k], std: Some(line) }),
             ("value", "", &|k| Cell::Estimate { value: found.value[*k], std: of(&found.value_std, *k) }),
             ("unit", "", &|_| Cell::from(found.unit.as_str())),
             ("scaling", "", &|_| Cell::from(found.scaling)),

@@ -104,8 +104,8 @@ impl Page {
     /// Adds a figure with its title and a caption below, as drawn for print and as data for the script; `files` are names of files beside
     /// the page that hold the same picture.
     pub fn figure(mut self, figure: &Figure, picture: &Picture, files: &[&str]) -> Page {
-        let mut below =
-            format!("<b>{}.</b> {}", escaped(figure.title.trim_end_matches('.')), escaped(&figure.caption));
+        let title = escaped(figure.title.trim_end_matches('.'));
+        let mut below = escaped(&figure.caption);
         for file in files {
             let _ = write!(below, " <a href=\"./{0}\">{0}</a>", escaped(file));
         }
@@ -125,7 +125,7 @@ impl Page {
             (true, _) => self.place(data, svg),
         };
         self.element(&format!(
-            "<figure style=\"--width:{width}\">\n{inside}<figcaption>{}</figcaption>\n</figure>",
+            "<figure style=\"--width:{width}\">\n<h3>{title}</h3>\n{inside}<figcaption>{}</figcaption>\n</figure>",
             below.trim_end()
         ))
     }

@@ -328,8 +328,8 @@ impl Sines {
                 findings.push(found.number("frequency", modes[strongest].frequency.value));
             }
             // What is not known of a mode is not known of its decrement.
-            if modes[strongest].zeta.std.is_none() {
-                decrement.iter_mut().for_each(|decrement| decrement.std = None);
+            if let (None, Some(decrement)) = (modes[strongest].zeta.std, &mut decrement) {
+                decrement.std = None;
             }
         }
         modes.sort_by(|a, b| a.frequency.value.total_cmp(&b.frequency.value));

@@ -114,8 +114,7 @@ pub fn drill_each(
         cycles.integrate(smooth, &velocity, turn);
         each(&cycles.average(smooth, &states, number, turn))?;
     }
-    let [mut stroke, drift, blunted] =
-        [&cycles.stroke, &cycles.drift, &cycles.blunted].map(|values| Mean::of(values));
+    let [mut stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let period = 1.0 / speed.value;
     // What lies beyond the range is missing from the mean.
@@ -129,17 +128,8 @@ pub fn drill_each(
     let reach = around.iter().fold(0.0f64, |reach, v| reach.max(v.abs()));
     let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options, &offset);
     let groups: Vec<Group> = groups.into_iter().map(|group| group.within(reach)).collect();
-    // An impact turns the mass round at once, between two samples: the stroke lacks up to what it covers until the nearer of them, and what
-    // smoothing takes off.
-    let corner = |group: &Group| {
-        let (before, after) = (group.before.value.abs(), group.after.value.abs());
-        before * after / (before + after) / rate
-    };
-    let corners: f64 = groups.iter().map(corner).filter(|corner| corner.is_finite()).sum();
-    let lacking = (blunted.value.abs() + corners) / f64::sqrt(3.0);
-    stroke.std = stroke.std.map(|std| std.hypot(lacking));
+    stroke.std = stroke.std.map(|std| std.hypot(lacking(&cycles.blunted, &groups, rate)));
     let strongest = groups.first();
-    let average = cycles.phases();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
     // Where speeds are too small, so is what they add up to: no uncertainty is stated.
     let metres = |mean: Mean, method| {
@@ -171,11 +161,11 @@ pub fn drill_each(
         clipped: impacts.iter().filter(|i| i.clipped).count(),
         impacts,
         displacement: Displacement {
-            value: cycles::displacement(&average.mean, period),
+            value: cycles::displacement(&cycles.phases().mean, period),
             stroke: metres(stroke, "peak to peak of the integrated velocity, mean over turns"),
             drift: metres(drift, "integral of the velocity over a turn, mean over turns"),
         },
-        average,
+        average: cycles.phases(),
         dropouts: faults.dropouts,
         faults,
         bandwidth: cycles.bandwidth(),
@@ -194,6 +184,17 @@ pub fn drill_each(
     let changes = Finding::caution("drill-slow-changes").name("quantities", slow.join(", "));
     result.findings.extend((!slow.is_empty()).then_some(changes));
     Ok(result)
+}
+
+/// Standard uncertainty in m of what a stroke lacks: what smoothing takes off, and what the mass covers between an impact, which turns it round at
+/// once, and the nearer sample.
+fn lacking(blunted: &[f64], groups: &[Group], rate: f64) -> f64 {
+    let corner = |group: &Group| {
+        let (before, after) = (group.before.value.abs(), group.after.value.abs());
+        before * after / (before + after) / rate
+    };
+    let corners: f64 = groups.iter().map(corner).filter(|corner| corner.is_finite()).sum();
+    (Mean::of(blunted).value.abs() + corners) / f64::sqrt(3.0)
 }
 
 /// The reference, where the turns come from one; if there are a rate, and a velocity and a reference that differ.

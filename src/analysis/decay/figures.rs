@@ -28,7 +28,7 @@ pub fn decay(title: &str, meta: &Meta, found: &DecayResult) -> Figure {
     let below = Plot::new(x(), AxisSpec::new("Residual", unit))
         .with(Series::line("", &times[..shown], &left[..shown]).ink(Ink::Nth(0)).stroke(Stroke::Thin))
         .legend(Legend::Hidden);
-    let mut figure = Figure::double(title).height(110.0).panel(above).panel(below);
+    let mut figure = Figure::double(format!("Decay, {title}")).height(110.0).panel(above).panel(below);
     let mut caption =
         "(a) The part of the record that was used, and the sum of its modes with an offset. (b) Residual: record minus modes.".to_owned();
     if shown < times.len() {

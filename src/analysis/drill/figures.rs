@@ -3,6 +3,7 @@
 use crate::measure::drill::{Corner, Drill, Impact, TurnsFrom};
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
+use crate::units::notation::significant;
 
 /// Most points of a line: more are not seen in print.
 const POINTS: usize = 4000;
@@ -44,7 +45,10 @@ fn average(name: &str, drill: &Drill) -> Figure {
     let above = Plot::new(x(), AxisSpec::new("Velocity", "m/s"))
         .with(Series::band("± 1 standard deviation", degrees.clone(), edge(-1.0), edge(1.0)).ink(Ink::Nth(0)))
         .with(Series::line("mean", degrees.clone(), closed(a.mean.clone())).ink(Ink::Nth(0)));
-    let (above, marked) = marks(above, drill, |i| 360.0 * i.phase, |_| true);
+    let (mut above, marked) = marks(above, drill, |i| 360.0 * i.phase, |_| true);
+    for group in drill.groups.iter().filter(|group| group.before.value.is_nan()) {
+        above = above.with(Series::vertical("impacts", 360.0 * group.phase.value));
+    }
     let below = Plot::new(x(), AxisSpec::new("Displacement", "m"))
         .with(Series::line("", degrees, closed(drill.displacement.value.clone())).ink(Ink::Nth(0)));
     let smoothed = match drill.smoothing {
@@ -74,13 +78,13 @@ fn marks(
         let own: Vec<Impact> =
             drill.impacts.iter().filter(|i| i.group == number && shown(i)).copied().collect();
         let own = thin(&own, MARKERS);
-        marked += own.len();
         let of = if drill.groups.len() > 1 { format!(", group {number}") } else { String::new() };
         // Refused velocities have no place.
         let refused = drill.groups.get(number).is_some_and(|group| group.before.value.is_nan());
         if own.is_empty() || refused {
             continue;
         }
+        marked += own.len();
         for (side, (ink, marker)) in ["before", "after"].into_iter().zip(*forms) {
             let x: Vec<f64> = own.iter().map(&x).collect();
             let y: Vec<f64> = own.iter().map(|i| if side == "before" { i.before } else { i.after }).collect();
@@ -121,10 +125,11 @@ fn speed(name: &str, drill: &Drill) -> Figure {
                 .stroke(Stroke::Thin),
         )
         .with(Series::horizontal("mean", drill.speed.value));
-    Figure::double(format!("Speed, {name}"))
-        .height(70.0)
-        .panel(plot)
-        .caption("Turns of the crank in a second.")
+    let step = significant(drill.speed.value.powi(2) * drill.excerpt_time.1, 2);
+    let sharp = drill.findings.iter().any(|found| found.code == "drill-edges-sharp");
+    let steps = format!(" The pulses rise within a sample: one more in a turn is {step} Hz less.");
+    let caption = format!("Turns of the crank in a second.{}", if sharp { &steps } else { "" });
+    Figure::double(format!("Speed, {name}")).height(70.0).panel(plot).caption(caption)
 }
 
 fn floor(name: &str, drill: &Drill) -> Option<Figure> {

@@ -44,7 +44,8 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     }
     let fitted = " with the modes fitted to it; vertical lines are natural frequencies";
     let fitted = if modes.is_empty() { "" } else { fitted };
-    let figure = Figure::double(title).caption(format!("Frequency response function{fitted}."));
+    let figure =
+        Figure::double(format!("Function, {title}")).caption(format!("Frequency response function{fitted}."));
     if measured.magnitude_only {
         return figure.panel(above);
     }
@@ -54,6 +55,12 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
         below = below.with(Series::phase("", &x, &angle).ink(Ink::Nth(0)).stroke(Stroke::Dashed));
     }
     let figure = figure.height(110.0).shared_x().panel(above).panel(below);
+    let seen = match &measured.coherence {
+        Some(_) => " The phase is drawn where the coherence is 0.5 or more.",
+        None => "",
+    };
+    let caption = format!("{}{seen}", figure.caption);
+    let figure = figure.caption(caption);
     lettered(match &measured.coherence {
         Some(coherence) => figure.height(145.0).panel(coherence_plot(f, coherence, Ink::Grey)),
         None => figure,
@@ -108,14 +115,12 @@ pub(crate) fn phase_plot(
     let known = coherence.iter().map(|c| *c >= 0.5).chain(std::iter::repeat(true));
     let phase: Vec<f64> =
         values.zip(known).map(|(v, known)| if known { v.arg().to_degrees() } else { f64::NAN }).collect();
-    let some = phase.iter().any(|p| p.is_nan());
-    let label = if some { "Phase where coherence ≥ 0.5" } else { "Phase" };
     let shown = if f.len() <= DOTS {
         Series::points("", f, phase).marker(Marker::Circle)
     } else {
         Series::phase("", f, &phase).stroke(Stroke::Solid)
     };
-    Plot::new(AxisSpec::frequency(), AxisSpec::new(label, "°").limits(-180.0, 180.0)).with(shown.ink(ink))
+    Plot::new(AxisSpec::frequency(), AxisSpec::new("Phase", "°").limits(-180.0, 180.0)).with(shown.ink(ink))
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     let middle = found.times.get(found.times.len() / 2).copied().unwrap_or(all.0);
     let reach = 5.5 * found.median_interval;
     let near = ((middle - reach).max(all.0), (middle + reach).min(all.1));
-    let figure = Figure::double(title)
+    let figure = Figure::double(format!("Impacts, {title}"))
         .height(130.0)
         .columns(2)
         .panel(marked(trace, &found.times, all).title("whole record"))
@@ -52,7 +52,10 @@ pub fn drop(title: &str, trace: &Trace, times: &[f64]) -> Figure {
     if let Some(second) = times.get(1) {
         plot = plot.title(format!("first flight {:.2} ms", 1e3 * (second - first)));
     }
-    Figure::double(title).height(70.0).panel(plot).caption("Trace of a drop. Triangles: impacts found.")
+    Figure::double(format!("Drop, {title}"))
+        .height(70.0)
+        .panel(plot)
+        .caption("Trace of a drop. Triangles: impacts found.")
 }
 
 /// The part of a trace between two times, with its impacts marked over it.

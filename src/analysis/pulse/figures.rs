@@ -73,7 +73,7 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
     }
     let begins = if onset.is_some() { "the contact of spring and damper" } else { "what is shown" };
     let at = significant(start, 4);
-    Some(lettered(Figure::double(title).height(110.0).shared_x().panel(above).panel(below)).caption(format!(
+    Some(lettered(Figure::double(format!("Pulse, {title}")).height(110.0).shared_x().panel(above).panel(below)).caption(format!(
         "Contact pulse with the models fitted to it (a), and the residuals (b); {begins} begins at {at} s of the record."
     )))
 }

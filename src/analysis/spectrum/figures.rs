@@ -52,7 +52,7 @@ fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &Spectra
     if together > 1 {
         said.push(format!("Of {together} lines side by side the largest is drawn."));
     }
-    Figure::double(title).panel(plot).caption(said.join(" "))
+    Figure::double(format!("Spectrum, {title}")).panel(plot).caption(said.join(" "))
 }
 
 /// Window, averages and scaling, as a caption states them.
@@ -103,7 +103,8 @@ fn transfer(title: &str, transfer: &Transfer, conditions: &str) -> Figure {
         .legend(Legend::Above);
     let middle = phase_plot(&f, frf.values.iter().copied(), &transfer.coherence, Ink::Nth(0));
     let below = coherence_plot(&f, &transfer.coherence, Ink::Nth(0));
-    let figure = Figure::double(title).height(140.0).shared_x().panel(above).panel(middle);
+    let figure =
+        Figure::double(format!("Function, {title}")).height(140.0).shared_x().panel(above).panel(middle);
     if transfer.coherence.is_empty() {
         return lettered(figure).caption(format!("{conditions} Of one blow: without coherence."));
     }

@@ -111,7 +111,7 @@ fn each_record_of_a_folder_gets_the_table_of_its_kind() {
         "{longer}"
     );
     let later = json(&["run", text(&campaign)]);
-    let decays = |run: &serde_json::Value| run["results"]["decays"].as_array().unwrap().len();
+    let decays = |run: &Value| run["results"]["decays"].as_array().unwrap().len();
     assert_eq!(decays(&later), 1 + decays(&run));
 }
 

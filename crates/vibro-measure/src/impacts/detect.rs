@@ -116,7 +116,7 @@ fn chatter(values: &[f64], bursts: &[Range<usize>], least: f64, rate: f64) -> Op
         let closes = |i: &usize| values[i - 1] <= least && values[*i] > least;
         let mut closing = (burst.start.max(1)..burst.end).filter(closes);
         let first = closing.next()?;
-        closing.last().map(|last| (last - first) as f64 / rate)
+        closing.next_back().map(|last| (last - first) as f64 / rate)
     };
     let longest: Vec<f64> = bursts.iter().filter_map(again).collect();
     let found = Finding::note("contact-chatter").count("n", longest.len()).count("all", bursts.len());

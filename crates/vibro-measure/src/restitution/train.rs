@@ -84,9 +84,9 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
         if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| log >= 0.0)) {
             let flight = flight.place + 1;
             let why =
-                format!("flight times grow, at flight {flight} of train {train}: R would not be below 1");
-            let hint = "the intervals in the order of the bounces, all of one train";
-            return Err(Error::refused(why).hint(hint));
+                format!("the flight times grow, at flight {flight} of train {train}: R would be above 1");
+            let hint = "a longer pause where ringing or echoes count as impacts; else intervals in the order of the bounces";
+            return Err(Error::refused(why).hint(hint).setting("refractory"));
         }
         n += flights.len();
         logs.push(log);

@@ -23,7 +23,7 @@ pub fn fit(title: &str, fit: &Fit) -> Figure {
         above = points(above, &name, places, Ink::Nth(usize::from(mass) - 1), marker);
     }
     above = above.with(Series::horizontal("", 0.0));
-    let mut figure = Figure::double(title).panel(above.title("Residuals")).height(80.0);
+    let mut figure = Figure::double(format!("Fit, {title}")).panel(above.title("Residuals")).height(80.0);
     let left = fit.left_out;
     let mut caption = format!(
         "Residuals of {} amplitudes in units of their stated standard uncertainties; {} of other motions, and outliers, are left out.",

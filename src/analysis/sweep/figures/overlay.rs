@@ -19,7 +19,7 @@ pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure
         Some(force) => format!("a force of {force:.4} N"),
         None => "the measured force".to_owned(),
     };
-    let mut figure = Figure::double(title).shared_x().caption(format!(
+    let mut figure = Figure::double(format!("Measurement and model, {title}")).shared_x().caption(format!(
         "Fundamental of the displacement under {force}. Circles and squares: measured. Lines: motions with one impact a cycle, in closed form. \
          Crosses: other motions, and contacts that last, from a simulated sweep at the measured frequencies. Not drawn: impossible motions, mass 2 at rest. {MARKS}"
     ));

@@ -74,6 +74,11 @@ pub fn receptance(title: &str, responses: &[Response]) -> Option<Figure> {
     let caption = "Displacement over force at the excitation frequency, and its course in the complex plane. Bars: one standard \
         uncertainty, where larger than the marker.";
     Some(lettered(
-        Figure::double(title).height(220.0).panel(above).panel(phase).panel(nyquist).caption(caption),
+        Figure::double(format!("Receptance, {title}"))
+            .height(220.0)
+            .panel(above)
+            .panel(phase)
+            .panel(nyquist)
+            .caption(caption),
     ))
 }

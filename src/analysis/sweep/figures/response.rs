@@ -14,7 +14,11 @@ pub fn response(title: &str, responses: &[Response]) -> Figure {
     for (text, f, a) in names(responses) {
         linear = linear.note(text, f, factor * a);
     }
-    let figure = Figure::double(title).height(160.0).shared_x().panel(linear).panel(plot(responses, true));
+    let figure = Figure::double(format!("Response, {title}"))
+        .height(160.0)
+        .shared_x()
+        .panel(linear)
+        .panel(plot(responses, true));
     lettered(figure.caption(format!("Amplitude at the excitation frequency. {MARKS}")))
 }
 

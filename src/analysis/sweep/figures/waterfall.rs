@@ -21,7 +21,7 @@ pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let Shown { low, high, left_out } = shown(matrix, fmax, SEEN)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
         .frequencies(low, high);
-    Ok(Figure::double(matrix.name.clone()).height(120.0).panel(scene).caption(left_out))
+    Ok(Figure::double(format!("Waterfall, {}", matrix.name)).height(120.0).panel(scene).caption(left_out))
 }
 
 /// Level over frequency and excitation in dB, from the largest line down to the noise.
@@ -51,7 +51,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let plot = Plot::new(frequency, AxisSpec::new("Excitation frequency", "Hz"))
         .heatmap(heatmap)
         .legend(Legend::Hidden);
-    Ok(Figure::double(matrix.name.clone()).height(100.0).panel(plot).caption(caption))
+    Ok(Figure::double(format!("Map, {}", matrix.name)).height(100.0).panel(plot).caption(caption))
 }
 
 /// The range in Hz that a picture shows, and what it leaves out.
