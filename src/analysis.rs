@@ -23,7 +23,7 @@ mod headline;
 mod page;
 
 pub use answer::Answer;
-pub(crate) use inputs::{recordings, unnamed};
+pub(crate) use inputs::{OWN, recordings, unnamed};
 pub use job::{Heard, INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
 pub use kept::Kept;
 pub use sweep::modelled::fit;

@@ -151,6 +151,11 @@ impl Table {
         of("name").or_else(|| of("sweep")).map_or("", |row| row.value.trim_matches('"'))
     }
 
+    /// What a key says; empty where it says nothing.
+    fn value(&self, key: &str) -> String {
+        self.rows.iter().find(|row| row.key == key).map_or_else(String::new, |row| bare(&row.value))
+    }
+
     /// As a campaign writes it. What lacks a key is a comment.
     fn toml(&self) -> String {
         let mut text = format!("[[{}]]\n", self.section);
@@ -184,7 +189,7 @@ impl Table {
 
 impl Proposal {
     /// Name of the file of a campaign in a folder.
-    pub const FILE: &str = "campaign.toml";
+    pub const FILE: &str = analysis::OWN;
 
     /// A campaign for what lies in a folder and up to two levels below it, and is not named by one that is `known`.
     ///
@@ -236,9 +241,40 @@ impl Proposal {
             }
             return Err(error.hint(format!("`vibro info {}/FILE` tells what is in a file", folder.display())));
         }
+        if let Some(known) = known {
+            proposal.join(known)?;
+        }
         let place = |table: &Table| analysis::sections().position(|section| section == table.section);
         proposal.tables.sort_by_key(place);
         Ok(proposal)
+    }
+
+    /// Gives a table what the campaign states of a file whose name differs in a number alone, and a sweep a name of its own.
+    fn join(&mut self, known: &Campaign) -> Result<()> {
+        let of = |rows: &[(String, String)], key: &str| {
+            rows.iter().find(|row| row.0 == key).map_or_else(String::new, |row| bare(&row.1))
+        };
+        let sweeps: Vec<String> = known.written("sweep")?.iter().map(|rows| of(rows, "name")).collect();
+        for table in &mut self.tables {
+            let file = table.value("file");
+            let all = known.written(table.section)?;
+            let like = all.iter().find(|rows| folder::alike(&file, &of(rows, "file")));
+            for (key, value) in like.into_iter().flatten() {
+                // Drops of one series have one name.
+                let same = key != "file" && (key != "name" || table.section == "drop");
+                for row in table.rows.iter_mut().filter(|row| same && row.key == key) {
+                    (row.value, row.known) = (value.clone(), Known::Found);
+                }
+            }
+            let name = table.value(if table.section == "sweep" { "name" } else { "sweep" });
+            let free =
+                (2..=sweeps.len() + 2).map(|n| format!("{name} {n}")).find(|name| !sweeps.contains(name));
+            for row in table.rows.iter_mut().filter(|row| sweeps.contains(&name) && bare(&row.value) == name)
+            {
+                row.value = serde_json::to_string(&free).unwrap_or_default();
+            }
+        }
+        Ok(())
     }
 
     /// The campaign as a file has it.
@@ -277,6 +313,11 @@ impl Proposal {
     pub fn campaign(&self) -> Result<Campaign> {
         analysis::parse(&self.folder.join(Proposal::FILE), self.toml())
     }
+}
+
+/// A value of TOML without its quotes.
+fn bare(value: &str) -> String {
+    value.trim_matches(['"', '\'']).to_owned()
 }
 
 /// A text without line breaks and other control characters: a name from a folder must not end a comment.

@@ -8,7 +8,7 @@ use crate::record::Finding;
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// A line for the program, the campaign and each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
 ///
@@ -105,26 +105,51 @@ fn list(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec
     below.iter().filter(|_| levels > 0).try_for_each(|folder| list(folder, levels - 1, found, others))
 }
 
-/// Those of the recordings that the campaign names in no table and in no comment.
-pub fn unnamed(campaign: &Campaign, recordings: &[PathBuf]) -> Vec<PathBuf> {
-    // A table at fault is complained of where it is measured.
-    let files = files(campaign, true).unwrap_or_default();
-    let said =
-        |path: &Path| path.file_name().is_some_and(|name| campaign.text().contains(&*name.to_string_lossy()));
-    recordings.iter().filter(|path| !files.contains(path) && !said(path)).cloned().collect()
+/// Those of the files that the campaign names in no table and in no comment.
+///
+/// # Errors
+/// As [`files`].
+pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    // `./a` is `a`.
+    let plain = |path: &Path| path.components().filter(|c| *c != Component::CurDir).collect::<PathBuf>();
+    let named: Vec<PathBuf> = files(campaign, allow_outside)?.iter().map(|path| plain(path)).collect();
+    let folder = plain(campaign.folder());
+    let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
+    let said = |path: &Path| {
+        let name = path.strip_prefix(&folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
+        campaign.text().match_indices(&name).any(|(at, _)| {
+            let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
+            // A full stop ends a sentence, too.
+            let behind =
+                behind.strip_prefix('.').filter(|b| !b.starts_with(char::is_alphanumeric)).unwrap_or(behind);
+            before.chars().next_back().is_none_or(ends) && behind.chars().next().is_none_or(ends)
+        })
+    };
+    let new = |path: &&PathBuf| {
+        let path = plain(path);
+        !named.contains(&path) && !said(&path)
+    };
+    Ok(all.iter().filter(new).cloned().collect())
 }
 
-/// What is said of recordings beside a campaign that it does not name.
-pub fn beside(campaign: &Campaign) -> Option<Finding> {
-    // One that was proposed names them all, and what cannot be listed cannot be told of.
-    let (all, _) = campaign.path().is_file().then(|| recordings(campaign.folder()).ok()).flatten()?;
-    let new = unnamed(campaign, &all);
+/// What is said of files in the folder of a campaign that it does not name, where it is the folder's own.
+///
+/// # Errors
+/// As [`files`].
+pub fn beside(campaign: &Campaign, allow_outside: bool) -> Result<Option<Finding>> {
+    if !campaign.path().is_file() || !campaign.path().ends_with(OWN) {
+        return Ok(None);
+    }
+    let new = unnamed(campaign, allow_outside, &recordings(campaign.folder())?.0)?;
     let names: Vec<String> = new.iter().take(SHOWN).map(|path| file_name(path)).collect();
     let more = new.len().saturating_sub(SHOWN);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let found = Finding::note("recordings-not-named").count("n", new.len());
-    (!new.is_empty()).then(|| found.name("files", names.join(", ") + &more))
+    let found = Finding::note("files-not-named").count("n", new.len());
+    Ok((!new.is_empty()).then(|| found.name("files", names.join(", ") + &more)))
 }
+
+/// Name of the file of a folder's own campaign.
+pub const OWN: &str = "campaign.toml";
 
 /// Files that are named one by one.
 const SHOWN: usize = 5;

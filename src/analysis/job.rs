@@ -156,8 +156,8 @@ impl<'a> Job<'a> {
         section: &str,
         measure: impl FnOnce(&mut Job<'_>) -> Result<()>,
     ) -> Result<()> {
-        let on = self.rests_on(&[section])?;
-        let Gathered { mut all, constants, histories, answers } = self.kept.or_make(on, || {
+        let (on, files) = self.rests_on(&[section])?;
+        let Gathered { mut all, constants, histories, answers } = self.kept.or_make(on, &files, || {
             let mut own = Job::new(self.campaign, self.options, self.kept, self.progress);
             measure(&mut own)?;
             Ok(own.found)
@@ -179,19 +179,24 @@ impl<'a> Job<'a> {
     }
 
     /// All that records of these sections rest on: their files, and what the campaign states but for other records.
-    fn rests_on(&self, sections: &[&str]) -> Result<Digest> {
+    fn rests_on(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
         let (these, others): (Vec<&Kind>, Vec<&Kind>) =
             KINDS.iter().partition(|kind| sections.contains(&kind.section));
         let files: Result<Vec<_>> =
             these.iter().map(|kind| (kind.files)(self.campaign, self.options.allow_outside)).collect();
         let stated = self.campaign.stated_without(|key| others.iter().any(|kind| kind.section == key))?;
-        self.digest([sections.concat(), stated], &files?.concat())
+        let files = files?.concat();
+        Ok((self.digest([sections.concat(), stated], &files)?, files))
     }
 
-    /// The digest of words and of what files hold.
+    /// The digest of words, and of names and contents of files.
     fn digest(&self, words: impl IntoIterator<Item = String>, files: &[PathBuf]) -> Result<Digest> {
         let words = words.into_iter().map(String::into_bytes);
-        let files: Result<Vec<_>> = files.par_iter().map(|file| Ok(self.kept.file(file)?.to_vec())).collect();
+        let of_file = |file: &PathBuf| {
+            let name = file.strip_prefix(self.campaign.folder()).unwrap_or(file);
+            Ok([name.to_string_lossy().as_bytes(), &self.kept.file(file)?].concat())
+        };
+        let files: Result<Vec<_>> = files.par_iter().map(of_file).collect();
         Ok(digest(words.chain(files?)))
     }
 
@@ -211,13 +216,14 @@ impl<'a> Job<'a> {
             let name = name_of(entry, i + 1);
             // Numbers alone have no file.
             let path = entry.file.as_ref().map_or_else(|| Ok(PathBuf::new()), |_| self.path(entry))?;
-            let files = K::files(self.campaign, entry, self.options.allow_outside)?;
+            let mut files = K::files(self.campaign, entry, self.options.allow_outside)?;
             let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
             let mut on = self.digest(own, &files)?;
             if entry.file.is_none() && !K::RESTS_ON.is_empty() {
-                on = digest([on, self.rests_on(K::RESTS_ON)?]);
+                let (others, beside) = self.rests_on(K::RESTS_ON)?;
+                (on, files) = (digest([on, others]), beside);
             }
-            let found = self.kept.or_make(on, || {
+            let found = self.kept.or_make(on, &files, || {
                 match self.measured(entry, &name, &path, |source| measure(entry, source)) {
                     Ok(found) => Ok(Ok(found)),
                     Err(error) => left_out("left-out", error).map(Err),
@@ -407,7 +413,7 @@ pub fn run(
         parts.push(Part { title: kind.title, from, to: Extent::of(&job.found.all) });
     }
     job.found.all.add("", campaign.commented());
-    job.found.all.add("", beside(campaign));
+    job.found.all.add("", beside(campaign, options.allow_outside)?);
     if campaign.is_empty() {
         job.found.all.add("", [Finding::caution("campaign-without-record")]);
     } else if job.found.answers == 0 {
@@ -418,7 +424,7 @@ pub fn run(
     let medium = output.medium;
     let pictures = files::figures(output, &all.figures, |figure| {
         let on = digest([packed(&(medium as u8, figure)).unwrap_or_default()]);
-        let picture = kept.or_make(on, || Picture::of(figure, medium));
+        let picture = kept.or_make(on, &[], || Picture::of(figure, medium));
         progress.step();
         picture
     })?;

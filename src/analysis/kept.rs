@@ -10,9 +10,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 /// A SHA-256.
 pub type Digest = [u8; 32];
+
+/// Length and time of a file.
+type Stamp = Option<(u64, SystemTime)>;
 
 /// Answers and pictures by the digest of all that they rest on.
 #[derive(Debug, Default)]
@@ -21,8 +25,8 @@ pub struct Kept {
     old: BTreeMap<Digest, Vec<u8>>,
     /// Those of this run.
     now: Mutex<BTreeMap<Digest, Vec<u8>>>,
-    /// Digests of files.
-    files: Mutex<BTreeMap<PathBuf, Digest>>,
+    /// Digests of files, and what they looked like before they were read for it.
+    files: Mutex<BTreeMap<PathBuf, (Digest, Stamp)>>,
 }
 
 impl Kept {
@@ -31,9 +35,13 @@ impl Kept {
 
     /// What the last run of this very program kept in a folder of results; nothing where that cannot be read.
     pub fn of(folder: &Path) -> Kept {
-        let kept = Kept::default();
-        let old = std::fs::read(folder.join(Kept::FILE)).ok().and_then(|bytes| {
-            let (program, old) = rmp_serde::from_slice::<(Digest, BTreeMap<Digest, Vec<u8>>)>(&bytes).ok()?;
+        let (kept, path) = (Kept::default(), folder.join(Kept::FILE));
+        // A pipe of that name would wait for ever.
+        let bytes = path.is_file().then(|| std::fs::read(&path).ok()).flatten();
+        let old = bytes.and_then(|bytes| {
+            let (sum, rest) = bytes.split_at_checked(size_of::<Digest>())?;
+            let (program, old): (Digest, BTreeMap<Digest, Vec<u8>>) =
+                rmp_serde::from_slice(rest).ok().filter(|_| digest([rest]) == *sum)?;
             (Some(program) == kept.program()).then_some(old)
         });
         Kept { old: old.unwrap_or_default(), ..kept }
@@ -44,11 +52,11 @@ impl Kept {
         self.old.contains_key(on)
     }
 
-    /// What rests on this, as it was kept; else it is made, and kept.
+    /// What rests on this, as it was kept; else it is made, and kept unless one of the files changed meanwhile.
     ///
     /// # Errors
     /// Those of making it; they are not kept.
-    pub fn or_make<T>(&self, on: Digest, make: impl FnOnce() -> Result<T>) -> Result<T>
+    pub fn or_make<T>(&self, on: Digest, files: &[PathBuf], make: impl FnOnce() -> Result<T>) -> Result<T>
     where
         T: Serialize + DeserializeOwned,
     {
@@ -59,13 +67,17 @@ impl Kept {
             return Ok(found);
         }
         let made = make()?;
-        locked(&self.now).extend(packed(&made).map(|bytes| (on, bytes)));
+        let known = |path: &PathBuf| locked(&self.files).get(path).map(|(_, before)| *before);
+        if files.iter().all(|path| known(path) == Some(stamp(path))) {
+            locked(&self.now).extend(packed(&made).map(|bytes| (on, bytes)));
+        }
         Ok(made)
     }
 
     /// What this run keeps for the next.
     pub fn bytes(&self) -> Vec<u8> {
-        packed(&(self.program(), &*locked(&self.now))).unwrap_or_default()
+        let rest = packed(&(self.program(), &*locked(&self.now))).unwrap_or_default();
+        [&digest([&rest])[..], &rest].concat()
     }
 
     /// The digest of a file, which is read once.
@@ -74,10 +86,11 @@ impl Kept {
     /// If the file cannot be read.
     pub fn file(&self, path: &Path) -> Result<Digest> {
         if let Some(known) = locked(&self.files).get(path) {
-            return Ok(*known);
+            return Ok(known.0);
         }
+        let before = stamp(path);
         let digest = content(path).map_err(|e| Error::io("read", path, e))?;
-        locked(&self.files).insert(path.to_owned(), digest);
+        locked(&self.files).insert(path.to_owned(), (digest, before));
         Ok(digest)
     }
 
@@ -102,6 +115,10 @@ pub fn packed(value: &impl Serialize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut packer = rmp_serde::Serializer::new(&mut bytes).with_bytes(BytesMode::ForceIterables);
     value.serialize(&mut packer).ok().map(|()| bytes)
+}
+
+fn stamp(path: &Path) -> Stamp {
+    std::fs::metadata(path).ok().and_then(|meta| Some((meta.len(), meta.modified().ok()?)))
 }
 
 fn content(path: &Path) -> std::io::Result<Digest> {

@@ -4,6 +4,7 @@ use super::{Campaign, Channel, Reading, locate};
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::path::PathBuf;
 use toml::Spanned;
@@ -67,6 +68,23 @@ impl Campaign {
             (span, _) => Err(several(span)),
         };
         all.into_iter().map(one).collect()
+    }
+
+    /// The tables of a section as they are written: keys and values.
+    ///
+    /// # Errors
+    /// If the campaign is no TOML.
+    pub(crate) fn written(&self, section: &str) -> Result<Vec<Vec<(String, String)>>> {
+        let Some(DeValue::Array(all)) = self.table()?.remove(section).map(Spanned::into_inner) else {
+            return Ok(Vec::new());
+        };
+        let row = |(key, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+            (key.get_ref().to_string(), self.text[value.span()].to_owned())
+        };
+        let rows = |table: &Spanned<DeValue<'_>>| {
+            table.get_ref().as_table().map(|rows| rows.iter().map(row).collect())
+        };
+        Ok(all.iter().filter_map(rows).collect())
     }
 
     fn entry<K: DeserializeOwned>(

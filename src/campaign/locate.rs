@@ -42,7 +42,8 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
         let single = line.replace("[[", "[").replace("]]", "]");
         complaint(&format!("{line} begins one table of several"), "a single table", format!("write {single}"))
     } else if begins("unclosed array table") {
-        complaint(line, "two brackets at the end, too", format!("write {line}]"))
+        let head = line.split('#').next().unwrap_or_default().trim_end();
+        complaint(head, "two brackets at the end, too", format!("write {head}]"))
     } else if let Some((key, stated, expected, meant)) = mended(line, expected) {
         complaint(&format!("{key} = {stated}"), expected, format!("write {key} = {meant}"))
     } else if begins("wanted string") {

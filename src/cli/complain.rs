@@ -140,7 +140,7 @@ fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option
     } else if let Some(number) = without_unit(value) {
         typed(&number.to_string())
     } else {
-        near.or(names.first().map(String::as_str)).map_or(help, typed)
+        near.map_or(help, typed)
     };
     Error::usage(format!("{option} is {value}"), expected).hint(hint)
 }

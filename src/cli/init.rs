@@ -37,9 +37,19 @@ impl super::Run for Init {
         let proposal = print::busy(json, "looking at files", |bar| {
             Proposal::of(&self.folder, &self.reading, known.as_ref(), &Kept::default(), bar)
         })?;
-        let text = if known.is_some() { proposal.tables() } else { proposal.toml() };
+        let text = match &known {
+            Some(known) => {
+                let end = if known.text().ends_with('\n') { "" } else { "\n" };
+                let text = format!("{end}{}", proposal.tables());
+                // What cannot stand behind the rest is not written.
+                analysis::parse(&path, known.text().to_owned() + &text)?;
+                text
+            }
+            None => proposal.toml(),
+        };
+        let nothing = text.trim().is_empty();
         let file = std::fs::OpenOptions::new().append(true).create(true).open(&path);
-        file.and_then(|mut file| file.write_all(text.as_bytes()))
+        file.and_then(|mut file| if nothing { Ok(()) } else { file.write_all(text.as_bytes()) })
             .map_err(|e| Error::io("write", &path, e))?;
         if json {
             print::object(json!({
@@ -56,7 +66,7 @@ impl super::Run for Init {
             for (file, why) in &proposal.left {
                 complain::line(&format!("not used: {file}: {why}"));
             }
-            let done = match (&known, text.is_empty()) {
+            let done = match (&known, nothing) {
                 (None, _) => "wrote",
                 (Some(_), false) => "added to the end of",
                 (Some(_), true) => "every recording of the folder stands in",

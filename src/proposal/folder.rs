@@ -45,7 +45,7 @@ impl Folder {
     pub fn of(root: &Path, reading: &Reading, known: Option<&Campaign>) -> Result<Folder> {
         let (reader, with_rate) = (reading.untimed().reader()?, reading.reader()?);
         let (all, others) = analysis::recordings(root)?;
-        let new = known.map(|campaign| analysis::unnamed(campaign, &all));
+        let new = known.map(|campaign| analysis::unnamed(campaign, true, &all)).transpose()?;
         let mut paths = new.unwrap_or_else(|| all.clone());
         let within = |path: &Path| {
             let inside = path.strip_prefix(root).unwrap_or(path);
@@ -215,6 +215,12 @@ fn apart(name: &str, others: &[String]) -> [String; 2] {
     };
     let run = runs.iter().rev().find(varies).or(runs.last());
     run.map_or_else(|| [name.to_owned(), String::new()], |run| ends(*run))
+}
+
+/// Whether two names differ in one number alone.
+pub(super) fn alike(one: &str, other: &str) -> bool {
+    let both = [one.to_owned(), other.to_owned()];
+    one != other && apart(one, &both) == apart(other, &both)
 }
 
 /// The name of a series: what stands before its numbers, without marks at its end.

@@ -128,7 +128,7 @@ pub fn drill_each(
     let reach = around.iter().fold(0.0f64, |reach, v| reach.max(v.abs()));
     let groups = groups::groups(&mut impacts, &residuals, gap, averaged, options, &offset);
     let groups: Vec<Group> = groups.into_iter().map(|group| group.within(reach)).collect();
-    stroke.std = stroke.std.map(|std| std.hypot(lacking(&cycles.blunted, &groups, rate)));
+    stroke.std = stroke.std.map(|std| std.hypot(lacking(&cycles.blunted, &groups, reach, rate)));
     let strongest = groups.first();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
     // Where speeds are too small, so is what they add up to: no uncertainty is stated.
@@ -186,14 +186,16 @@ pub fn drill_each(
     Ok(result)
 }
 
-/// Standard uncertainty in m of what a stroke lacks: what smoothing takes off, and what the mass covers between an impact, which turns it round at
+/// Standard uncertainty in m of what a stroke lacks, where no velocity is beyond `reach` in m/s: what smoothing takes off, and what the mass covers between an impact, which turns it round at
 /// once, and the nearer sample.
-fn lacking(blunted: &[f64], groups: &[Group], rate: f64) -> f64 {
+fn lacking(blunted: &[f64], groups: &[Group], reach: f64, rate: f64) -> f64 {
     let corner = |group: &Group| {
-        let (before, after) = (group.before.value.abs(), group.after.value.abs());
-        before * after / (before + after) / rate
+        // Where a velocity is not known, it is no more than the largest of the record.
+        let known = |v: f64| if v.is_nan() { reach } else { v.abs() };
+        let [before, after] = [&group.before, &group.after].map(|v| known(v.value));
+        if before + after > 0.0 { before * after / (before + after) / rate } else { 0.0 }
     };
-    let corners: f64 = groups.iter().map(corner).filter(|corner| corner.is_finite()).sum();
+    let corners: f64 = groups.iter().map(corner).sum();
     (Mean::of(blunted).value.abs() + corners) / f64::sqrt(3.0)
 }
 

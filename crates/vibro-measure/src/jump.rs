@@ -69,15 +69,20 @@ pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direc
         })
     };
     // Near a pole of a linear motion its inverse is a straight line over f², near a zero the motion itself: one of them is smooth.
+    let noise = |i: usize| {
+        let of = |k: usize| known(curve[k].2).unwrap_or(0.0) / curve[k].1 * receptances[k].norm();
+        of(i).hypot(of(i + 1))
+    };
     let turns = |i: usize| {
         receptances.len() == curve.len()
             && (receptances[i + 1] / receptances[i]).arg().abs() > TURN
+            && (receptances[i + 1] - receptances[i]).norm() > SIGMA * noise(i)
             && stands_out(i, &|k| (receptances[k + 1] - receptances[k]).norm())
             && stands_out(i, &|k| (receptances[k + 1].inv() - receptances[k].inv()).norm())
     };
     let is_jump = |i: &usize| {
         let leaps = step(*i).abs() > JUMP.ln() && stands_out(*i, &|k| step(k).abs());
-        step(*i).is_finite() && (leaps || turns(*i)) && differ(&curve[*i], &curve[i + 1])
+        step(*i).is_finite() && (leaps && differ(&curve[*i], &curve[i + 1]) || turns(*i))
     };
     (0..steps).filter(is_jump).map(|i| jump([curve[i], curve[i + 1]], direction)).collect()
 }

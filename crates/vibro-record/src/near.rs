@@ -1,15 +1,17 @@
 //! The known name that was meant by one that is not known.
 
-/// The known name with which the wrong one begins; else that at the smallest edit distance (Damerau 1964, each letter changed once), where that is
-/// small beside its length.
+use std::cmp::Reverse;
+
+/// The known name at the smallest edit distance (Damerau 1964, each letter changed once), where that is small beside its length; else the longest with
+/// which the wrong one begins.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wrong = wrong.to_lowercase();
-    let distance = |name: &str| match name.to_lowercase() {
-        short if short.len() > 1 && wrong.starts_with(&short) => 0,
-        name => strsim::osa_distance(&wrong, &name),
-    };
-    let (distance, near) = known.into_iter().map(|name| (distance(name), name)).min()?;
-    (distance <= 1 + near.chars().count() / 6).then_some(near)
+    let known: Vec<(&str, String)> = known.into_iter().map(|name| (name, name.to_lowercase())).collect();
+    let distance = |name: &str| strsim::osa_distance(&wrong, name);
+    let slips = known.iter().filter(|(_, name)| distance(name) <= 1 + name.chars().count() / 6);
+    let longer = known.iter().filter(|(_, name)| name.len() > 1 && wrong.starts_with(name));
+    let near = slips.min_by_key(|(_, name)| (distance(name), Reverse(name.len())));
+    near.or_else(|| longer.max_by_key(|(_, name)| name.len())).map(|(name, _)| *name)
 }
 
 #[cfg(test)]
@@ -21,6 +23,8 @@ mod tests {
         assert_eq!(nearest("calibraton", ["window", "calibration"]), Some("calibration"));
         assert_eq!(nearest("Sweep_1.CSV", ["sweep_01.csv", "drop_1.csv"]), Some("sweep_01.csv"));
         assert_eq!(nearest("bnech", ["bench"]), Some("bench"));
+        assert_eq!(nearest("height_sdt", ["height", "height_std"]), Some("height_std"));
+        assert_eq!(nearest("velocity2", ["velocity", "velocity 2"]), Some("velocity 2"));
         assert_eq!(nearest("downwards", ["up", "down"]), Some("down"));
         assert_eq!(nearest("nofile.csv", ["norate.csv"]), None);
         assert_eq!(nearest("xyz", ["calibration", "window"]), None);

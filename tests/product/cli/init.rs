@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use vibroimpact::math::Noise;
 
 /// A file of one channel beside the time.
@@ -97,13 +98,11 @@ fn each_record_of_a_folder_gets_the_table_of_its_kind() {
     assert_eq!(run["results"]["frf"][0]["modes"].as_array().unwrap().len(), 2);
     assert!(json(&["init", text(root.path())])["found"].as_array().unwrap().is_empty());
     assert_eq!(fs::read_to_string(&campaign).unwrap(), written);
-    assert!(!run.to_string().contains("recordings-not-named"));
+    assert!(!run.to_string().contains("files-not-named"));
     // A recording that comes later is named, and gets a table behind the others.
     fs::copy(root.path().join("release.csv"), root.path().join("later.csv")).unwrap();
     let said = vibro(&["run", text(&campaign)]).stderr;
-    assert!(
-        String::from_utf8(said).unwrap().contains("1 recording of the folder stands in no table: later.csv.")
-    );
+    assert!(String::from_utf8(said).unwrap().contains("1 file of the folder stands in no table: later.csv."));
     json(&["init", text(root.path())]);
     let longer = fs::read_to_string(&campaign).unwrap();
     assert!(
@@ -214,7 +213,7 @@ fn a_folder_that_is_watched_runs_again_when_a_file_lands() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench");
     let copy = |name: &str| fs::copy(own.join(name), root.path().join(name)).unwrap();
     copy("DECAY.CSV");
-    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_vibro"))
+    let mut child = Command::new(env!("CARGO_BIN_EXE_vibro"))
         .args(["run", "--watch", text(root.path())])
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::null())
@@ -288,4 +287,51 @@ fn a_check_names_channels_that_are_not_there_and_tables_that_are_comments() {
         (subject, &numbers["keys"], &numbers["line"]),
         (&"drill.csv".into(), &"beam_angle".into(), &6.0.into())
     );
+}
+
+/// From within the folder, with names that are parts of others, and beside a series of drops whose height is known.
+#[test]
+fn what_comes_later_joins_its_series_and_is_not_taken_for_another_file() {
+    let root = tempfile::tempdir().unwrap();
+    folder(root.path());
+    for file in ["contact.csv", "shaft.csv", "pulse.csv", "fall4.csv"] {
+        fs::remove_file(root.path().join(file)).unwrap();
+    }
+    let here = |arguments: &[&str]| {
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_vibro")).args(arguments).current_dir(root.path()).output();
+        let output = output.unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(here(&["init", "."]).0, Some(0));
+    let path = root.path().join("campaign.toml");
+    let filled = |text: &str| {
+        let rows = text.lines().map(|line| match line.trim_start_matches('#') {
+            row if row.starts_with("height =") => "height = 0.57".to_owned(),
+            row if row.starts_with("height_std =") => "height_std = 0.001".to_owned(),
+            row if line.starts_with("#[[") || line.starts_with("#name") || line.starts_with("#file") => {
+                row.to_owned()
+            }
+            _ => line.to_owned(),
+        });
+        rows.collect::<Vec<String>>().join("\n")
+    };
+    let text = filled(&fs::read_to_string(&path).unwrap());
+    fs::write(&path, &text).unwrap();
+    assert!(!here(&["run", "."]).1.contains("in no table"));
+    fs::copy(root.path().join("fall3.csv"), root.path().join("fall4.csv")).unwrap();
+    fs::copy(root.path().join("release.csv"), root.path().join("lease.csv")).unwrap();
+    assert!(here(&["run", "."]).1.contains("2 files of the folder stand in no table: fall4.csv, lease.csv."));
+    assert_eq!(here(&["init", "."]).0, Some(0));
+    let longer = fs::read_to_string(&path).unwrap();
+    let added = longer.strip_prefix(&text).unwrap();
+    assert!(
+        added.contains("name = \"fall\"\nfile = \"fall4.csv\"\nheight = 0.57\nheight_std = 0.001\n"),
+        "{added}"
+    );
+    assert!(added.contains("file = \"lease.csv\"") && added.matches("[[").count() == 2, "{added}");
+    // A table that cannot stand behind the others is not written.
+    fs::write(&path, "decay = [{ file = \"release.csv\" }]\n").unwrap();
+    assert_eq!(here(&["init", "."]).0, Some(2));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "decay = [{ file = \"release.csv\" }]\n");
 }

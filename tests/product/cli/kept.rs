@@ -84,10 +84,18 @@ fn a_second_run_computes_what_changed_and_gives_what_a_first_would() {
     let step = fs::read_to_string(root.path().join("step2.csv")).unwrap();
     fs::write(root.path().join("step2.csv"), step.replace(",3.0", ",3.1")).unwrap();
     assert_eq!(kept(&campaign), all - 2);
+    // Its name alone: it stands in the history of the results.
+    fs::rename(root.path().join("step5.csv"), root.path().join("step6.csv")).unwrap();
+    assert_eq!(kept(&campaign), all - 2);
     // What was kept is damaged, in part or as a whole.
     let file = out.join(".kept");
     let bytes = fs::read(&file).unwrap();
     fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
+    assert_eq!(kept(&campaign), 0);
+    let mut bytes = fs::read(&file).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&file, bytes).unwrap();
     assert_eq!(kept(&campaign), 0);
     fs::write(&file, "no answers").unwrap();
     assert_eq!(kept(&campaign), 0);

@@ -6,6 +6,7 @@ use super::{
 use crate::Estimate;
 use crate::exposure::Exposure;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use vibro_record::Finding;
 
 /// Everything found in a record.
@@ -145,7 +146,8 @@ pub(super) fn findings(
     let turned = Finding::caution("drill-turns-from-impacts").number("rpm", 60.0 * d.speed.value);
     let turned = if r.extra > 0 { turned.count("others", r.extra) } else { turned };
     let missing = if own { "drill-impacts-missing" } else { "drill-edges-missing" };
-    let without = d.groups.first().map_or(0, |group| d.averaged.saturating_sub(group.n));
+    let struck: BTreeSet<usize> = d.impacts.iter().filter(|i| i.group == 0).map(|i| i.cycle).collect();
+    let without = if d.impacts.is_empty() { 0 } else { d.averaged.saturating_sub(struck.len()) };
     let missed = Finding::caution("drill-turns-without-impact").count("turns", d.averaged);
     let found = [
         (own, turned),

@@ -97,7 +97,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         let within = 1.0 / (12f64.sqrt() * rate);
         findings.push(Finding::caution("onset-within-sample").number("std", within));
         std = std.hypot(within);
-        findings.extend(chatter(&values, &bursts, least, rate).filter(|_| pause.is_none()));
+        findings.extend(chatter(&values, &bursts, rate).filter(|_| pause.is_none()));
     }
     Ok(Detected {
         times: each.iter().map(|o| trace.axis.start() + o.time / rate).collect(),
@@ -110,13 +110,27 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     })
 }
 
-/// Contacts that close again within an impact; where pulses rise slowly, it is their ringing that comes again.
-fn chatter(values: &[f64], bursts: &[Range<usize>], least: f64, rate: f64) -> Option<Finding> {
+/// A contact is open below this part of its height and closed above that one.
+const OPEN: f64 = 0.2;
+const CLOSED: f64 = 0.8;
+
+/// Contacts of two levels that open and close again within an impact; what swings below its level rings.
+fn chatter(values: &[f64], bursts: &[Range<usize>], rate: f64) -> Option<Finding> {
     let again = |burst: &Range<usize>| {
-        let closes = |i: &usize| values[i - 1] <= least && values[*i] > least;
-        let mut closing = (burst.start.max(1)..burst.end).filter(closes);
-        let first = closing.next()?;
-        closing.next_back().map(|last| (last - first) as f64 / rate)
+        let values = &values[burst.start.saturating_sub(1)..burst.end];
+        let high = values.iter().copied().fold(0.0, f64::max);
+        if values.iter().any(|v| *v < -OPEN * high) {
+            return None;
+        }
+        let (mut open, mut closings) = (true, Vec::new());
+        for (i, v) in values.iter().enumerate() {
+            if open && *v > CLOSED * high {
+                closings.push(i);
+            }
+            open = *v < OPEN * high || open && *v < CLOSED * high;
+        }
+        let (first, last) = (closings.first()?, closings.last()?);
+        (last > first).then(|| (last - first) as f64 / rate)
     };
     let longest: Vec<f64> = bursts.iter().filter_map(again).collect();
     let found = Finding::note("contact-chatter").count("n", longest.len()).count("all", bursts.len());
