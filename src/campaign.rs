@@ -179,7 +179,9 @@ impl Campaign {
             }
             let lacking = keys.iter().filter(|(_, value)| value.is_empty());
             let lacking: Vec<&str> = lacking.map(|(key, _)| key.as_str()).collect();
-            let found = Finding::note("table-in-comment").about(file.unwrap_or(&head)).count("line", i + 1);
+            let found = Finding::note("table-in-comment").about(file.unwrap_or(&head));
+            // One that was only proposed has no lines to look at.
+            let found = if self.path.is_file() { found.count("line", i + 1) } else { found };
             Some(if lacking.is_empty() { found } else { found.name("keys", lacking.join(", ")) })
         };
         let unused = lines.iter().position(|line| *line == "# Not used:");

@@ -202,8 +202,7 @@ impl Series {
         let of_trace = trace.meta.findings.iter().filter(|found| found.code != Trace::UNCALIBRATED);
         self.answer.add(&file, of_trace);
         self.answer.add(&file, &found.findings);
-        self.answer
-            .figure(format!("drop_{number}"), impacts::figures::drop(source.name, &trace, &found.times));
+        self.answer.figure(format!("drop_{number}"), impacts::figures::drop(&file, &trace, &found.times));
         self.files.push(file);
         Ok(())
     }

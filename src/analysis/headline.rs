@@ -145,6 +145,7 @@ fn cell(item: &Value, key: &str) -> Cell {
             number.as_f64().map_or(Cell::Missing, |value| Cell::Estimate { value, std })
         }
         Value::String(word) => word.as_str().into(),
+        Value::Array(all) if all.is_empty() => Cell::Missing,
         Value::Array(all) => all.len().into(),
         Value::Object(ratio) if ratio.contains_key("cycles") => {
             format!("{}/{}", ratio["impacts"], ratio["cycles"]).into()

@@ -240,7 +240,9 @@ fn signature(headers: &[Header]) -> String {
 pub(super) fn short(error: &Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();
-    line.split_once(": ").map_or(line, |(_, rest)| rest).to_owned()
+    let found = line.split_once(": ").map_or(line, |(_, rest)| rest);
+    // What is to stand there helps who wrote the file, not who sorts a folder.
+    found.split("; expected ").next().unwrap_or(found).to_owned()
 }
 
 #[cfg(test)]

@@ -102,15 +102,17 @@ impl<'a> Trial<'a> {
     /// Adds the tables of a series.
     pub fn series(&self, series: &Series, proposal: &mut Proposal) {
         let table = series.sweep().filter(|_| series.files.len() >= STEPS);
-        if let Some(table) =
-            table.filter(|table| self.answers(from_ref(table)).is_ok_and(|heard| settled(&heard)))
-        {
+        let heard = table.as_ref().and_then(|table| self.answers(from_ref(table)).ok());
+        if let (Some(table), Some(heard)) = (table, heard.filter(settled)) {
             let (_, responses) = series.force_and_responses().unwrap_or_default();
             let name = |k: usize| match responses.len() {
                 1 => series.name.clone(),
                 _ => format!("{} {}", series.name, series.channel(k).to_string().trim_matches('"')),
             };
-            let modes = responses.iter().map(|k| {
+            let jumps =
+                |i: usize| heard.result["responses"][i]["jumps"].as_array().is_some_and(|j| !j.is_empty());
+            // A motion that jumps is not that of linear modes.
+            let modes = responses.iter().enumerate().filter(|(i, _)| !jumps(*i)).map(|(_, k)| {
                 let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
                 table.found("name", format!("{}, modes", name(*k)))
             });

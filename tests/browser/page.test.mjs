@@ -35,7 +35,7 @@ async function open(path, options = {}, todo) {
 /** Scrolls to an element and waits until its figure is drawn. */
 async function show(page, selector, nth = 0) {
   const element = page.locator(selector).nth(nth);
-  await element.scrollIntoViewIfNeeded();
+  await element.evaluate((e) => e.scrollIntoView());
   await page.waitForTimeout(150);
   return element;
 }
@@ -112,6 +112,7 @@ test("a dragged rectangle zooms, and reset shows all", () => open(report, {}, as
 
 test("a waterfall turns by pointer and keys, changes to levels, and names the spectrum under the pointer", () => open(report, {}, async (page) => {
   await show(page, "[data-figure]", 2);
+  await page.locator("canvas.turn").first().scrollIntoViewIfNeeded();
   const canvas = page.locator("canvas.turn").first(), first = await ink(canvas), box = await canvas.boundingBox();
   await page.mouse.move(box.x + 300, box.y + 200);
   await page.mouse.down();
@@ -126,7 +127,8 @@ test("a waterfall turns by pointer and keys, changes to levels, and names the sp
   assert.notEqual(await ink(canvas), turned);
   const figure = page.locator("[data-figure]", { has: page.locator("canvas.turn") }).first();
   await figure.getByRole("button", { name: "dB" }).click();
-  await page.mouse.move(box.x + 400, box.y + 250);
+  const now = await canvas.boundingBox();
+  await page.mouse.move(now.x + 400, now.y + 250);
   await page.waitForTimeout(60);
   assert.match(await figure.locator(".tip").textContent(), /Excitation frequency \(Hz\) [\d.]+, Frequency \(Hz\) [\d.]+, .* \d/);
 }));

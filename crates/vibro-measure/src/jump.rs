@@ -61,14 +61,18 @@ pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direc
     let steps = curve.len().saturating_sub(1);
     // What the curve does on its own over the distance of a step: the steepest of two steps on each side. Without a step on both sides,
     // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
-    let stands_out = |i: usize, change: &dyn Fn(usize) -> f64| {
-        [i.saturating_sub(2)..i, i + 1..(i + 3).min(steps)].into_iter().all(|side| {
-            let apart = side.filter(|k| width(*k) > 1e-5 * curve[*k].0);
-            let usual = apart.map(|k| change(k) * width(i) / width(k)).fold(f64::NAN, f64::max);
-            change(i) > JUMP_AGAINST_NEIGHBOURS * usual
-        })
+    let stands_out = |i: usize, sides: usize, change: &dyn Fn(usize) -> f64| {
+        let around = [i.saturating_sub(2)..i, i + 1..(i + 3).min(steps)].into_iter();
+        let mut known = around.filter(|side| sides == 2 || side.len() == 2).peekable();
+        known.peek().is_some()
+            && known.all(|side| {
+                let apart = side.filter(|k| width(*k) > 1e-5 * curve[*k].0);
+                let usual = apart.map(|k| change(k) * width(i) / width(k)).fold(f64::NAN, f64::max);
+                change(i) > JUMP_AGAINST_NEIGHBOURS * usual
+            })
     };
-    // Near a pole of a linear motion its inverse is a straight line over f², near a zero the motion itself: one of them is smooth.
+    // Near a pole of a linear motion its inverse is a straight line over f², near a zero the motion itself: one of them is smooth, and two steps
+    // on one side tell.
     let noise = |i: usize| {
         let of = |k: usize| known(curve[k].2).unwrap_or(0.0) / curve[k].1 * receptances[k].norm();
         of(i).hypot(of(i + 1))
@@ -77,11 +81,11 @@ pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direc
         receptances.len() == curve.len()
             && (receptances[i + 1] / receptances[i]).arg().abs() > TURN
             && (receptances[i + 1] - receptances[i]).norm() > SIGMA * noise(i)
-            && stands_out(i, &|k| (receptances[k + 1] - receptances[k]).norm())
-            && stands_out(i, &|k| (receptances[k + 1].inv() - receptances[k].inv()).norm())
+            && stands_out(i, 1, &|k| (receptances[k + 1] - receptances[k]).norm())
+            && stands_out(i, 1, &|k| (receptances[k + 1].inv() - receptances[k].inv()).norm())
     };
     let is_jump = |i: &usize| {
-        let leaps = step(*i).abs() > JUMP.ln() && stands_out(*i, &|k| step(k).abs());
+        let leaps = step(*i).abs() > JUMP.ln() && stands_out(*i, 2, &|k| step(k).abs());
         step(*i).is_finite() && (leaps && differ(&curve[*i], &curve[i + 1]) || turns(*i))
     };
     (0..steps).filter(is_jump).map(|i| jump([curve[i], curve[i + 1]], direction)).collect()

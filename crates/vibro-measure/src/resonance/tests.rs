@@ -194,6 +194,9 @@ fn a_motion_that_turns_round_within_a_step_has_jumped() {
     let found = NamedCurve::new(curve, &motion, Direction::Up, None);
     assert_eq!(found.jumps.iter().map(|j| (j.from, j.to)).collect::<Vec<_>>(), [(23.0, 24.0)]);
     assert!(found.resonances.iter().all(|r| r.at_jump), "{:?}", found.resonances);
+    // The sweep ends right behind it.
+    let found = NamedCurve::new(points(&f[..9], &a[..9], &[1e-4; 9]), &motion[..9], Direction::Up, None);
+    assert_eq!(found.jumps.iter().map(|j| (j.from, j.to)).collect::<Vec<_>>(), [(23.0, 24.0)]);
 }
 
 #[test]

@@ -65,7 +65,7 @@ async function start() {
   const hosts = document.querySelectorAll("[data-figure]");
   const drawn = new Map();
   // The spectra of a sweep are those of its waterfall.
-  const spectra = (name) => figures.find((f) => f.title === name && f.panels[0]?.kind === "waterfall")?.panels[0];
+  const spectra = (name) => figures.find((f) => f.title === `Waterfall, ${name}` && f.panels[0]?.kind === "waterfall")?.panels[0];
   const draw = (host) => {
     if (drawn.get(host) === host.clientWidth) return;
     drawn.set(host, host.clientWidth);
