@@ -127,6 +127,7 @@ test("a waterfall turns by pointer and keys, changes to levels, and names the sp
   assert.notEqual(await ink(canvas), turned);
   const figure = page.locator("[data-figure]", { has: page.locator("canvas.turn") }).first();
   await figure.getByRole("button", { name: "dB" }).click();
+  await canvas.scrollIntoViewIfNeeded();
   const now = await canvas.boundingBox();
   await page.mouse.move(now.x + 400, now.y + 250);
   await page.waitForTimeout(60);
