@@ -15,6 +15,7 @@ mod kept;
 pub(crate) mod model;
 pub(crate) mod precision;
 pub(crate) mod pulse;
+mod recordings;
 pub(crate) mod source;
 pub(crate) mod spectrum;
 pub(crate) mod sweep;
@@ -23,9 +24,9 @@ mod headline;
 mod page;
 
 pub use answer::Answer;
-pub(crate) use inputs::{OWN, recordings, unnamed};
 pub use job::{Heard, INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
 pub use kept::Kept;
+pub(crate) use recordings::{OWN, recordings, unnamed};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 

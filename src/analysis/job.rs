@@ -1,8 +1,9 @@
 //! All that a campaign asks for, and its files.
 
 use super::answer::{left_out, unwritten};
-use super::inputs::{beside, inputs};
+use super::inputs::inputs;
 use super::kept::{Digest, Kept, digest, packed};
+use super::recordings::beside;
 use super::source::{Source, file_name, name_of};
 use super::{Analysis, Answer, KINDS, Kind, page};
 use crate::campaign::{Campaign, Entry};

@@ -1,0 +1,99 @@
+//! The recordings of a folder, and those of them that its campaign does not name.
+
+use super::{RESULTS, file_name, files};
+use crate::campaign::Campaign;
+use crate::error::{Error, Result};
+use crate::record::Finding;
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+
+/// Levels below a folder that are looked into.
+const LEVELS: usize = 2;
+
+/// Files that nobody takes for recordings.
+const NO_RECORDINGS: &str =
+    "toml json md html pdf png jpg jpeg svg gif doc docx ppt pptx py m rs zip exe bak log ini tdms_index";
+
+/// The files of a folder and up to two levels below it that may be recordings, numbers by value, and those that are none by their endings. Hidden
+/// files and folders of results are passed over.
+///
+/// # Errors
+/// If a folder cannot be listed.
+pub fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
+    let (mut found, mut others) = (Vec::new(), Vec::new());
+    list(folder, LEVELS, &mut found, &mut others)?;
+    found.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    Ok((found, others))
+}
+
+fn list(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {
+    if levels < LEVELS && folder.join(RESULTS).exists() {
+        return Ok(());
+    }
+    let list_of = |e| Error::io("list", folder, e);
+    let mut below = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(list_of)? {
+        let entry = entry.map_err(list_of)?;
+        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
+        if name.starts_with('.') {
+            continue;
+        }
+        if path.is_dir() {
+            below.push(path);
+        } else if path.is_file() {
+            let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+            let none = NO_RECORDINGS.split(' ').any(|known| known == ending);
+            if none { &mut *others } else { &mut *found }.push(path);
+        }
+    }
+    below.iter().filter(|_| levels > 0).try_for_each(|folder| list(folder, levels - 1, found, others))
+}
+
+/// Those of the files that the campaign names in no table and in no comment.
+///
+/// # Errors
+/// As [`files`].
+pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    // `./a` is `a`.
+    let plain = |path: &Path| path.components().filter(|c| *c != Component::CurDir).collect::<PathBuf>();
+    let named: BTreeSet<PathBuf> = files(campaign, allow_outside)?.iter().map(|path| plain(path)).collect();
+    let folder = plain(campaign.folder());
+    let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
+    let said = |path: &Path| {
+        let name = path.strip_prefix(&folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
+        campaign.text().match_indices(&name).any(|(at, _)| {
+            let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
+            // A full stop ends a sentence, too.
+            let behind =
+                behind.strip_prefix('.').filter(|b| !b.starts_with(char::is_alphanumeric)).unwrap_or(behind);
+            before.chars().next_back().is_none_or(ends) && behind.chars().next().is_none_or(ends)
+        })
+    };
+    let new = |path: &&PathBuf| {
+        let path = plain(path);
+        !named.contains(&path) && !said(&path)
+    };
+    Ok(all.iter().filter(new).cloned().collect())
+}
+
+/// What is said of files in the folder of a campaign that it does not name, where it is the folder's own.
+///
+/// # Errors
+/// As [`files`].
+pub fn beside(campaign: &Campaign, allow_outside: bool) -> Result<Option<Finding>> {
+    if !campaign.path().is_file() || !campaign.path().ends_with(OWN) {
+        return Ok(None);
+    }
+    let new = unnamed(campaign, allow_outside, &recordings(campaign.folder())?.0)?;
+    let names: Vec<String> = new.iter().take(SHOWN).map(|path| file_name(path)).collect();
+    let more = new.len().saturating_sub(SHOWN);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let found = Finding::note("files-not-named").count("n", new.len());
+    Ok((!new.is_empty()).then(|| found.name("files", names.join(", ") + &more)))
+}
+
+/// Name of the file of a folder's own campaign.
+pub const OWN: &str = "campaign.toml";
+
+/// Files that are named one by one.
+const SHOWN: usize = 5;
