@@ -147,13 +147,13 @@ impl Table {
 
     /// Its name in the report.
     pub fn name(&self) -> &str {
-        let of = |key| self.rows.iter().find(|row| row.key == key);
-        of("name").or_else(|| of("sweep")).map_or("", |row| row.value.trim_matches('"'))
+        let own = self.value("name");
+        if own.is_empty() { self.value("sweep") } else { own }
     }
 
     /// What a key says; empty where it says nothing.
-    fn value(&self, key: &str) -> String {
-        self.rows.iter().find(|row| row.key == key).map_or_else(String::new, |row| bare(&row.value))
+    fn value(&self, key: &str) -> &str {
+        self.rows.iter().find(|row| row.key == key).map_or("", |row| bare(&row.value))
     }
 
     /// As a campaign writes it. What lacks a key is a comment.
@@ -252,11 +252,11 @@ impl Proposal {
     /// Gives a table what the campaign states of a file whose name differs in a number alone, and a sweep a name of its own.
     fn join(&mut self, known: &Campaign) -> Result<()> {
         let of = |rows: &[(String, String)], key: &str| {
-            rows.iter().find(|row| row.0 == key).map_or_else(String::new, |row| bare(&row.1))
+            rows.iter().find(|row| row.0 == key).map_or_else(String::new, |row| bare(&row.1).to_owned())
         };
         let sweeps: Vec<String> = known.written("sweep")?.iter().map(|rows| of(rows, "name")).collect();
         for table in &mut self.tables {
-            let file = table.value("file");
+            let file = table.value("file").to_owned();
             let all = known.written(table.section)?;
             let like = all.iter().find(|rows| folder::alike(&file, &of(rows, "file")));
             for (key, value) in like.into_iter().flatten() {
@@ -266,7 +266,7 @@ impl Proposal {
                     (row.value, row.known) = (value.clone(), Known::Found);
                 }
             }
-            let name = table.value(if table.section == "sweep" { "name" } else { "sweep" });
+            let name = table.value(if table.section == "sweep" { "name" } else { "sweep" }).to_owned();
             let free =
                 (2..=sweeps.len() + 2).map(|n| format!("{name} {n}")).find(|name| !sweeps.contains(name));
             for row in table.rows.iter_mut().filter(|row| sweeps.contains(&name) && bare(&row.value) == name)
@@ -316,8 +316,8 @@ impl Proposal {
 }
 
 /// A value of TOML without its quotes.
-fn bare(value: &str) -> String {
-    value.trim_matches(['"', '\'']).to_owned()
+fn bare(value: &str) -> &str {
+    value.trim_matches(['"', '\''])
 }
 
 /// A text without line breaks and other control characters: a name from a folder must not end a comment.

@@ -60,15 +60,20 @@ impl Answer {
         self.tables.push(table);
     }
 
-    /// Adds tables for a person; those with the same columns are one.
-    pub(super) fn join(&mut self, tables: Vec<Table>) {
-        for table in tables.into_iter().filter(|table| !table.rows.is_empty()) {
+    /// Adds all of another answer; tables with the same columns are one.
+    pub(super) fn append(&mut self, mut more: Answer) {
+        for table in more.tables.into_iter().filter(|table| !table.rows.is_empty()) {
             let same = |known: &&mut Table| known.title == table.title && known.columns == table.columns;
             match self.tables.iter_mut().find(same) {
                 Some(known) => known.rows.extend(table.rows),
                 None => self.tables.push(table),
             }
         }
+        self.result.append(&mut more.result);
+        self.findings.append(&mut more.findings);
+        self.details.append(&mut more.details);
+        self.figures.append(&mut more.figures);
+        self.files.append(&mut more.files);
     }
 
     /// Adds a table as a file of numbers.

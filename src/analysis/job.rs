@@ -136,15 +136,18 @@ impl<'a> Job<'a> {
         put(&mut result, &findings, Voice::Campaign);
         let about =
             |(record, finding): About| (if record.is_empty() { name.to_owned() } else { record }, finding);
-        self.found.all.findings.extend(findings.into_iter().map(about));
-        self.found.all.join(tables);
         let marked = |name: String| match name.rsplit_once('.') {
             _ if mark.is_empty() => name,
             Some((stem, ending)) => format!("{stem}_{mark}.{ending}"),
             None => format!("{name}_{mark}"),
         };
-        self.found.all.figures.extend(figures.into_iter().map(|(name, figure)| (marked(name), figure)));
-        self.found.all.files.extend(files.into_iter().map(|(name, bytes)| (marked(name), bytes)));
+        self.found.all.append(Answer {
+            findings: findings.into_iter().map(about).collect(),
+            tables,
+            figures: figures.into_iter().map(|(name, figure)| (marked(name), figure)).collect(),
+            files: files.into_iter().map(|(name, bytes)| (marked(name), bytes)).collect(),
+            ..Answer::default()
+        });
         result
     }
 
@@ -158,7 +161,7 @@ impl<'a> Job<'a> {
         measure: impl FnOnce(&mut Job<'_>) -> Result<()>,
     ) -> Result<()> {
         let (on, files) = self.rests_on(&[section])?;
-        let Gathered { mut all, constants, histories, answers } = self.kept.or_make(on, &files, || {
+        let Gathered { all, constants, histories, answers } = self.kept.or_make(on, &files, || {
             let mut own = Job::new(self.campaign, self.options, self.kept, self.progress);
             measure(&mut own)?;
             Ok(own.found)
@@ -166,16 +169,10 @@ impl<'a> Job<'a> {
         if self.kept.is_old(&on) {
             self.again += answers;
         }
-        let own = &mut self.found;
-        own.constants.extend(constants);
-        own.histories.extend(histories);
-        own.answers += answers;
-        own.all.join(all.tables);
-        own.all.result.append(&mut all.result);
-        own.all.findings.append(&mut all.findings);
-        own.all.details.append(&mut all.details);
-        own.all.figures.append(&mut all.figures);
-        own.all.files.append(&mut all.files);
+        self.found.all.append(all);
+        self.found.constants.extend(constants);
+        self.found.histories.extend(histories);
+        self.found.answers += answers;
         Ok(())
     }
 
@@ -215,9 +212,9 @@ impl<'a> Job<'a> {
         let mut records: Vec<Record> = Vec::new();
         for (i, entry) in entries.iter().enumerate() {
             let name = name_of(entry, i + 1);
-            // Numbers alone have no file.
-            let path = entry.file.as_ref().map_or_else(|| Ok(PathBuf::new()), |_| self.path(entry))?;
             let mut files = K::files(self.campaign, entry, self.options.allow_outside)?;
+            // Numbers alone have no file.
+            let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();
             let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
             let mut on = self.digest(own, &files)?;
             if entry.file.is_none() && !K::RESTS_ON.is_empty() {
