@@ -36,8 +36,18 @@ async function open(path, options = {}, todo) {
 async function show(page, selector, nth = 0) {
   const element = page.locator(selector).nth(nth);
   await element.evaluate((e) => e.scrollIntoView());
+  await element.locator("canvas").first().waitFor();
   await page.waitForTimeout(150);
   return element;
+}
+
+/** Waits until what is asked is so: a busy machine draws later. */
+async function until(holds) {
+  for (let k = 0; k < 100; k++) {
+    if (await holds()) return;
+    await new Promise((done) => setTimeout(done, 50));
+  }
+  assert.fail(`after 5 s it is not so: ${holds}`);
 }
 
 /** What the pixels of a canvas add up to. */
@@ -118,26 +128,24 @@ test("a waterfall turns by pointer and keys, changes to levels, and names the sp
   await page.mouse.down();
   await page.mouse.move(box.x + 200, box.y + 150, { steps: 3 });
   await page.mouse.up();
+  await until(async () => await ink(canvas) !== first);
   await page.waitForTimeout(60);
   const turned = await ink(canvas);
-  assert.notEqual(turned, first);
   await canvas.focus();
   await page.keyboard.press("ArrowLeft");
-  await page.waitForTimeout(60);
-  assert.notEqual(await ink(canvas), turned);
+  await until(async () => await ink(canvas) !== turned);
   const figure = page.locator("[data-figure]", { has: page.locator("canvas.turn") }).first();
   await figure.getByRole("button", { name: "dB" }).click();
   await canvas.scrollIntoViewIfNeeded();
   const now = await canvas.boundingBox();
   await page.mouse.move(now.x + 400, now.y + 250);
-  await page.waitForTimeout(60);
-  assert.match(await figure.locator(".tip").textContent(), /Excitation frequency \(Hz\) [\d.]+, Frequency \(Hz\) [\d.]+, .* \d/);
+  await until(async () => /Excitation frequency \(Hz\) [\d.]+, Frequency \(Hz\) [\d.]+, .* \d/.test(await figure.locator(".tip").textContent()));
 }));
 
 test("a map names the cell under the pointer and shows its spectrum", () => open(report, {}, async (page) => {
   const map = await show(page, "[data-figure]", 3);
   await map.locator(".u-over").first().hover();
-  assert.match(await map.locator(".tip").textContent(), /dB|mm|µm/);
+  await until(async () => /dB|mm|µm/.test(await map.locator(".tip").textContent()));
   assert.equal(await map.locator(".uplot").count(), 2);
 }));
 
@@ -179,6 +187,21 @@ test("print opens what is folded, on white paper of A4 and of Letter", () => ope
   }
   assert.equal(await page.locator("details:not([open])").count(), 0);
 }));
+
+test("a page that is printed before its data are unpacked has every figure or its file", async () => {
+  const context = await browser.newContext({ colorScheme: "dark" }), page = await context.newPage();
+  await page.addInitScript(() => addEventListener("DOMContentLoaded", () => {
+    dispatchEvent(new Event("beforeprint"));
+    const hosts = Array.from(document.querySelectorAll("[data-figure]"));
+    window.printed = [hosts.length, hosts.filter((host) => host.firstElementChild).length, document.querySelectorAll("details:not([open])").length];
+  }));
+  await page.goto(`file://${report}`);
+  const [figures, printed, folded] = await page.evaluate(() => window.printed);
+  assert.ok(figures >= 6, String(figures));
+  assert.deepEqual([printed, folded], [figures, 0]);
+  await show(page, "[data-figure]");
+  await context.close();
+});
 
 test("ticks of a logarithmic axis are multiples of powers of ten, even steps on a short one, powers on a long one", () => open(report, {}, async (page) => {
   const of = (low, high) => page.evaluate(([a, b]) => logTicks(a, b), [low, high]);
@@ -250,8 +273,9 @@ test("sliders move the curve within 50 ms, reset brings it back, and the values 
   const first = await ink(canvas), toml = await place.locator("pre").textContent();
   const times = [];
   for (const value of [100, 300, 500, 700, 900]) {
+    await place.evaluate((host) => (host.whatIf.took = null));
     await gap.fill(String(value));
-    await page.waitForTimeout(60);
+    await until(() => place.evaluate((host) => host.whatIf.took !== null));
     times.push(await place.evaluate((host) => host.whatIf.took));
   }
   t.diagnostic(`a step of a slider: ${times.map((ms) => ms.toFixed(0)).join(", ")} ms`);
@@ -259,8 +283,7 @@ test("sliders move the curve within 50 ms, reset brings it back, and the values 
   assert.notEqual(await ink(canvas), first);
   assert.match(await place.locator("pre").textContent(), /\[rig\]\nm1 = 0\.125\n/);
   await place.getByRole("button", { name: "reset" }).first().click();
-  await page.waitForTimeout(60);
-  assert.equal(await place.locator("pre").textContent(), toml);
+  await until(async () => await place.locator("pre").textContent() === toml);
   const folder = mkdtempSync(join(tmpdir(), "page-"));
   writeFileSync(join(folder, "campaign.toml"), toml);
   execFileSync(vibro, ["check", join(folder, "campaign.toml")], { stdio: "pipe" });

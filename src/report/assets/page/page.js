@@ -59,33 +59,21 @@ function drawFigure(host, figure, shared, spectra) {
   }
 }
 
+/** The figure that stands there without a script. */
+function asPrinted(host) {
+  host.innerHTML = host.nextElementSibling.textContent;
+}
+
 async function start() {
-  const data = await unpacked(document.getElementById("data").textContent);
-  const { figures, matrices, whatif } = JSON.parse(new TextDecoder().decode(data));
   const hosts = document.querySelectorAll("[data-figure]");
   const drawn = new Map();
-  // The spectra of a sweep are those of its waterfall.
-  const spectra = (name) => figures.find((f) => f.title === `Waterfall, ${name}` && f.panels[0]?.kind === "waterfall")?.panels[0];
-  const draw = (host) => {
-    if (drawn.get(host) === host.clientWidth) return;
-    drawn.set(host, host.clientWidth);
-    drawFigure(host, figures[host.dataset.figure], matrices, spectra);
-  };
-  const seen = new IntersectionObserver((entries) => {
-    for (const { isIntersecting, target } of entries) if (isIntersecting) draw(target);
-  }, { rootMargin: "400px" });
-  for (const host of hosts) seen.observe(host);
+  // A page may be printed before its data are unpacked.
+  let draw = asPrinted;
   const again = () => {
     const before = Array.from(drawn.keys());
     drawn.clear();
     before.forEach(draw);
   };
-  let waits = 0;
-  addEventListener("resize", () => {
-    clearTimeout(waits);
-    waits = setTimeout(() => Array.from(drawn.keys()).forEach(draw), 150);
-  });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
   // Paper is white, whatever the screen is.
   addEventListener("beforeprint", () => {
     for (const fold of document.querySelectorAll("details")) fold.open = true;
@@ -97,6 +85,25 @@ async function start() {
     document.documentElement.classList.remove("printing");
     again();
   });
+  const data = await unpacked(document.getElementById("data").textContent);
+  const { figures, matrices, whatif } = JSON.parse(new TextDecoder().decode(data));
+  // The spectra of a sweep are those of its waterfall.
+  const spectra = (name) => figures.find((f) => f.title === `Waterfall, ${name}` && f.panels[0]?.kind === "waterfall")?.panels[0];
+  draw = (host) => {
+    if (drawn.get(host) === host.clientWidth) return;
+    drawn.set(host, host.clientWidth);
+    drawFigure(host, figures[host.dataset.figure], matrices, spectra);
+  };
+  const seen = new IntersectionObserver((entries) => {
+    for (const { isIntersecting, target } of entries) if (isIntersecting) draw(target);
+  }, { rootMargin: "400px" });
+  for (const host of hosts) seen.observe(host);
+  let waits = 0;
+  addEventListener("resize", () => {
+    clearTimeout(waits);
+    waits = setTimeout(() => Array.from(drawn.keys()).forEach(draw), 150);
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
   for (const table of document.querySelectorAll(".table table")) tableTools(table);
   const place = document.getElementById("what-if");
   if (!place) return;
@@ -111,5 +118,5 @@ async function start() {
 
 start().catch(() => {
   // An old browser: the figures as they are printed.
-  for (const host of document.querySelectorAll("[data-figure]")) host.innerHTML = host.nextElementSibling.textContent;
+  document.querySelectorAll("[data-figure]").forEach(asPrinted);
 });
