@@ -38,7 +38,7 @@ pub mod figures {
     pub use super::decay::figures::decay;
     pub use super::drill::figures::drill;
     pub use super::frf::figures::frf;
-    pub use super::impacts::figures::{drop, impacts};
+    pub use super::impacts::figures::{drop, drops, impacts};
     pub use super::model::figures::{
         branches, forces, ladder, orbit, phase_plane, poincare, regimes, sweep, traces,
     };

@@ -9,7 +9,8 @@ use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
 use crate::record::Trace;
 use crate::report::layout::{Shown, table};
-use crate::report::{Cell, Table};
+use crate::report::words::About;
+use crate::report::{Cell, Plot, Table};
 use crate::units::notation::significant;
 use serde::Deserialize;
 
@@ -152,8 +153,9 @@ pub struct Series {
     trains: Vec<Train>,
     velocities: Option<Velocities>,
     contact_time: Option<f64>,
-    files: Vec<String>,
-    answer: Answer,
+    /// File and trace of each drop with a record.
+    records: Vec<(String, Plot)>,
+    findings: Vec<About>,
 }
 
 impl Series {
@@ -167,8 +169,8 @@ impl Series {
             gravity_std: keys.gravity_std,
             ..Drop::default()
         };
-        let (trains, files, contact_time) = (Vec::new(), Vec::new(), keys.contact_time);
-        Series { drop, trains, velocities: None, contact_time, files, answer: Answer::default() }
+        let (trains, records, findings) = (Vec::new(), Vec::new(), Vec::new());
+        Series { drop, trains, velocities: None, contact_time: keys.contact_time, records, findings }
     }
 
     /// Adds what the keys say of a drop without a record.
@@ -181,11 +183,11 @@ impl Series {
         self.velocities = self.velocities.take().or_else(|| keys.velocities());
     }
 
-    /// Adds the record of a drop, which gets this number.
+    /// Adds the record of a drop.
     ///
     /// # Errors
     /// If the file cannot be read, or its trace allows no answer.
-    pub(crate) fn add_record(&mut self, keys: &Keys, source: &Source<'_>, number: usize) -> Result<()> {
+    pub(crate) fn add_record(&mut self, keys: &Keys, source: &Source<'_>) -> Result<()> {
         let file = file_name(source.path);
         let recording = source.recording()?;
         let trace = source.trace(&recording)?;
@@ -197,13 +199,12 @@ impl Series {
         };
         let (train, found) = Train::of(&trace, &how)?;
         self.trains.push(train);
-        self.answer.add(&file, &recording.findings);
         // Times alone matter here.
         let of_trace = trace.meta.findings.iter().filter(|found| found.code != Trace::UNCALIBRATED);
-        self.answer.add(&file, of_trace);
-        self.answer.add(&file, &found.findings);
-        self.answer.figure(format!("drop_{number}"), impacts::figures::drop(&file, &trace, &found.times));
-        self.files.push(file);
+        let findings = recording.findings.iter().chain(of_trace).chain(&found.findings);
+        self.findings.extend(findings.map(|found| (file.clone(), found.clone())));
+        let plot = impacts::figures::drop(&file, &trace, &found.times);
+        self.records.push((file, plot));
         Ok(())
     }
 
@@ -222,8 +223,11 @@ impl Series {
         let (trains, velocities, contact_time) = (self.trains, self.velocities, self.contact_time);
         let found = restitution(&Measured { drop, trains, velocities, contact_time })?;
         let mut answer = Answer::of(&found)?;
-        answer.figures = self.answer.figures;
-        answer.findings = self.answer.findings;
+        answer.findings = self.findings;
+        if !self.records.is_empty() {
+            let plots = self.records.into_iter().map(|(_, plot)| plot).collect();
+            answer.figure("drop", impacts::figures::drops(name, plots));
+        }
         answer.add("", &found.findings);
         answer.table("restitution", by_method(name, &found));
         let columns: [Shown<Restitution>; 3] = [
@@ -301,17 +305,15 @@ impl Analysis for Keys {
             if entry.file.is_some() {
                 let path = job.path(entry)?;
                 let keys = &entry.keys;
-                let added = job.measured(entry, name, &path, |source| series.add_record(keys, source, i + 1));
+                let added = job.measured(entry, name, &path, |source| series.add_record(keys, source));
                 job.found(&file_name(&path), added)?;
             }
         }
         let mut records = Vec::new();
         for (_, name, series) in all.into_iter().filter(|s| !s.2.is_empty()) {
-            let files = series.files.clone().into();
+            let files = series.records.iter().map(|(file, ..)| file.as_str()).collect();
             let found = series.answer(&name);
-            let Some(mut answer) = job.found(&name, found)? else { continue };
-            // Its drops are numbered already.
-            job.found.all.figures.append(&mut answer.figures);
+            let Some(answer) = job.found(&name, found)? else { continue };
             let mark = (records.len() + 1).to_string();
             records.push(Record { name, file: files, mark, answer });
         }

@@ -18,7 +18,7 @@ use std::time::{Duration, SystemTime};
 #[derive(Debug, clap::Args)]
 pub struct Run {
     /// campaign.toml, or a folder of recordings
-    #[arg(index = 1)]
+    #[arg(index = 1, default_value = ".")]
     campaign: PathBuf,
     /// Folder for results [default: `out` in the campaign, else `results` beside it]
     #[arg(value_name = "DIR")]

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Init {
     /// Folder of recordings
-    #[arg(index = 1)]
+    #[arg(index = 1, default_value = ".")]
     folder: PathBuf,
     #[command(flatten)]
     reading: Reading,
@@ -23,7 +23,7 @@ pub struct Init {
 #[derive(Debug, clap::Args)]
 pub struct Check {
     /// campaign.toml, or its folder
-    #[arg(index = 1)]
+    #[arg(index = 1, default_value = ".")]
     campaign: PathBuf,
     /// Allow files outside the folder of the campaign
     allow_outside: bool,

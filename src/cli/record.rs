@@ -214,8 +214,8 @@ impl Run for Restitution {
         self.keys.usable(!self.files.is_empty())?;
         let mut series = drop::Series::new(&self.keys);
         series.add_numbers(&self.keys);
-        for (i, file) in self.files.iter().enumerate() {
-            self.record.measured(file, json, |source| series.add_record(&self.keys, source, i + 1))?;
+        for file in &self.files {
+            self.record.measured(file, json, |source| series.add_record(&self.keys, source))?;
         }
         print::answer(series.answer("")?, self.record.out.as_deref(), json)
     }

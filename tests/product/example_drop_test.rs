@@ -49,7 +49,7 @@ fn the_campaign_gives_back_the_truth() {
     let (f, u) = estimate(&contact["frequency"]);
     assert!((f - records::EXCITATION / 2.0).abs() < 4.0 * u, "{contact}");
     assert!((contact["hum"]["frequency"].as_f64().unwrap() - 50.02).abs() < 0.01, "{}", contact["hum"]);
-    for file in ["drop_1.svg", "drop_6.png", "impacts_1.svg", "impacts_1.csv", "results.json", "report.html"]
+    for file in ["drop_1.svg", "drop_2.png", "impacts_1.svg", "impacts_1.csv", "results.json", "report.html"]
     {
         assert!(out.path().join(file).is_file(), "{file}");
     }

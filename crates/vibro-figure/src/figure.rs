@@ -62,6 +62,8 @@ pub struct Plot {
     pub notes: Vec<Note>,
     /// Where the names of the series stand.
     pub legend: Legend,
+    /// Whether it shows a panel before it once more, as on a logarithmic axis: a page that can change its axes leaves it out.
+    pub again: bool,
 }
 
 /// A text with a line to the point that it names.
@@ -158,6 +160,11 @@ impl Plot {
     /// Sets where the names of the series stand.
     pub fn legend(self, legend: Legend) -> Plot {
         Plot { legend, ..self }
+    }
+
+    /// Says that it shows a panel before it once more.
+    pub fn again(self) -> Plot {
+        Plot { again: true, ..self }
     }
 }
 

@@ -9,11 +9,12 @@ use serde_json::{Value, json};
 impl Figure {
     /// The figure for a page: panels with axes, series and matrices, all values as the axes show them. Lists are base64 of 32-bit floats,
     /// least significant byte first; matrices base64 of 16-bit levels between `low` and `high`, logarithmic for magnitudes (0 is a gap). A panel
-    /// that is a table of classes is null.
+    /// that is a table of classes is null; one that shows another once more is left out.
     pub fn data(&self) -> Value {
-        let panels: Vec<Value> = self.panels.iter().map(Panel::data).collect();
+        let again = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
+        let panels: Vec<Value> = self.panels.iter().filter(|panel| !again(panel)).map(Panel::data).collect();
         let grows = if self.width > 0.0 { self.height / self.width } else { 0.6 };
-        json!({ "title": self.title, "columns": self.columns.max(1), "sharedX": self.shared_x, "aspect": grows, "panels": panels })
+        json!({ "title": self.title, "columns": self.columns.max(1), "aspect": grows, "panels": panels })
     }
 }
 

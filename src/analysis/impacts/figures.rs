@@ -41,21 +41,27 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
     lettered(figure)
 }
 
+/// A series of drops, each as [`drop`] has it.
+pub fn drops(name: &str, drops: Vec<Plot>) -> Figure {
+    let (columns, height) = if drops.len() > 1 { (2, 55.0) } else { (1, 70.0) };
+    let title = if name.is_empty() { "Drops".to_owned() } else { format!("Drops, {name}") };
+    let figure = Figure::double(title)
+        .height(height * drops.len().div_ceil(columns) as f64)
+        .columns(columns)
+        .caption("Triangles: impacts found.");
+    drops.into_iter().fold(figure, Figure::panel)
+}
+
 /// The trace of a drop with its impacts at `times`.
-pub fn drop(title: &str, trace: &Trace, times: &[f64]) -> Figure {
+pub fn drop(file: &str, trace: &Trace, times: &[f64]) -> Plot {
     let first = times.first().copied().unwrap_or(0.0);
     let last = times.last().copied().unwrap_or(first);
     let margin = 0.15 * (last - first);
     let end = trace.axis.at(trace.values.len().saturating_sub(1));
     let (from, to) = ((first - margin).max(trace.axis.start()), (last + 2.0 * margin).min(end));
-    let mut plot = marked(trace, times, (from, to));
-    if let Some(second) = times.get(1) {
-        plot = plot.title(format!("first flight {:.2} ms", 1e3 * (second - first)));
-    }
-    Figure::double(format!("Drop, {title}"))
-        .height(70.0)
-        .panel(plot)
-        .caption("Trace of a drop. Triangles: impacts found.")
+    let flight = times.get(1).map(|second| format!(", first flight {:.2} ms", 1e3 * (second - first)));
+    let title = file.to_owned() + &flight.unwrap_or_default();
+    marked(trace, times, (from, to)).title(title).legend(Legend::Hidden)
 }
 
 /// The part of a trace between two times, with its impacts marked over it.

@@ -18,7 +18,7 @@ pub fn response(title: &str, responses: &[Response]) -> Figure {
         .height(160.0)
         .shared_x()
         .panel(linear)
-        .panel(plot(responses, true));
+        .panel(plot(responses, true).again());
     lettered(figure.caption(format!("Amplitude at the excitation frequency. {MARKS}")))
 }
 

@@ -42,15 +42,19 @@ function tableTools(table) {
   else table.parentElement.before(bar);
 }
 
+/** Columns and rows of a figure's panels where it stands, and their height in pixels. */
+function extent(host, figure) {
+  const columns = host.clientWidth < 560 ? 1 : figure.columns, rows = Math.ceil(figure.panels.length / columns);
+  const most = rows > 1 ? 320 : 460;
+  return { columns, rows, height: Math.round(Math.min(Math.max(host.clientWidth * figure.aspect / rows, 220), most)) };
+}
+
 /** Draws a figure into its place. */
 function drawFigure(host, figure, shared, spectra) {
   host.replaceChildren();
-  const narrow = host.clientWidth < 560;
-  const columns = narrow ? 1 : figure.columns;
+  const { columns, height } = extent(host, figure);
   host.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
-  const rows = Math.ceil(figure.panels.length / figure.columns);
-  const whole = Math.max(host.clientWidth * Math.min(figure.aspect, 1.2), 240 * rows);
-  const height = Math.round(Math.min(Math.max(whole / rows, 220), 460));
+  host.style.minHeight = "";
   for (const panel of figure.panels) {
     const cell = document.createElement("div");
     host.append(cell);
@@ -63,6 +67,9 @@ function drawFigure(host, figure, shared, spectra) {
 function asPrinted(host) {
   host.innerHTML = host.nextElementSibling.textContent;
 }
+
+/** Height in pixels of what stands above and below a panel. */
+const TOOLS = 62;
 
 async function start() {
   const hosts = document.querySelectorAll("[data-figure]");
@@ -97,7 +104,12 @@ async function start() {
   const seen = new IntersectionObserver((entries) => {
     for (const { isIntersecting, target } of entries) if (isIntersecting) draw(target);
   }, { rootMargin: "400px" });
-  for (const host of hosts) seen.observe(host);
+  for (const host of hosts) {
+    // Links into the page land where they point, also before what is above is drawn.
+    const { rows, height } = extent(host, figures[host.dataset.figure]);
+    host.style.minHeight = `${rows * (height + TOOLS)}px`;
+    seen.observe(host);
+  }
   let waits = 0;
   addEventListener("resize", () => {
     clearTimeout(waits);
