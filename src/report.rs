@@ -4,14 +4,18 @@ pub(crate) mod files;
 pub(crate) mod layout;
 pub mod words;
 
+mod cell;
+mod column;
 mod html;
 mod output;
 mod table;
 
+pub use cell::Cell;
+pub use column::Column;
 pub use files::Picture;
 pub use html::Page;
 pub use output::Output;
-pub use table::{Cell, Column, Table};
+pub use table::Table;
 pub(crate) use vibro_figure::{
     AxisSpec, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Medium, Panel, Plot, Series, Stroke,
     Waterfall, colour,

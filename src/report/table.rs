@@ -1,11 +1,9 @@
 //! Tables of results: one content for the terminal, for other programs and for the page.
 
-use crate::measure::Estimate;
-use crate::units::notation::{
-    decimals_needed, engineering, estimate, fixed, labelled, scaled_unit, significant,
-};
+use super::column::{Formatted, power};
+use super::{Cell, Column};
+use crate::units::notation::labelled;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use vibro_figure::escaped;
 
@@ -35,75 +33,6 @@ pub struct Table {
     pub rows: Vec<Vec<Cell>>,
     /// What its words mean, below it.
     pub note: String,
-}
-
-/// Head of a column.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Column {
-    /// Quantity.
-    pub name: String,
-    /// Unit of the numbers; empty or `1` for none.
-    pub unit: String,
-}
-
-/// One result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Cell {
-    /// Words.
-    Text(String),
-    /// A number without uncertainty; NaN counts as missing.
-    Number(f64),
-    /// A value with its standard uncertainty, where known.
-    Estimate {
-        /// Value.
-        value: f64,
-        /// Standard uncertainty in the unit of the value.
-        std: Option<f64>,
-    },
-    /// No result.
-    Missing,
-}
-
-macro_rules! cells {
-    ($($of:ty, $from:ident => $cell:expr;)*) => {
-        $(impl From<$of> for Cell {
-            fn from($from: $of) -> Cell {
-                $cell
-            }
-        })*
-    };
-}
-
-cells! {
-    &str, text => Cell::Text(text.to_owned());
-    String, text => Cell::Text(text);
-    f64, value => Cell::Number(value);
-    usize, count => Cell::Number(count as f64);
-    &Estimate, estimate => Cell::Estimate { value: estimate.value, std: estimate.std };
-    bool, yes => Cell::from(if yes { "yes" } else { "no" });
-}
-
-impl<T: Into<Cell>> From<Option<T>> for Cell {
-    fn from(value: Option<T>) -> Cell {
-        value.map_or(Cell::Missing, Into::into)
-    }
-}
-
-impl Cell {
-    fn value(&self) -> Option<f64> {
-        match self {
-            Cell::Number(value) | Cell::Estimate { value, .. } if !value.is_nan() => Some(*value),
-            _ => None,
-        }
-    }
-
-    /// Usable uncertainty.
-    fn std(&self) -> Option<f64> {
-        match self {
-            Cell::Estimate { std, .. } => std.filter(|s| s.is_finite() && *s > 0.0),
-            _ => None,
-        }
-    }
 }
 
 impl Table {
@@ -230,109 +159,6 @@ impl Table {
     }
 }
 
-/// A column in words.
-struct Formatted {
-    head: String,
-    cells: Vec<String>,
-    numeric: bool,
-}
-
-/// The power of ten by which a column is scaled.
-fn power(column: &Column, cells: &[&Cell]) -> i32 {
-    let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
-    let largest = values.map(f64::abs).fold(0.0, f64::max);
-    // A degree, a radian and a per cent are scaled already. Counts and other bare numbers are not rescaled, as no unit would say so; a
-    // power of ten stands with the number instead.
-    let bare = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
-    if bare { 0 } else { engineering(largest) }
-}
-
-impl Formatted {
-    fn new(column: &Column, cells: &[&Cell], power: i32) -> Formatted {
-        let scale = 10f64.powi(-power);
-        let of = |kind: fn(&Cell) -> bool| -> Vec<f64> {
-            let bare = cells.iter().filter(|c| c.std().is_none() && kind(c)).filter_map(|c| c.value());
-            bare.filter(|v| v.is_finite()).map(|v| v * scale).collect()
-        };
-        let numbers = of(|cell| matches!(cell, Cell::Number(_)));
-        let unsure = of(|cell| matches!(cell, Cell::Estimate { .. }));
-        let known = (5, common_decimals(&numbers, 5));
-        let few = told_apart(&unsure);
-        let unsure = (few, common_decimals(&unsure, few));
-        let written = |cell: &&Cell| match (cell, cell.value()) {
-            (Cell::Text(text), _) => text.clone(),
-            (_, None) => "–".to_owned(),
-            (Cell::Estimate { std: Some(std), .. }, Some(value)) if cell.std().is_some() => {
-                uncertain(value * scale, std * scale)
-            }
-            (_, Some(value)) if column.unit == "%" => percentage(value),
-            (_, Some(value)) => match if matches!(cell, Cell::Number(_)) { known } else { unsure } {
-                (_, Some(decimals)) if value.is_finite() => fixed(value * scale, decimals),
-                (digits, _) => significant(value * scale, digits),
-            },
-        };
-        Formatted {
-            head: labelled(&column.name, &scaled_unit(&column.unit, power)),
-            cells: cells.iter().map(written).collect(),
-            numeric: !cells.iter().any(|c| matches!(c, Cell::Text(_))),
-        }
-    }
-
-    /// Head and cells, all of one width.
-    fn aligned(&self) -> Vec<String> {
-        let count = |text: &str| text.chars().count();
-        // Characters up to the decimal point of the value: these are made equal first.
-        let whole = |text: &str| text.find(['.', ' ', '×']).map_or(count(text), |at| count(&text[..at]));
-        let point = self.cells.iter().map(|c| whole(c)).max().unwrap_or(0);
-        let lead = |cell: &String| if self.numeric { point - whole(cell) } else { 0 };
-        let cells: Vec<String> = self.cells.iter().map(|c| format!("{}{c}", " ".repeat(lead(c)))).collect();
-        let width = cells.iter().map(|c| count(c)).chain([count(&self.head)]).max().unwrap_or(0);
-        let block = cells.iter().map(|c| count(c)).max().unwrap_or(0);
-        let indent = if self.numeric { " ".repeat(width - block) } else { String::new() };
-        let head =
-            if self.numeric { format!("{:>width$}", self.head) } else { format!("{:<width$}", self.head) };
-        let rows = cells.iter().map(|c| format!("{:<width$}", format!("{indent}{c}")));
-        std::iter::once(head).chain(rows).collect()
-    }
-}
-
-/// Significant digits for measured values of unknown uncertainty: three, or as many up to five as tell them apart.
-fn told_apart(values: &[f64]) -> usize {
-    let different = |digits| values.iter().map(|v| significant(*v, digits)).collect::<BTreeSet<_>>().len();
-    (3..5).find(|digits| different(*digits) == different(5)).unwrap_or(5)
-}
-
-/// Decimals that show all values to `digits` significant digits of the largest, or fewer where all are round;
-/// `None` where the values differ so much that small ones would lose their digits.
-fn common_decimals(values: &[f64], digits: usize) -> Option<usize> {
-    let sizes = || values.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
-    let (smallest, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
-    if largest == 0.0 {
-        return Some(0);
-    }
-    let needed = values.iter().map(|v| decimals_needed(*v, digits)).max().unwrap_or(0);
-    let room = digits as i32 - 1 - largest.log10().floor() as i32;
-    let decimals = needed.min(usize::try_from(room.max(0)).unwrap_or(0));
-    // The smallest keeps two digits.
-    let kept = smallest * 10f64.powi(decimals as i32) >= 10.0 || decimals == needed;
-    (kept && (1e-3..1e9).contains(&largest)).then_some(decimals)
-}
-
-/// A value with its uncertainty to two digits, without a power of ten of its own: the column has one.
-fn uncertain(value: f64, std: f64) -> String {
-    match usize::try_from(1 - std.log10().floor() as i32) {
-        Ok(decimals) if (1e-6..0.1).contains(&std) && value.abs() < 0.1 => {
-            format!("{} ± {}", fixed(value, decimals), fixed(std, decimals))
-        }
-        _ => estimate(value, Some(std)),
-    }
-}
-
-/// A percentage has three significant digits at most, and no power of ten.
-fn percentage(value: f64) -> String {
-    if value.abs() < 1e-3 && value != 0.0 { "< 0.001".to_owned() } else { significant(value, 3) }
-}
-
 /// The shortest text that reads back as the same number.
 fn exact(value: f64) -> String {
     if value.abs() >= 1e15 || value != 0.0 && value.abs() < 1e-4 {
@@ -419,10 +245,6 @@ none           7.49            0.35                 –
 
     #[test]
     fn numbers_that_differ_in_size_keep_their_digits() {
-        assert_eq!(common_decimals(&[60.0, 7.0], 5), Some(0));
-        assert_eq!(common_decimals(&[5.5, 7.49, 11.1], 5), Some(2));
-        assert_eq!(common_decimals(&[1e-9, 1.0 / 3.0], 5), None);
-        assert_eq!(common_decimals(&[], 5), Some(0));
         let table = Table::new("").column("error", "1").row([2e-12.into()]).row([0.031_25.into()]).text();
         assert!(table.contains("2.0000×10⁻¹²") && table.contains("0.031250"), "{table}");
     }

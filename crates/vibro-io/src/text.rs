@@ -11,6 +11,7 @@ mod dialect;
 pub(crate) mod encoding;
 mod fast;
 mod header;
+mod headings;
 mod lines;
 pub(crate) mod names;
 mod numbers;
@@ -19,6 +20,7 @@ mod records;
 mod rows;
 mod table;
 mod tail;
+pub(crate) mod unit_words;
 mod word_columns;
 mod wrapped;
 

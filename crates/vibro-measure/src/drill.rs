@@ -25,6 +25,7 @@ mod floor;
 mod groups;
 mod jumps;
 mod options;
+mod parabola;
 mod result;
 mod survey;
 mod train;

@@ -1,19 +1,18 @@
 //! Response at the excitation, step by step (the job of the thesis' sinesw3).
 
-use super::excitation::{Excitation, bent, excitations};
-use super::jump::Jump;
-use super::line::{SubLine, amplitude_at, interpolate, nearest};
-use super::noise::upper_limit;
-use super::resonance::{NamedCurve, Resonance};
-use super::{Estimate, noise};
+mod result;
+mod taker;
+
+use super::excitation::{Excitation, excitations};
+use super::resonance::NamedCurve;
 use crate::line::deviation;
 use crate::mean::upper_median;
 use num_complex::Complex64;
-use serde::Serialize;
+pub use result::{Harmonic, Receptance, Response, ResponsePoint};
 use std::cmp::Ordering;
-use std::f64::consts::TAU;
+use taker::Taker;
 use vibro_record::units::Quantity;
-use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Values, Window};
+use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window};
 
 /// How a response is to be taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,91 +41,6 @@ impl ResponseOptions {
             _ => 0,
         })
     }
-}
-
-/// A line at a whole multiple or a fraction of the excitation frequency.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Harmonic {
-    /// `2`, `3`, … or `1/2`, `1/3`, …
-    pub order: String,
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
-    pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
-    pub upper_limit: Option<f64>,
-}
-
-/// One step of the response curve.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ResponsePoint {
-    /// Excitation frequency in Hz.
-    pub excitation: f64,
-    /// Its standard uncertainty in Hz.
-    pub excitation_std: Option<f64>,
-    /// Force amplitude in N, where there is a force spectrum.
-    pub force: Option<f64>,
-    /// Its standard uncertainty in N.
-    pub force_std: Option<f64>,
-    /// Frequency of the response peak in Hz.
-    pub frequency: f64,
-    /// Its standard uncertainty in Hz.
-    pub frequency_std: Option<f64>,
-    /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
-    /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
-    pub amplitude: Estimate,
-    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
-    pub upper_limit: Option<f64>,
-    /// Orders 2 to 5.
-    pub harmonics: Vec<Harmonic>,
-    /// Orders 1/2, 1/3, 1/4.
-    pub subharmonics: Vec<Harmonic>,
-    /// Phase of the response against the force in rad, where it is known.
-    pub phase: Option<Estimate>,
-    /// Displacement over force, where its phase is known.
-    pub receptance: Option<Receptance>,
-    /// Whether the largest line of the spectrum is not at the excitation.
-    pub largest_elsewhere: bool,
-    /// Frequency of the largest line in Hz.
-    pub largest_at: f64,
-}
-
-/// Displacement over force at one frequency, in m/N.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Receptance {
-    /// Real part.
-    pub re: f64,
-    /// Imaginary part.
-    pub im: f64,
-    /// Standard uncertainty of each of them.
-    pub std: Option<f64>,
-}
-
-/// A response curve.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Response {
-    /// Name of the sweep.
-    pub name: String,
-    /// Direction of the sweep, stated or found from the excitation frequencies.
-    pub direction: Option<Direction>,
-    /// Mass, where stated.
-    pub mass: Option<u8>,
-    /// Quantity of the amplitudes.
-    pub quantity: &'static str,
-    /// Unit of the amplitudes.
-    pub unit: &'static str,
-    /// Cut-off in Hz: lines below were left out.
-    pub fmin: f64,
-    /// Steps, in the order in which they were taken.
-    pub points: Vec<ResponsePoint>,
-    /// Maxima and minima of the curve.
-    pub resonances: Vec<Resonance>,
-    /// Sudden changes.
-    pub jumps: Vec<Jump>,
-    /// What limits the curve.
-    pub findings: Vec<Finding>,
-    /// Every step from file to curve.
-    pub history: Vec<Step>,
 }
 
 /// The cut-off below which a spectrum that was divided by frequency is noise: the larger of two lines and a quarter of
@@ -232,165 +146,6 @@ impl Response {
         self.direction = direction;
         self
     }
-}
-
-/// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation frequency, where
-/// noise cannot choose the line, and gets an upper limit.
-const PEAK_ABOVE: f64 = 5.0;
-/// A response peak lies within this many lines of the excitation.
-const NEAR: f64 = 1.0;
-
-/// Takes single points.
-struct Taker<'a> {
-    sweep: &'a Sweep,
-    options: &'a ResponseOptions,
-    /// Integrations.
-    times: i8,
-    df: f64,
-    fmin: f64,
-    unit: &'static str,
-}
-
-impl Taker<'_> {
-    fn frequency(&self, position: f64) -> f64 {
-        self.sweep.axis.start() + position * self.df
-    }
-
-    fn position(&self, frequency: f64) -> f64 {
-        (frequency - self.sweep.axis.start()) / self.df
-    }
-
-    /// An amplitude of the wanted quantity from one of the measured signal at `frequency`, and the same of its upper limit.
-    fn estimate(
-        &self,
-        frequency: f64,
-        (value, std, limit): (f64, Option<f64>, Option<f64>),
-        method: impl Into<String>,
-    ) -> (Estimate, Option<f64>) {
-        // (2πf)ⁿ from the measured signal to the wanted quantity.
-        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.times);
-        let divisor = (TAU * frequency).powi(times);
-        let std = std.map(|s| s / divisor);
-        (Estimate::new(value / divisor, std, self.unit, 3, method), limit.map(|l| l / divisor))
-    }
-
-    fn point(&self, point: &SweepPoint, excitation: &Excitation) -> ResponsePoint {
-        let stored = point.response.values.magnitudes();
-        let undo = i32::from(self.sweep.analyser_integrated);
-        let measured: Vec<f64> =
-            stored.iter().enumerate().map(|(k, m)| m * (TAU * self.frequency(k as f64)).powi(undo)).collect();
-        let at = self.position(excitation.frequency);
-        let centre = at.round().max(0.0) as usize;
-        let window = point.response.window;
-        let low = centre.saturating_sub(self.options.band).max(1);
-        let high = centre.saturating_add(self.options.band).min(measured.len().saturating_sub(2));
-        let top = (low..=high)
-            .filter(|&k| measured[k] >= measured[k - 1] && measured[k] >= measured[k + 1])
-            .max_by(|a, b| measured[*a].total_cmp(&measured[*b]));
-        let floor = noise::around(&measured, top.unwrap_or(centre), noise::REACH, window);
-        // A hump of noise is not the response, nor is another line beside the excitation, which hides it.
-        let clear = |p: &SubLine| floor.is_none_or(|f| p.amplitude >= PEAK_ABOVE * f);
-        let peak = top.and_then(|k| {
-            let line = interpolate(&measured, k, window, floor).filter(clear)?;
-            Some(bent(line, &measured, k, window.zip(floor)))
-        });
-        let hidden = peak.is_some_and(|p| (p.position - at).abs() > NEAR);
-        let (frequency, frequency_std, amplitude, method) = if excitation.frequency < self.fmin {
-            (excitation.frequency, None, (f64::NAN, None, None), "below the cut-off".to_owned())
-        } else if let Some(peak) = peak.filter(|_| !hidden) {
-            let method = match window {
-                Some(w) => format!("peak of three lines, {} window", w.name()),
-                None => "parabola through log magnitudes, window unknown".to_owned(),
-            };
-            let std = peak.position_std.map(|s| s * self.df);
-            (self.frequency(peak.position), std, (peak.amplitude, peak.amplitude_std, None), method)
-        } else {
-            let method = "line nearest to the excitation, no peak of its own, noise not taken out".to_owned();
-            let floor = floor.filter(|_| !hidden);
-            (excitation.frequency, excitation.std, faint(&measured, at, window, floor), method)
-        };
-        let (amplitude, upper_limit) = self.estimate(frequency, amplitude, method);
-        let (phase, receptance) = self.transfer(point, excitation.frequency).unzip();
-        let harmonic =
-            |order: String, ratio: f64| self.harmonic(&measured, order, excitation.frequency * ratio, window);
-        let largest = self.largest(&stored);
-        ResponsePoint {
-            excitation: excitation.frequency,
-            excitation_std: excitation.std,
-            force: excitation.force,
-            force_std: excitation.force_std,
-            frequency,
-            frequency_std,
-            amplitude,
-            upper_limit,
-            harmonics: (2..=5).map(|n| harmonic(n.to_string(), f64::from(n))).collect(),
-            phase,
-            receptance: receptance.filter(|_| self.unit == Quantity::Displacement.symbol()),
-            subharmonics: (2..=4).map(|n| harmonic(format!("1/{n}"), 1.0 / f64::from(n))).collect(),
-            largest_elsewhere: largest.abs_diff(centre) > self.options.band,
-            largest_at: self.frequency(largest as f64),
-        }
-    }
-
-    /// Phase of the response against the force, and their ratio, by the line nearest to the excitation of complex spectra. Both lines have the same
-    /// window, which the ratio is free of.
-    fn transfer(&self, point: &SweepPoint, excitation: f64) -> Option<(Estimate, Receptance)> {
-        let (Values::Complex(response), Values::Complex(force)) = (&point.response.values, &point.force)
-        else {
-            return None;
-        };
-        let k = self.position(excitation).round().max(0.0) as usize;
-        let (x, f) = (*response.get(k)?, *force.get(k)?);
-        let window = point.response.window;
-        let noise = |values: &Values| noise::around(&values.magnitudes(), k, noise::REACH, window);
-        let (of_x, of_f) = (noise(&point.response.values)?, noise(&point.force)?);
-        let relative = (of_x / x.norm()).hypot(of_f / f.norm());
-        // What the analyser divided by at the line is taken to the frequency of the sine.
-        let undone =
-            Complex64::new(0.0, TAU * self.frequency(k as f64)).powi(self.sweep.analyser_integrated.into());
-        let times = i32::from(self.sweep.analyser_integrated) + i32::from(self.times);
-        let ratio = x / f * undone / Complex64::new(0.0, TAU * excitation).powi(times);
-        let std = Some(relative * ratio.norm()).filter(|std| std.is_finite());
-        let phase =
-            Estimate::new(ratio.arg(), std.map(|_| relative), "rad", 1, "line nearest to the excitation");
-        Some((phase, Receptance { re: ratio.re, im: ratio.im, std }))
-    }
-
-    fn harmonic(&self, measured: &[f64], order: String, frequency: f64, window: Option<Window>) -> Harmonic {
-        let at = self.position(frequency);
-        let inside = frequency >= self.fmin && at >= 1.0 && at.round() < measured.len() as f64 - 1.0;
-        let floor = noise::around(measured, at.round().max(0.0) as usize, noise::REACH, window);
-        let found = inside.then(|| amplitude_at(measured, at, window, floor)).flatten();
-        let (found, method) = match (found, floor) {
-            (Some((value, _)), Some(floor)) if value < PEAK_ABOVE * floor => {
-                (faint(measured, at, window, Some(floor)), "nearest line, noise not taken out")
-            }
-            (Some((value, std)), _) => ((value, std, None), "three lines at a known frequency"),
-            (None, _) => ((f64::NAN, None, None), "outside the lines or below the cut-off"),
-        };
-        let (amplitude, upper_limit) = self.estimate(frequency, found, method);
-        Harmonic { order, frequency, amplitude, upper_limit }
-    }
-
-    /// Index of the largest line of the wanted quantity, cut-off and above.
-    fn largest(&self, stored: &[f64]) -> usize {
-        let first = self.position(self.fmin).ceil().max(1.0) as usize;
-        let wanted = |k: usize| stored[k] / (TAU * self.frequency(k as f64)).powi(i32::from(self.times));
-        (first..stored.len()).max_by(|a, b| wanted(*a).total_cmp(&wanted(*b))).unwrap_or(first)
-    }
-}
-
-/// Amplitude in the noise, its uncertainty and its upper limit, from one line, because the distribution of its magnitude is known.
-fn faint(
-    measured: &[f64],
-    position: f64,
-    window: Option<Window>,
-    floor: Option<f64>,
-) -> (f64, Option<f64>, Option<f64>) {
-    let (line, gain) = nearest(measured, position, window).unwrap_or((f64::NAN, 1.0));
-    let std = window.and(floor);
-    let limit = std.and_then(|f| upper_limit(line, f));
-    (line / gain, std.map(|s| s / gain), limit.map(|l| l / gain))
 }
 
 /// Force lines further than this part of the largest from their window's shape are not under that window: a clean sine under Hann,

@@ -5,7 +5,7 @@
 
 use super::clock;
 use super::dialect::Separator;
-use super::names;
+use super::unit_words::is_unit_row;
 use crate::number;
 use std::borrow::Cow;
 
@@ -147,7 +147,7 @@ pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
     let digit =
         |cell: &&str| cell.trim_start_matches(['-', '+', '<', '>']).starts_with(|c: char| c.is_ascii_digit());
     let torn = cells.len() == columns && cells.first().is_some_and(digit);
-    torn && cells.iter().any(number) && cells.iter().any(word) && !names::is_unit_row(cells.into_iter())
+    torn && cells.iter().any(number) && cells.iter().any(word) && !is_unit_row(cells.into_iter())
 }
 
 #[cfg(test)]

@@ -2,10 +2,11 @@
 
 use super::dialect::Separator;
 use super::header;
+use super::unit_words::{COUNTERS, DAY, HOUR, amplitude, bare_unit, is_angular, is_unit_row, symbol};
 use crate::assemble::{domain, kind_of};
 use crate::number;
-use vibro_record::units::{Quantity, Unit, spelled};
-use vibro_record::{AxisKind, Error, Finding, Result, Scaling};
+use vibro_record::units::{Quantity, Unit};
+use vibro_record::{AxisKind, Error, Finding, Result};
 
 /// Name and unit of a column.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -236,14 +237,6 @@ const WHOLE: [(&str, &str); 5] =
 const COUNTS: &str =
     "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
 
-/// What stands in place of a unit over numbered samples.
-const COUNTERS: [&str; 5] = ["sequence", "samples", "points", "no.", "rn"];
-
-/// Hours have no symbol among the units of values.
-const HOUR: &str = "hour";
-
-const DAY: &str = "day";
-
 /// The unit behind the name of a time, where it has other letters elsewhere or means something else there: `d`, `H`, `Min`, `MS`.
 fn long(name: &str, unit: &str) -> Option<&'static str> {
     let found = match unit.trim().to_lowercase().as_str() {
@@ -257,76 +250,6 @@ fn long(name: &str, unit: &str) -> Option<&'static str> {
     };
     let named = Name { name: name.trim().to_owned(), unit: None };
     (named.axis(true) == Some(AxisKind::Time) && !named.is_vague()).then_some(found)
-}
-
-/// The symbol of a unit that is written as a word; any other text as it is.
-fn symbol(text: &str) -> &str {
-    let lower = text.to_lowercase();
-    match lower.strip_suffix('s').filter(|t| t.len() > 2).unwrap_or(&lower) {
-        "second" | "sec" | "sekunde" | "sekunden" | "с" | "秒" => "s",
-        "millisecond" | "msec" => "ms",
-        "microsecond" | "usec" | "µsec" => "µs",
-        "minute" => "min",
-        "hour" => HOUR,
-        "hertz" | "гц" => "Hz",
-        "kilohertz" => "kHz",
-        "vdc" => "V",
-        _ => text,
-    }
-}
-
-/// A unit without what says that amplitudes are RMS or peak, and the scaling that this is: `Vrms`, `mm/s RMS`, `g pk`.
-pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
-    const SAID: [(&str, Scaling); 4] =
-        [("rms", Scaling::Rms), ("peak", Scaling::Peak), ("pk", Scaling::Peak), ("eff", Scaling::Rms)];
-    let without = |(word, scaling)| {
-        let at = unit.len().checked_sub(str::len(word)).filter(|at| unit.is_char_boundary(*at))?;
-        let bare = unit[..at].trim_end_matches([' ', '_', '(']);
-        let said = unit[at..].eq_ignore_ascii_case(word) && Unit::parse(bare).is_some() && !bare.is_empty();
-        said.then_some((bare, Some(scaling)))
-    };
-    SAID.into_iter().find_map(without).unwrap_or((unit, None))
-}
-
-/// Radians over a time: hertz only by 1/(2π).
-fn is_angular(unit: &str) -> bool {
-    Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
-}
-
-/// A unit that stands where a name does: `Second`, `Volts`.
-pub(crate) fn unit_word(field: &str) -> Option<Name> {
-    let unit = symbol(field.trim());
-    let word = unit != field.trim() || spelled(unit).is_some();
-    word.then(|| Name { name: String::new(), unit: Some(unit.to_owned()) })
-}
-
-/// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least
-/// half of them known and the others short, such as `EU`.
-pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
-    let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
-    for field in fields.filter(|f| !f.trim().is_empty()) {
-        let unit = symbol(bare_unit(field));
-        let understood = Unit::parse(amplitude(unit).0).is_some()
-            || matches!(unit, "h" | "d" | HOUR)
-            || COUNTERS.contains(&unit.to_lowercase().as_str());
-        total += 1;
-        known += usize::from(understood);
-        sure += usize::from(understood || bare_unit(field).len() < field.trim().len());
-        short += usize::from(understood || unit.chars().count() <= 4);
-        first.get_or_insert(understood);
-    }
-    known > 0 && (sure == total || (first == Some(true) && short == total && 2 * known >= total))
-}
-
-fn bare_unit(field: &str) -> &str {
-    let field = field.trim();
-    let field = field.strip_prefix("Unit:").unwrap_or(field).trim_start();
-    let inner = |open, close| field.strip_prefix(open).and_then(|f| f.strip_suffix(close));
-    match inner('[', ']').or(inner('(', ')')) {
-        // `(m/s²)/(N)` begins and ends with brackets too.
-        Some(unit) if !unit.contains(['[', ']', '(', ')']) => unit.trim(),
-        _ => field,
-    }
 }
 
 /// Name and content of the brackets that end a text.

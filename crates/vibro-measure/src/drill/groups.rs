@@ -1,6 +1,6 @@
 //! Impacts that belong together, those of one direction: their means and their restitution.
 
-use super::jumps::LackOfFit;
+use super::parabola::LackOfFit;
 use super::{DrillOptions, TurnsFrom};
 use crate::Estimate;
 use crate::mean::Mean;

@@ -3,6 +3,7 @@
 use super::*;
 use crate::synthetic::{LINES, Normal, spectrum};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Scaling, Spectrum, Values};
 use vibro_signal::window::line_shape;

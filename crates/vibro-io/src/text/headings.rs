@@ -1,0 +1,143 @@
+//! The lines above a table that name its columns, and those that do not.
+
+use super::dialect::Separator;
+use super::lines::{Fields, Line, fields};
+use super::names::Name;
+use super::preamble::{Preamble, UNIT, key};
+use super::unit_words::{is_unit_row, unit_word};
+use crate::assemble::kind_of;
+use crate::number;
+use std::borrow::Cow;
+use std::ops::Range;
+use vibro_record::units::{Quantity, Unit};
+
+/// Which lines of a block, counted upwards, name the columns, and the names: a row of units below its names, perhaps above comments; or names
+/// alone.
+pub fn names_in(
+    block: &[Fields],
+    clock: Option<&Range<usize>>,
+    title: bool,
+    fits: impl Fn(usize) -> bool,
+) -> Option<(Range<usize>, Vec<Name>)> {
+    let is_units = |at: &usize| {
+        let (units, upper) = (&block[*at], &block[*at + 1]);
+        let outside = |i: &usize| !clock.is_some_and(|cells| cells.contains(i));
+        let cells = (0..units.len()).filter(outside).map(|i| units[i].1.as_ref());
+        // `No.,OUT1` over `Unit,mm`: a label stands where a counter has no unit.
+        let labelled = usize::from(is_label(&units[0].1) && Name::parse(&upper[0].1).counts());
+        let cells = cells.skip(labelled);
+        let quantity = |cell: &str| {
+            let used = number::prefix(cell.as_bytes(), b'.').map_or(0, |(_, used)| used);
+            used > 0 && Unit::parse(&cell[used..]).is_some_and(|unit| unit.quantity() == Quantity::Time)
+        };
+        // Below a time in s, or a frequency in Hz, stand units, known or not.
+        let of_axis = || {
+            let kind = Unit::parse(&units[0].1).and_then(|unit| kind_of(&unit));
+            let numbers = units
+                .iter()
+                .any(|(_, cell)| number::prefix(cell.as_bytes(), b'.').is_some_and(|(_, n)| n == cell.len()));
+            kind.is_some() && kind == Name::parse(&upper[0].1).axis(true) && !numbers
+        };
+        let upper_names = named(upper) && !upper.iter().any(|(_, cell)| quantity(cell));
+        units.len() == upper.len()
+            && upper_names
+            && (*at == 0 || fits(units.len()))
+            && (of_axis() || is_unit_row(cells))
+    };
+    if let Some(at) = (0..block.len() - 1).find(is_units) {
+        let named = block[at + 1].iter().zip(&block[at]).map(|((_, name), (_, unit))| {
+            let unit = if is_label(unit) { "" } else { unit };
+            Name::with_unit_row(name, unit)
+        });
+        return Some((at..at + 2, named.collect()));
+    }
+    let lower = block.first().filter(|lower| named(lower) && !title)?;
+    // `Values;64;` counts what follows; `Angle,1,2` numbers its channels.
+    let numbers: Vec<f64> = lower.iter().filter_map(|(_, cell)| number::parse(cell.as_bytes())).collect();
+    let counts = numbers.iter().zip(1u8..).any(|(number, n)| *number != f64::from(n));
+    let first = Name::parse(&lower[0].1);
+    if counts && first.axis(true).is_none() && !first.counts() {
+        return None;
+    }
+    // `Second,Volt` under a preamble: units, and no names.
+    let units: Option<Vec<Name>> = lower.iter().map(|(_, n)| unit_word(n)).collect();
+    // `V,V` names nothing.
+    let first = lower[0].1.as_ref();
+    let alike =
+        lower.len() > 1 && Unit::parse(first).is_some() && lower.iter().all(|(_, cell)| cell == first);
+    let unit = || Name { name: String::new(), unit: Some(first.to_owned()) };
+    let units = units.or_else(|| alike.then(|| lower.iter().map(|_| unit()).collect()));
+    // `t/s;F/N;a/(m/s²)`, after DIN 1313: quantities over their units.
+    let over = Name::over_unit(&lower[0].1).is_some_and(|first| first.axis(true).is_some());
+    let name = |cell: &str| Name::over_unit(cell).filter(|_| over).unwrap_or_else(|| Name::parse(cell));
+    Some((0..1, units.unwrap_or_else(|| lower.iter().map(|(_, cell)| name(cell)).collect())))
+}
+
+/// Whether a cell of a row of units says that this is one.
+fn is_label(cell: &str) -> bool {
+    UNIT.contains(&key(cell).as_str())
+}
+
+const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
+
+/// Whether a line holds types of numbers only, `f8`, `float`, or something other than units behind one label: `Interp: zoh`.
+pub fn is_types(line: &Line, separator: Separator) -> bool {
+    let label =
+        |cell: &str| Some(cell.split_once(": ")?.0.to_owned()).filter(|l| l == "Type" || l == "Interp");
+    if let Ok(cells) = fields(line.text, separator)
+        && cells.len() > 1
+        && let Some(first) = label(&cells[0].1)
+    {
+        return cells.iter().all(|(_, cell)| label(cell).as_ref() == Some(&first));
+    }
+    let known = |(_, cell): &(usize, Cow<str>)| TYPES.contains(&cell.to_lowercase().as_str());
+    let begins = |kind: &&str| {
+        let first = line.text.trim_start_matches(['"', ' ']).get(..kind.len());
+        first.is_some_and(|first| first.eq_ignore_ascii_case(kind))
+    };
+    TYPES.iter().any(begins)
+        && fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
+}
+
+/// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.
+pub fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
+    let alone = !line[0].1.is_empty() && line.iter().filter(|(_, f)| !f.is_empty()).count() == 1;
+    let keyed = line.len() > width && Preamble::is_of_columns(&line[0].1);
+    keyed || alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
+}
+
+/// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its end that the row has no value for.
+pub fn headings<'a>(
+    line: &Line<'a>,
+    separator: Separator,
+    skipped: usize,
+    values: &[(usize, Cow<str>)],
+) -> Option<Fields<'a>> {
+    let mut fields = fields(line.text, separator).ok()?;
+    fields.drain(..skipped.min(fields.len()));
+    // `;Headers, time,Ax,Ay,Az`
+    let keyed = |cell: &str| cell.trim_start_matches([';', '#']).eq_ignore_ascii_case("headers");
+    if fields.len() == values.len() + 1 && keyed(&fields[0].1) {
+        fields.remove(0);
+    }
+    let last = fields.len().checked_sub(1)?;
+    let unused = values.get(last).is_none_or(|(_, v)| v.is_empty());
+    if last > 0 && fields[last].1.is_empty() && unused {
+        fields.pop();
+    }
+    Some(fields)
+}
+
+/// Whether fields name columns: some letters that are no exponent, and not `key: value`.
+fn named(fields: &Fields) -> bool {
+    let statement =
+        fields.first().is_some_and(|(_, f)| f.contains(": ") || f.ends_with(':') || f.contains('='));
+    let is_name = |field: &str| {
+        let bytes = field.as_bytes();
+        let number = number::either(bytes).is_some();
+        field.contains(char::is_alphabetic) && !number && !number::is_missing(bytes)
+    };
+    // `Run 1: Time (s),Run 1: Force (N)`
+    let all = fields.len() > 1 && fields.iter().all(|(_, f)| f.contains(": "));
+    (!statement || all) && fields.iter().any(|(_, f)| is_name(f))
+}

@@ -1,0 +1,83 @@
+//! Units as headers of columns spell them.
+
+use super::names::Name;
+use vibro_record::Scaling;
+use vibro_record::units::{Quantity, Unit, spelled};
+
+/// What stands in place of a unit over numbered samples.
+pub(super) const COUNTERS: [&str; 5] = ["sequence", "samples", "points", "no.", "rn"];
+
+/// Hours have no symbol among the units of values.
+pub(super) const HOUR: &str = "hour";
+
+pub(super) const DAY: &str = "day";
+
+/// The symbol of a unit that is written as a word; any other text as it is.
+pub(super) fn symbol(text: &str) -> &str {
+    let lower = text.to_lowercase();
+    match lower.strip_suffix('s').filter(|t| t.len() > 2).unwrap_or(&lower) {
+        "second" | "sec" | "sekunde" | "sekunden" | "с" | "秒" => "s",
+        "millisecond" | "msec" => "ms",
+        "microsecond" | "usec" | "µsec" => "µs",
+        "minute" => "min",
+        "hour" => HOUR,
+        "hertz" | "гц" => "Hz",
+        "kilohertz" => "kHz",
+        "vdc" => "V",
+        _ => text,
+    }
+}
+
+/// A unit without what says that amplitudes are RMS or peak, and the scaling that this is: `Vrms`, `mm/s RMS`, `g pk`.
+pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
+    const SAID: [(&str, Scaling); 4] =
+        [("rms", Scaling::Rms), ("peak", Scaling::Peak), ("pk", Scaling::Peak), ("eff", Scaling::Rms)];
+    let without = |(word, scaling)| {
+        let at = unit.len().checked_sub(str::len(word)).filter(|at| unit.is_char_boundary(*at))?;
+        let bare = unit[..at].trim_end_matches([' ', '_', '(']);
+        let said = unit[at..].eq_ignore_ascii_case(word) && Unit::parse(bare).is_some() && !bare.is_empty();
+        said.then_some((bare, Some(scaling)))
+    };
+    SAID.into_iter().find_map(without).unwrap_or((unit, None))
+}
+
+/// Radians over a time: hertz only by 1/(2π).
+pub(super) fn is_angular(unit: &str) -> bool {
+    Unit::parse(unit).is_some_and(|u| u.quantity() == Quantity::AngularVelocity)
+}
+
+/// A unit that stands where a name does: `Second`, `Volts`.
+pub(crate) fn unit_word(field: &str) -> Option<Name> {
+    let unit = symbol(field.trim());
+    let word = unit != field.trim() || spelled(unit).is_some();
+    word.then(|| Name { name: String::new(), unit: Some(unit.to_owned()) })
+}
+
+/// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least
+/// half of them known and the others short, such as `EU`.
+pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
+    let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
+    for field in fields.filter(|f| !f.trim().is_empty()) {
+        let unit = symbol(bare_unit(field));
+        let understood = Unit::parse(amplitude(unit).0).is_some()
+            || matches!(unit, "h" | "d" | HOUR)
+            || COUNTERS.contains(&unit.to_lowercase().as_str());
+        total += 1;
+        known += usize::from(understood);
+        sure += usize::from(understood || bare_unit(field).len() < field.trim().len());
+        short += usize::from(understood || unit.chars().count() <= 4);
+        first.get_or_insert(understood);
+    }
+    known > 0 && (sure == total || (first == Some(true) && short == total && 2 * known >= total))
+}
+
+pub(super) fn bare_unit(field: &str) -> &str {
+    let field = field.trim();
+    let field = field.strip_prefix("Unit:").unwrap_or(field).trim_start();
+    let inner = |open, close| field.strip_prefix(open).and_then(|f| f.strip_suffix(close));
+    match inner('[', ']').or(inner('(', ')')) {
+        // `(m/s²)/(N)` begins and ends with brackets too.
+        Some(unit) if !unit.contains(['[', ']', '(', ')']) => unit.trim(),
+        _ => field,
+    }
+}

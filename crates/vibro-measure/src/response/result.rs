@@ -1,0 +1,92 @@
+//! The response curve of a sweep.
+
+use crate::Estimate;
+use crate::jump::Jump;
+use crate::resonance::Resonance;
+use serde::Serialize;
+use vibro_record::{Direction, Finding, Step};
+
+/// A line at a whole multiple or a fraction of the excitation frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Harmonic {
+    /// `2`, `3`, … or `1/2`, `1/3`, …
+    pub order: String,
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
+    pub amplitude: Estimate,
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
+    pub upper_limit: Option<f64>,
+}
+
+/// One step of the response curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ResponsePoint {
+    /// Excitation frequency in Hz.
+    pub excitation: f64,
+    /// Its standard uncertainty in Hz.
+    pub excitation_std: Option<f64>,
+    /// Force amplitude in N, where there is a force spectrum.
+    pub force: Option<f64>,
+    /// Its standard uncertainty in N.
+    pub force_std: Option<f64>,
+    /// Frequency of the response peak in Hz.
+    pub frequency: f64,
+    /// Its standard uncertainty in Hz.
+    pub frequency_std: Option<f64>,
+    /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
+    /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
+    pub amplitude: Estimate,
+    /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
+    pub upper_limit: Option<f64>,
+    /// Orders 2 to 5.
+    pub harmonics: Vec<Harmonic>,
+    /// Orders 1/2, 1/3, 1/4.
+    pub subharmonics: Vec<Harmonic>,
+    /// Phase of the response against the force in rad, where it is known.
+    pub phase: Option<Estimate>,
+    /// Displacement over force, where its phase is known.
+    pub receptance: Option<Receptance>,
+    /// Whether the largest line of the spectrum is not at the excitation.
+    pub largest_elsewhere: bool,
+    /// Frequency of the largest line in Hz.
+    pub largest_at: f64,
+}
+
+/// Displacement over force at one frequency, in m/N.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Receptance {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+    /// Standard uncertainty of each of them.
+    pub std: Option<f64>,
+}
+
+/// A response curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Response {
+    /// Name of the sweep.
+    pub name: String,
+    /// Direction of the sweep, stated or found from the excitation frequencies.
+    pub direction: Option<Direction>,
+    /// Mass, where stated.
+    pub mass: Option<u8>,
+    /// Quantity of the amplitudes.
+    pub quantity: &'static str,
+    /// Unit of the amplitudes.
+    pub unit: &'static str,
+    /// Cut-off in Hz: lines below were left out.
+    pub fmin: f64,
+    /// Steps, in the order in which they were taken.
+    pub points: Vec<ResponsePoint>,
+    /// Maxima and minima of the curve.
+    pub resonances: Vec<Resonance>,
+    /// Sudden changes.
+    pub jumps: Vec<Jump>,
+    /// What limits the curve.
+    pub findings: Vec<Finding>,
+    /// Every step from file to curve.
+    pub history: Vec<Step>,
+}
