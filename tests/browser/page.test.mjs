@@ -106,6 +106,15 @@ test("a value under the pointer is named with its uncertainty, and names switch 
   assert.equal(await ink(canvas), all);
 }));
 
+test("a response is shown on a logarithmic axis and back", () => open(report, {}, async (page) => {
+  const figure = await show(page, "[data-figure]"), canvas = () => figure.locator(".uplot canvas").first(), first = await ink(canvas());
+  assert.equal(await figure.locator(".uplot").count(), 1);
+  await figure.getByRole("button", { name: "log" }).click();
+  assert.notEqual(await ink(canvas()), first);
+  await figure.getByRole("button", { name: "linear" }).click();
+  assert.equal(await ink(canvas()), first);
+}));
+
 test("a dragged rectangle zooms, and reset shows all", () => open(report, {}, async (page) => {
   const figure = await show(page, "[data-figure]");
   const canvas = figure.locator(".uplot canvas").first(), all = await ink(canvas);

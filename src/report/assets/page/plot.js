@@ -155,8 +155,8 @@ class Plot {
       bar.append(entry);
     }
     if (this.map && !this.map.key.classes) bar.append(this.scale());
-    const positive = this.series.some((s) => s.y.some((v) => v > 0)) && !this.panel.map && this.panel.y.low >= 0;
-    if (positive) {
+    const any = (holds) => this.series.some((s) => s.y.some(holds));
+    if (any((v) => v > 0) && !any((v) => v < 0) && !this.panel.map) {
       this.switch = button(this.log ? "linear" : "log", "Scale of the ordinate", () => {
         this.log = !this.log;
         this.switch.textContent = this.log ? "linear" : "log";
@@ -251,10 +251,12 @@ class Plot {
     const { x, y } = this.panel, { ink, faint, font } = theme(this.host);
     const positive = this.series.flatMap((s) => Array.from(s.y).filter((v) => v > 0));
     const least = positive.reduce((a, b) => Math.min(a, b), Infinity);
-    const low = this.log && !(y.low > 0) ? Math.max(least, y.high * 1e-9) : y.low;
-    const scale = (axis, log, from) => ({
+    // Room above and below that a linear axis has and a logarithmic one has not.
+    const room = this.log && !y.log ? 1.6 : 1;
+    const ends = [(this.log && !(y.low > 0) ? Math.max(least, y.high * 1e-9) : y.low) / room, y.high * room];
+    const scale = (all, log) => ({
       time: false, distr: log ? 3 : 1,
-      range: (_, a, b) => (a == null || b == null || a === b ? [from, axis.high] : [a, b]),
+      range: (_, a, b) => (a == null || b == null || a === b ? all : [a, b]),
     });
     const rule = (axis, size, log) => ({
       label: axis.title, labelSize: 22, size, stroke: ink, font, labelFont: font, grid: { show: !this.map, stroke: faint, width: 1 },
@@ -264,7 +266,7 @@ class Plot {
     this.plot = new uPlot({
       width, height: this.height, legend: { show: false },
       cursor: { drag: { x: true, y: true, uni: 20 }, points: { show: false } },
-      scales: { x: scale(x, x.log, x.low), y: scale(y, this.log, low) },
+      scales: { x: scale([x.low, x.high], x.log), y: scale(ends, this.log) },
       axes: [rule(x, 34, x.log), { ...rule(y, width < 420 ? 64 : 70, this.log), ...(y.title.endsWith("(°)") ? { incrs: [5, 15, 45, 90, 180] } : {}) }],
       series: [{}, { paths: () => null, points: { show: false } }],
       hooks: {
@@ -272,7 +274,7 @@ class Plot {
         draw: [() => this.draw()],
         setCursor: [() => this.point()],
       },
-    }, [[x.low, x.high], [low, y.high]], this.frame);
+    }, [[x.low, x.high], ends], this.frame);
     this.plot.over.addEventListener("click", () => this.spectrum());
   }
 
