@@ -7,9 +7,10 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibroimpact::measure::modal::{Measured, ModalOptions, Pole, modal};
 use vibroimpact::measure::spectral::{Lines, SpectralOptions, spectral};
-use vibroimpact::record::{FrfKind, Traces, Window};
+use vibroimpact::record::{Traces, Window};
 use vibroimpact::signal::fft::Transform;
 use vibroimpact::signal::transfer::Estimator;
+use vibroimpact::units::Quantity;
 
 pub const KINDS: &[Kind] = &[
     Kind {
@@ -71,9 +72,9 @@ fn response(poles: &[Pole], f: f64, power: i32) -> Complex64 {
     sum * Complex64::new(0.0, w).powi(power)
 }
 
-fn kind(mix: &mut Mix) -> (FrfKind, i32, &'static str) {
+fn kind(mix: &mut Mix) -> (Quantity, i32, &'static str) {
     let all =
-        [(FrfKind::Receptance, 0, "m"), (FrfKind::Mobility, 1, "m/s"), (FrfKind::Accelerance, 2, "m/s^2")];
+        [(Quantity::Receptance, 0, "m"), (Quantity::Mobility, 1, "m/s"), (Quantity::Accelerance, 2, "m/s^2")];
     all[mix.random.between(0.0, 3.0) as usize]
 }
 

@@ -28,8 +28,8 @@ pub fn spectra() -> Result<Sheet> {
     // Steps up and down have the same frequencies.
     let there = down.iter().min_by(|a, b| (a.excitation - at).abs().total_cmp(&(b.excitation - at).abs()));
     let low = there.map_or(f64::NAN, |p| p.amplitude.value);
-    let (sweep, _) = analysis::named(&campaign, Some("mass 1, up"), false)?.taken(&options)?;
-    let figure = figures::waterfall(&waterfall(&sweep, &options)?, Some(20.0))?
+    let (sweep, response) = analysis::named(&campaign, Some("mass 1, up"), false)?.taken(&options)?;
+    let figure = figures::waterfall(&waterfall(&sweep, &options, &response), Some(20.0))?
         .height(95.0)
         .caption("Spectra of the excited mass of the example campaign (a simulated rig with the numbers of the thesis' one, 0.1 N), sweeping up.");
     let claims = vec![

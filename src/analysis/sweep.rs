@@ -14,7 +14,7 @@ use super::{Analysis, Answer, Job, JobOptions, Progress, entries};
 use crate::campaign::{Campaign, Entry, above_zero, one_or_more};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};
-use crate::measure::waterfall::{Waterfall, gathered};
+use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::read::SweepReader;
 use crate::record::{Direction, Scaling, Sweep, nearest};
 use crate::report::files;
@@ -306,10 +306,7 @@ impl Analysis for Keys {
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         let taken = taken(job.campaign, entries.to_vec(), job.options, job.progress)?;
-        let matrix = |(sweep, response, options): Taken| {
-            let excitation = response.points.iter().map(|p| p.excitation).collect();
-            (gathered(&sweep, &options, excitation, response.fmin), response)
-        };
+        let matrix = |(sweep, response, options): Taken| (waterfall(&sweep, &options, &response), response);
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
         job.found.answers += responses.len();

@@ -7,8 +7,8 @@ use crate::analysis::sweep::{Files, Listed, Stored, figures, matching, named, ta
 use crate::analysis::{self, Answer};
 use crate::campaign::{Reading, above_zero};
 use crate::error::{Error, Result};
-use crate::measure::response::{Response, ResponseOptions, ResponsePoint};
-use crate::measure::waterfall::{Waterfall as Matrix, gathered};
+use crate::measure::response::{ResponseOptions, ResponsePoint};
+use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::proposal::{Proposal, of_steps};
 use crate::read::{SweepList, SweepReader};
@@ -212,9 +212,8 @@ impl Run for Waterfall {
             }
         } else {
             let options = self.taken.options();
-            let (sweep, found) = listed.taken(&options)?;
-            let Response { points, fmin, .. } = found;
-            gathered(&sweep, &options, points.iter().map(|p| p.excitation).collect(), fmin)
+            let (sweep, response) = listed.taken(&options)?;
+            waterfall(&sweep, &options, &response)
         };
         let rows = matrix.magnitude.rows();
         let mut answer = Answer::of(&json!({

@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_function_with_gaps_is_written_as_far_as_the_format_goes() {
-        use crate::record::{Axis, AxisKind, Frf, FrfKind, Grid, Meta};
+        use crate::record::{Axis, AxisKind, Frf, Grid, Meta};
         use crate::units::Unit;
         use num_complex::Complex64;
         let gaps = |step: f64| {
@@ -149,7 +149,7 @@ mod tests {
             let values = vec![Complex64::new(1.0, -1.0); lines.len()];
             let axis = Axis { kind: AxisKind::Frequency, grid: Grid::Uneven(lines) };
             let meta = Meta::new("gaps", Unit::parse("m/N").unwrap());
-            [Record::Frf(Frf { meta, axis, values, kind: FrfKind::Receptance })]
+            [Record::Frf(Frf { meta, axis, values })]
         };
         let lines = |bytes: &[u8]| {
             let found = crate::read::Reader::new().from_reader("x.uff", bytes).unwrap();

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 use vibroimpact::read::Reader;
 use vibroimpact::record::{
-    Axis, AxisKind, Frf, FrfKind, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
+    Axis, AxisKind, Frf, Grid, Meta, Record, Scaling, Spectrum, Trace, Values, Window,
 };
 use vibroimpact::units::{Quantity, Unit};
 use vibroimpact::write::uff58::{Precision, Storage, write_uff58};
@@ -152,7 +152,7 @@ fn frf() -> impl Strategy<Value = Record> {
     (name(), quantities, 3usize..40).prop_flat_map(|(name, quantity, n)| {
         (complex(n), axis(AxisKind::Frequency, n)).prop_map(move |(values, axis)| {
             let meta = Meta::new(name.clone(), Unit::of(quantity));
-            Record::Frf(Frf { meta, axis, values, kind: FrfKind::of(quantity) })
+            Record::Frf(Frf { meta, axis, values })
         })
     })
 }
@@ -245,7 +245,7 @@ fn long_records_are_read_across_buffers() {
     let values = (0..n).map(|i| Complex64::new(f64::from(i), -0.5 * f64::from(i))).collect();
     let axis = Axis { kind: AxisKind::Frequency, grid: Grid::Uneven(uneven(3, n as usize)) };
     let meta = Meta::new("long", Unit::of(Quantity::Receptance));
-    let record = Record::Frf(Frf { meta, axis, values, kind: FrfKind::Receptance });
+    let record = Record::Frf(Frf { meta, axis, values });
     for storage in STORAGES {
         let after = again(&[record.clone(), record.clone()], storage);
         for (i, mut after) in after.into_iter().enumerate() {

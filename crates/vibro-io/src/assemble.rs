@@ -3,8 +3,7 @@
 use crate::Options;
 use vibro_record::units::{self, Quantity, Unit};
 use vibro_record::{
-    Axis, AxisKind, Error, Finding, Frf, FrfKind, Grid, Meta, Record, Result, Scaling, Spectrum, Trace,
-    Values, Window,
+    Axis, AxisKind, Error, Finding, Frf, Grid, Meta, Record, Result, Scaling, Spectrum, Trace, Values, Window,
 };
 
 /// What a file states of a spectrum.
@@ -31,11 +30,8 @@ pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Res
         Values::Real(values) if axis.kind != AxisKind::Frequency => {
             return Ok(Record::Trace(Trace { meta, axis, values }));
         }
-        Values::Complex(values)
-            if said.frf || (said.scaling.is_none() && FrfKind::of(meta.quantity) != FrfKind::Other) =>
-        {
-            let kind = FrfKind::of(meta.quantity);
-            return Ok(Record::Frf(Frf { meta, axis, values, kind }));
+        Values::Complex(values) if said.frf || (said.scaling.is_none() && meta.quantity.is_function()) => {
+            return Ok(Record::Frf(Frf { meta, axis, values }));
         }
         values => values,
     };

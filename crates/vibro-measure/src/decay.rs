@@ -74,8 +74,11 @@ impl Sines {
         mut findings: Vec<Finding>,
     ) -> Result<DecayResult> {
         let unit = trace.meta.unit.quantity().symbol();
-        let (mut modes, mut decaying) = (Vec::new(), Vec::new());
-        let size = self.strongest().map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
+        let (mut modes, mut largest) = (Vec::new(), None);
+        let strongest = self.strongest();
+        let is_strongest =
+            |group, m| strongest.is_some_and(|(other, k)| std::ptr::eq(other, group) && k == m);
+        let size = strongest.map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
         for (group, m) in self.asked() {
             let mode = mode(group, m, self.n, self.rate, unit);
             if decays(group, m) {
@@ -83,16 +86,15 @@ impl Sines {
                     .odd
                     .iter()
                     .any(|k| (group.sines[m].periods - *k as f64).abs() < group.sines[m].reach());
+                largest = largest.or(is_strongest(group, m).then_some(modes.len()));
                 modes.push(if doubted { mode.without_uncertainty() } else { mode });
-                decaying.push((group, m));
                 if doubted {
                     findings.push(
                         Finding::doubt("decay-unexplained")
                             .number("frequency", modes[modes.len() - 1].frequency.value),
                     );
                 }
-            } else if self.strongest().is_some_and(|(strongest, s)| std::ptr::eq(strongest, group) && s == m)
-            {
+            } else if is_strongest(group, m) {
                 let Damped { periods, decay, .. } = group.sines[m];
                 let lost = -(-decay).exp_m1();
                 let why = format!(
@@ -115,10 +117,7 @@ impl Sines {
         }
         let at = |i: usize| trace.axis.at(i);
         let (levels, mut decrement) = self.levels(&trace.values[part.clone()], at(part.start), unit);
-        let same = |(group, m): (&Group, usize)| {
-            decaying.iter().position(|(other, k)| std::ptr::eq(*other, group) && *k == m)
-        };
-        if let Some(strongest) = self.strongest().and_then(same) {
+        if let Some(strongest) = largest {
             if let Some(found) = changed(&levels) {
                 modes[strongest] = modes[strongest].clone().without_uncertainty();
                 findings.push(found.number("frequency", modes[strongest].frequency.value));
@@ -147,12 +146,9 @@ impl Sines {
 
     /// The strongest mode in stretches of equal length, and what their amplitudes say of its damping.
     fn levels(&self, part: &[f64], start: f64, unit: &'static str) -> (Vec<Level>, Option<Estimate>) {
-        let Some((group, m)) = self.strongest() else { return (Vec::new(), None) };
-        let own = group.sines[m];
         // Beside others it is not known so well as to be followed alone.
-        if group.sines.len() > 1 {
-            return (Vec::new(), None);
-        }
+        let alone = self.strongest().filter(|(group, _)| group.sines.len() == 1);
+        let Some(own) = alone.map(|(group, m)| group.sines[m]) else { return (Vec::new(), None) };
         let stretches =
             ((own.decay / STRETCHES.1) as usize).min(STRETCHES.0).min((own.periods / 4.0) as usize);
         if stretches < 2 {

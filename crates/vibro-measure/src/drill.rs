@@ -54,6 +54,8 @@ use vibro_record::{Error, Finding, Result};
 
 /// Turns that are drawn as they were measured.
 const DRAWN: usize = 3;
+/// Parts of a record whose turns are not known.
+const PARTS: usize = 16;
 
 /// Channels of one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,20 +112,20 @@ pub fn drill_each(
     let smooth = smoothing.map(|corner| corner.smooth(&velocity, rate)).transpose()?;
     let smooth = smooth.as_deref().unwrap_or(&velocity);
     let mut cycles = Cycles::new(rate, options.points);
-    for (number, &turn) in whole.iter().enumerate().filter(|(_, turn)| turn.is_measured(&states)) {
+    let sound = || whole.iter().copied().enumerate().filter(|(_, turn)| turn.is_measured(&states));
+    for (number, turn) in sound() {
         cycles.differentiate(&velocity, &states, turn);
         cycles.integrate(smooth, &velocity, turn);
         each(&cycles.average(smooth, &states, number, turn))?;
     }
-    let [mut stroke, drift] = [&cycles.stroke, &cycles.drift].map(|values| Mean::of(values));
+    let (mut stroke, drift) = (Mean::of(&cycles.stroke), Mean::of(&cycles.drift));
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let period = 1.0 / speed.value;
     // What lies beyond the range is missing from the mean.
     let beyond = faults.clipped as f64 / velocity.len() as f64 * (survey.high - survey.low);
     let offset = Offset::of(&drift, period, beyond);
     let around: Vec<f64> = velocity.iter().map(|v| v - offset.value).collect();
-    let jumps =
-        Jumps::of(&around, &states, (options.contact * rate, options.fit * rate), whole, options.turns_from);
+    let jumps = Jumps::of(&around, &states, options.lengths(rate), sound(), Some(options.turns_from));
     let (hidden, gap, averaged) = (jumps.hidden, jumps.gap, cycles.stroke.len());
     let (mut impacts, residuals) = jumps.finish(rate, edge);
     let reach = around.iter().fold(0.0f64, |reach, v| reach.max(v.abs()));
@@ -262,7 +264,10 @@ impl Marks {
     fn of_impacts(velocity: &[f64], states: &[State], options: &DrillOptions, rate: f64) -> Result<Marks> {
         // A turn is half the record at most.
         options.check_turn(0.5 * velocity.len() as f64 / rate)?;
-        let jumps = Jumps::everywhere(velocity, states, (options.contact * rate, options.fit * rate));
+        // The largest of each part of the record decides which others count there.
+        let part = velocity.len() as f64 / PARTS as f64;
+        let parts = (0..PARTS).map(|k| (k, Turn { start: part * k as f64, end: part * (k + 1) as f64 }));
+        let jumps = Jumps::of(velocity, states, options.lengths(rate), parts, None);
         let Train { at, std, others } = Train::of(&jumps.finish(rate, 0.0).0, rate)?;
         Ok(Marks { at, std, sharp: false, others })
     }

@@ -95,50 +95,35 @@ impl Mean {
         if !squares.is_finite() {
             return Mean { value, std: None, n, wanders: false };
         }
-        let sums = Neighbours::of(values, value);
-        let (part, chance) = sums.part(count);
-        let variance = (squares / count as f64 / part).max(LEAST * sums.density()) / n as f64;
+        let about = values.iter().map(|x| (x - value).powi(2)).sum();
+        let products = values.windows(2).map(|x| (x[0] - value) * (x[1] - value)).sum();
+        let (part, chance) = part(about, products, n as f64, count);
+        let density = density(about, products, n as f64);
+        let variance = (squares / count as f64 / part).max(LEAST * density) / n as f64;
         let std = student(count).map(|factor| (factor * factor * variance).sqrt());
         Mean { value, std: std.filter(|s| s.is_finite()), n, wanders: part < STEEP && !chance }
     }
 }
 
-/// How values depend on those beside them.
-struct Neighbours {
-    n: f64,
-    /// Sum of squares about the mean, and of the products of neighbours.
-    squares: f64,
-    products: f64,
+/// Spectral density at frequency 0 of `n` values, by the sums of their squares about the mean and of the products of neighbours, where only neighbours depend on each other, γ₀ + 2γ₁, a positive γ₁ left out; 0 where they surely
+/// depend inversely, as the times between edges do.
+fn density(squares: f64, products: f64, n: f64) -> f64 {
+    if products < -SURE * squares / n.sqrt() {
+        return 0.0;
+    }
+    ((squares + 2.0 * products.min(0.0)) / n).max(0.0)
 }
 
-impl Neighbours {
-    fn of(values: &[f64], mean: f64) -> Neighbours {
-        let squares = values.iter().map(|x| (x - mean).powi(2)).sum();
-        let products = values.windows(2).map(|x| (x[0] - mean) * (x[1] - mean)).sum();
-        Neighbours { n: values.len() as f64, squares, products }
-    }
-
-    /// Spectral density at frequency 0 where only neighbours depend on each other, γ₀ + 2γ₁, a positive γ₁ left out; 0 where they surely
-    /// depend inversely, as the times between edges do.
-    fn density(&self) -> f64 {
-        if self.products < -SURE * self.squares / self.n.sqrt() {
-            return 0.0;
-        }
-        ((self.squares + 2.0 * self.products.min(0.0)) / self.n).max(0.0)
-    }
-
-    /// Mean density over `count` cosines as a part of that at frequency 0, of a chain as correlated as the values; at most 1. And whether
-    /// independent values are as correlated in more than 1 % of cases: r of them is about −1/n ± 1/√n.
-    fn part(&self, count: usize) -> (f64, bool) {
-        let n = self.n;
-        let r = if self.squares > 0.0 { self.products / self.squares } else { 0.0 };
-        let rho = (r + (1.0 + 3.0 * r) / n).clamp(0.0, CLOSEST);
-        let density = |j: usize| {
-            let cos = (PI * j as f64 / n).cos();
-            (1.0 - rho) * (1.0 - rho) / (1.0 - 2.0 * rho * cos + rho * rho)
-        };
-        ((1..=count).map(density).sum::<f64>() / count as f64, r + 1.0 / n < SURE / n.sqrt())
-    }
+/// Mean density over `count` cosines as a part of that at frequency 0, of a chain as correlated as the values; at most 1. And whether
+/// independent values are as correlated in more than 1 % of cases: r of them is about −1/n ± 1/√n.
+fn part(squares: f64, products: f64, n: f64, count: usize) -> (f64, bool) {
+    let r = if squares > 0.0 { products / squares } else { 0.0 };
+    let rho = (r + (1.0 + 3.0 * r) / n).clamp(0.0, CLOSEST);
+    let density = |j: usize| {
+        let cos = (PI * j as f64 / n).cos();
+        (1.0 - rho) * (1.0 - rho) / (1.0 - 2.0 * rho * cos + rho * rho)
+    };
+    ((1..=count).map(density).sum::<f64>() / count as f64, r + 1.0 / n < SURE / n.sqrt())
 }
 
 /// Cosines for `n` values.

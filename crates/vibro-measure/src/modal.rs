@@ -21,7 +21,7 @@ pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 use rational::{Rational, rational};
 use report::Candidate;
 use selection::{Group, averaging, chosen, complete, groups, together};
-use vibro_record::{Error, Finding, FrfKind, Result};
+use vibro_record::{Error, Finding, Result};
 
 /// Peaks and the modes that were fitted to them.
 type Fitted = (Group, Rational);
@@ -42,7 +42,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     let decayed = |decay| Finding::note("modal-window-decay").number("decay", decay);
     let mut findings: Vec<Finding> = options.decay.map(decayed).into_iter().collect();
     let mut lines = measured.clone().usable(least, &mut findings)?;
-    findings.extend((lines.kind == FrfKind::Other).then(|| Finding::caution("modal-unit-unknown")));
+    findings.extend((!lines.kind.is_function()).then(|| Finding::caution("modal-unit-unknown")));
     findings.extend(lines.magnitude_only.then(|| Finding::doubt("modal-magnitudes-only")));
     let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
     let groups = groups(&lines, options.band)?;
@@ -123,7 +123,7 @@ fn refine(lines: &Measured, fits: &mut [Fitted]) {
         let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
         if !others.is_empty()
             && starts.iter().all(|s| s.0 > 0.0 && s.1 > 0.0)
-            && let Ok(better) = rational(lines, group.lines.clone(), &starts, &others)
+            && let Ok(better) = rational(lines, group.lines.clone(), (&starts, 0), &others)
         {
             *fit = better;
         }
@@ -135,6 +135,7 @@ mod tests {
     use super::*;
     use num_complex::Complex64;
     use vibro_record::Fact;
+    use vibro_record::units::Quantity;
 
     /// Two modes as an accelerance, lines of 0.5 Hz.
     fn two() -> Measured {
@@ -143,7 +144,7 @@ mod tests {
             poles.map(|(frequency, zeta)| Pole { frequency, zeta, constant: Complex64::new(2.0, 0.0) });
         let frequency: Vec<f64> = (0..600).map(|i| f64::from(i) * 0.5).collect();
         let values = frequency.iter().map(|f| poles.iter().map(|p| p.at(*f, 2)).sum()).collect();
-        Measured::new(frequency, values, FrfKind::Accelerance)
+        Measured::new(frequency, values, Quantity::Accelerance)
     }
 
     fn says(result: &ModalResult, code: &str) -> bool {
@@ -217,7 +218,7 @@ mod tests {
             for v in &mut values {
                 *v += sigma * Complex64::new(noise.normal(), noise.normal());
             }
-            let measured = Measured { frequency, values, kind: FrfKind::Receptance, ..two() };
+            let measured = Measured { frequency, values, kind: Quantity::Receptance, ..two() };
             found(&measured, &ModalOptions { mass: Some(1.0), ..ModalOptions::default() })
         };
         let result = with(&[100.0, 101.0]);
@@ -239,7 +240,7 @@ mod tests {
             let s = Complex64::new(decay, std::f64::consts::TAU * f);
             2.0 / (own * own + s * s + 2.0 * zeta * own * s)
         });
-        let measured = Measured { values: values.collect(), kind: FrfKind::Receptance, ..measured.clone() };
+        let measured = Measured { values: values.collect(), kind: Quantity::Receptance, ..measured.clone() };
         let result = found(&measured, &ModalOptions { decay: Some(decay), ..ModalOptions::default() });
         let mode = &result.modes[0];
         // Without noise the receptance is a mode exactly; the fit ends within 1e-5 of a bandwidth.
@@ -255,7 +256,7 @@ mod tests {
         // As an accelerance, whose constant the correction changes by 2e-4, and its uncertainty by as much.
         let s = |f: &f64| Complex64::new(decay, std::f64::consts::TAU * f);
         let values = measured.values.iter().zip(&measured.frequency).map(|(v, f)| v * s(f) * s(f));
-        let measured = Measured { values: values.collect(), kind: FrfKind::Accelerance, ..measured.clone() };
+        let measured = Measured { values: values.collect(), kind: Quantity::Accelerance, ..measured.clone() };
         let of = |decay| {
             let result = found(&measured, &ModalOptions { decay, ..ModalOptions::default() });
             let constant = &result.modes[0].modal_constant;

@@ -2,7 +2,6 @@
 
 use super::jump::Point;
 use super::noise::border;
-use std::ops::RangeInclusive;
 
 /// A maximum of a curve over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,7 +116,7 @@ pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f
     })
 }
 
-/// Top of a curve over rising frequency near its highest point `i`, from the points `range` around it.
+/// Top of a curve over rising frequency near its highest point `i`, from the points around it, up to two on each side.
 ///
 /// 1/a² of a damped mode is a parabola in f² (its receptance squared); what further modes and contacts add bends it. So the
 /// polynomial in f² through up to two points on each side is taken: exact for one mode at any spacing. Its uncertainty is made of
@@ -126,21 +125,17 @@ pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f
 /// lean, and what is beyond a polynomial then falls off slowly: two orders that happen to agree prove nothing.) Where the points
 /// beside `i` are below half of it, where there are three only, or where the polynomial has no single top, the answer is that
 /// of [`vertex`], with the uncertainty of a lean that three points cannot show.
-pub(crate) fn apex(curve: &[Point], i: usize, range: RangeInclusive<usize>) -> Option<Vertex> {
-    let near: [Point; 3] = curve.get(i.checked_sub(1)?..=i + 1)?.try_into().ok()?;
+pub(crate) fn apex(points: &[Point], i: usize) -> Option<Vertex> {
+    let near: [Point; 3] = points.get(i.checked_sub(1)?..=i + 1)?.try_into().ok()?;
     let (f, a) = (near.map(|p| p.0), near.map(|p| p.1));
     let simple = || vertex(f, a, near.map(|p| p.2)).map(|v| leaning(v, f, a));
-    let (low, high) = ((*range.start()).max(i.saturating_sub(2)), (*range.end()).min(i + 2));
-    if high < low + 3 || low >= i || high <= i || a[0] < 0.5 * a[1] || a[2] < 0.5 * a[1] {
+    if points.len() < 4 || a[0] < 0.5 * a[1] || a[2] < 0.5 * a[1] {
         return simple();
     }
-    let relative = |k: usize| {
-        let (f_k, height, std) = curve.get(k)?;
-        let x = (f_k / f[1] - 1.0) * (f_k / f[1] + 1.0);
-        Some(Relative { x, height: height / a[1], std: std / a[1], beside: k.abs_diff(i) <= 1 })
-    };
-    let points: Option<Vec<Relative>> = (low..=high).map(relative).collect();
-    let Some([x, height]) = points.and_then(|points| fitted(&points)) else { return simple() };
+    // Relative to the highest, over x = f²/f₀² − 1.
+    let relative = |p: &Point| ((p.0 / f[1] - 1.0) * (p.0 / f[1] + 1.0), p.1 / a[1], p.2 / a[1]);
+    let points: Vec<Point> = points.iter().map(relative).collect();
+    let Some([x, height]) = fitted(&points, i) else { return simple() };
     let ratio = (1.0 + x.0).sqrt();
     Some(Vertex {
         frequency: f[1] * ratio,
@@ -167,37 +162,27 @@ fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
     }
 }
 
-/// A point relative to the highest: x = f²/f₀² − 1.
-#[derive(Clone, Copy)]
-struct Relative {
-    x: f64,
-    height: f64,
-    std: f64,
-    beside: bool,
-}
-
-/// Place and height of the top with their uncertainties; `None` where the polynomial through all points has no single one.
-fn fitted(points: &[Relative]) -> Option<[(f64, f64); 2]> {
-    let found = extremum(points)?;
-    let near: Vec<Relative> = points.iter().filter(|p| p.beside).copied().collect();
+/// Place and height of the top near point `i` with their uncertainties; `None` where the polynomial through all points has no single one.
+fn fitted(points: &[Point], i: usize) -> Option<[(f64, f64); 2]> {
+    let beside = (points[i - 1].0, points[i + 1].0);
+    let found = extremum(points, beside)?;
+    let n = points.len();
     let mut open = [0.0f64; 2];
-    for fewer in [near.as_slice(), &points[1..], &points[..points.len() - 1]] {
-        // Without a neighbour of the highest point it would be extrapolated.
-        if fewer.iter().filter(|p| p.beside).count() == 3 {
-            let rival = extremum(fewer)?;
-            for q in 0..2 {
-                open[q] = open[q].max((rival[q] - found[q]).abs());
-            }
+    // Without a neighbour of the highest point it would be extrapolated.
+    for fewer in [i - 1..i + 2, usize::from(i > 1)..n, 0..n - usize::from(i + 2 < n)] {
+        let rival = extremum(&points[fewer], beside)?;
+        for q in 0..2 {
+            open[q] = open[q].max((rival[q] - found[q]).abs());
         }
     }
     // Four points leave one order to compare, which may agree by chance: its whole distance.
-    let share = if points.len() > 4 { 1.0 / 3.0 } else { 1.0 };
+    let share = if n > 4 { 1.0 / 3.0 } else { 1.0 };
     let mut variance = open.map(|o| share * o * o);
     let mut moved = points.to_vec();
     for (k, point) in points.iter().enumerate() {
-        moved[k].height += point.std;
-        let other = extremum(&moved)?;
-        moved[k].height = point.height;
+        moved[k].1 += point.2;
+        let other = extremum(&moved, beside)?;
+        moved[k].1 = point.1;
         for q in 0..2 {
             variance[q] += (other[q] - found[q]).powi(2);
         }
@@ -206,10 +191,9 @@ fn fitted(points: &[Relative]) -> Option<[(f64, f64); 2]> {
 }
 
 /// Where the polynomial through 1/height² is lowest between the points beside the highest, and the height there.
-fn extremum(points: &[Relative]) -> Option<[f64; 2]> {
-    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.x, 1.0 / (p.height * p.height))).unzip();
-    let mut beside = points.iter().filter(|p| p.beside).map(|p| p.x);
-    let (place, inverse) = lowest(&x, &y, (beside.next()?, beside.next_back()?))?;
+fn extremum(points: &[Point], beside: (f64, f64)) -> Option<[f64; 2]> {
+    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.0, 1.0 / (p.1 * p.1))).unzip();
+    let (place, inverse) = lowest(&x, &y, beside)?;
     (inverse > 0.0).then(|| [place, 1.0 / inverse.sqrt()])
 }
 
@@ -360,7 +344,8 @@ mod apices {
             }
             let Some(truth) = highest(&*height, f[i - 2], f[i + 2]) else { continue };
             let reach = points / 2;
-            let Some(found) = apex(&curve(&f, &a, &std), i, i - reach..=i + points - 1 - reach) else {
+            let near = &curve(&f, &a, &std)[i - reach..i + points - reach];
+            let Some(found) = apex(near, reach) else {
                 continue;
             };
             n += 1;
@@ -392,7 +377,7 @@ mod apices {
         let modes = Modes { f: [5.6, 9.0], zeta: [0.02, 0.02], weight: 0.0 };
         let f = [5.40, 5.51, 5.63, 5.69, 5.80];
         let a = f.map(|f| modes.at(f));
-        let found = apex(&curve(&f, &a, &[0.0; 5]), 2, 0..=4).unwrap();
+        let found = apex(&curve(&f, &a, &[0.0; 5]), 2).unwrap();
         let truth = 5.6 * f64::sqrt(1.0 - 2.0 * 0.02f64.powi(2));
         // Rounding, divided by the spacing of the points to the fourth power of the polynomial.
         assert!((found.frequency - truth).abs() < 1e-11, "{}", found.frequency - truth);

@@ -151,7 +151,7 @@ impl Curve<'_> {
         let widened = self.scatter(of, i);
         let near: Vec<Point> = near.iter().map(|p| (p.0, p.1, p.2 * widened)).collect();
         let rises = near.windows(2).all(|p| p[0].0 < p[1].0);
-        if rises { apex(&near, i - low, 0..=high - low) } else { None }
+        if rises { apex(&near, i - low) } else { None }
     }
 
     /// How many times more the points around the highest, `i`, scatter than their uncertainties say, at least 1. A force that changes

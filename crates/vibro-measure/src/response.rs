@@ -43,13 +43,6 @@ impl ResponseOptions {
     }
 }
 
-/// The cut-off below which a spectrum that was divided by frequency is noise: the larger of two lines and a quarter of
-/// the lowest excitation frequency.
-pub(crate) fn default_cutoff(line_width: f64, excitations: &[Excitation]) -> f64 {
-    let lowest = excitations.iter().map(|e| e.frequency).fold(f64::INFINITY, f64::min);
-    (2.0 * line_width).max(if lowest.is_finite() { lowest / 4.0 } else { 0.0 })
-}
-
 /// Takes the response curve of a sweep.
 ///
 /// Lines are interpolated in the spectrum of the measured signal: where the analyser divided by (2πf)ⁿ that is undone line by
@@ -85,7 +78,10 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
 /// If what is stored cannot be taken to a displacement, velocity or acceleration.
 pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Excitation]) -> Result<Response> {
     let df = sweep.line_width().unwrap_or(f64::NAN);
-    let fmin = options.fmin.unwrap_or_else(|| default_cutoff(df, excitations));
+    // A spectrum that was divided by frequency is noise below two lines, and below a quarter of the lowest excitation.
+    let lowest = excitations.iter().map(|e| e.frequency).fold(f64::INFINITY, f64::min);
+    let quarter = if lowest.is_finite() { lowest / 4.0 } else { 0.0 };
+    let fmin = options.fmin.unwrap_or((2.0 * df).max(quarter));
     let times = options.times(sweep);
     let quantity = sweep.unit().times_seconds(times).quantity();
     if quantity == Quantity::Other {

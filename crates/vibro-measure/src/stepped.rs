@@ -135,32 +135,24 @@ impl Step {
         let blocks = Blocks::of(periods, rate / frequency.value, samples);
         let (f, x) = (blocks.phasors(force), blocks.phasors(response));
         let ratio: Vec<Complex64> = x.iter().zip(&f).map(|(x, f)| x / f).collect();
-        let (begins, state) = settled(&ratio);
+        let (begins, left, stays) = settled(&ratio);
         // A force that is still rising gives the right ratio, and another size.
         let sizes: Vec<Complex64> = f.iter().map(|f| f.norm().into()).collect();
-        let (steady, drift) = settled(&sizes);
+        let (steady, drift, _) = settled(&sizes);
         let first = begins.max(steady);
         let turned: Vec<Complex64> = ratio.iter().zip(&f).map(|(r, f)| r * f.norm()).collect();
         let (mut response, mut ratio) = (Phasor::of(&turned[first..]), Phasor::of(&ratio[begins..]));
         let force: Vec<f64> = f[first..].iter().map(|f| f.norm()).collect();
         let mut force = (mean::average(&force), scatter_of_mean(&force));
         // What it still changes by is in its uncertainty, and in that of the response to it.
-        if let Settled::Nearly(left) | Settled::No(left) = drift {
-            force.1 = force.1.map(|std| std.hypot(left));
-            response.allow(left * ratio.value.norm());
-        }
-        match state {
-            Settled::Yes => {}
-            Settled::Nearly(left) => {
-                response.allow(left * force.0);
-                ratio.allow(left);
-            }
-            Settled::No(left) => {
-                findings.push(
-                    about(Finding::doubt, "step-not-settled").number("left", left / ratio.value.norm()),
-                );
-                (response, ratio) = (response.doubted(), ratio.doubted());
-            }
+        force.1 = force.1.map(|std| std.hypot(drift));
+        response.allow(drift * ratio.value.norm());
+        response.allow(left * force.0);
+        ratio.allow(left);
+        if !stays {
+            let part = left / ratio.value.norm();
+            findings.push(about(Finding::doubt, "step-not-settled").number("left", part));
+            (response, ratio) = (response.doubted(), ratio.doubted());
         }
         let wanders = response.wanders && response.std.is_some();
         if cut + cut_force > 0 {
@@ -312,17 +304,10 @@ impl Blocks {
     }
 }
 
-enum Settled {
-    Yes,
-    /// But for this change, which is small.
-    Nearly(f64),
-    /// Still changing by so much.
-    No(f64),
-}
-
 /// The first block from which on the phasors stay, no later than half-way: where those of the first quarter of the rest differ from the others by no more
-/// than chance. A transient that noise hides there is given half as long again to die.
-fn settled(all: &[Complex64]) -> (usize, Settled) {
+/// than chance. A transient that noise hides there is given half as long again to die. With it the change that may be left, 0 where it is chance, and whether they
+/// stay at all.
+fn settled(all: &[Complex64]) -> (usize, f64, bool) {
     let n = all.len();
     let half = n / 2;
     let steps = all[half..].windows(2).map(|w| (w[1] - w[0]).norm_sqr());
@@ -341,10 +326,10 @@ fn settled(all: &[Complex64]) -> (usize, Settled) {
         let (change, by_chance) = change(*first);
         by_chance || change <= SETTLED * size
     };
-    let Some(first) = (0..=half).find(stays) else { return (half, Settled::No(change(half).0)) };
+    let Some(first) = (0..=half).find(stays) else { return (half, change(half).0, false) };
     let first = (first + first.div_ceil(2)).min(half);
     let (left, by_chance) = change(first);
-    (first, if by_chance { Settled::Yes } else { Settled::Nearly(left) })
+    (first, if by_chance { 0.0 } else { left }, true)
 }
 
 #[cfg(test)]

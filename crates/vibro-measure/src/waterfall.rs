@@ -1,10 +1,9 @@
 //! All response spectra of a sweep as one matrix (the job of the thesis' sinesw).
 
-use super::excitation::excitations;
-use super::response::{ResponseOptions, default_cutoff};
+use super::response::{Response, ResponseOptions};
 use ndarray::Array2;
 use std::f64::consts::PI;
-use vibro_record::{Finding, Result, Sweep};
+use vibro_record::{Finding, Sweep};
 
 /// Spectra over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,24 +26,12 @@ pub struct Waterfall {
     pub findings: Vec<Finding>,
 }
 
-/// Finds the excitation frequencies and gathers the matrix, as [`gathered`].
-///
-/// # Errors
-/// As [`super::response::response`].
-pub fn waterfall(sweep: &Sweep, options: &ResponseOptions) -> Result<Waterfall> {
-    let excitations = excitations(sweep, options.fmin.unwrap_or(0.0))?;
-    let df = sweep.line_width().unwrap_or(f64::NAN);
-    let cutoff = options.fmin.unwrap_or_else(|| default_cutoff(df, &excitations));
-    Ok(gathered(sweep, options, excitations.iter().map(|e| e.frequency).collect(), cutoff))
-}
-
-/// Gathers the matrix for known excitation frequencies (Hz), one a point. Where the spectra were or are integrated, lines below
-/// `cutoff` (Hz) hold noise divided by frequency and are left out; otherwise all lines are kept unless the options give a
-/// cut-off.
-pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, cutoff: f64) -> Waterfall {
+/// Gathers the matrix of a sweep whose response is known. Where the spectra were or are integrated, lines below the response's cut-off hold noise
+/// divided by frequency and are left out; otherwise all lines are kept unless the options give a cut-off.
+pub fn waterfall(sweep: &Sweep, options: &ResponseOptions, response: &Response) -> Waterfall {
     let times = options.times(sweep);
     let integrated = times > 0 || sweep.analyser_integrated > 0;
-    let fmin = if integrated { cutoff } else { options.fmin.unwrap_or(0.0) };
+    let fmin = if integrated { response.fmin } else { options.fmin.unwrap_or(0.0) };
     let frequency = sweep.axis.values();
     let mut magnitude = Array2::from_elem((sweep.points.len(), frequency.len()), f64::NAN);
     for (mut row, point) in magnitude.rows_mut().into_iter().zip(&sweep.points) {
@@ -60,7 +47,7 @@ pub fn gathered(sweep: &Sweep, options: &ResponseOptions, excitation: Vec<f64>, 
     Waterfall {
         name: sweep.name.clone(),
         frequency,
-        excitation,
+        excitation: response.points.iter().map(|p| p.excitation).collect(),
         magnitude,
         quantity: unit.quantity(),
         unit: unit.symbol().to_owned(),

@@ -46,21 +46,6 @@ pub fn survey(values: &[f64]) -> Survey {
     }
 }
 
-/// Smallest step between neighbours that differ; ∞ where none do.
-pub fn least_step(values: &[f64]) -> f64 {
-    let size = |a: &f64, b: &f64| if a == b { f64::INFINITY } else { (b - a).abs() };
-    let (before, after) = (&values[..values.len().saturating_sub(1)], values.get(1..).unwrap_or_default());
-    let ((chunks, rest), (next, more)) = (before.as_chunks::<LANES>(), after.as_chunks::<LANES>());
-    let mut least = [f64::INFINITY; LANES];
-    for (a, b) in chunks.iter().zip(next) {
-        for (i, (a, b)) in a.iter().zip(b).enumerate() {
-            let step = size(a, b);
-            least[i] = if step < least[i] { step } else { least[i] };
-        }
-    }
-    rest.iter().zip(more).map(|(a, b)| size(a, b)).chain(least).fold(f64::INFINITY, f64::min)
-}
-
 /// Values of which the first largest is looked for while they are near.
 const NEAR: usize = 4096;
 

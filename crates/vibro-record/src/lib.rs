@@ -25,7 +25,7 @@ pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
 pub use near::nearest;
-pub use spectrum::{Frf, FrfKind, Scaling, Spectrum, Values};
+pub use spectrum::{Frf, Scaling, Spectrum, Values};
 pub use sweep::{Direction, StepTraces, Sweep, SweepPoint};
 pub use trace::Trace;
 pub use traces::{Stream, Traces, find_channel};

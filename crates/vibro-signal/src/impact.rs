@@ -11,7 +11,6 @@ use super::segment::Segments;
 use super::sound::no_gaps;
 use super::transfer::{Estimator, Transfer, transfer};
 use super::welch::Sums;
-use left::Left;
 use serde::Serialize;
 use std::f64::consts::PI;
 use vibro_record::lanes;
@@ -151,9 +150,7 @@ pub fn from_blows(
     transfer.silence(&averages.auto[0], floor);
     transfer.findings.extend(left_out(&blows));
     transfer.findings.extend((kept.len() == 1).then(|| Finding::caution("frf-one-blow")));
-    if let Some(left) = Left::of(&response.values, &kept, how, &weights[1]) {
-        left.widen(&mut transfer);
-    }
+    left::widen(&mut transfer, &response.values, &kept, how, &weights[1]);
     if decay > 0.0 {
         let ratio = decay / (2.0 * PI);
         let added = Finding::caution("window-adds-decay").number("decay", decay).number("ratio", ratio);
@@ -236,20 +233,16 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
             }
         }
         let second = (first_end..end).any(|j| push(j) > TRIGGER * peak);
-        let mut clipped = false;
         for (channel, rails) in channels.iter().zip(&mut rails) {
-            let rail = overloaded(&channel[start..end], trigger - start);
-            clipped |= rail.is_some();
-            rails.extend(rail);
+            rails.extend(overloaded(&channel[start..end], trigger - start));
         }
         let cut_off = trigger < how.before || end - trigger < how.length - how.before;
-        let faults = [(cut_off, CUT_OFF), (second, DOUBLE), (clipped, OVERLOAD)];
-        let rejected = faults.into_iter().find(|fault| fault.0).map(|fault| fault.1);
+        let rejected = cut_off.then_some(CUT_OFF).or(second.then_some(DOUBLE));
         let time = force.axis.start() + trigger as f64 / rate;
         found.push(Blow { time, peak: sign * peak, rejected, start });
         i = end.max(trigger + 1);
     }
-    // One sample at the value where another blow was clipped is clipped as well.
+    // One sample at the value where any blow was clipped is clipped as well.
     for blow in &mut found {
         let reaches = |(channel, rails): (&&Vec<f64>, &Vec<f64>)| {
             let part = lanes::survey(&channel[blow.start..blow.start + how.length]);

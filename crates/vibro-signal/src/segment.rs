@@ -40,11 +40,6 @@ impl Segments {
     pub fn count(self, n: usize) -> usize {
         if n < self.length { 0 } else { (n - self.length) / self.hop + 1 }
     }
-
-    /// The part of a segment that it shares with the next.
-    pub fn overlap(self) -> f64 {
-        1.0 - self.hop as f64 / self.length as f64
-    }
 }
 
 /// Reads a file's channels and hands out as many whole segments at a time as fill a batch.
@@ -78,12 +73,10 @@ impl<'a> Batches<'a> {
                 break;
             }
             // Missing samples are refused, for a transform would spread them over all lines.
-            for (channel, (column, range)) in batch.iter().zip(&mut self.ranges).enumerate() {
+            for ((column, range), meta) in batch.iter().zip(&mut self.ranges).zip(self.traces.channels()) {
                 let values = &column[column.len() - new..];
-                if !range.extend(values).finite {
-                    let name = self.traces.channels().get(channel).map_or("", |m| m.name.as_str());
-                    no_gaps(values, name, self.frames)?;
-                }
+                no_gaps(values, &meta.name, self.frames)?;
+                range.extend(values);
             }
             self.frames += new;
         }

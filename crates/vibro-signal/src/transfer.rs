@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Error, Finding, Frf, FrfKind, Meta, Result, Scaling, Spectrum, Values};
+use vibro_record::{Axis, Error, Finding, Frf, Meta, Result, Scaling, Spectrum, Values};
 
 /// Below this share of the largest line there is no excitation, only rounding.
 const NOTHING: f64 = 1e-28;
@@ -110,8 +110,7 @@ impl Transfer {
             Values::Complex(values) => values,
             Values::Real(values) => values.into_iter().map(Complex64::from).collect(),
         };
-        let kind = FrfKind::of(result.meta.quantity);
-        self.frf = Frf { meta: result.meta, axis: result.axis, values, kind };
+        self.frf = Frf { meta: result.meta, axis: result.axis, values };
         Ok(self)
     }
 }
@@ -200,7 +199,7 @@ pub fn transfer(
         phase_std: coherence.iter().map(|c| error(c).asin()).collect(),
         averages: averages.count,
         findings: findings.into_iter().filter(|f| f.0).map(|f| f.1).chain(low(&coherence, lines)).collect(),
-        frf: Frf { kind: FrfKind::of(meta.quantity), meta, axis, values },
+        frf: Frf { meta, axis, values },
         coherence: if alone { Vec::new() } else { coherence },
     })
 }

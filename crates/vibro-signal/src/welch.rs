@@ -79,7 +79,7 @@ impl Welch {
         products: bool,
         mut progress: impl FnMut(usize) + Send,
     ) -> Result<Averages> {
-        let length = self.segments.length;
+        let Segments { length, hop } = self.segments;
         let (frames, rate) = (traces.frames(), traces.rate());
         if frames < length {
             let why = format!("the record has {frames} samples: not one segment of {length} fits into it");
@@ -89,16 +89,33 @@ impl Welch {
         }
         let names: Vec<String> = traces.channels().iter().map(|m| m.name.clone()).collect();
         let transform = Transform::new(length);
-        let kernel = Kernel { welch: *self, weights: window::samples(self.window, length), transform };
-        let mut total = Sums::new(names.len(), products, kernel.transform.lines());
+        let weights = window::samples(self.window, length);
+        let mut total = Sums::new(names.len(), products, transform.lines());
+        // Sums of the segments of a batch, a few a core, in their order.
+        let summed = |batch: &[Vec<f64>], count: usize| -> Vec<Sums> {
+            let group = |work: &mut Vec<Workspace>, group: usize| {
+                let mut sums = Sums::new(batch.len(), products, transform.lines());
+                for i in group * GROUP..count.min((group + 1) * GROUP) {
+                    for (work, column) in work.iter_mut().zip(batch) {
+                        let segment = column.get(i * hop..i * hop + length).unwrap_or_default();
+                        let sum = if self.detrend { lanes::sum(segment) } else { 0.0 };
+                        work.load(segment, sum / length as f64, &weights);
+                        transform.run(work);
+                    }
+                    sums.add(work);
+                }
+                sums
+            };
+            let spaces = || batch.iter().map(|_| transform.workspace()).collect();
+            (0..count.div_ceil(GROUP)).into_par_iter().map_init(spaces, group).collect()
+        };
         let mut batches = Batches::new(traces, self.segments);
         let (mut batch, mut next) = (Vec::new(), Vec::new());
         let mut count = batches.fill(&mut batch)?;
         while count > 0 {
             batches.carry(&batch, count, &mut next);
             // The next batch is read while this one is transformed.
-            let (read, sums) =
-                rayon::join(|| batches.fill(&mut next), || kernel.batch(&batch, count, products));
+            let (read, sums) = rayon::join(|| batches.fill(&mut next), || summed(&batch, count));
             total.add_all(&sums);
             progress(batches.frames);
             std::mem::swap(&mut batch, &mut next);
@@ -111,7 +128,7 @@ impl Welch {
             }
         }
         let ranges = batches.ranges;
-        Ok(Averages { ranges, ..total.mean(&kernel.weights, self.segments, rate, self.detrend) })
+        Ok(Averages { ranges, ..total.mean(&weights, self.segments, rate, self.detrend) })
     }
 }
 
@@ -181,39 +198,6 @@ impl Sums {
             cross: self.cross,
             ranges: Vec::new(),
         }
-    }
-}
-
-/// What is done to each segment.
-struct Kernel {
-    welch: Welch,
-    transform: Transform,
-    weights: Vec<f64>,
-}
-
-impl Kernel {
-    /// Sums of the segments of a batch, a few a core, in their order.
-    fn batch(&self, batch: &[Vec<f64>], count: usize, products: bool) -> Vec<Sums> {
-        let Segments { length, hop } = self.welch.segments;
-        (0..count.div_ceil(GROUP))
-            .into_par_iter()
-            .map_init(
-                || batch.iter().map(|_| self.transform.workspace()).collect::<Vec<_>>(),
-                |work, group| {
-                    let mut sums = Sums::new(batch.len(), products, self.transform.lines());
-                    for i in group * GROUP..count.min((group + 1) * GROUP) {
-                        for (work, column) in work.iter_mut().zip(batch) {
-                            let segment = column.get(i * hop..i * hop + length).unwrap_or_default();
-                            let sum = if self.welch.detrend { lanes::sum(segment) } else { 0.0 };
-                            work.load(segment, sum / length as f64, &self.weights);
-                            self.transform.run(work);
-                        }
-                        sums.add(work);
-                    }
-                    sums
-                },
-            )
-            .collect()
     }
 }
 

@@ -127,7 +127,7 @@ pub(crate) fn phase_plot(
 mod tests {
     use super::*;
     use crate::measure::modal::{ModalOptions, modal};
-    use crate::record::FrfKind;
+    use crate::units::Quantity;
 
     /// Two modes at twelve lines: the curve goes through them, and between them as the modes do.
     #[test]
@@ -140,7 +140,7 @@ mod tests {
             [(12.0, 0.02, 0.5), (25.0, 0.03, 0.4)].into_iter().map(of).sum()
         };
         let f = [9.0, 11.0, 12.0, 12.6, 13.2, 14.5, 17.5, 22.0, 24.2, 25.3, 26.6, 30.0];
-        let measured = Measured::new(f.to_vec(), f.iter().map(|f| truth(*f)).collect(), FrfKind::Receptance);
+        let measured = Measured::new(f.to_vec(), f.iter().map(|f| truth(*f)).collect(), Quantity::Receptance);
         let options = ModalOptions { band: Some((9.0, 30.0)), ..ModalOptions::default() };
         let found = modal(&measured, &options).unwrap();
         assert_eq!(found.modes.len(), 2);

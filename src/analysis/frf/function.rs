@@ -5,7 +5,7 @@ use crate::campaign::Campaign;
 use crate::error::{Error, Result};
 use crate::measure::modal::Measured;
 use crate::measure::response::{Response, ResponseOptions};
-use crate::record::{Finding, FrfKind, Meta, Record};
+use crate::record::{Finding, Meta, Record};
 use crate::units::{Quantity, Unit};
 use num_complex::Complex64;
 
@@ -77,7 +77,7 @@ impl Function {
         let mut meta = Meta::new(response.name.clone(), Unit::parse_or_opaque("m/N"));
         meta.history.clone_from(&response.history);
         meta.quantity = meta.unit.quantity();
-        let measured = Measured::new(frequency, values, FrfKind::Receptance);
+        let measured = Measured::new(frequency, values, Quantity::Receptance);
         let measured = Measured { magnitude_only: !phased, std, ..measured };
         let left_out = [("modal-sweep-jumps", at_jumps), ("modal-sweep-doubted", doubted)];
         let left_out = left_out.into_iter().filter(|(_, at)| !at.is_empty());

@@ -6,7 +6,7 @@ use super::score::{Score, bounds};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibroimpact::measure::modal::{Measured, ModalOptions, modal};
-use vibroimpact::record::FrfKind;
+use vibroimpact::units::Quantity;
 
 const CASES: u64 = 250;
 
@@ -20,8 +20,8 @@ fn one(p: &[f64], f: f64, power: i32) -> Complex64 {
     Complex64::new(0.0, omega).powi(power) * (mode + rest)
 }
 
-fn kinds(seed: u64) -> (FrfKind, i32) {
-    [(FrfKind::Receptance, 0), (FrfKind::Mobility, 1), (FrfKind::Accelerance, 2)][(seed % 3) as usize]
+fn kinds(seed: u64) -> (Quantity, i32) {
+    [(Quantity::Receptance, 0), (Quantity::Mobility, 1), (Quantity::Accelerance, 2)][(seed % 3) as usize]
 }
 
 fn noisy(clean: &[Complex64], sigma: &[f64], noise: &mut Noise) -> Vec<Complex64> {
@@ -29,7 +29,7 @@ fn noisy(clean: &[Complex64], sigma: &[f64], noise: &mut Noise) -> Vec<Complex64
     clean.iter().zip(sigma).map(&mut add).collect()
 }
 
-fn measured(frequency: Vec<f64>, values: Vec<Complex64>, kind: FrfKind) -> Measured {
+fn measured(frequency: Vec<f64>, values: Vec<Complex64>, kind: Quantity) -> Measured {
     Measured::new(frequency, values, kind)
 }
 
@@ -168,7 +168,7 @@ fn averaged(averages: usize, frequency: f64, damping: f64, noise: &mut Noise) ->
         values.push(xy / xx);
         coherence.push(xy.norm_sqr() / (xx * yy));
     }
-    Measured { coherence: Some(coherence), ..measured(lines, values, FrfKind::Receptance) }
+    Measured { coherence: Some(coherence), ..measured(lines, values, Quantity::Receptance) }
 }
 
 fn modes_by_the_coherence_of_few_averages(draws: Draws) {

@@ -5,7 +5,8 @@
 use super::sentences;
 use std::path::{Path, PathBuf};
 use vibroimpact::read::{Format, Header, Reader, Recording};
-use vibroimpact::record::{Axis, Frf, FrfKind, Record, Scaling, Spectrum, Trace};
+use vibroimpact::record::{Axis, Frf, Record, Scaling, Spectrum, Trace};
+use vibroimpact::units::Quantity;
 
 /// Standard acceleration of gravity, m/s².
 const G: f64 = 9.806_65;
@@ -146,7 +147,7 @@ fn a_latin1_byte_in_the_unit_of_a_frequency_response() {
     let Some(record) = only("non_ascii_header.uff") else { return };
     let frf = frf(record);
     assert_eq!((frf.values.len(), step(&frf.axis)), (6, 0.195_313));
-    assert_eq!(frf.kind, FrfKind::Accelerance);
+    assert_eq!(frf.meta.quantity, Quantity::Accelerance);
     assert_eq!((frf.values[1].re, frf.values[1].im), (-5.999_24e-2, -5.532_60e-2));
 }
 
@@ -242,7 +243,7 @@ fn a_hammer_test() {
     let response = frf(record);
     assert_eq!((response.values.len(), step(&response.axis)), (1600, 0.5));
     // The file says (m/s)/N under the label "Receptance"; that it was an acceleration only the mangled twin shows.
-    assert_eq!(response.kind, FrfKind::Mobility);
+    assert_eq!(response.meta.quantity, Quantity::Mobility);
     let doubts = sentences(&response.meta.findings).join(" ");
     assert!(doubts.contains("Receptance") && doubts.contains("(m/s)/N"), "{doubts}");
     for resonance in [41.0, 62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
@@ -273,7 +274,7 @@ fn a_mangled_superscript() {
     let mangled = frf(mangled);
     let clean = frf(only("dataset58_FRF.unv").unwrap());
     assert_eq!((&mangled.values, &mangled.axis), (&clean.values, &clean.axis));
-    assert_eq!(mangled.kind, FrfKind::Accelerance);
+    assert_eq!(mangled.meta.quantity, Quantity::Accelerance);
     assert!(
         sentences(&mangled.meta.findings).iter().any(|d| d.contains("(m/s²)/N") && d.contains("mangled"))
     );
@@ -340,7 +341,7 @@ fn inches_and_pounds_force_become_si() {
     let recording = read(&folder.join("dataset151_164_58_55.unv"));
     let frf = frf(recording.records[0].clone());
     assert_eq!((frf.values.len(), step(&frf.axis)), (10, 0.25));
-    assert_eq!(frf.kind, FrfKind::Accelerance);
+    assert_eq!(frf.meta.quantity, Quantity::Accelerance);
     // in/s² over lbf, with the factors as the file prints them.
     let factor = 0.224_808_943_099_710_5 / 39.370_078_740_157_48;
     assert!((frf.values[0].re / (1.733_31e-4 * factor) - 1.0).abs() < 1e-12, "{}", frf.values[0]);

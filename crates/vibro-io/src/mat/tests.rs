@@ -5,8 +5,9 @@ use crate::tests::{has_finding, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::io::Write;
+use vibro_record::units::Quantity;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, AxisKind, FrfKind, Record, Values};
+use vibro_record::{Axis, AxisKind, Record, Values};
 
 /// Writes elements in one byte order.
 #[derive(Clone, Copy)]
@@ -245,7 +246,7 @@ fn complex_values_are_spectra() {
     let file = LITTLE.file(&[LITTLE.column("f", &[10.0, 20.0]), h]);
     let frf = Reader::new().unit(Unit::parse("mm/N")).from_reader("x.mat", file.as_slice()).unwrap();
     let Record::Frf(frf) = &frf.records[0] else { panic!() };
-    assert_eq!((frf.kind, &frf.axis), (FrfKind::Receptance, &Axis::frequency(10.0, 10.0, 2)));
+    assert_eq!((frf.meta.quantity, &frf.axis), (Quantity::Receptance, &Axis::frequency(10.0, 10.0, 2)));
     assert_eq!(frf.values[1], Complex64::new(2.0 * 1e-3, 0.5 * 1e-3));
 }
 

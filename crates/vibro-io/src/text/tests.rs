@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 use vibro_record::units::{Quantity, Unit};
-use vibro_record::{Axis, AxisKind, FrfKind, Record, Scaling, Spectrum, Values};
+use vibro_record::{Axis, AxisKind, Record, Scaling, Spectrum, Values};
 
 fn read_with(reader: &Reader, text: impl AsRef<[u8]>) -> Result<Recording> {
     reader.from_reader("x.csv", text.as_ref())
@@ -186,7 +186,7 @@ fn spectra_and_frequency_responses() {
     let Record::Spectrum(density) = &recording.records[1] else { panic!() };
     assert_eq!(density.scaling, Scaling::Psd);
     let Record::Frf(frf) = &recording.records[2] else { panic!() };
-    assert_eq!((frf.meta.name.as_str(), frf.kind), ("H", FrfKind::Accelerance));
+    assert_eq!((frf.meta.name.as_str(), frf.meta.quantity), ("H", Quantity::Accelerance));
     assert_eq!(frf.values, [Complex64::new(3.0, 4.0), Complex64::new(3.0, -4.0)]);
     let Record::Spectrum(complex) = &recording.records[3] else { panic!() };
     assert_eq!(complex.values, Values::Complex(vec![Complex64::new(5.0, 6.0); 2]));

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
     use num_complex::Complex64;
     use vibro_record::units::Unit;
-    use vibro_record::{Axis, Frf, FrfKind, Meta, Trace};
+    use vibro_record::{Axis, Frf, Meta, Trace};
 
     fn trace(values: &[f64]) -> Record {
         let (meta, axis) = (Meta::new("v", Unit::none()), Axis::index(values.len()));
@@ -78,7 +78,6 @@ mod tests {
             meta: Meta::new("H", Unit::none()),
             axis: Axis::frequency(0.0, 1.0, 2),
             values: vec![Complex64::new(1.0, -2.0), Complex64::new(0.0, 0.5)],
-            kind: FrfKind::Other,
         });
         assert_eq!(bytes(&[frf, trace(&[3.0, 4.0])]), include_bytes!("../../../../fixtures/npy/complex.npy"));
     }

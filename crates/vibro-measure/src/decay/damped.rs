@@ -88,7 +88,7 @@ pub struct Group {
     pub lines: Range<usize>,
     /// The sines, in the order of their starts.
     pub sines: Vec<Damped>,
-    fit: Fit,
+    pub fit: Fit,
     widening: f64,
 }
 
@@ -128,16 +128,6 @@ impl Group {
         let white = Whiteness::of(&[&part(0), &part(1)]);
         let widening = student(fit.degrees_of_freedom()).unwrap_or(f64::NAN) * white.inflation;
         Ok(Group { lines, sines, fit, widening })
-    }
-
-    /// Standard deviation of a component of what is left of a line.
-    pub fn noise(&self) -> f64 {
-        self.fit.variance().sqrt()
-    }
-
-    /// Sum of squares of what is left, and how many of them are free.
-    pub fn left(&self) -> (f64, usize) {
-        (self.fit.sum_of_squares(), self.fit.degrees_of_freedom())
     }
 
     /// Standard uncertainty of what depends on the parameters of sine `m` with this gradient.

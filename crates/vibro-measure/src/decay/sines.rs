@@ -165,7 +165,7 @@ impl Sines {
         for decay in [0.3 * decay, decay, 0.2] {
             let sines: Vec<Damped> = old.iter().copied().chain([Damped { decay, ..new }]).collect();
             let Ok(group) = fit(&sines, range(&sines, rest.len())) else { continue };
-            if best.as_ref().is_none_or(|best| group.noise() < best.noise()) {
+            if best.as_ref().is_none_or(|best| group.fit.variance().sqrt() < best.fit.variance().sqrt()) {
                 best = Some(group);
             }
         }
@@ -184,8 +184,9 @@ impl Sines {
                 |s: &Damped| (s.periods - added.periods).abs() >= PARTED * s.width().max(added.width());
             let inside = group.lines.contains(&(added.periods.max(0.0) as usize));
             let without = if old.is_empty() { None } else { fit(&old, group.lines.clone()).ok() };
-            let (left, free) = group.left();
-            let worth = without.is_none_or(|w| (w.left().0 - left) / OWN as f64 > WORTH * left / free as f64);
+            let (left, free) = (group.fit.sum_of_squares(), group.fit.degrees_of_freedom());
+            let gained = |less: Group| (less.fit.sum_of_squares() - left) / OWN as f64;
+            let worth = without.is_none_or(|less| gained(less) > WORTH * left / free as f64);
             inside && worth && group.sines[..old.len()].iter().all(alone)
         });
         if let Some(group) = good {

@@ -13,8 +13,6 @@ use crate::residuals::Whiteness;
 
 /// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
 const MOST: usize = 4;
-/// Parts of a record whose turns are not known.
-const PARTS: usize = 16;
 /// Smaller jumps count down to this part of the largest of a turn, and of the median turn.
 const PART: f64 = 0.25;
 /// A jump must be this many times its own uncertainty: of some thousand places a turn none is one by chance.
@@ -57,42 +55,23 @@ pub(super) struct Jumps<'a> {
 }
 
 impl<'a> Jumps<'a> {
-    /// Jumps with a contact that takes `contact` samples at most, and fits over `fit` samples on both sides.
-    pub fn new(values: &'a [f64], states: &'a [State], contact: f64, fit: f64) -> Jumps<'a> {
-        let gap = ((0.5 * contact).ceil() as usize).max(1);
-        let length = (fit.round() as usize).max(FEWEST);
-        Jumps { values, states, gap, length, lead: 0.0, found: Vec::new(), largest: Vec::new(), hidden: 0 }
-    }
-
-    /// Jumps of a record whose turns are not known: the largest of each of its parts decides which others count there.
-    pub fn everywhere(values: &'a [f64], states: &'a [State], (contact, fit): (f64, f64)) -> Jumps<'a> {
-        let mut jumps = Jumps::new(values, states, contact, fit);
-        let part = values.len() as f64 / PARTS as f64;
-        for k in 0..PARTS {
-            jumps.search(k, Turn { start: part * k as f64, end: part * (k + 1) as f64 }, usize::MAX);
-        }
-        jumps
-    }
-
-    /// Jumps in those of the turns in which no sample is lost; contact and fit in samples. Where the `turns_from` impacts, one begins each.
+    /// Jumps in these numbered turns, or in parts of a record whose turns are not known: contacts take `contact` samples at most, fits reach over
+    /// `fit` samples on both sides. Where impacts begin the turns, one that is as late as a fit ends belongs to the next.
     pub fn of(
         values: &'a [f64],
         states: &'a [State],
         (contact, fit): (f64, f64),
-        turns: &[Turn],
-        turns_from: TurnsFrom,
+        turns: impl Iterator<Item = (usize, Turn)>,
+        turns_from: Option<TurnsFrom>,
     ) -> Jumps<'a> {
-        let mut jumps = Jumps::new(values, states, contact, fit);
-        jumps.lead = if turns_from == TurnsFrom::Impacts { jumps.gap as f64 } else { 0.0 };
-        for (cycle, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.is_measured(states)) {
-            jumps.push(cycle, *turn);
-        }
+        let gap = ((0.5 * contact).ceil() as usize).max(1);
+        let length = (fit.round() as usize).max(FEWEST);
+        let lead = if turns_from == Some(TurnsFrom::Impacts) { gap as f64 } else { 0.0 };
+        let most = if turns_from.is_some() { MOST } else { usize::MAX };
+        let (found, largest) = (Vec::new(), Vec::new());
+        let mut jumps = Jumps { values, states, gap, length, lead, found, largest, hidden: 0 };
+        turns.for_each(|(cycle, turn)| jumps.search(cycle, turn, most));
         jumps
-    }
-
-    /// Looks at turn number `cycle`.
-    pub fn push(&mut self, cycle: usize, turn: Turn) {
-        self.search(cycle, turn, MOST);
     }
 
     /// Looks for so many jumps at most.
@@ -242,8 +221,8 @@ mod tests {
     }
 
     fn one(values: &[f64], states: &[State]) -> (Vec<Impact>, usize) {
-        let mut jumps = Jumps::new(values, states, 20.0, 50.0);
-        jumps.push(4, Turn { start: 100.0, end: 1900.0 });
+        let turn = std::iter::once((4, Turn { start: 100.0, end: 1900.0 }));
+        let jumps = Jumps::of(values, states, (20.0, 50.0), turn, Some(TurnsFrom::Reference));
         let hidden = jumps.hidden;
         (jumps.finish(1e5, 0.0).0, hidden)
     }

@@ -177,6 +177,11 @@ pub struct DrillOptions {
 }
 
 impl DrillOptions {
+    /// Samples of a contact and of a fit beside it.
+    pub(super) fn lengths(&self, rate: f64) -> (f64, f64) {
+        (self.contact * rate, self.fit * rate)
+    }
+
     /// Everything that has no default; the rest takes its default.
     pub fn new(sensitivity: f64, beam: Beam, pulses_per_turn: usize, edge: Edge) -> DrillOptions {
         DrillOptions {

@@ -3,7 +3,7 @@
 use super::{Measured, ModalOptions, Mode, Pole, modal};
 use num_complex::Complex64;
 use vibro_math::Noise;
-use vibro_record::FrfKind;
+use vibro_record::units::Quantity;
 
 /// Two modes some bandwidths apart, as a receptance with noise; each of them.
 fn pair(seed: u64) -> (Measured, [Pole; 2]) {
@@ -20,7 +20,7 @@ fn pair(seed: u64) -> (Measured, [Pole; 2]) {
     let clean: Vec<Complex64> = frequency.iter().map(|f| modes.iter().map(|m| m.at(*f, 0)).sum()).collect();
     let sigma = clean.iter().map(|v| v.norm()).fold(0.0, f64::max) * 10f64.powf(noise.between(-3.0, -1.5));
     let values = clean.iter().map(|v| v + sigma * Complex64::new(noise.normal(), noise.normal())).collect();
-    (Measured::new(frequency, values, FrfKind::Receptance), modes)
+    (Measured::new(frequency, values, Quantity::Receptance), modes)
 }
 
 /// Half to five bandwidths apart, 30 to 60 dB above the noise. Without a search for what shows no peak, 430 of 586 modes were found and 76 % of

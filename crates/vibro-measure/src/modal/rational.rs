@@ -51,9 +51,7 @@ pub(super) fn left_by(
     others: &[Pole],
 ) -> Option<f64> {
     let scaled = Scaled::of(measured, part, starts, others);
-    let mut p = vec![0.0; 4 * starts.len() + 4];
-    (0..starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
-    scaled.linear(&mut p, &vec![1.0; scaled.x.len()])
+    scaled.start(starts.len(), 0.0, &vec![1.0; scaled.x.len()]).map(|(sum, _)| sum)
 }
 
 impl<'a> Scaled<'a> {
@@ -149,8 +147,9 @@ impl Scaled<'_> {
         sum.is_finite().then_some(sum)
     }
 
-    /// First guess: frequency and damping of each mode but the first `known` in turn on a small grid, all else by linear least squares.
-    fn start(&self, known: usize, width: f64, weight: &[f64]) -> Option<Vec<f64>> {
+    /// First guess: frequency and damping of each mode but the first `known` in turn on a small grid, all else by linear least squares; behind the
+    /// sum of squares.
+    fn start(&self, known: usize, width: f64, weight: &[f64]) -> Option<(f64, Vec<f64>)> {
         let mut p = vec![0.0; 4 * self.starts.len() + 4];
         (0..self.starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
         for (m, (f, zeta)) in self.starts.iter().enumerate().skip(known) {
@@ -166,8 +165,7 @@ impl Scaled<'_> {
             }
             p = least.1;
         }
-        self.linear(&mut p, weight)?;
-        Some(p)
+        Some((self.linear(&mut p, weight)?, p))
     }
 
     /// The minimum, nearly: frequency and damping of the modes alone, with all else by linear least squares for each (Golub & Pereyra 1973).
@@ -253,22 +251,12 @@ impl Scaled<'_> {
     }
 }
 
-/// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio) to the lines `part` of a function from which
+/// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio), the first `known` of which come from a fit, to the lines `part` of a function from which
 /// `others` are subtracted.
 ///
 /// Noise is weighted by the uncertainty of each line where that is known, else by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal
 /// on all lines or as proportional to the response, of which the more likely is taken.
 pub(super) fn rational(
-    measured: &Measured,
-    part: std::ops::Range<usize>,
-    starts: &[(f64, f64)],
-    others: &[Pole],
-) -> Result<Rational> {
-    with_known(measured, part, (starts, 0), others)
-}
-
-/// As [`rational`], where the first `known` of the first guesses come from a fit.
-pub(super) fn with_known(
     measured: &Measured,
     part: std::ops::Range<usize>,
     (starts, known): (&[(f64, f64)], usize),
@@ -291,7 +279,7 @@ pub(super) fn with_known(
     let start = if measured.magnitude_only {
         scaled.guess()
     } else {
-        scaled.start(known, width, &equal.each).ok_or_else(refuse)?
+        scaled.start(known, width, &equal.each).ok_or_else(refuse)?.1
     };
     let at = scaled.nearer(&start, &equal)?;
     let height = |i: usize| scaled.at(&at, i).norm();
@@ -339,20 +327,17 @@ pub(super) fn with_known(
         }
     }
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut fitted = None;
     for (_, p, noise, named) in near {
         match scaled.fit(&p, &noise) {
             Ok(fit) => {
-                fitted = Some((fit, noise, named));
-                break;
+                let mut result = scaled.result(&fit, named, &noise);
+                result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
+                return Ok(result);
             }
             Err(error) => failed = error,
         }
     }
-    let (fit, noise, named) = fitted.ok_or(failed)?;
-    let mut result = scaled.result(&fit, named, &noise);
-    result.fitted.iter_mut().zip(f).for_each(|(v, f)| *v += taken(*f));
-    Ok(result)
+    Err(failed)
 }
 
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.

@@ -3,8 +3,7 @@
 use num_complex::Complex64;
 use vibro_record::units::Quantity;
 use vibro_record::{
-    Axis, AxisKind, Error, Finding, Frf, FrfKind, Meta, Place, Record, Result, Scaling, Spectrum, Values,
-    Window,
+    Axis, AxisKind, Error, Finding, Frf, Meta, Place, Record, Result, Scaling, Spectrum, Values, Window,
 };
 
 /// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
@@ -17,7 +16,7 @@ pub struct Measured {
     /// Whether phases are unknown.
     pub magnitude_only: bool,
     /// What the values are.
-    pub kind: FrfKind,
+    pub kind: Quantity,
     /// Coherence of each line.
     pub coherence: Option<Vec<f64>>,
     /// Window of the segments that the function was averaged over, each as long as one over the distance of the lines; `None` where it
@@ -29,17 +28,17 @@ pub struct Measured {
 
 impl Measured {
     /// Values over frequencies (Hz) of which nothing else is known.
-    pub fn new(frequency: Vec<f64>, values: Vec<Complex64>, kind: FrfKind) -> Measured {
+    pub fn new(frequency: Vec<f64>, values: Vec<Complex64>, kind: Quantity) -> Measured {
         Measured { frequency, values, magnitude_only: false, kind, coherence: None, window: None, std: None }
     }
 
     /// All lines of a complex function.
     pub fn complex(frf: &Frf) -> Measured {
         let window = frf.meta.averaged_with();
-        Measured { window, ..Measured::of(&frf.axis, frf.values.clone(), frf.kind) }
+        Measured { window, ..Measured::of(&frf.axis, frf.values.clone(), frf.meta.quantity) }
     }
 
-    fn of(axis: &Axis, values: Vec<Complex64>, kind: FrfKind) -> Measured {
+    fn of(axis: &Axis, values: Vec<Complex64>, kind: Quantity) -> Measured {
         Measured::new(axis.values(), values, kind)
     }
 
@@ -52,10 +51,10 @@ impl Measured {
             Record::Trace(_) => return Ok(None),
         };
         let Spectrum { meta, axis, scaling, .. } = spectrum;
-        let kind = FrfKind::of(meta.quantity);
+        let kind = meta.quantity;
         let values = match &spectrum.values {
             Values::Complex(values) => values,
-            Values::Real(values) if kind != FrfKind::Other && axis.kind == AxisKind::Frequency => {
+            Values::Real(values) if kind.is_function() && axis.kind == AxisKind::Frequency => {
                 let values = values.iter().map(|v| Complex64::new(v.abs(), 0.0)).collect();
                 let measured = Measured::of(axis, values, kind);
                 return Ok(Some(Measured { magnitude_only: true, ..measured }));
@@ -68,7 +67,7 @@ impl Measured {
                 .setting("base_band"));
         }
         let one_signal = !matches!(meta.quantity, Quantity::Ratio | Quantity::Other);
-        if kind == FrfKind::Other && (one_signal || *scaling != Scaling::Unknown) {
+        if !kind.is_function() && (one_signal || *scaling != Scaling::Unknown) {
             let of = format!(" of {} [{}]", meta.quantity.name(), meta.unit.symbol());
             let of = if one_signal { of } else { String::new() };
             let why = format!("a spectrum{of}, which is no response over a force");
@@ -158,9 +157,9 @@ impl Measured {
     /// How often iω multiplies a receptance to give the values.
     pub fn power(&self) -> i32 {
         match self.kind {
-            FrfKind::Mobility => 1,
-            FrfKind::Accelerance => 2,
-            FrfKind::Receptance | FrfKind::Other => 0,
+            Quantity::Mobility => 1,
+            Quantity::Accelerance => 2,
+            _ => 0,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Which lines belong to which peak, which peaks are modes, and on which lines they are fitted.
 
-use super::rational::{Rational, left_by, rational, with_known};
+use super::rational::{Rational, left_by, rational};
 use super::{Measured, Pole};
 use crate::mean::upper_median;
 use crate::peaks::local_maxima;
@@ -25,7 +25,7 @@ pub(super) fn averaging(lines: &mut Measured, groups: &[Group]) -> bool {
     let Some(group) = groups.iter().max_by(|a, b| highest(a).total_cmp(&highest(b))) else { return false };
     let aicc = |window| {
         let lines = Measured { window, ..lines.clone() };
-        let fit = rational(&lines, group.lines.clone(), &starts(&lines, &group.peaks), &[]);
+        let fit = rational(&lines, group.lines.clone(), (&starts(&lines, &group.peaks), 0), &[]);
         fit.ok().map(|fit| fit.aicc)
     };
     let (Some(without), Some(with)) = (aicc(None), aicc(Some(Window::Hann))) else { return false };
@@ -44,7 +44,7 @@ pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<
     let fit = loop {
         group.peaks.clone_from(&highest);
         group.peaks.sort_by_key(|p| p.at);
-        match rational(lines, group.lines.clone(), &starts(lines, &group.peaks), &[]) {
+        match rational(lines, group.lines.clone(), (&starts(lines, &group.peaks), 0), &[]) {
             // Where not all can be fitted at once, the lowest is left out.
             Err(_) if highest.len() > 1 => unsupported.extend(highest.pop()),
             fit => break fit?,
@@ -69,7 +69,7 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &
             known.for_each(|((guess, mode), _)| *guess = (mode.frequency, mode.zeta));
             fewer.remove(at);
             guess.remove(at);
-            let less = rational(lines, group.lines.clone(), &guess, &[]).ok()?;
+            let less = rational(lines, group.lines.clone(), (&guess, 0), &[]).ok()?;
             // A mode that leaves its peak for the one taken away is not the other's.
             let needless =
                 less.aicc <= fit.aicc + NO_SUPPORT && less.sound(lines, &fewer).iter().all(|sound| *sound);
@@ -103,7 +103,7 @@ pub(super) fn together(
     if guess.is_empty() || fits.iter().all(|(group, _)| group.lines == part) {
         return;
     }
-    let Ok(fit) = rational(lines, part.clone(), &guess, &[]) else { return };
+    let Ok(fit) = rational(lines, part.clone(), (&guess, 0), &[]) else { return };
     let explained = fits.iter().any(|(_, fit)| !fit.whiteness.rejected());
     if fit.whiteness.rejected() && explained {
         return;
@@ -126,7 +126,7 @@ fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
         below = below.min((2 * below / 3).max(BESIDE));
         above = above.min((2 * above / 3).max(BESIDE));
         let part = first - below..last + above + 1;
-        let fit = rational(lines, part.clone(), &starts, &[]).ok();
+        let fit = rational(lines, part.clone(), (&starts, 0), &[]).ok();
         if let Some(fit) = fit.filter(|fit| !fit.whiteness.rejected()) {
             group.lines = part;
             return fit;
@@ -174,7 +174,7 @@ fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) ->
     guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
     let fitted = |(_, starts): (f64, Vec<(f64, f64)>)| {
         let known = starts.len() - 1;
-        let more = with_known(lines, group.lines.clone(), (&starts, known), others).ok()?;
+        let more = rational(lines, group.lines.clone(), (&starts, known), others).ok()?;
         more.modes.iter().all(|m| m.zeta > 0.0).then_some(more)
     };
     guesses.into_iter().take(TRIED).filter_map(fitted).min_by(|a, b| a.aicc.total_cmp(&b.aicc))
@@ -384,7 +384,7 @@ mod bands {
     use super::*;
     use crate::synthetic::Twelve;
     use num_complex::Complex64;
-    use vibro_record::FrfKind;
+    use vibro_record::units::Quantity;
 
     /// Lines of noise of 0.3 a component, and one line of 3.
     fn measured(magnitude_only: bool) -> Measured {
@@ -398,7 +398,7 @@ mod bands {
             }
         }
         let frequency = (0..2000).map(f64::from).collect();
-        Measured { magnitude_only, ..Measured::new(frequency, values, FrfKind::Receptance) }
+        Measured { magnitude_only, ..Measured::new(frequency, values, Quantity::Receptance) }
     }
 
     #[test]

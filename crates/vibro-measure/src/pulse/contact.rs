@@ -87,12 +87,7 @@ const STEP: f64 = 1.0 / 128.0;
 const LONGEST: usize = 128 * 200;
 
 impl Rebound {
-    /// Force k δ^{3/2}(1 + λ δ̇), α = λV (Hunt & Crossley 1975); without losses that of Hertz. See [`Rebound::power_law`].
-    pub fn hunt_crossley(alpha: f64) -> Option<Rebound> {
-        Rebound::power_law(alpha, 1.5, 1.5)
-    }
-
-    /// Force k δⁿ + c δˢ δ̇ that does not pull, α the loss at unit velocity: z″ = −zⁿ − α zˢ z′. By the classical Runge–Kutta formula, for exponents of 3/2 good to
+    /// Force k δⁿ + c δˢ δ̇ that does not pull, for both exponents 3/2 that of Hunt & Crossley (1975), without losses that of Hertz; α the loss at unit velocity: z″ = −zⁿ − α zˢ z′. By the classical Runge–Kutta formula, for exponents of 3/2 good to
     /// 1e-5 of the largest value. `None` for α outside −0.5…100, n outside 1…4, s outside 0…4, and where the contact does not end within 200 T.
     pub fn power_law(alpha: f64, n: f64, s: f64) -> Option<Rebound> {
         let possible =
@@ -245,7 +240,7 @@ mod curved {
     /// Hertz: deepest at (5/4)^{2/5} VT, largest force there, duration 2.9432 times that over V (Johnson 1985, 11.22 to 11.24).
     #[test]
     fn hertz_has_its_closed_form() {
-        let hertz = Rebound::hunt_crossley(0.0).unwrap();
+        let hertz = Rebound::power_law(0.0, 1.5, 1.5).unwrap();
         let deepest = f64::powf(1.25, 0.4);
         // Sampled at h, the crest of curvature a is missed by at most a h²/8.
         let largest = hertz.deceleration.iter().copied().fold(0.0, f64::max);
@@ -260,13 +255,15 @@ mod curved {
     #[test]
     fn the_restitution_balances_the_energy() {
         for alpha in [0.1, 0.5, 1.0, 3.0, 20.0] {
-            let contact = Rebound::hunt_crossley(alpha).unwrap();
+            let contact = Rebound::power_law(alpha, 1.5, 1.5).unwrap();
             let level = |v: f64| v / alpha - (alpha * v).ln_1p() / (alpha * alpha);
             let (before, after) = (level(1.0), level(-contact.restitution));
             // As above.
             assert!((before - after).abs() < 1e-5 * before, "{alpha} {before} {after}");
         }
-        assert!(Rebound::hunt_crossley(101.0).is_none() && Rebound::hunt_crossley(f64::NAN).is_none());
+        assert!(
+            Rebound::power_law(101.0, 1.5, 1.5).is_none() && Rebound::power_law(f64::NAN, 1.5, 1.5).is_none()
+        );
     }
 
     /// With both exponents alike the same balance holds for any; with those of spring and damper the contact is that of [`KelvinVoigt`]; a spring that yields
@@ -300,7 +297,7 @@ mod curved {
     /// The impulse is the change of velocity, 1 + R, whatever low-pass stands between, since its gain at 0 Hz is one.
     #[test]
     fn a_low_pass_keeps_the_impulse() {
-        let contact = Rebound::hunt_crossley(0.6).unwrap();
+        let contact = Rebound::power_law(0.6, 1.5, 1.5).unwrap();
         let filter = LowPass::new(30e3, 3).unwrap();
         let step = 1e-8;
         let times: Vec<f64> = (0..40_000).map(|i| f64::from(i) * step).collect();

@@ -1,30 +1,18 @@
 //! Models of a contact fitted to the samples of a pulse.
 
 use super::ringing::Ringing;
-use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
+use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::mean::{average, scatter};
 use crate::residuals::{Whiteness, aicc, student};
 use vibro_math::{Fit, least_squares};
 use vibro_record::{Error, Result};
 
-/// What the models see of an instrument, in units of about the pulse's length.
-pub(super) struct Seen {
-    /// Distance of two samples.
-    pub step: f64,
-    pub filter: Option<LowPass>,
-    pub hertz: Rebound,
-}
-
-impl Seen {
-    /// Delay of the low-pass.
-    pub fn delay(&self) -> f64 {
-        self.filter.as_ref().map_or(0.0, LowPass::delay)
-    }
-}
-
 /// Samples in units of about the pulse: time from its rising flank over its length, value over its height.
 pub(super) struct Samples<'a> {
-    pub seen: &'a Seen,
+    /// Distance of two samples.
+    pub step: f64,
+    /// What the instrument does to a pulse.
+    pub filter: Option<&'a LowPass>,
     /// Places in the record.
     pub places: Vec<usize>,
     pub times: Vec<f64>,
@@ -68,6 +56,11 @@ const AROUND: f64 = 0.1;
 const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 
 impl Samples<'_> {
+    /// Delay of the low-pass.
+    fn delay(&self) -> f64 {
+        self.filter.map_or(0.0, LowPass::delay)
+    }
+
     /// The model at these rising times; `first` is the first time inside the contact where that is settled.
     pub fn model(
         &self,
@@ -76,7 +69,6 @@ impl Samples<'_> {
         times: &[f64],
         first: Option<usize>,
     ) -> Option<Vec<f64>> {
-        let filter = self.seen.filter.as_ref();
         let since = times.iter().map(|t| t - p[0]);
         let shape: Vec<f64> = match model {
             ContactModel::KelvinVoigt => {
@@ -86,16 +78,13 @@ impl Samples<'_> {
                     let begun = first.map_or(t >= 0.0, |first| i >= first);
                     if begun && t <= end { contact.unbounded(t) } else { 0.0 }
                 };
-                match filter {
+                match self.filter {
                     Some(filter) => since.map(|t| contact.filtered(filter, t)).collect(),
                     None => since.enumerate().map(inside).collect(),
                 }
             }
-            ContactModel::Hertz if p[3] > 0.0 => {
-                self.seen.hertz.decelerations(p[3], filter, &since.collect::<Vec<_>>())
-            }
-            ContactModel::HuntCrossley | ContactModel::PowerLaw | ContactModel::Yielding if p[3] > 0.0 => {
-                model.rebound(&p[4..])?.decelerations(p[3], filter, &since.collect::<Vec<_>>())
+            _ if p[3] > 0.0 => {
+                model.rebound(&p[4..])?.decelerations(p[3], self.filter, &since.collect::<Vec<_>>())
             }
             _ => return None,
         };
@@ -105,7 +94,7 @@ impl Samples<'_> {
     /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts as much as a sample each.
     pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
         let (starts, noise) = (self.starts(model)?, self.noise());
-        let corner = self.seen.filter.as_ref().map(|f| f.corner);
+        let corner = self.filter.map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
         if model != ContactModel::KelvinVoigt || corner.is_some() {
             from.extend(
@@ -118,14 +107,14 @@ impl Samples<'_> {
         // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
         // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken. The
         // rise of a fast low-pass falls, like a jump, between a few samples: each of them then holds a minimum of its own.
-        if model == ContactModel::KelvinVoigt && corner.is_none_or(|c| c * self.seen.step > FAST) {
+        if model == ContactModel::KelvinVoigt && corner.is_none_or(|c| c * self.step > FAST) {
             let near = self.nearer(&starts[0]);
             let at = |onset: f64| [&[onset], &near[1..]].concat();
             let last = self.times.len() - 1;
             let middle = self.times.partition_point(|t| *t < near[0]).clamp(1, last);
             from.extend((-3..=3).filter_map(|by: i32| {
                 if corner.is_some() {
-                    return Some((at(near[0] + f64::from(by) * self.seen.step), None));
+                    return Some((at(near[0] + f64::from(by) * self.step), None));
                 }
                 let first = middle.checked_add_signed(by as isize).filter(|k| (1..=last).contains(k))?;
                 Some((at(f64::midpoint(self.times[first - 1], self.times[first])), Some(first)))
@@ -137,7 +126,7 @@ impl Samples<'_> {
             let (onset, std) = (fit.fit.parameters[0], fit.fit.std(0));
             let beyond =
                 fit.first.map_or(0.0, |k| (self.times[k - 1] - onset).max(onset - self.times[k]).max(0.0));
-            let outside = beyond > (self.seen.step / 2.0).max(3.0 * std).min(0.5);
+            let outside = beyond > (self.step / 2.0).max(3.0 * std).min(0.5);
             let free = fit.fit.degrees_of_freedom() as f64;
             (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
@@ -165,7 +154,7 @@ impl Samples<'_> {
         if !(outside || fitted.whiteness.rejected() && self.more_left_at_onset(&fitted.fit)) {
             // At least nine samples leave four degrees of freedom.
             let student = student(fitted.fit.degrees_of_freedom()).unwrap_or(f64::NAN);
-            let inside = (fitted.end() - fitted.fit.parameters[0]) / self.seen.step;
+            let inside = (fitted.end() - fitted.fit.parameters[0]) / self.step;
             let rings = self.rings.map_or(1.0, |rings| rings.widening(inside, fitted.fit.variance()));
             fitted.widening = Some(fitted.whiteness.inflation * student * rings.sqrt());
         }
@@ -174,7 +163,7 @@ impl Samples<'_> {
 
     /// Standard deviation of the record well before the pulse; no less than the digits of a converter leave.
     fn noise(&self) -> f64 {
-        let begins = -0.5 - self.seen.delay();
+        let begins = -0.5 - self.delay();
         let before = &self.values[..self.times.partition_point(|t| *t < begins)];
         if before.len() < 8 { DIGITS } else { scatter(before).max(DIGITS) }
     }
@@ -182,7 +171,7 @@ impl Samples<'_> {
     /// Whether more is left within the contact than before it, by more than chance: then the contact follows another law, or something else moved.
     pub fn unexplained(&self, fitted: &Fitted) -> bool {
         let fit = &fitted.fit;
-        let (onset, end) = (fit.parameters[0], fitted.end() + self.seen.delay());
+        let (onset, end) = (fit.parameters[0], fitted.end() + self.delay());
         let of = |part: &dyn Fn(f64) -> bool| {
             let squares =
                 self.times.iter().zip(&fit.residuals).filter(|(t, _)| part(**t)).map(|(_, r)| r * r);
@@ -199,7 +188,7 @@ impl Samples<'_> {
     /// variance of n samples of noise scatters by √(2/n).
     fn more_left_at_onset(&self, fit: &Fit) -> bool {
         let onset = fit.parameters[0];
-        let around = onset - AROUND..=onset + AROUND + self.seen.delay();
+        let around = onset - AROUND..=onset + AROUND + self.delay();
         let (mut near, mut far) = ((0.0, 0.0), (0.0, 0.0));
         for (t, r) in self.times.iter().zip(&fit.residuals) {
             let part = if around.contains(t) { &mut near } else { &mut far };
@@ -232,7 +221,7 @@ impl Samples<'_> {
         let Some(duration) = KelvinVoigt::new(guess[3], guess[4]).map(|c| c.duration()) else {
             return guess.to_vec();
         };
-        let (reach, steps) = (0.12 * duration, (0.12 * duration / self.seen.step).ceil().clamp(1.0, 10.0));
+        let (reach, steps) = (0.12 * duration, (0.12 * duration / self.step).ceil().clamp(1.0, 10.0));
         let mut least = (f64::INFINITY, guess.to_vec());
         for onset in -(steps as i32)..=steps as i32 {
             for longer in -2..=2 {
@@ -258,7 +247,7 @@ impl Samples<'_> {
         let stride = self.times.len().div_ceil(COARSE).max(1);
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
-        let delay = self.seen.delay();
+        let delay = self.delay();
         // The loss of free exponents has a minimum to either side of the exponent where it makes the pulse neither steeper nor flatter at its end.
         let shapes: &[[f64; 2]] = match model {
             ContactModel::KelvinVoigt => &[[0.03, 0.0], [0.15, 0.0], [0.3, 0.0], [0.5, 0.0], [0.75, 0.0]],

@@ -1,9 +1,9 @@
 //! Where in a record the pulse is; the record in units of its pulse, and the way back.
 
-use super::fit::{Fitted, Samples, Seen};
+use super::fit::{Fitted, Samples};
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::ringing::Ringing;
-use super::{ContactModel, KelvinVoigt, LowPass, Rebound};
+use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::Estimate;
 use crate::mean::{average, upper_median};
 use std::collections::BTreeMap;
@@ -21,7 +21,8 @@ pub(super) struct Normalised<'a> {
     pub length: f64,
     /// Unit of the values.
     height: f64,
-    seen: Seen,
+    /// The low-pass in these units.
+    filter: Option<LowPass>,
 }
 
 /// A mean of this part of the root mean square is another level; what rings is on both sides of its own.
@@ -44,10 +45,7 @@ impl<'a> Normalised<'a> {
         // A half sine is above half its height for two thirds of its length.
         let length = 1.5 * (found.flanks.1 - found.flanks.0) * step;
         let filter = filter.map(|f| LowPass::new(f.corner * length, f.order)).transpose()?;
-        let hertz =
-            Rebound::hunt_crossley(0.0).ok_or_else(|| Error::refused("no shape of a Hertzian contact"))?;
-        let seen = Seen { step: step / length, filter, hertz };
-        Ok(Normalised { trace, found, step, length, height: found.height.abs(), seen })
+        Ok(Normalised { trace, found, step, length, height: found.height.abs(), filter })
     }
 
     fn time(&self, index: usize) -> f64 {
@@ -70,7 +68,8 @@ impl<'a> Normalised<'a> {
         let places: Vec<usize> = range.filter(usable).collect();
         let times = places.iter().map(|i| self.time(*i)).collect();
         let values = places.iter().map(|i| self.trace.values[*i] / self.height).collect();
-        Samples { seen: &self.seen, places, times, values, rings: None }
+        let (step, filter) = (self.step / self.length, self.filter.as_ref());
+        Samples { step, filter, places, times, values, rings: None }
     }
 
     /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it;
@@ -83,7 +82,7 @@ impl<'a> Normalised<'a> {
         findings: &mut Vec<Finding>,
         unlike: impl Fn(Error) -> Error,
     ) -> Result<(Samples<'_>, bool)> {
-        let delay = self.seen.delay();
+        let delay = self.filter.as_ref().map_or(0.0, LowPass::delay);
         let from = self.index(-BESIDE - delay);
         let first = self.samples(from..self.found.low);
         let n = first.times.len();

@@ -38,8 +38,8 @@ impl ContactModel {
     /// The contact of its parameters after the duration: the loss α, and both exponents where they are free.
     pub(super) fn rebound(self, shape: &[f64]) -> Option<Rebound> {
         match (self, shape) {
-            (ContactModel::Hertz, []) => Rebound::hunt_crossley(0.0),
-            (ContactModel::HuntCrossley, &[alpha]) => Rebound::hunt_crossley(alpha),
+            (ContactModel::Hertz, []) => Rebound::power_law(0.0, 1.5, 1.5),
+            (ContactModel::HuntCrossley, &[alpha]) => Rebound::power_law(alpha, 1.5, 1.5),
             (ContactModel::PowerLaw, &[alpha, n, s]) => Rebound::power_law(alpha, n, s),
             (ContactModel::Yielding, &[restitution]) => Rebound::yielding(restitution),
             _ => None,

@@ -153,7 +153,7 @@ fn a_sensor_that_droops_leaves_no_uncertainty() {
 
 #[test]
 fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
-    let contact = Rebound::hunt_crossley(0.3).unwrap();
+    let contact = Rebound::power_law(0.3, 1.5, 1.5).unwrap();
     let result = follows(&contact);
     assert!(says(&result, "pulse-other-model"), "{:?}", result.findings);
     let alpha = &result.fits[2].parameters["alpha"];

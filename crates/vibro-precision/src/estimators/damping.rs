@@ -7,7 +7,8 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::modal::{Measured, ModalOptions, Mode, Pole, modal};
-use vibro_record::{Error, FrfKind, Result};
+use vibro_record::units::Quantity;
+use vibro_record::{Error, Result};
 
 /// The mode: natural frequency in Hz and damping ratio, a bandwidth of 0.36 Hz.
 const OWN: f64 = 100.0;
@@ -39,7 +40,7 @@ fn case(modes: &[Pole], (from, to, step): (f64, f64, f64), part: f64, noise: &mu
     for v in &mut values {
         *v += Complex64::new(sigma * noise.normal(), sigma * noise.normal());
     }
-    let data = Measured::new(frequency, values, FrfKind::Receptance);
+    let data = Measured::new(frequency, values, Quantity::Receptance);
     let zeta = modes[0].zeta;
     Case { data, truth: zeta, unit: zeta, tolerance: 0.1 * zeta }
 }

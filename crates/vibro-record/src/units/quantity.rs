@@ -92,6 +92,11 @@ impl Quantity {
         self.entry().map_or("", |e| e.2)
     }
 
+    /// Whether it is a motion over a force.
+    pub fn is_function(self) -> bool {
+        matches!(self, Quantity::Receptance | Quantity::Mobility | Quantity::Accelerance)
+    }
+
     /// The quantity with this name, ignoring case and surrounding blanks.
     pub fn from_name(name: &str) -> Option<Quantity> {
         let name = name.trim().to_lowercase();

@@ -1,7 +1,7 @@
 use super::*;
 use num_complex::Complex64;
-use vibro_record::units::Unit;
-use vibro_record::{Axis, FrfKind};
+use vibro_record::Axis;
+use vibro_record::units::{Quantity, Unit};
 
 const RATE: f64 = 4096.0;
 /// One mode: mass in kg, frequency in Hz, damping ratio.
@@ -62,8 +62,8 @@ fn blows_give_the_receptance_and_the_decay_that_the_window_adds() {
     let how = Blows { length: 16_384, before: 100, force_window: Some(0.01), left_at_end: None };
     let plain = from_blows(&force, &response, &how, Estimator::H1).unwrap();
     assert_eq!(
-        (plain.transfer.frf.kind, plain.transfer.averages, plain.added_decay),
-        (FrfKind::Receptance, 3, 0.0)
+        (plain.transfer.frf.meta.quantity, plain.transfer.averages, plain.added_decay),
+        (Quantity::Receptance, 3, 0.0)
     );
     // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, at 200 Hz below 1 %; what the last
     // blow left is e^(−ζωt) of it after four seconds.

@@ -2,6 +2,7 @@ use super::*;
 use crate::filter::Filter;
 use crate::segment::Segments;
 use crate::welch::Welch;
+use vibro_record::units::Quantity;
 use vibro_record::{Trace, Traces, Window};
 
 const RATE: f64 = 1000.0;
@@ -42,7 +43,7 @@ fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
     let (averages, metas) = measured([("N", force), ("m/s", velocity)], 1024).unwrap();
     for estimator in [Estimator::H1, Estimator::H2, Estimator::Hv] {
         let found = transfer(&averages, 1, &metas, estimator).unwrap();
-        assert_eq!((found.frf.kind, found.frf.meta.unit.symbol()), (FrfKind::Mobility, "(m/s)/N"));
+        assert_eq!((found.frf.meta.quantity, found.frf.meta.unit.symbol()), (Quantity::Mobility, "(m/s)/N"));
         assert_eq!((found.frf.axis.start(), found.frf.values.len()), (RATE / 1024.0, 512));
         for k in 10..200 {
             let truth = filter.response(found.frf.axis.at(k));
@@ -124,8 +125,8 @@ fn one_average_has_no_coherence_and_an_empty_excitation_is_refused() {
 fn equal_units_give_a_ratio() {
     let meta = |unit| Meta::new("a", Unit::parse_or_opaque(unit));
     assert_eq!(named(&meta("m"), &meta("m")).unit.symbol(), "1");
-    assert_eq!(FrfKind::of(named(&meta("N"), &meta("m/s²")).quantity), FrfKind::Accelerance);
-    assert_eq!(FrfKind::of(named(&meta("N"), &meta("m")).quantity), FrfKind::Receptance);
+    assert_eq!(named(&meta("N"), &meta("m/s²")).quantity, Quantity::Accelerance);
+    assert_eq!(named(&meta("N"), &meta("m")).quantity, Quantity::Receptance);
 }
 
 #[test]
@@ -133,9 +134,12 @@ fn mobility_becomes_receptance_only_when_asked() {
     let x = Noise(9).record(4000);
     let (averages, metas) = measured([("N", x.clone()), ("m/s", x)], 256).unwrap();
     let mobility = transfer(&averages, 1, &metas, Estimator::H1).unwrap();
-    assert_eq!(mobility.frf.kind, FrfKind::Mobility);
+    assert_eq!(mobility.frf.meta.quantity, Quantity::Mobility);
     let receptance = mobility.clone().integrated(1, 20.0).unwrap();
-    assert_eq!((receptance.frf.kind, receptance.frf.meta.unit.symbol()), (FrfKind::Receptance, "m/N"));
+    assert_eq!(
+        (receptance.frf.meta.quantity, receptance.frf.meta.unit.symbol()),
+        (Quantity::Receptance, "m/N")
+    );
     let (f, gone) = (receptance.frf.axis.at(0), mobility.coherence.len() - receptance.coherence.len());
     assert!(f >= 20.0 && mobility.frf.axis.at(gone - 1) < 20.0);
     let expected = mobility.frf.values[gone] / Complex64::new(0.0, TAU * f);

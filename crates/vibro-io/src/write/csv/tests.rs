@@ -3,7 +3,7 @@ use crate::Reader;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use vibro_record::units::Unit;
-use vibro_record::{Frf, FrfKind, Meta, Spectrum, Trace, Window};
+use vibro_record::{Frf, Meta, Spectrum, Trace, Window};
 
 fn meta(name: &str, unit: &str) -> Meta {
     Meta::new(name, Unit::parse_or_opaque(unit).si())
@@ -46,12 +46,7 @@ fn remarks_carry_what_columns_cannot() {
         window: Some(Window::Hann),
         enbw: Some(1.5),
     });
-    let frf = Record::Frf(Frf {
-        meta: meta("T", "1"),
-        axis,
-        values: vec![Complex64::new(1.0, 2.0)],
-        kind: FrfKind::Other,
-    });
+    let frf = Record::Frf(Frf { meta: meta("T", "1"), axis, values: vec![Complex64::new(1.0, 2.0)] });
     assert_eq!(
         text(&[spectrum, frf]),
         "# scaling: rms of v\n# window: hann of v\n# enbw: 1.5 of v\n# kind: frf of T\n\
@@ -133,7 +128,6 @@ proptest! {
         let axis = Axis::frequency(0.0, 0.25, 3);
         let complex: Vec<Complex64> = re.iter().zip(&im).map(|(re, im)| Complex64::new(*re, *im)).collect();
         let m = meta("H 1", frf_unit);
-        let kind = FrfKind::of(m.quantity);
         let spectrum = |meta, values, window, enbw| {
             Record::Spectrum(Spectrum { meta, axis: axis.clone(), values, scaling, window, enbw })
         };
@@ -141,7 +135,7 @@ proptest! {
             spectrum(meta("v", "m/s"), Values::Real(re), Some(window), enbw),
             spectrum(meta("u of v", "m"), Values::Real(im), None, None),
             spectrum(meta("X", "m/N"), Values::Complex(complex.clone()), None, None),
-            Record::Frf(Frf { meta: m, axis: axis.clone(), values: complex, kind }),
+            Record::Frf(Frf { meta: m, axis: axis.clone(), values: complex }),
         ];
         let back = Reader::new().from_reader("x.csv", text(&records).as_bytes()).unwrap();
         let was: Vec<Record> = records.iter().map(essence).collect();

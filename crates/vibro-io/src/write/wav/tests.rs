@@ -2,7 +2,7 @@ use super::*;
 use crate::Reader;
 use proptest::prelude::*;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Frf, FrfKind, Meta};
+use vibro_record::{Axis, Frf, Meta};
 
 fn trace(name: &str, unit: &str, axis: Axis, values: Vec<f64>) -> Record {
     Record::Trace(Trace { meta: Meta::new(name, Unit::parse_or_opaque(unit).si()), axis, values })
@@ -84,7 +84,7 @@ fn what_a_wave_file_cannot_hold_is_refused_with_the_reason() {
     let two = [trace("a", "m", even(0.1), values.clone()), trace("b", "m", even(0.2), values)];
     assert!(refused(&two).contains("\"a\" and the trace \"b\" have different time axes"));
     let (meta, axis) = (Meta::new("H", Unit::none()), Axis::frequency(0.0, 1.0, 0));
-    let frf = Record::Frf(Frf { meta, axis, values: vec![], kind: FrfKind::Other });
+    let frf = Record::Frf(Frf { meta, axis, values: vec![] });
     assert!(refused(&[frf]).contains("the frf \"H\" is not over time"));
     assert!(refused(&[]).contains("no record"));
 }
