@@ -24,7 +24,7 @@ mod headline;
 mod page;
 
 pub use answer::Answer;
-pub use job::{Heard, INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
+pub use job::{INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
 pub use kept::Kept;
 pub(crate) use recordings::{OWN, recordings, unnamed};
 pub use sweep::modelled::fit;

@@ -22,84 +22,76 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// All commands by what they are for, in the order of the help. A new one is a row.
+/// All commands by what they are for, in the order of the help: what is typed behind `vibro`, for example, and what it does. A new one is a row.
 const GROUPS: &[(&str, &[Row])] = &[
     (
         "Begin with a folder of recordings",
         &[
-            Row::of::<init::Init>("init", "Write a campaign for what lies in a folder")
-                .example("init measurements")
-                .first(),
-            Row::of::<campaign::Run>("run", "Run a campaign or a folder: results, tables, figures, report")
-                .example("run measurements")
-                .first(),
-            Row::of::<init::Check>("check", "Check a campaign without computing")
-                .example("check campaign.toml"),
-            Row::of::<demo::Open>("open", "Open the report of a folder in a browser")
-                .example("open measurements"),
-            Row::of::<demo::Demo>("demo", "Write an example with its recordings, and run it")
-                .example("demo bench")
-                .first(),
+            Row::of::<init::Init>("init measurements", "Write a campaign for what lies in a folder"),
+            Row::of::<campaign::Run>(
+                "run measurements",
+                "Run a campaign or a folder: results, tables, figures, report",
+            ),
+            Row::of::<init::Check>("check campaign.toml", "Check a campaign without computing"),
+            Row::of::<demo::Open>("open measurements", "Open the report of a folder in a browser"),
+            Row::of::<demo::Demo>("demo bench", "Write an example with its recordings, and run it"),
         ],
     ),
     (
         "Files",
         &[
-            Row::of::<info::Info>("info", "List the records of a file: channels, units, sampling rate")
-                .example("info measurement.uff")
-                .first(),
+            Row::of::<info::Info>(
+                "info measurement.uff",
+                "List the records of a file: channels, units, sampling rate",
+            ),
             Row::of::<convert::Convert>(
-                "convert",
+                "convert measurement.uff measurement.csv",
                 "Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT",
-            )
-            .example("convert measurement.uff measurement.csv"),
+            ),
         ],
     ),
     (
         "Measure",
         &[
             Row::of::<sweep::Taken>(
-                "response",
+                "response step*.csv --out figures",
                 "Response of a sweep at the excitation frequency, with resonances and jumps",
-            )
-            .example("response step*.csv --out figures")
-            .first(),
-            Row::of::<sweep::Waterfall>("waterfall", "Waterfall of all response spectra of a sweep")
-                .example("waterfall LIST.TXT --unit mm/s --out figures"),
-            Row::of::<sweep::Excitation>("excitation", "Excitation frequency of every point of a sweep")
-                .example("excitation LIST.TXT"),
+            ),
+            Row::of::<sweep::Waterfall>(
+                "waterfall LIST.TXT --unit mm/s --out figures",
+                "Waterfall of all response spectra of a sweep",
+            ),
+            Row::of::<sweep::Excitation>(
+                "excitation LIST.TXT",
+                "Excitation frequency of every point of a sweep",
+            ),
             Row::of::<record::Measured<spectrum::Keys>>(
-                "spectrum",
+                "spectrum trace.csv --channel velocity --out figures",
                 "Spectrum of a channel, or frequency response function between two",
-            )
-            .example("spectrum trace.csv --channel velocity --out figures"),
+            ),
             Row::of::<record::Measured<frf::Keys>>(
-                "modal",
+                "modal blows.csv --reference force --hammer",
                 "Natural frequency, damping and modal constant of the modes of a frequency response function",
-            )
-            .example("modal blows.csv --reference force --hammer"),
+            ),
             Row::of::<record::Measured<decay::Keys>>(
-                "decay",
+                "decay release.csv",
                 "Natural frequency and damping of each mode of a free decay",
-            )
-            .example("decay release.csv"),
+            ),
             Row::of::<record::Impacts>(
-                "impacts",
+                "impacts contact.csv --excitation 11.2",
                 "Impacts in a contact signal: interval, frequency, impacts per cycle",
-            )
-            .example("impacts contact.csv --excitation 11.2"),
+            ),
             Row::of::<record::Restitution>(
-                "restitution",
+                "restitution drop1.csv drop2.csv --height 0.57 --height-std 0.001",
                 "Coefficient of restitution from drops, bounces or velocities, every method side by side",
-            )
-            .example("restitution drop1.csv drop2.csv --height 0.57 --height-std 0.001"),
+            ),
             Row::of::<record::Pulse>(
-                "pulse",
+                "pulse contact.csv --low-pass none",
                 "Damping ratio, frequency and restitution of a contact from its pulse",
-            )
-            .example("pulse contact.csv --low-pass none"),
-            Row::of::<record::Drill>("drill", "Speed, impacts and average turn of a hammer drill").example(
+            ),
+            Row::of::<record::Drill>(
                 "drill drill.wav --velocity striker --beam-angle 0 --beam-from axis --sensitivity 2",
+                "Speed, impacts and average turn of a hammer drill",
             ),
         ],
     ),
@@ -107,28 +99,27 @@ const GROUPS: &[(&str, &[Row])] = &[
         "Model",
         &[
             Row::of::<model::Model>(
-                "model",
+                "model orbit --frequency 11.2 --force 0.5",
                 "Model of a rig: periodic motions, simulation, sweep, map, choice of a model",
-            )
-            .example("model orbit --frequency 11.2 --force 0.5"),
+            ),
             Row::of::<campaign::Compare>(
-                "compare",
+                "compare campaign.toml --fit gap,restitution",
                 "Compare the measured responses of a campaign with the model; fit parameters of the rig",
-            )
-            .example("compare campaign.toml --fit gap,restitution"),
+            ),
             Row::of::<precision::Precision>(
-                "precision",
+                "precision --quick",
                 "Speed and accuracy of every method on scenes with a known truth",
-            )
-            .example("precision --quick"),
+            ),
         ],
     ),
     (
         "Shell",
         &[
-            Row::of::<shell::Completions>("completions", "Print the completions for a shell")
-                .example("completions bash > ~/.local/share/bash-completion/completions/vibro"),
-            Row::of::<shell::Man>("man", "Print the manual page").example("man > vibro.1"),
+            Row::of::<shell::Completions>(
+                "completions bash > ~/.local/share/bash-completion/completions/vibro",
+                "Print the completions for a shell",
+            ),
+            Row::of::<shell::Man>("man > vibro.1", "Print the manual page"),
         ],
     ),
 ];
@@ -149,37 +140,31 @@ trait Run: Args {
 
 /// A row of the table of commands.
 struct Row {
-    name: &'static str,
-    about: &'static str,
     /// What is typed behind `vibro`, for example.
     example: &'static str,
-    /// Whether a newcomer needs it first.
-    first: bool,
+    about: &'static str,
     voice: Voice,
     options: fn(Typed) -> Typed,
     run: fn(&ArgMatches, bool) -> Result<u8>,
 }
 
 impl Row {
-    const fn of<T: Run>(name: &'static str, about: &'static str) -> Row {
+    const fn of<T: Run>(example: &'static str, about: &'static str) -> Row {
         let run = |typed: &ArgMatches, json| match T::from_arg_matches(typed) {
             Ok(typed) => typed.run(json),
             Err(error) => Ok(complain::usage(&error, json)),
         };
-        Row { name, about, example: "", first: false, voice: T::VOICE, options: T::augment_args, run }
+        Row { example, about, voice: T::VOICE, options: T::augment_args, run }
     }
 
-    const fn example(self, example: &'static str) -> Row {
-        Row { example, ..self }
-    }
-
-    const fn first(self) -> Row {
-        Row { first: true, ..self }
+    /// The name of the command.
+    fn name(&self) -> &'static str {
+        self.example.split(' ').next().unwrap_or_default()
     }
 
     /// Its line in a list of commands.
     fn line(&self) -> String {
-        format!("  {:12} {}\n", self.name, self.about)
+        format!("  {:12} {}\n", self.name(), self.about)
     }
 }
 
@@ -191,8 +176,11 @@ const STYLES: &str =
 const ABOUT: &str = "Measure impacting machines: from analyser files to answers, each with its uncertainty";
 
 /// The commands that a newcomer needs.
+const FIRST: [&str; 5] = ["init", "run", "demo", "info", "response"];
+
+/// What stands there where no command was typed.
 fn short() -> String {
-    let lines: String = rows().filter(|row| row.first).map(Row::line).collect();
+    let lines: String = rows().filter(|row| FIRST.contains(&row.name())).map(Row::line).collect();
     format!(
         "{ABOUT}\n\nUsage: vibro COMMAND\n\n{lines}\nAll commands: vibro --help. Options and an example: vibro COMMAND --help\n"
     )
@@ -213,7 +201,7 @@ fn command() -> Typed {
     let json = Arg::new("json").action(ArgAction::SetTrue).global(true);
     let commands = rows().map(|row| {
         let example = format!("Example:\n  vibro {}", row.example);
-        (row.options)(Typed::new(row.name)).about(row.about).after_help(example)
+        (row.options)(Typed::new(row.name())).about(row.about).after_help(example)
     });
     let all = Typed::new("vibro")
         .version(env!("CARGO_PKG_VERSION"))
@@ -247,7 +235,7 @@ pub fn main() -> u8 {
         Some("slide") => drop(print::STYLE.set(Medium::Slide)),
         _ => {}
     }
-    let row = |(name, typed)| Some((rows().find(|row| row.name == name)?, typed));
+    let row = |(name, typed)| Some((rows().find(|row| row.name() == name)?, typed));
     let Some((row, typed)) = typed.subcommand().and_then(row) else {
         return complain::nothing(&short(), json);
     };

@@ -224,7 +224,7 @@ impl Proposal {
         for series in &found.series {
             let reading = if series.timed { reading.untimed() } else { reading.clone() };
             let before = proposal.tables.len();
-            trial::Trial::new(folder, &reading, kept, progress).series(series, &mut proposal);
+            trial::Trial { folder, reading: &reading, kept, progress }.series(series, &mut proposal);
             for table in &mut proposal.tables[before..] {
                 *table = table.stated(&reading);
             }

@@ -3,85 +3,31 @@
 use crate::report::{Cell, Table};
 use serde_json::{Map, Value};
 
-/// Main numbers of one kind of record.
-struct Headline {
-    title: &'static str,
-    /// Key of the results.
-    records: &'static str,
-    /// List of numbers in each record, or that of the record itself.
-    list: &'static str,
-    /// Name, key and unit of each column; `unit` as a unit is that of the record.
-    columns: &'static [(&'static str, &'static str, &'static str)],
-}
+/// Main numbers of one kind of record: title, key of the results, list of numbers in each record (empty: of the record itself), and names of columns, with
+/// their keys where these differ, and units; `unit` as a unit is that of the record.
+type Headline = (&'static str, &'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 /// All headlines, in the order of the report.
 const HEADLINES: &[Headline] = &[
-    Headline {
-        title: "Resonances",
-        records: "responses",
-        list: "resonances",
-        columns: &[
-            ("kind", "kind", ""),
-            ("frequency", "frequency", "Hz"),
-            ("amplitude", "amplitude", "unit"),
-        ],
-    },
-    Headline {
-        title: "Jumps",
-        records: "responses",
-        list: "jumps",
-        columns: &[("change", "change", ""), ("frequency", "frequency", "Hz")],
-    },
-    Headline {
-        title: "Modes",
-        records: "frf",
-        list: "modes",
-        columns: &[("frequency", "frequency", "Hz"), ("damping ratio", "zeta", "")],
-    },
-    Headline {
-        title: "Hammer drill",
-        records: "drill",
-        list: "",
-        columns: &[
-            ("speed", "speed", "Hz"),
-            ("velocity before impact", "before", "m/s"),
-            ("restitution", "restitution", ""),
-            ("impacts", "impacts", ""),
-        ],
-    },
-    Headline {
-        title: "Impacts",
-        records: "impacts",
-        list: "",
-        columns: &[
-            ("impacts", "n", ""),
-            ("frequency", "frequency", "Hz"),
-            ("impacts/cycles", "per_cycle", ""),
-        ],
-    },
-    Headline {
-        title: "Restitution",
-        records: "drops",
-        list: "",
-        columns: &[("coefficient of restitution", "restitution", "")],
-    },
-    Headline {
-        title: "Free decays",
-        records: "decays",
-        list: "modes",
-        columns: &[("frequency", "frequency", "Hz"), ("damping ratio", "zeta", "")],
-    },
-    Headline {
-        title: "Contact pulses",
-        records: "pulses",
-        list: "",
-        columns: &[
-            ("damping ratio ξ", "xi", ""),
-            ("restitution", "restitution", ""),
-            ("duration", "duration", "s"),
-        ],
-    },
+    ("Resonances", "responses", "resonances", &[("kind", ""), ("frequency", "Hz"), ("amplitude", "unit")]),
+    ("Jumps", "responses", "jumps", &[("change", ""), ("frequency", "Hz")]),
+    ("Modes", "frf", "modes", &[("frequency", "Hz"), ("damping ratio:zeta", "")]),
+    (
+        "Hammer drill",
+        "drill",
+        "",
+        &[("speed", "Hz"), ("velocity before impact:before", "m/s"), ("restitution", ""), ("impacts", "")],
+    ),
+    ("Impacts", "impacts", "", &[("impacts:n", ""), ("frequency", "Hz"), ("impacts/cycles:per_cycle", "")]),
+    ("Restitution", "drops", "", &[("coefficient of restitution:restitution", "")]),
+    ("Free decays", "decays", "modes", &[("frequency", "Hz"), ("damping ratio:zeta", "")]),
+    ("Contact pulses", "pulses", "", &[("damping ratio ξ:xi", ""), ("restitution", ""), ("duration", "s")]),
 ];
+
+/// Name and key of a column.
+fn named(column: &'static str) -> (&'static str, &'static str) {
+    column.split_once(':').unwrap_or((column, column))
+}
 
 /// Why the modes of a sweep differ from its resonances.
 const OF_SWEEP: &str =
@@ -93,24 +39,22 @@ const ROWS: usize = 10;
 /// The headlines of results.
 pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
     let tables = HEADLINES.iter().filter_map(|headline| {
-        let records = results.get(headline.records)?.as_array()?;
+        let (title, key, _, columns) = *headline;
+        let records = results.get(key)?.as_array()?;
         let unit = |unit: &'static str| match unit {
             "unit" => records.first().and_then(|r| r["unit"].as_str()).unwrap_or_default().to_owned(),
             fixed => fixed.to_owned(),
         };
-        let empty = Table::new(headline.title).column("record", "");
-        let empty = headline
-            .columns
-            .iter()
-            .fold(empty, |table, (name, _, of)| table.column(*name, unit(of)))
-            .column("doubt", "");
+        let empty = Table::new(title).column("record", "");
+        let empty = columns.iter().fold(empty, |table, (name, of)| table.column(named(name).0, unit(of)));
+        let empty = empty.column("doubt", "");
         let rows: Vec<Vec<Cell>> = records.iter().flat_map(|record| rows(headline, record)).collect();
         let more = rows.len().saturating_sub(ROWS);
         let table = rows.into_iter().take(ROWS).fold(empty, Table::row);
         let has_modes = |record: &Value| record["modes"].as_array().is_some_and(|modes| !modes.is_empty());
         let of_sweep = records.iter().any(|record| record["file"] == "" && has_modes(record));
         Some(match more {
-            0 if headline.records == "frf" && of_sweep => table.note(OF_SWEEP),
+            0 if key == "frf" && of_sweep => table.note(OF_SWEEP),
             0 => table,
             _ => table.note(format!("{more} more below.")),
         })
@@ -119,14 +63,14 @@ pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
     tables.chain(scores).filter(|table| !table.rows.is_empty()).collect()
 }
 
-fn rows(headline: &Headline, record: &Value) -> Vec<Vec<Cell>> {
+fn rows((.., list, columns): &Headline, record: &Value) -> Vec<Vec<Cell>> {
     let name = record["name"].as_str().unwrap_or_default();
     let doubtful =
         record["findings"].as_array().is_some_and(|all| all.iter().any(|found| found["severity"] == "doubt"));
     let own = vec![record.clone()];
-    let items = if headline.list.is_empty() { Some(&own) } else { record[headline.list].as_array() };
+    let items = if list.is_empty() { Some(&own) } else { record[*list].as_array() };
     let row = |item: &Value| {
-        let cells = headline.columns.iter().map(|(_, key, _)| cell(item, key));
+        let cells = columns.iter().map(|(name, _)| cell(item, named(name).1));
         let doubt = match item["at_jump"].as_bool() {
             _ if doubtful => "see the doubt",
             Some(true) => "ends in a jump",
@@ -139,24 +83,18 @@ fn rows(headline: &Headline, record: &Value) -> Vec<Vec<Cell>> {
 
 /// The number, estimate or word of a key.
 fn cell(item: &Value, key: &str) -> Cell {
+    let pair = |value: &Value, std: &Value| {
+        value.as_f64().map_or(Cell::Missing, |value| Cell::Estimate { value, std: std.as_f64() })
+    };
     match &item[key] {
-        Value::Number(number) => {
-            let std = item[format!("{key}_std")].as_f64();
-            number.as_f64().map_or(Cell::Missing, |value| Cell::Estimate { value, std })
-        }
+        number @ Value::Number(_) => pair(number, &item[format!("{key}_std")]),
         Value::String(word) => word.as_str().into(),
         Value::Array(all) if all.is_empty() => Cell::Missing,
         Value::Array(all) => all.len().into(),
         Value::Object(ratio) if ratio.contains_key("cycles") => {
             format!("{}/{}", ratio["impacts"], ratio["cycles"]).into()
         }
-        Value::Object(estimate) => {
-            estimate.get("value").and_then(Value::as_f64).map_or(Cell::Missing, |value| Cell::Estimate {
-                value,
-                std: estimate.get("std").and_then(Value::as_f64),
-            })
-        }
-        _ => Cell::Missing,
+        estimate => pair(&estimate["value"], &estimate["std"]),
     }
 }
 

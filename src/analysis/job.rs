@@ -8,13 +8,14 @@ use super::source::{Source, file_name, name_of};
 use super::{Analysis, Answer, KINDS, Kind, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::Result;
-use crate::record::{Fact, Finding, Severity, Step};
+use crate::record::{Fact, Finding};
 use crate::report::Picture;
 use crate::report::words::{About, Voice, put};
 use crate::report::{Output, files};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Map, Value};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// The files of a campaign's results that are not figures or tables of one record.
@@ -50,19 +51,6 @@ pub struct JobOptions<'a> {
     pub kept: Option<&'a Kept>,
 }
 
-/// What the records of a campaign, or of one kind, gave.
-#[derive(Debug, Default, Serialize, Deserialize)]
-pub(super) struct Gathered {
-    /// All answers, long tables as details.
-    pub all: Answer,
-    /// Values that were assumed.
-    pub constants: Vec<(String, String)>,
-    /// Steps by the name of their record.
-    pub histories: Vec<(String, Vec<Step>)>,
-    /// How many records answered.
-    pub answers: usize,
-}
-
 /// A campaign at work: what its analyses ask, and where they put what they find.
 pub struct Job<'a> {
     /// The campaign.
@@ -74,7 +62,10 @@ pub struct Job<'a> {
     pub progress: &'a dyn Progress,
     /// Title of the report.
     pub title: String,
-    pub(super) found: Gathered,
+    /// All answers, long tables as details.
+    pub(super) found: Answer,
+    /// How many records answered.
+    pub(super) answers: usize,
     /// How many answers are those of the last run.
     again: usize,
 }
@@ -87,7 +78,7 @@ impl<'a> Job<'a> {
         progress: &'a dyn Progress,
     ) -> Job<'a> {
         let title = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
-        Job { campaign, options, kept, progress, title, found: Gathered::default(), again: 0 }
+        Job { campaign, options, kept, progress, title, found: Answer::default(), answers: 0, again: 0 }
     }
 
     /// What a record gave; `None` and a finding where it allows no answer.
@@ -98,7 +89,7 @@ impl<'a> Job<'a> {
         match found {
             Ok(found) => Ok(Some(found)),
             Err(error) => {
-                self.found.all.add(record, [left_out("left-out", error)?]);
+                self.found.add(record, [left_out("left-out", error)?]);
                 Ok(None)
             }
         }
@@ -109,13 +100,13 @@ impl<'a> Job<'a> {
     /// # Errors
     /// If it cannot be written as JSON.
     pub fn put(&mut self, key: &str, value: &impl Serialize) -> Result<()> {
-        self.found.all.result.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
+        self.found.result.insert(key.to_owned(), serde_json::to_value(value).map_err(unwritten)?);
         Ok(())
     }
 
     /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record behind their name.
     pub fn answer(&mut self, kind: &str, records: Vec<Record>) {
-        self.found.answers += records.len();
+        self.answers += records.len();
         let mut list = Vec::new();
         for Record { name, file, mark, answer } in records {
             let result = self.show(&name, &mark, answer);
@@ -127,7 +118,7 @@ impl<'a> Job<'a> {
             }
             list.push(Value::Object(object));
         }
-        self.found.all.result.insert(kind.to_owned(), Value::Array(list));
+        self.found.result.insert(kind.to_owned(), Value::Array(list));
     }
 
     /// Shows what an answer has and gives its result; a mark stands behind the names of figures and files.
@@ -141,7 +132,7 @@ impl<'a> Job<'a> {
             Some((stem, ending)) => format!("{stem}_{mark}.{ending}"),
             None => format!("{name}_{mark}"),
         };
-        self.found.all.append(Answer {
+        self.found.append(Answer {
             findings: findings.into_iter().map(about).collect(),
             tables,
             figures: figures.into_iter().map(|(name, figure)| (marked(name), figure)).collect(),
@@ -161,18 +152,16 @@ impl<'a> Job<'a> {
         measure: impl FnOnce(&mut Job<'_>) -> Result<()>,
     ) -> Result<()> {
         let (on, files) = self.rests_on(&[section])?;
-        let Gathered { all, constants, histories, answers } = self.kept.or_make(on, &files, || {
+        let (all, answers) = self.kept.or_make(on, &files, || {
             let mut own = Job::new(self.campaign, self.options, self.kept, self.progress);
             measure(&mut own)?;
-            Ok(own.found)
+            Ok((own.found, own.answers))
         })?;
         if self.kept.is_old(&on) {
             self.again += answers;
         }
-        self.found.all.append(all);
-        self.found.constants.extend(constants);
-        self.found.histories.extend(histories);
-        self.found.answers += answers;
+        self.found.append(all);
+        self.answers += answers;
         Ok(())
     }
 
@@ -228,7 +217,7 @@ impl<'a> Job<'a> {
                 }
             })?;
             let found = found.unwrap_or_else(|left_out: Finding| {
-                self.found.all.add(&name, [left_out]);
+                self.found.add(&name, [left_out]);
                 Vec::new()
             });
             if self.kept.is_old(&on) {
@@ -306,49 +295,12 @@ pub struct Record {
     pub answer: Answer,
 }
 
-/// What one kind of record adds to the report.
-pub(super) struct Part {
-    /// Its heading.
-    pub title: &'static str,
-    /// How much there was before.
-    pub from: Extent,
-    /// How much there is behind.
-    pub to: Extent,
-}
+/// What one kind of record adds to the report: its heading, and which tables, figures, long tables and findings.
+pub(super) type Part = (&'static str, [Range<usize>; 4]);
 
 /// How many tables, figures, long tables and findings an answer has.
-pub(super) struct Extent {
-    pub tables: usize,
-    pub figures: usize,
-    pub details: usize,
-    pub findings: usize,
-}
-
-impl Extent {
-    fn of(answer: &Answer) -> Extent {
-        Extent {
-            tables: answer.tables.len(),
-            figures: answer.figures.len(),
-            details: answer.details.len(),
-            findings: answer.findings.len(),
-        }
-    }
-}
-
-/// What the records of a campaign answer.
-#[derive(Debug)]
-pub struct Heard {
-    /// The results.
-    pub result: Map<String, Value>,
-    /// What is said of them.
-    pub findings: Vec<Finding>,
-}
-
-impl Heard {
-    /// The worst that is said.
-    pub fn worst(&self) -> Option<Severity> {
-        self.findings.iter().map(|finding| finding.severity).max()
-    }
+fn size(answer: &Answer) -> [usize; 4] {
+    [answer.tables.len(), answer.figures.len(), answer.details.len(), answer.findings.len()]
 }
 
 /// Measures the records of a campaign without a report; where none answers, the reason.
@@ -359,16 +311,15 @@ pub fn answers(
     campaign: &Campaign,
     kept: &Kept,
     progress: &dyn Progress,
-) -> Result<std::result::Result<Heard, String>> {
+) -> Result<std::result::Result<Answer, String>> {
     let mut job = Job::new(campaign, JobOptions::default(), kept, progress);
     for kind in KINDS {
         (kind.run)(&mut job)?;
     }
-    let findings: Vec<Finding> = job.found.all.findings.into_iter().map(|(_, finding)| finding).collect();
-    if job.found.answers > 0 {
-        return Ok(Ok(Heard { result: job.found.all.result, findings }));
+    if job.answers > 0 {
+        return Ok(Ok(job.found));
     }
-    let why = findings.iter().find_map(|finding| match finding.fact("why") {
+    let why = job.found.findings.iter().find_map(|(_, finding)| match finding.fact("why") {
         Some(Fact::Name(why)) => Some(why.clone()),
         _ => None,
     });
@@ -406,18 +357,19 @@ pub fn run(
     job.put("version", &version)?;
     let mut parts = Vec::new();
     for kind in KINDS {
-        let from = Extent::of(&job.found.all);
+        let from = size(&job.found);
         (kind.run)(&mut job)?;
-        parts.push(Part { title: kind.title, from, to: Extent::of(&job.found.all) });
+        let to = size(&job.found);
+        parts.push((kind.title, [0, 1, 2, 3].map(|i| from[i]..to[i])));
     }
-    job.found.all.add("", campaign.commented());
-    job.found.all.add("", beside(campaign, options.allow_outside)?);
+    job.found.add("", campaign.commented());
+    job.found.add("", beside(campaign, options.allow_outside)?);
     if campaign.is_empty() {
-        job.found.all.add("", [Finding::caution("campaign-without-record")]);
-    } else if job.found.answers == 0 {
-        job.found.all.add("", [Finding::caution("no-record-answers")]);
+        job.found.add("", [Finding::caution("campaign-without-record")]);
+    } else if job.answers == 0 {
+        job.found.add("", [Finding::caution("no-record-answers")]);
     }
-    let mut all = std::mem::take(&mut job.found.all);
+    let mut all = std::mem::take(&mut job.found);
     progress.start("drawing figures", all.figures.len());
     let medium = output.medium;
     let pictures = files::figures(output, &all.figures, |figure| {
@@ -437,5 +389,5 @@ pub fn run(
     output.write(RESULTS, json + "\n")?;
     output.write(REPORT, page::page(&job, version, &inputs, &all, &pictures, &parts).html())?;
     output.write(Kept::FILE, kept.bytes())?;
-    Ok(Ran { answer: all, answered: job.found.answers > 0, again: job.again })
+    Ok(Ran { answer: all, answered: job.answers > 0, again: job.again })
 }

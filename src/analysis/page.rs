@@ -3,11 +3,13 @@
 use super::headline::headlines;
 use super::job::Part;
 use super::{Answer, Job};
+use crate::model::Parameter;
 use crate::record::{Severity, Step};
 use crate::report::Page;
 use crate::report::Picture;
 use crate::report::words::{Voice, graded};
 use crate::units::notation::{counted, shortest};
+use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -31,10 +33,9 @@ pub fn page(
         let more = counted(worst.len() - shown, "more caution");
         page = page.paragraph(&format!("{more} below, at the records."));
     }
-    for Part { title, from, to } in parts {
-        let findings = graded(&all.findings[from.findings..to.findings], Voice::Campaign);
-        let tables = &all.tables[from.tables..to.tables];
-        let (figures, details) = (from.figures..to.figures, &all.details[from.details..to.details]);
+    for (title, [tables, figures, details, findings]) in parts.iter().cloned() {
+        let findings = graded(&all.findings[findings], Voice::Campaign);
+        let (tables, details) = (&all.tables[tables], &all.details[details]);
         if tables.is_empty() && figures.is_empty() && details.is_empty() && findings.is_empty() {
             continue;
         }
@@ -48,15 +49,21 @@ pub fn page(
     if let Some(start) = what_if(job, &all.result) {
         page = page.heading("What if").paragraph(WHAT_IF).what_if(start);
     }
-    let rest = parts.last().map_or(0, |part| part.to.findings);
+    let rest = parts.last().map_or(0, |part| part.1[3].end);
     page =
         page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
-    if !job.found.constants.is_empty() {
-        let values = job.found.constants.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-        page = page.details("Rig of the comparison", values);
+    if let Some(rig) = all.result.get("rig").and_then(Value::as_object) {
+        let values: Vec<(&str, String)> =
+            rig.iter().map(|(key, value)| (key.as_str(), constant(key, value))).collect();
+        page =
+            page.details("Rig of the comparison", values.iter().map(|(key, value)| (*key, value.as_str())));
     }
-    let steps: Vec<(&str, String)> =
-        job.found.histories.iter().map(|(name, steps)| (name.as_str(), history(steps))).collect();
+    let responses = all.result.get("responses").and_then(Value::as_array);
+    let steps = |response: &Value| {
+        let steps = Vec::<Step>::deserialize(&response["history"]).unwrap_or_default();
+        (response["name"].as_str().unwrap_or_default().to_owned(), history(&steps))
+    };
+    let steps: Vec<(String, String)> = responses.into_iter().flatten().map(steps).collect();
     let files = inputs
         .lines()
         .filter(|line| !line.starts_with('#'))
@@ -65,12 +72,20 @@ pub fn page(
     page = page.details("Files, and how their SHA-256 begins (whole in inputs.sha256)", files);
     page = page.details("The campaign as it ran", [("campaign.toml", job.campaign.text())]);
     if !steps.is_empty() {
-        page = page
-            .details("Steps from file to result", steps.iter().map(|(name, text)| (*name, text.as_str())));
+        page = page.details(
+            "Steps from file to result",
+            steps.iter().map(|(name, text)| (name.as_str(), text.as_str())),
+        );
     }
     page.paragraph(&format!(
         "Made by vibroimpact {version}. All numbers are in results.json beside this page."
     ))
+}
+
+/// A value of a rig with its unit.
+fn constant(key: &str, value: &Value) -> String {
+    let unit = Parameter::named(key).map(Parameter::unit).filter(|unit| *unit != "1").unwrap_or_default();
+    format!("{value} {unit}")
 }
 
 /// What stands above the sliders.

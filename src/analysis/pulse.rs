@@ -6,7 +6,6 @@ use super::job::Marks;
 use super::{Analysis, Answer, Job, Source};
 use crate::campaign::{Entry, LowPass, above_zero};
 use crate::error::{Error, Result};
-use crate::measure::Estimate;
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use crate::report::layout::{headed, pair, table, titled};
 use crate::report::{Cell, Table};
@@ -109,7 +108,6 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
 
 /// What a pulse says, one row a quantity, in SI units.
 fn contact(title: &str, result: &PulseResult) -> Table {
-    let known = |e: &Option<Estimate>| e.as_ref().map_or(Cell::Missing, Cell::from);
     table(
         titled("Contact", title),
         [result],
@@ -118,9 +116,9 @@ fn contact(title: &str, result: &PulseResult) -> Table {
             ("frequency", "Hz", &|r| Cell::from(&r.frequency)),
             ("duration", "s", &|r| Cell::from(&r.duration)),
             ("restitution", "1", &|r| Cell::from(&r.restitution)),
-            ("initial velocity", "m/s", &|r| known(&r.initial_velocity)),
-            ("stiffness", "N/m", &|r| known(&r.stiffness)),
-            ("damping", "N s/m", &|r| known(&r.damping)),
+            ("initial velocity", "m/s", &|r| r.initial_velocity.as_ref().into()),
+            ("stiffness", "N/m", &|r| r.stiffness.as_ref().into()),
+            ("damping", "N s/m", &|r| r.damping.as_ref().into()),
         ],
     )
 }

@@ -309,7 +309,7 @@ impl Analysis for Keys {
         let matrix = |(sweep, response, options): Taken| (waterfall(&sweep, &options, &response), response);
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
-        job.found.answers += responses.len();
+        job.answers += responses.len();
         job.put("antiresonance", &pairing::antiresonances(&responses))?;
         job.put("crossings", &pairing::all_crossings(&responses))?;
         let mut all = Answer { findings: pairing::twice(&responses), ..Answer::default() };
@@ -335,8 +335,7 @@ impl Analysis for Keys {
             one.csv("response", &tables::response(response));
             one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
             shown.push(job.show(&response.name, slug, one));
-            job.found.all.details.push(tables::curve(response));
-            job.found.histories.push((response.name.clone(), response.history.clone()));
+            job.found.details.push(tables::curve(response));
         }
         job.put("responses", &shown)
     }

@@ -51,7 +51,7 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
 fn typed() -> (String, Option<&'static Row>, Vec<String>) {
     let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
-    let row = rows().find(|row| words.first().is_some_and(|word| word == row.name));
+    let row = rows().find(|row| words.first().is_some_and(|word| word == row.name()));
     let mut command = super::command();
     let mut names = vec!["vibro"];
     for word in words.iter().take(2) {

@@ -2,7 +2,7 @@
 
 use super::folder::{Series, short};
 use super::{Proposal, Table};
-use crate::analysis::{self, Heard, Kept, Progress};
+use crate::analysis::{self, Answer, Kept, Progress};
 use crate::campaign::Reading;
 use crate::read::Header;
 use crate::record::{Record, Severity};
@@ -44,24 +44,15 @@ const STEPS: usize = 5;
 
 /// Tries what a record can be measured for.
 pub(super) struct Trial<'a> {
-    folder: &'a Path,
-    reading: &'a Reading,
-    kept: &'a Kept,
-    progress: &'a dyn Progress,
+    pub folder: &'a Path,
+    pub reading: &'a Reading,
+    pub kept: &'a Kept,
+    pub progress: &'a dyn Progress,
 }
 
-impl<'a> Trial<'a> {
-    pub fn new(
-        folder: &'a Path,
-        reading: &'a Reading,
-        kept: &'a Kept,
-        progress: &'a dyn Progress,
-    ) -> Trial<'a> {
-        Trial { folder, reading, kept, progress }
-    }
-
+impl Trial<'_> {
     /// The answers of the records of tables; else why there is none.
-    fn answers(&self, tables: &[Table]) -> Result<Heard, String> {
+    fn answers(&self, tables: &[Table]) -> Result<Answer, String> {
         let path = self.folder.join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml()).collect();
         let answered =
@@ -84,8 +75,11 @@ impl<'a> Trial<'a> {
     /// A decay that no modes explain, as one with friction.
     fn unexplained(&self, tables: &[Table]) -> Option<Table> {
         let friction = |table: &&Table| {
-            let doubts = |heard: &Heard| {
-                heard.findings.iter().all(|f| f.severity < Severity::Doubt || FRICTION.contains(&&*f.code))
+            let doubts = |heard: &Answer| {
+                heard
+                    .findings
+                    .iter()
+                    .all(|(_, f)| f.severity < Severity::Doubt || FRICTION.contains(&&*f.code))
             };
             table.section == "decay"
                 && self.answers(from_ref(*table)).is_ok_and(|h| doubts(&h) && !is_brief(&h))
@@ -94,8 +88,10 @@ impl<'a> Trial<'a> {
     }
 
     /// The answers of the tables, where they are sensible and without a doubt.
-    fn sensibly(&self, tables: &[Table]) -> Option<Heard> {
-        let sure = |heard: &Heard| heard.worst() < Some(Severity::Doubt) && sensible(tables, heard);
+    fn sensibly(&self, tables: &[Table]) -> Option<Answer> {
+        let sure = |heard: &Answer| {
+            heard.findings.iter().all(|(_, f)| f.severity < Severity::Doubt) && sensible(tables, heard)
+        };
         self.answers(tables).ok().filter(sure)
     }
 
@@ -168,11 +164,11 @@ impl<'a> Trial<'a> {
         for k in 0..series.headers.len().min(CHANNELS) {
             let [pulse, others @ ..] = series.of_channel(k, name);
             // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
-            let alone = |heard: Heard| {
+            let alone = |heard: Answer| {
                 let record = heard.result.get("pulses").and_then(|all| all.get(0));
                 let short =
                     record.and_then(|pulse| pulse["duration"]["value"].as_f64()) < Some(LONGEST_CONTACT);
-                short && heard.findings.iter().all(|finding| finding.code != ANOTHER)
+                short && heard.findings.iter().all(|(_, finding)| finding.code != ANOTHER)
             };
             if self.answers(from_ref(&pulse)).is_ok_and(alone) {
                 proposal.tables.push(pulse);
@@ -309,7 +305,7 @@ impl Series {
 }
 
 /// Whether half of the steps of each sweep or more have an uncertainty: one that is clipped makes no other kind of the rest.
-fn settled(heard: &Heard) -> bool {
+fn settled(heard: &Answer) -> bool {
     let responses = heard.result.get("responses").and_then(Value::as_array);
     let most = |response: &Value| {
         let points = response["points"].as_array().map_or(&[][..], Vec::as_slice);
@@ -320,13 +316,13 @@ fn settled(heard: &Heard) -> bool {
 }
 
 /// Part of the record before a decay begins; nothing where the answer is no decay.
-fn begins(heard: &Heard) -> Option<f64> {
+fn begins(heard: &Answer) -> Option<f64> {
     let decay = heard.result.get("decays")?.get(0)?;
     Some(decay["start"].as_f64()? / decay["last"].as_f64()?)
 }
 
 /// Whether the answer is a decay that takes a small part of its record: where impacts in a row ring down, one of them is a decay, too.
-fn is_brief(heard: &Heard) -> bool {
+fn is_brief(heard: &Answer) -> bool {
     let used = |decay: &Value| {
         let [start, end, last] = ["start", "end", "last"].map(|key| decay[key].as_f64());
         Some((end? - start?) / (last? - start?))
@@ -337,7 +333,7 @@ fn is_brief(heard: &Heard) -> bool {
 
 /// Whether impacts are as their tables have them: three or more in a row; two in a fall with one rebound; and none that return with
 /// the speed with which they came.
-fn sensible(tables: &[Table], heard: &Heard) -> bool {
+fn sensible(tables: &[Table], heard: &Answer) -> bool {
     let first = |section: &str| heard.result.get(section).and_then(|all| all.get(0));
     let few = first("impacts").is_some_and(|impacts| impacts["n"].as_u64() < Some(3));
     let drop = first("drops");

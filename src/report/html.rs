@@ -3,6 +3,7 @@
 use super::files::Picture;
 use super::table::Table;
 use crate::record::Severity;
+use crate::units::notation::counted;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -70,14 +71,9 @@ impl Page {
             })
         };
         let (doubts, others) = (list(&|s| s == Severity::Doubt), list(&|s| s != Severity::Doubt));
-        let count =
-            |of: Severity, name: &str| match all.iter().filter(|(severity, _)| *severity == of).count() {
-                0 => None,
-                1 => Some(format!("1 {name}")),
-                n => Some(format!("{n} {name}s")),
-            };
-        let folded = [count(Severity::Caution, "caution"), count(Severity::Note, "note")];
-        let folded: Vec<String> = folded.into_iter().flatten().collect();
+        let count = |of: Severity| (all.iter().filter(|(severity, _)| *severity == of).count(), of.name());
+        let folded = [Severity::Caution, Severity::Note].map(count).into_iter().filter(|(n, _)| *n > 0);
+        let folded: Vec<String> = folded.map(|(n, name)| counted(n, name)).collect();
         let mut page = self;
         if !doubts.is_empty() {
             page = page.element(&format!("<ul class=\"findings\">\n{doubts}</ul>"));

@@ -12,9 +12,9 @@ use vibro_record::{Error, Result};
 /// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. A missing value (NaN) stays white.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Heatmap {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    values: Array2<f64>,
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) values: Array2<f64>,
     pub(super) key: Key,
 }
 
@@ -56,11 +56,6 @@ impl Heatmap {
         ascending(x, "column positions of a map")?;
         ascending(y, "row positions of a map")?;
         Ok(Heatmap { x: x.to_vec(), y: y.to_vec(), values: values.to_owned(), key })
-    }
-
-    /// Positions of columns and rows, and values.
-    pub(super) fn parts(&self) -> (&[f64], &[f64], &Array2<f64>) {
-        (&self.x, &self.y, &self.values)
     }
 
     /// Borders of all columns and of all rows, to find the limits of the axes.

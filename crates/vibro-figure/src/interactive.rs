@@ -1,7 +1,7 @@
 //! Figures as data for a page that draws them itself.
 
 use crate::style::{Look, looks};
-use crate::{Axis, Figure, Heatmap, Key, Marker, Panel, Plot, Rgb, Scale, Shape, Sheet, Waterfall};
+use crate::{Axis, Figure, Heatmap, Key, Panel, Plot, Scale, Shape, Sheet, Waterfall};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
@@ -60,7 +60,7 @@ impl Axis {
 impl Plot {
     fn data(&self) -> Option<Value> {
         let shared = crate::plot::extents(self).0;
-        let (x, y) = Sheet::new(self, shared, true).into_axes()?;
+        let (x, y) = Sheet::new(self, shared, true).axes?;
         let series: Vec<Value> = self
             .series
             .iter()
@@ -70,7 +70,7 @@ impl Plot {
                     series.shape == Shape::Line || series.shape == Shape::Points && series.stroke.is_some();
                 json!({
                     "name": series.name,
-                    "shape": shape(series.shape),
+                    "shape": series.shape,
                     "x": x.list(&series.x),
                     "y": y.list(&series.y),
                     "low": y.list(&series.low),
@@ -97,18 +97,18 @@ impl Plot {
 
 impl Heatmap {
     fn data(&self, x: &Axis, y: &Axis) -> Option<Value> {
-        let (columns, rows, values) = self.parts();
         let key = match &self.key {
             Key::Quantity(_) => self.colour_axis()?.data(),
             Key::Classes(names) => {
-                let colours: Vec<String> = (0..names.len()).map(|k| css(Heatmap::class_colour(k))).collect();
+                let colours: Vec<String> =
+                    (0..names.len()).map(|k| Heatmap::class_colour(k).to_string()).collect();
                 json!({ "classes": names, "colours": colours })
             }
         };
         Some(json!({
-            "x": x.list(columns),
-            "y": y.list(rows),
-            "z": levels(values.iter().copied(), matches!(self.key, Key::Quantity(_))),
+            "x": x.list(&self.x),
+            "y": y.list(&self.y),
+            "z": levels(self.values.iter().copied(), matches!(self.key, Key::Quantity(_))),
             "key": key,
         }))
     }
@@ -117,15 +117,14 @@ impl Heatmap {
 impl Waterfall {
     fn data(&self) -> Option<Value> {
         let [x, depth, up] = self.axes()?;
-        let (frequency, rows) = self.parts();
         Some(json!({
             "kind": "waterfall",
             "x": x.data(),
             "depth": depth.data(),
             "up": up.data(),
-            "frequency": x.list(frequency),
-            "excitation": depth.list(&rows.iter().map(|row| row.0).collect::<Vec<_>>()),
-            "z": levels(rows.iter().flat_map(|row| row.1.iter().copied()), true),
+            "frequency": x.list(&self.frequency),
+            "excitation": depth.list(&self.rows.iter().map(|row| row.0).collect::<Vec<_>>()),
+            "z": levels(self.rows.iter().flat_map(|row| row.1.iter().copied()), true),
         }))
     }
 }
@@ -133,45 +132,12 @@ impl Waterfall {
 impl Look {
     fn data(&self) -> Value {
         json!({
-            "colour": css(self.colour),
+            "colour": self.colour.to_string(),
             "width": self.pen.width,
             "dashes": self.pen.dashes,
-            "marker": marker(self.marker),
+            "marker": self.marker,
         })
     }
-}
-
-fn css(Rgb(r, g, b): Rgb) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
-fn shape(shape: Shape) -> &'static str {
-    match shape {
-        Shape::Line => "line",
-        Shape::Points => "points",
-        Shape::Band => "band",
-        Shape::Bars => "bars",
-        Shape::Vertical => "vertical",
-        Shape::Horizontal => "horizontal",
-        Shape::Heading => "heading",
-    }
-}
-
-fn marker(marker: Marker) -> String {
-    match marker {
-        Marker::Circle => "circle",
-        Marker::Square => "open-square",
-        Marker::Triangle => "triangle",
-        Marker::Diamond => "open-diamond",
-        Marker::OpenCircle => "open-circle",
-        Marker::FilledSquare => "square",
-        Marker::Cross => "cross",
-        Marker::Saltire => "saltire",
-        Marker::Star => "star",
-        Marker::Limit => "open-limit",
-        Marker::Letter(letter) => return letter.to_string(),
-    }
-    .to_owned()
 }
 
 /// Base64 of 32-bit floats.

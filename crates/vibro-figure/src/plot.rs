@@ -13,7 +13,8 @@ const BESIDE: f64 = 0.55;
 #[derive(Debug)]
 pub(super) struct Sheet<'a> {
     plot: &'a Plot,
-    axes: Option<(Axis, Axis)>,
+    /// Where there is anything to show.
+    pub axes: Option<(Axis, Axis)>,
     bar: Option<Axis>,
     looks: Vec<Look>,
     keys: KeyList,
@@ -65,11 +66,6 @@ impl<'a> Sheet<'a> {
         };
         let bar = plot.heatmap.as_ref().and_then(Heatmap::colour_axis);
         Sheet { plot, axes, bar, looks, keys, names, named_x }
-    }
-
-    /// Its axes, if there is anything to show.
-    pub fn into_axes(self) -> Option<(Axis, Axis)> {
-        self.axes
     }
 
     /// Room around a frame of about this size.

@@ -32,6 +32,7 @@ pub struct Series {
 
 /// Form of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Shape {
     /// Line through points, in their order.
     #[default]
@@ -84,18 +85,22 @@ pub enum Stroke {
 
 /// Form of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Marker {
     /// Filled circle.
     Circle,
     /// Open square.
+    #[serde(rename = "open-square")]
     Square,
     /// Filled triangle.
     Triangle,
     /// Open diamond.
+    #[serde(rename = "open-diamond")]
     Diamond,
     /// Open circle.
     OpenCircle,
     /// Filled square.
+    #[serde(rename = "square")]
     FilledSquare,
     /// Upright cross.
     Cross,
@@ -104,8 +109,10 @@ pub enum Marker {
     /// Both crosses at once.
     Star,
     /// Open triangle that points down: an upper limit.
+    #[serde(rename = "open-limit")]
     Limit,
     /// A letter: names in a legend what notes in the frame refer to.
+    #[serde(untagged)]
     Letter(char),
 }
 

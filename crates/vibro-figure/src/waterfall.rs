@@ -32,8 +32,8 @@ pub struct Waterfall {
     x: AxisSpec,
     /// Axis upwards.
     height: AxisSpec,
-    frequency: Vec<f64>,
-    rows: Vec<(f64, Vec<f64>)>,
+    pub(super) frequency: Vec<f64>,
+    pub(super) rows: Vec<(f64, Vec<f64>)>,
 }
 
 impl Waterfall {
@@ -81,27 +81,18 @@ impl Waterfall {
         Some([x, depth, up])
     }
 
-    /// Frequencies of the lines, and spectra with their excitations.
-    pub(super) fn parts(&self) -> (&[f64], &[(f64, Vec<f64>)]) {
-        (&self.frequency, &self.rows)
-    }
-
     /// Brings everything to the scale of the axes; `None` where there is nothing to show.
     fn cube(&self) -> Option<Cube> {
         let [x, depth, up] = self.axes()?;
         let shown = |axis: &Axis, value: f64| Some(axis.at(value)).filter(|at| (0.0..=1.0).contains(at));
-        let rows: Vec<(f64, Vec<(f64, f64)>)> = self
-            .rows
-            .iter()
-            .filter_map(|(excitation, row)| {
-                let values = self.frequency.iter().zip(row).filter_map(|(f, v)| Some((shown(&x, *f)?, *v)));
-                Some((shown(&depth, *excitation)?, values.collect()))
-            })
-            .collect();
         // NaN stays NaN: a gap.
         let height = |value: f64| up.at(value).clamp(0.0, 1.0);
-        let spectra =
-            rows.iter().map(|(at, row)| (*at, row.iter().map(|(x, v)| (*x, height(*v))).collect())).collect();
+        let spectrum = |(excitation, row): &(f64, Vec<f64>)| {
+            let values = self.frequency.iter().zip(row);
+            let values = values.filter_map(|(f, v)| Some((shown(&x, *f)?, height(*v))));
+            Some((shown(&depth, *excitation)?, values.collect()))
+        };
+        let spectra = self.rows.iter().filter_map(spectrum).collect();
         Some(Cube { x, depth, up, spectra })
     }
 

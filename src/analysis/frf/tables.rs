@@ -1,14 +1,9 @@
 //! Modes as tables.
 
-use crate::measure::Estimate;
 use crate::measure::modal::ModalResult;
 use crate::report::layout::table;
 use crate::report::words::{Voice, sentence};
 use crate::report::{Cell, Table};
-
-fn known(estimate: Option<&Estimate>) -> Cell {
-    estimate.map_or(Cell::Missing, Cell::from)
-}
 
 /// Modes of a frequency response function, one row a mode.
 pub fn modes(name: &str, result: &ModalResult) -> Table {
@@ -20,8 +15,8 @@ pub fn modes(name: &str, result: &ModalResult) -> Table {
             ("frequency", "Hz", &|m| Cell::from(&m.frequency)),
             ("damping ratio", "1", &|m| Cell::from(&m.zeta)),
             ("modal constant", "1/kg", &|m| Cell::from(&m.modal_constant)),
-            ("phase", "°", &|m| known(m.phase.as_ref())),
-            ("stiffness", "N/m", &|m| known(m.stiffness.as_ref())),
+            ("phase", "°", &|m| m.phase.as_ref().into()),
+            ("stiffness", "N/m", &|m| m.stiffness.as_ref().into()),
             ("from", "Hz", &|m| Cell::Number(m.lines.0)),
             ("to", "Hz", &|m| Cell::Number(m.lines.1)),
             ("lines", "", &|m| Cell::from(m.lines.2)),
@@ -39,8 +34,8 @@ pub(crate) fn modal_methods(result: &ModalResult) -> Table {
         &[
             ("method", "", &|by| Cell::from(by.method)),
             ("frequency", "Hz", &|by| Cell::from(&by.frequency)),
-            ("damping ratio", "1", &|by| known(by.zeta.as_ref())),
-            ("modal constant", "1/kg", &|by| known(by.modal_constant.as_ref())),
+            ("damping ratio", "1", &|by| by.zeta.as_ref().into()),
+            ("modal constant", "1/kg", &|by| by.modal_constant.as_ref().into()),
             ("note", "", &|by| Cell::from(note(&by.note))),
         ],
     )

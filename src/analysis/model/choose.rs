@@ -7,7 +7,7 @@ use crate::compare::Overlay;
 use crate::error::{Error, Result};
 use crate::model::Observable;
 use crate::model::ladder::{
-    Change, Choice, Model, Need, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
+    Choice, Model, Need, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
 };
 use crate::record::{Direction, Finding, Severity};
 use crate::report::layout::table;
@@ -236,10 +236,6 @@ fn needed(needs: &[Need]) -> Cell {
     (!needs.is_empty()).then(|| Need::names(needs)).into()
 }
 
-fn moved(audit: Option<Change>) -> Cell {
-    percent(audit.map(|a| a.change))
-}
-
 /// Which rung is chosen where.
 fn stretches(stretches: &[Stretch]) -> Table {
     table(
@@ -251,7 +247,7 @@ fn stretches(stretches: &[Stretch]) -> Table {
             ("frequencies tried", "", &|s| s.points.into()),
             ("simplest model", "", &|s| s.chosen.map(Model::name).into()),
             ("needs", "", &|s| needed(&s.needs)),
-            ("a richer model changes the answer by up to", "%", &|s| moved(s.audit)),
+            ("a richer model changes the answer by up to", "%", &|s| percent(s.audit.map(|a| a.change))),
             ("against model", "", &|s| s.audit.map(|a| a.at.name()).into()),
             ("largest change at", "Hz", &|s| s.worst_at.into()),
         ],
@@ -298,7 +294,7 @@ fn chosen(points: &[Choice], question: &Question) -> Table {
             ("frequency", "Hz", &|c| c.frequency.into()),
             ("chosen", "", &|c| c.chosen.map(Model::name).into()),
             ("needs", "", &|c| needed(&c.needs)),
-            ("a richer model changes the answer by", "%", &|c| moved(c.audit)),
+            ("a richer model changes the answer by", "%", &|c| percent(c.audit.map(|a| a.change))),
             ("against model", "", &|c| c.audit.map(|a| a.at.name()).into()),
         ],
     );

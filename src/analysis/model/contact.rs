@@ -27,16 +27,9 @@ pub(super) const HELP: &str = "Contact law: restitution, kelvin-voigt, hertz, hu
 /// A motion, whatever its law.
 pub(super) type Moving = Box<dyn Motion>;
 
-/// How masses meet.
-enum Meeting {
-    AtOnce,
-    Giving(Law),
-    /// A loose mass, with impacts where it has no law.
-    Loose(Option<Law>),
-}
-
-/// How the masses of a scene meet. A spring and a damper without a stated damping rebound with the rig's restitution.
-fn meeting(scene: &Scene, wanted: Contact) -> Result<Meeting> {
+/// The law by which the masses of a scene meet, `None` for impacts. A spring and a damper without a stated damping rebound with the rig's
+/// restitution.
+fn meeting(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     let keys = scene.contact.unwrap_or_default();
     // Keys of `[contact]` that the law has a place for, and the exponent that it has by itself.
     let (takes, own): (&[&str], _) = match wanted {
@@ -65,15 +58,15 @@ fn meeting(scene: &Scene, wanted: Contact) -> Result<Meeting> {
     };
     let stiffness = || stated(keys.stiffness, "stiffness", "N/m, or N/mⁿ");
     Ok(match wanted {
-        Contact::Restitution => Meeting::AtOnce,
-        Contact::KelvinVoigt => Meeting::Giving(scene.spring(stiffness()?)?),
-        Contact::Hertz => Meeting::Giving(Law::Hertz { stiffness: stiffness()? }),
-        Contact::HuntCrossley => Meeting::Giving(Law::HuntCrossley {
+        Contact::Restitution => None,
+        Contact::KelvinVoigt => Some(scene.spring(stiffness()?)?),
+        Contact::Hertz => Some(Law::Hertz { stiffness: stiffness()? }),
+        Contact::HuntCrossley => Some(Law::HuntCrossley {
             stiffness: stiffness()?,
             exponent: keys.exponent.unwrap_or(1.5),
             damping: stated(keys.damping, "damping", "s/m")?,
         }),
-        Contact::LooseMass => Meeting::Loose(scene.contact.map(|_| scene.spring(stiffness()?)).transpose()?),
+        Contact::LooseMass => scene.contact.map(|_| scene.spring(stiffness()?)).transpose()?,
     })
 }
 
@@ -87,14 +80,14 @@ pub(super) fn motions(
     grazing: f64,
 ) -> Result<impl Fn(&Excitation, State, f64) -> Result<Moving>> {
     let (rig, buffer) = (&scene.rig, scene.buffer.unwrap_or(Buffer::thesis()));
-    let meeting = meeting(scene, wanted)?;
+    let law = meeting(scene, wanted)?;
     Ok(move |excitation: &Excitation, state, phase| -> Result<Moving> {
-        Ok(match meeting {
-            Meeting::AtOnce => {
-                Box::new(Simulation::from_state(rig, excitation, state, phase)?.grazing_below(grazing))
+        Ok(match law {
+            _ if wanted == Contact::LooseMass => {
+                Box::new(Compliant::loose(rig, excitation, buffer, law, state, phase)?)
             }
-            Meeting::Giving(law) => Box::new(Compliant::new(rig, excitation, law, state, phase)?),
-            Meeting::Loose(law) => Box::new(Compliant::loose(rig, excitation, buffer, law, state, phase)?),
+            Some(law) => Box::new(Compliant::new(rig, excitation, law, state, phase)?),
+            None => Box::new(Simulation::from_state(rig, excitation, state, phase)?.grazing_below(grazing)),
         })
     })
 }

@@ -7,10 +7,9 @@ use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::Response;
-use crate::model::Parameter;
 use crate::model::Rig;
 use crate::record::Finding;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// The parameters that a campaign asks for; `None` where it asks for none.
 ///
@@ -82,29 +81,20 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
     let campaign = job.campaign;
     let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());
     if rig.is_some() && responses.iter().all(|r| r.mass.is_none() || r.direction.is_none()) {
-        job.found.all.add("", [Finding::caution("no-mass-named")]);
+        job.found.add("", [Finding::caution("no-mass-named")]);
         rig = None;
     }
     if rig.is_none() && !campaign.fit.parameters.is_empty() {
-        job.found.all.add("", [Finding::caution("fit-without-rig")]);
+        job.found.add("", [Finding::caution("fit-without-rig")]);
     }
     let (mut laid, mut found) = (None, None);
     if let Some(rig) = &rig {
         let overlay = overlaid(campaign, rig, responses)?;
         found = job.found("fit", fit(campaign, rig, responses))?.flatten();
         job.show("", "", shown(campaign, responses, &overlay, found.as_ref()));
-        job.found.constants = constants(rig);
         laid = Some(overlay);
     }
     job.put("rig", &rig)?;
     job.put("overlay", &laid)?;
     job.put("fit", &found)
-}
-
-fn constants(rig: &Rig) -> Vec<(String, String)> {
-    let Value::Object(keys) = json!(rig) else { return Vec::new() };
-    let unit = |key: &str| {
-        Parameter::named(key).map(Parameter::unit).filter(|unit| *unit != "1").unwrap_or_default()
-    };
-    keys.iter().map(|(key, value)| (key.clone(), format!("{value} {}", unit(key)))).collect()
 }

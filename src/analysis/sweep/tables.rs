@@ -1,31 +1,15 @@
 //! Tables of sweeps, and of sweeps against the model.
 
 use crate::compare::{Fit, Kind, Overlay};
-use crate::measure::response::{Receptance, Response, ResponsePoint};
+use crate::measure::response::{Response, ResponsePoint};
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Column, Table};
 
-/// Point by point, what fits a page: excitation, force, response, and a limit where an amplitude is faint.
-pub fn curve(response: &Response) -> Table {
-    let mut table = points(response);
-    let without = [
-        (LIMIT, response.points.iter().all(|p| p.upper_limit.is_none())),
-        (PHASE, response.points.iter().all(|p| p.phase.is_none())),
-    ];
-    for (column, _) in without.into_iter().filter(|(_, without)| *without) {
-        table.columns.remove(column);
-        for row in &mut table.rows {
-            row.remove(column);
-        }
-    }
-    table
-}
-
-/// Columns of [`points`] that not every sweep has.
-const PHASE: usize = 4;
+/// Place of the limit among the columns of a curve.
 const LIMIT: usize = 6;
 
-fn points(response: &Response) -> Table {
+/// Point by point, what fits a page: excitation, force, response, and a limit where an amplitude is faint.
+pub fn curve(response: &Response) -> Table {
     let shown = table(
         format!("Response, {}", response.name),
         &response.points,
@@ -49,11 +33,11 @@ const STRONGEST: &str = "Strongest line at: this line of the spectrum is stronge
 
 /// Point by point with receptance, harmonics and sub-harmonics, for files.
 pub fn response(response: &Response) -> Table {
-    let mut table = points(response);
-    for (name, part) in [("receptance re", real as fn(Receptance) -> f64), ("receptance im", imaginary)] {
+    let mut table = curve(response);
+    for (name, part) in [("receptance re", 0), ("receptance im", 1)] {
         table.columns.push(Column { name: name.to_owned(), unit: "m/N".to_owned() });
         for (row, point) in table.rows.iter_mut().zip(&response.points) {
-            row.push(point.receptance.map(|r| pair(part(r), r.std)).into());
+            row.push(point.receptance.map(|r| pair([r.re, r.im][part], r.std)).into());
         }
     }
     let before = LIMIT - 1;
@@ -72,14 +56,6 @@ pub fn response(response: &Response) -> Table {
         drop(row.splice(before..before, cells));
     }
     table
-}
-
-fn real(receptance: Receptance) -> f64 {
-    receptance.re
-}
-
-fn imaginary(receptance: Receptance) -> f64 {
-    receptance.im
 }
 
 /// What the kinds of resonances mean, a line each.
