@@ -3,11 +3,10 @@
 use super::forcing::Forcing;
 use super::regime::{Strike, Watch};
 use super::{
-    Excitation, Motion, Parameter, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, Steady, floquet,
-    parallel, scales,
+    Excitation, Motion, Parameter, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, floquet, parallel,
+    scales,
 };
 use nalgebra::Matrix4;
-use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -69,8 +68,8 @@ pub struct Plan {
     pub x: Axis,
     /// Parameter upwards.
     pub y: Axis,
-    /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, where it is within 1e-3 of a stable motion and
-    /// draws nearer, or where the masses cannot meet any more.
+    /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, or where it is within 1e-3 of a stable motion and draws
+    /// nearer.
     pub cycles: u32,
 }
 
@@ -184,9 +183,6 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
         {
             return Ok(cell);
         }
-        if found.regime == Regime::NoImpact && found.settled && clear(rig, excitation, &motion) {
-            break;
-        }
     }
     let (found, _) = follow(&mut motion, cycles - passed)?;
     let regime = Some(found.regime);
@@ -216,17 +212,6 @@ fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell>
         }),
         _ => seen(found.settled),
     }
-}
-
-/// Whether a motion under a sine cannot meet the other mass any more: forced and free parts together stay below the gap.
-fn clear(rig: &Rig, excitation: &Excitation, motion: &Simulation) -> bool {
-    let Excitation::Sine(sine) = excitation else { return false };
-    let Ok(steady) = Steady::new(rig, sine) else { return false };
-    let (state, forced) = (motion.state(), steady.response * Complex64::cis(motion.phase()));
-    let [first, second] = rig.oscillators();
-    let free = first.bound(state.x1 - forced.re, state.v1 + steady.omega * forced.im)
-        + second.bound(state.x2, state.v2);
-    forced.norm() + free < rig.gap
 }
 
 /// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.
