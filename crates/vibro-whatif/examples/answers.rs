@@ -2,7 +2,7 @@
 //! each line of standard output has the bits of the answer's numbers.
 
 use vibro_model::Rig;
-use vibro_whatif::{Question, Scene};
+use vibro_whatif::Scene;
 
 fn main() {
     for line in std::io::stdin().lines() {
@@ -11,11 +11,11 @@ fn main() {
         let n: Vec<f64> = numbers.split(' ').map(|n| n.parse().expect("a number")).collect();
         let rig =
             Rig { m1: n[0], m2: n[1], k1: n[2], k2: n[3], c1: n[4], c2: n[5], gap: n[6], restitution: n[7] };
-        let question = match what {
-            "response" => Question::Response { from: n[10], to: n[11], points: n[12] as usize },
-            _ => Question::Motion { frequency: n[10] },
+        let scene = Scene { rig, force: n[8], stiffness: n[9] };
+        let answer = match what {
+            "response" => scene.response(n[10], n[11], n[12] as usize),
+            _ => scene.motion(n[10]),
         };
-        let answer = question.answer(&Scene { rig, force: n[8], stiffness: n[9] });
         println!("{}", answer.iter().map(f64::to_string).collect::<Vec<_>>().join(" "));
     }
 }

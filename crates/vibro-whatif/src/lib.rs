@@ -1,16 +1,15 @@
 //! What a rig would do with other parameters: the model crate behind numbers in and numbers out, for the report page.
 //!
 //! ```
-//! use vibro_whatif::{Question, Scene};
+//! use vibro_whatif::Scene;
 //! let scene = Scene { force: 0.1, ..Scene::default() };
-//! let answer = Question::Response { from: 5.0, to: 6.0, points: 11 }.answer(&scene);
+//! let answer = scene.response(5.0, 6.0, 11);
 //! assert_eq!(answer.len(), 11 * 8);
 //! ```
 
 mod page;
 
 use num_complex::Complex64;
-use vibro_model::contact::conversion;
 use vibro_model::{
     Compliance, Compliant, Excitation, Law, Motion, Orbits, Rig, Simulation, Sine, State, orbits_of, softened,
 };
@@ -33,48 +32,25 @@ impl Default for Scene {
     }
 }
 
-/// What is asked of a scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Question {
-    /// Motions with one impact a cycle, and the one without impacts, at frequencies in Hz.
-    Response {
-        /// The lowest.
-        from: f64,
-        /// The highest.
-        to: f64,
-        /// How many.
-        points: usize,
-    },
-    /// The motion that is reached from rest.
-    Motion {
-        /// Frequency in Hz.
-        frequency: f64,
-    },
-}
-
 /// Cycles after which a motion from rest is shown, those shown, and points of each.
 const SETTLE: u32 = 300;
 const SHOWN: u32 = 4;
 const POINTS: u32 = 200;
 
-impl Question {
-    /// The answer in numbers, NaN where there is none.
-    ///
-    /// [`Question::Response`]: 8 a frequency: frequency in Hz; amplitude in m of mass 1 without impacts; of two motions the larger first,
-    /// amplitudes in m of both masses at the excitation frequency and 2 where it is stable, 1 where it is not, 0 where it is not real.
-    /// [`Question::Motion`]: 5 a point: time in s, x₁, x₂ in m, v₁, v₂ in m/s.
-    pub fn answer(&self, scene: &Scene) -> Vec<f64> {
-        match *self {
-            Question::Response { from, to, points } => {
-                let step = (to - from) / points.saturating_sub(1).max(1) as f64;
-                (0..points).flat_map(|k| scene.at(from + step * k as f64)).collect()
-            }
-            Question::Motion { frequency } => scene.motion(frequency).unwrap_or_default(),
-        }
-    }
-}
-
 impl Scene {
+    /// Motions with one impact a cycle, and the one without impacts, at so many frequencies in Hz: 8 numbers each, NaN where there is none. Frequency in
+    /// Hz; amplitude in m of mass 1 without impacts; of two motions the larger first, amplitudes in m of both masses at the excitation frequency and 2
+    /// where it is stable, 1 where it is not, 0 where it is not real.
+    pub fn response(&self, from: f64, to: f64, points: usize) -> Vec<f64> {
+        let step = (to - from) / points.saturating_sub(1).max(1) as f64;
+        (0..points).flat_map(|k| self.at(from + step * k as f64)).collect()
+    }
+
+    /// The motion that is reached from rest at a frequency in Hz: 5 numbers a point, time in s, x₁, x₂ in m, v₁, v₂ in m/s; none where it cannot be.
+    pub fn motion(&self, frequency: f64) -> Vec<f64> {
+        self.followed(frequency).unwrap_or_default()
+    }
+
     fn excitation(&self, frequency: f64) -> Excitation {
         Excitation::Sine(Sine { force: self.force, frequency })
     }
@@ -117,20 +93,13 @@ impl Scene {
         )
     }
 
-    fn motion(&self, frequency: f64) -> Result<Vec<f64>> {
+    fn followed(&self, frequency: f64) -> Result<Vec<f64>> {
         let (rig, excitation) = (&self.rig, self.excitation(frequency));
         let start = Simulation::at_rest(rig);
         let mut motion: Box<dyn Motion> = match self.contact() {
             Some(stiffness) => {
-                let ratio = conversion::damping_ratio(rig.restitution)?;
-                let damping = 2.0 * ratio * (stiffness * rig.reduced_mass()).sqrt();
-                Box::new(Compliant::new(
-                    rig,
-                    &excitation,
-                    Law::KelvinVoigt { stiffness, damping },
-                    start,
-                    0.0,
-                )?)
+                let law = Law::kelvin_voigt(stiffness, rig.restitution, rig.reduced_mass())?;
+                Box::new(Compliant::new(rig, &excitation, law, start, 0.0)?)
             }
             None => Box::new(Simulation::new(rig, &excitation)?),
         };
@@ -161,7 +130,7 @@ mod tests {
     #[test]
     fn a_response_is_that_of_the_model() {
         let scene = Scene::default();
-        let row = Question::Response { from: 5.2, to: 5.2, points: 1 }.answer(&scene);
+        let row = scene.response(5.2, 5.2, 1);
         let found = vibro_model::orbits(&scene.rig, scene.force, 5.2).unwrap();
         let [x1, x2] = found.orbits[0].fundamental.map(Complex64::norm);
         assert_eq!(row[2..5], [x1, x2, 2.0]);
@@ -169,9 +138,9 @@ mod tests {
 
     /// A stable motion is reached from rest: half of its peak-to-peak within what 800 points resolve of a sine, (π/200)²/2.
     #[test]
-    fn a_motion_from_rest_comes_to_the_stable_orbit() {
+    fn a_motion_followed_comes_to_the_stable_orbit() {
         let scene = Scene::default();
-        let rows = Question::Motion { frequency: 5.2 }.answer(&scene);
+        let rows = scene.motion(5.2);
         assert_eq!(rows.len(), 5 * (SHOWN * POINTS) as usize);
         let x2: Vec<f64> = rows.chunks_exact(5).map(|row| row[2]).collect();
         let (low, high) =
@@ -185,8 +154,8 @@ mod tests {
     fn what_cannot_be_has_no_answer_and_no_panic() {
         for rig in [Rig { m1: -1.0, ..Rig::thesis() }, Rig { k1: f64::NAN, ..Rig::thesis() }] {
             let scene = Scene { rig, ..Scene::default() };
-            assert!(Question::Response { from: 1.0, to: 2.0, points: 3 }.answer(&scene)[1].is_nan());
-            assert!(Question::Motion { frequency: 5.0 }.answer(&scene).is_empty());
+            assert!(scene.response(1.0, 2.0, 3)[1].is_nan());
+            assert!(scene.motion(5.0).is_empty());
         }
     }
 }

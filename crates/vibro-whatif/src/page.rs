@@ -4,7 +4,7 @@
     reason = "a name by which a page calls a function is an unsafe attribute; nothing else is unsafe here"
 )]
 
-use super::{Question, Scene};
+use super::Scene;
 use std::sync::Mutex;
 use vibro_model::Rig;
 
@@ -12,11 +12,11 @@ use vibro_model::Rig;
 static INPUT: Mutex<[f64; 16]> = Mutex::new([0.0; 16]);
 static OUTPUT: Mutex<Vec<f64>> = Mutex::new(Vec::new());
 
-fn answered(question: impl Fn(&[f64; 16]) -> Question) -> usize {
+fn answered(answer: impl Fn(&Scene, &[f64; 16]) -> Vec<f64>) -> usize {
     let (Ok(input), Ok(mut output)) = (INPUT.lock(), OUTPUT.lock()) else { return 0 };
     let [m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, ..] = *input;
     let scene = Scene { rig: Rig { m1, m2, k1, k2, c1, c2, gap, restitution }, force, stiffness };
-    *output = question(&input).answer(&scene);
+    *output = answer(&scene, &input);
     output.len()
 }
 
@@ -35,11 +35,11 @@ pub extern "C" fn output() -> *const f64 {
 /// The response from the eleventh number to the twelfth in Hz, at so many frequencies as the thirteenth says; gives the count of numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn response() -> usize {
-    answered(|input| Question::Response { from: input[10], to: input[11], points: input[12] as usize })
+    answered(|scene, input| scene.response(input[10], input[11], input[12] as usize))
 }
 
 /// The motion from rest at the eleventh number in Hz; gives the count of numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn motion() -> usize {
-    answered(|input| Question::Motion { frequency: input[10] })
+    answered(|scene, input| scene.motion(input[10]))
 }
