@@ -7,6 +7,7 @@ use Kind::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
 pub enum Kind {
     I8,
     I16,
+    I24,
     I32,
     I64,
     U8,
@@ -35,6 +36,7 @@ impl Kind {
         match self {
             I8 | U8 | Kind::Bit(_) => 1,
             I16 | U16 => 2,
+            Kind::I24 => 3,
             I32 | U32 | F32 => 4,
             I64 | U64 | F64 => 8,
             Kind::Time => 16,
@@ -49,6 +51,7 @@ impl Kind {
             U8 => column(at, out, |b| f64::from(u8::from_le_bytes(b))),
             I16 => column(at, out, |b| f64::from(i16::from_le_bytes(b))),
             U16 => column(at, out, |b| f64::from(u16::from_le_bytes(b))),
+            Kind::I24 => column(at, out, |[a, b, c]| f64::from(i32::from_le_bytes([0, a, b, c]) >> 8)),
             I32 => column(at, out, |b| f64::from(i32::from_le_bytes(b))),
             U32 => column(at, out, |b| f64::from(u32::from_le_bytes(b))),
             I64 => column(at, out, |b| i64::from_le_bytes(b) as f64),

@@ -19,6 +19,7 @@ use super::Source;
 use super::missing::Missing;
 use super::reader::Options;
 use super::source::ReadSeek;
+use crate::binary::Kind;
 use crate::held::Contents;
 use layout::Layout;
 use std::io::{Read, SeekFrom};
@@ -119,7 +120,9 @@ impl Wave {
         let name = scale.map(|s| s.name.clone()).filter(|name| !name.is_empty());
         let name = name.unwrap_or_else(|| format!("channel {}", channel + 1));
         let mut meta = Meta::new(name, Unit::opaque(FULL_SCALE));
-        meta.step("read", &[("file", &source.name()), ("format", &"wav"), ("samples", &layout.sample)]);
+        let kind = if matches!(layout.sample, Kind::F32 | Kind::F64) { "float" } else { "integer" };
+        let samples = format!("{}-bit {kind}", 8 * layout.sample.size());
+        meta.step("read", &[("file", &source.name()), ("format", &"wav"), ("samples", &samples)]);
         meta.notes.clone_from(&layout.notes);
         meta.declared_n = layout.declared_frames.map(|n| n as usize);
         meta.found(Finding::caution(Trace::UNCALIBRATED));
@@ -152,10 +155,22 @@ impl Wave {
     }
 }
 
+/// Zero of integer samples, and how far full scale is from it; floats are fractions of full scale.
+fn full_scale(sample: Kind) -> (f64, f64) {
+    match sample {
+        Kind::U8 => (128.0, 128.0),
+        Kind::I16 => (0.0, 32_768.0),
+        Kind::I24 => (0.0, 8_388_608.0),
+        Kind::I32 => (0.0, 2_147_483_648.0),
+        _ => (0.0, 1.0),
+    }
+}
+
 impl Stream for Wave {
     fn append(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
         let sample = self.layout.sample;
-        let frame = sample.bytes() * self.layout.channels;
+        let (size, (zero, full)) = (sample.size() as usize, full_scale(sample));
+        let frame = size * self.layout.channels;
         let frames = ((BLOCK / frame).max(1) as u64).min(self.left);
         let first = self.layout.frames - self.left;
         self.bytes.clear();
@@ -169,9 +184,11 @@ impl Stream for Wave {
         block.resize_with(self.kept.len(), Vec::new);
         for ((channel, column), largest) in self.kept.iter().zip(&mut *block).zip(&mut self.largest) {
             let from = column.len();
-            let samples = self.bytes.chunks_exact(frame).map(|f| &f[channel * sample.bytes()..]);
-            column.extend(samples.map(|s| sample.value(&s[..sample.bytes()])));
+            sample.take(&self.bytes, channel * size, frame, false, column);
             let values = &mut column[from..];
+            for v in &mut *values {
+                *v = (*v - zero) / full;
+            }
             let seen = lanes::survey(values);
             *largest = largest.max(seen.high).max(-seen.low);
             if !seen.finite {

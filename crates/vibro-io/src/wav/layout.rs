@@ -6,9 +6,9 @@
 use super::scales::Scales;
 use crate::Source;
 use crate::assemble::fewer;
+use crate::binary::Kind;
 use crate::source::ReadSeek;
 use crate::text::encoding;
-use std::fmt;
 use std::io::{Read, SeekFrom};
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result};
@@ -26,7 +26,7 @@ const CUT: &str = "the recording may have been cut off before its first sample";
 /// What the chunks say.
 #[derive(Debug)]
 pub struct Layout {
-    pub sample: Sample,
+    pub sample: Kind,
     pub channels: usize,
     pub rate: f64,
     pub data_at: u64,
@@ -35,49 +35,6 @@ pub struct Layout {
     pub scales: Option<Scales>,
     pub notes: Vec<(String, String)>,
     pub findings: Vec<Finding>,
-}
-
-/// Kind of a sample; integers are left-justified in their bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sample {
-    /// Of 1 (unsigned), 2, 3 or 4 bytes.
-    Integer(usize),
-    /// Of 4 or 8 bytes.
-    Float(usize),
-}
-
-impl Sample {
-    pub fn bytes(self) -> usize {
-        match self {
-            Sample::Integer(n) | Sample::Float(n) => n,
-        }
-    }
-
-    /// Fraction of full scale; `bytes` has the length [`Sample::bytes`].
-    pub fn value(self, bytes: &[u8]) -> f64 {
-        match (self, bytes) {
-            (Sample::Integer(_), [a]) => (f64::from(*a) - 128.0) / 128.0,
-            (Sample::Integer(_), [a, b]) => f64::from(i16::from_le_bytes([*a, *b])) / 32_768.0,
-            // Three bytes as the upper ones of four.
-            (Sample::Integer(_), [a, b, c]) => {
-                f64::from(i32::from_le_bytes([0, *a, *b, *c])) / 2_147_483_648.0
-            }
-            (Sample::Integer(_), [a, b, c, d]) => {
-                f64::from(i32::from_le_bytes([*a, *b, *c, *d])) / 2_147_483_648.0
-            }
-            (Sample::Float(4), _) => {
-                bytes.first_chunk().map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(*b)))
-            }
-            _ => bytes.first_chunk().map_or(f64::NAN, |b| f64::from_le_bytes(*b)),
-        }
-    }
-}
-
-impl fmt::Display for Sample {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kind = if matches!(self, Sample::Integer(_)) { "integer" } else { "float" };
-        write!(f, "{}-bit {kind}", 8 * self.bytes())
-    }
 }
 
 /// Goes from chunk to chunk.
@@ -135,12 +92,13 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
         fault(format_at, &found, expected).hint("convert it to integers of 16 or floats of 32 bits")
     })?;
     let mut findings = Vec::new();
-    if bits < 8 * sample.bytes() {
+    let bytes = sample.size() as usize;
+    if bits < 8 * bytes {
         // 12 bits in two bytes fill them from the top, so says the format; some writers fill them from the bottom.
         let wide = Finding::caution("bits-left-justified").count("bits", bits);
-        findings.push(wide.count("bytes", sample.bytes()));
+        findings.push(wide.count("bytes", bytes));
     }
-    let frame = (sample.bytes() * channels) as u64;
+    let frame = (bytes * channels) as u64;
     let room = source.len().saturating_sub(data_at);
     let present = size.min(room);
     let frames = present / frame;
@@ -181,7 +139,7 @@ fn field<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
 }
 
 /// Kind of sample, channels, sampling rate and bits of a `fmt ` chunk, or what was found and what is expected.
-fn kind(format: &[u8]) -> std::result::Result<(Sample, usize, f64, usize), (String, &'static str)> {
+fn kind(format: &[u8]) -> std::result::Result<(Kind, usize, f64, usize), (String, &'static str)> {
     let word = |at| field(format, at).map(u16::from_le_bytes);
     let (Some(mut tag), Some(channels), Some(rate), Some(frame), Some(mut bits)) =
         (word(0), word(2), field(format, 4).map(u32::from_le_bytes), word(12), word(14))
@@ -195,8 +153,12 @@ fn kind(format: &[u8]) -> std::result::Result<(Sample, usize, f64, usize), (Stri
     }
     let bytes = usize::from(frame.checked_div(channels).unwrap_or(0));
     let sample = match (tag, bytes) {
-        (1, 1..=4) => Some(Sample::Integer(bytes)),
-        (3, 4 | 8) => Some(Sample::Float(bytes)),
+        (1, 1) => Some(Kind::U8),
+        (1, 2) => Some(Kind::I16),
+        (1, 3) => Some(Kind::I24),
+        (1, 4) => Some(Kind::I32),
+        (3, 4) => Some(Kind::F32),
+        (3, 8) => Some(Kind::F64),
         _ => None,
     };
     let whole = bytes * usize::from(channels) == usize::from(frame) && usize::from(bits) <= 8 * bytes;
