@@ -61,6 +61,9 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
 fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, &'a str, String)> {
     let (key, value) = line.split_once('=')?;
     let stated = value.split('#').next()?.trim();
+    if stated.is_empty() {
+        return Some((key.trim(), "nothing", "a value", "VALUE".to_owned()));
+    }
     let bare = stated.trim_matches(['"', '\'', '“', '”']).trim();
     let number = |text: &str| text.trim().parse::<f64>().is_ok_and(f64::is_finite);
     let point = bare.replacen(',', ".", 1);
@@ -162,6 +165,7 @@ mod tests {
             ("scatter = \"40 cm\"", &["write scatter = 0.4"]),
             ("prior.gap = \"20-30\"", &["write prior.gap = [20, 30]"]),
             ("scatter = \"0.1\"", &["a number without quotes", "write scatter = 0.1"]),
+            ("starts =   # missing: how many", &["starts = nothing", "write starts = VALUE"]),
             ("starts = three", &["text between quotes", "write starts = \"three\""]),
             ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),
         ] {

@@ -88,7 +88,12 @@ impl Source {
             [one] if !is_pattern(one) => None,
             all => {
                 let files: Result<Vec<_>> = all.iter().map(|path| matching(path)).collect();
-                Some(of_steps(&files?.concat(), &Reading::default())?)
+                let mut files = files?.concat();
+                // A shell names 10 before 2.
+                if files.is_sorted() {
+                    files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+                }
+                Some(of_steps(&files, &Reading::default())?)
             }
         })
     }

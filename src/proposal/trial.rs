@@ -39,6 +39,9 @@ const AT_ONCE: f64 = 0.01;
 /// Square of the crest factor of a sine: 2, and what noise adds; a square wave has 1.
 const SINE: Range<f64> = 1.8..2.7;
 
+/// What stands in names of channels with the pulses of a crank.
+const TACHO: [&str; 5] = ["tach", "puls", "trig", "rpm", "drehzahl"];
+
 /// Files that may be steps of a sweep.
 const STEPS: usize = 5;
 
@@ -231,7 +234,9 @@ impl Trial<'_> {
         let most = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
         let Some(pulses) = most.filter(|k| shares[*k] > 0.9) else { return Vec::new() };
         // A contact circuit beside what drives it.
-        if let [sine] = (0..series.headers.len()).filter(|k| *k != pulses).collect::<Vec<_>>()[..]
+        let called = series.headers[pulses].name.to_lowercase();
+        if !TACHO.iter().any(|word| called.contains(word))
+            && let [sine] = (0..series.headers.len()).filter(|k| *k != pulses).collect::<Vec<_>>()[..]
             && is_sine(&recording.records[sine])
         {
             let table = series.channel_table(pulses, name, "impacts", "impacts in a row").surmised();
@@ -331,11 +336,14 @@ fn is_brief(heard: &Answer) -> bool {
     decay.is_some_and(|decay| used(decay) < Some(MOSTLY))
 }
 
-/// Whether impacts are as their tables have them: three or more in a row; two in a fall with one rebound; and none that return with
+/// Whether impacts are as their tables have them: three or more in a row, few of them missed; two in a fall with one rebound; and none that return with
 /// the speed with which they came.
 fn sensible(tables: &[Table], heard: &Answer) -> bool {
     let first = |section: &str| heard.result.get(section).and_then(|all| all.get(0));
-    let few = first("impacts").is_some_and(|impacts| impacts["n"].as_u64() < Some(3));
+    let few = first("impacts").is_some_and(|impacts| {
+        let [n, missed] = ["n", "missed"].map(|key| impacts[key].as_u64().unwrap_or(0));
+        n < 3 || 4 * missed > n
+    });
     let drop = first("drops");
     let lossless = drop.is_some_and(|drop| drop["restitution"]["value"].as_f64() > Some(0.99));
     let one = |intervals: &Value| intervals.as_array().is_some_and(|all| all.len() == 1);

@@ -68,6 +68,9 @@ impl Table {
     pub fn text(&self) -> String {
         let columns: Vec<Vec<String>> = self.formatted().iter().map(Formatted::aligned).collect();
         let mut out = String::new();
+        if columns.is_empty() {
+            return out;
+        }
         if !self.title.is_empty() {
             let _ = writeln!(out, "{}", self.title);
         }
@@ -112,6 +115,9 @@ impl Table {
     /// For a page: a `table` element with its title as caption.
     pub fn html(&self) -> String {
         let columns = self.formatted();
+        if columns.is_empty() {
+            return String::new();
+        }
         let mut out = String::from("<div class=\"table\"><table>\n");
         if !self.title.is_empty() {
             let _ = writeln!(out, "<caption>{}</caption>", escaped(&self.title));

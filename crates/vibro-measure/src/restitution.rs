@@ -105,7 +105,10 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         }
         // What follows a drop may be no train of bounces; the drop answers nevertheless.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
-            findings.push(Finding::caution("flight-times-ignored"));
+            let n: usize = trains.iter().filter_map(train::longer).sum();
+            let doubt = Finding::doubt("drop-flights-grow").count("n", n);
+            findings.push(if n > 0 { doubt } else { Finding::caution("flight-times-ignored") });
+            by.iter_mut().filter(|_| n > 0).for_each(|way| way.restitution.std = None);
         }
         Err(error) => return Err(error),
     }

@@ -105,8 +105,11 @@ fn lines(
     scatter.drain(..left_out);
     let mut found = SpectralResult::of(Lines::Spectrum(spectrum), options, fmin, traces.findings());
     found.averages = averages;
-    // Only peaks are listed.
-    let clear = |k: usize| found.is_peak(k) && stands_out(&powers, k + left_out, independent, shown);
+    // Only peaks are listed; in the main lobe of 0 Hz stands what taking out the mean of segments leaves.
+    let lowest = if options.detrended() { window.coefficients().len() } else { 0 };
+    let clear = |k: usize| {
+        k + left_out >= lowest && found.is_peak(k) && stands_out(&powers, k + left_out, independent, shown)
+    };
     found.clear = (0..found.value.len()).map(clear).collect();
     found.false_alarms = Some(FALSE_ALARMS);
     found.value_std = found.value.iter().zip(scatter).map(|(v, part)| v * part).collect();

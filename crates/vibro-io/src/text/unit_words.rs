@@ -5,7 +5,7 @@ use vibro_record::Scaling;
 use vibro_record::units::{Quantity, Unit, spelled};
 
 /// What stands in place of a unit over numbered samples.
-pub(super) const COUNTERS: [&str; 5] = ["sequence", "samples", "points", "no.", "rn"];
+pub(super) const COUNTERS: [&str; 6] = ["sequence", "samples", "points", "no.", "rn", "#"];
 
 /// Hours have no symbol among the units of values.
 pub(super) const HOUR: &str = "hour";

@@ -127,6 +127,30 @@ fn growing_flights_are_refused() {
     assert!(found.by.len() == 1 && finding(&found, "flight-times-ignored").is_some(), "{found:?}");
 }
 
+/// A voice beside a fall of 0.5 m with R = 0.7: what it adds parts the flights of 0.447 s and less.
+#[test]
+fn a_voice_among_bounces_is_doubted_and_a_hand_is_not() {
+    let flights = (0..5).map(|k| 0.447 * 0.7f64.powi(k));
+    let voice: Vec<f64> =
+        [0.0025, 0.0024].into_iter().chain(flights.clone().flat_map(|f| [f, 0.0023])).collect();
+    let mut heard = Measured {
+        drop: Some(Drop { height_std: Some(1e-3), interval_std: Some(1e-5), ..drop(0.5, voice[0]) }),
+        trains: vec![Train { intervals: voice, ..Train::default() }],
+        ..Measured::default()
+    };
+    let found = of(&heard);
+    assert_eq!(finding(&found, "drop-flights-grow").and_then(|f| f.get("n")), Some(5.0));
+    assert_eq!((found.restitution.std, found.by.len()), (None, 1), "{found:?}");
+    heard.drop = None;
+    assert!(restitution(&heard).unwrap_err().to_string().contains("other sounds"));
+    // A hand takes the body up, 2 s later.
+    let intervals = flights.chain([2.0, 1.5]).collect();
+    heard.drop = Some(Drop { height_std: Some(1e-3), interval_std: Some(1e-5), ..drop(0.5, 0.447) });
+    heard.trains = vec![Train { intervals, ..Train::default() }];
+    let found = of(&heard);
+    assert!((found.restitution.value - 0.7).abs() < 1e-3 && found.restitution.std.is_some(), "{found:?}");
+}
+
 #[test]
 fn velocities_of_both_masses_and_by_momentum() {
     // 0.2 kg at 3 m/s on 0.5 kg at rest with R = 0.4.

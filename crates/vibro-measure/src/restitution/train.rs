@@ -46,6 +46,15 @@ impl Train {
             found.times.drain(..first);
             found.heights.drain(..first);
         }
+        // Ringing may seem to begin as soon as what it follows.
+        let mut last = f64::NEG_INFINITY;
+        let later = |(time, _): &(f64, f64)| {
+            let before = last;
+            last = time.max(before);
+            *time > before
+        };
+        let impacts = found.times.into_iter().zip(found.heights).filter(later);
+        (found.times, found.heights) = impacts.unzip();
         if found.times.len() < 2 {
             let few = Error::refused("one impact found: restitution from a drop needs two");
             let few = few.hint("a lower threshold, or a shorter pause between impacts");
@@ -54,6 +63,18 @@ impl Train {
         let intervals = found.times.windows(2).map(|w| w[1] - w[0]).collect();
         Ok((Train { intervals, onset_std: found.onset_std }, found))
     }
+}
+
+/// A flight this much longer than the first is no bounce of the same fall.
+const LONGER: f64 = 1.2;
+/// So many of them are more than what is heard of a hand before and behind a fall.
+const HANDLED: usize = 2;
+
+/// How many flights are longer than the first, where they are too many for one fall: voices or ringing count as impacts.
+pub(super) fn longer(train: &Train) -> Option<usize> {
+    let (first, rest) = train.intervals.split_first()?;
+    let n = rest.iter().filter(|flight| **flight > LONGER * first).count();
+    (n > HANDLED).then_some(n)
 }
 
 /// R of trains of bounces, the mean of their ln R; `None` where no train has two flights.
@@ -65,6 +86,13 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
         // A train of one flight has no ratio.
         if t.intervals.len() < 2 {
             continue;
+        }
+        if let Some(n) = longer(t) {
+            let why = format!(
+                "{n} flights of train {train} are longer than the first: other sounds count as impacts"
+            );
+            let hint = "cut the record to the bounces, or raise the threshold";
+            return Err(Error::refused(why).hint(hint).setting("threshold").setting("refractory"));
         }
         let mut flights: Vec<Flight> =
             t.intervals.iter().enumerate().map(|(place, d)| Flight { place, log: d.ln() }).collect();

@@ -1,9 +1,17 @@
 "use strict";
 
-/** Text of a table as CSV. */
+/** Text of a table as CSV: numbers with a hyphen for minus, uncertainties in columns of their own. */
 function csv(table) {
-  const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-  return Array.from(table.rows, (row) => Array.from(row.cells, (c) => cell(c.textContent)).join(",")).join("\n") + "\n";
+  const rows = Array.from(table.rows, (row) => Array.from(row.cells, (c) => c.textContent));
+  const unsure = rows[0].map((_, i) => rows.some((row, k) => k > 0 && row[i].includes(" ± ")));
+  const plain = (text) => (text === "–" ? "" : text.replace(/^−/, "-"));
+  const cells = (text, i, head) => {
+    if (!unsure[i]) return [plain(text)];
+    const [value, std = ""] = head ? [text, `${text} std`] : text.startsWith("(") ? [text] : text.split(" ± ");
+    return [plain(value), std];
+  };
+  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  return rows.map((row, k) => row.flatMap((text, i) => cells(text, i, k === 0)).map(quoted).join(",") + "\n").join("");
 }
 
 /** Buttons and, for a long one, a search above a table. */
