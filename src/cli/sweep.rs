@@ -89,8 +89,15 @@ impl Source {
             all => {
                 let files: Result<Vec<_>> = all.iter().map(|path| matching(path)).collect();
                 let mut files = files?.concat();
-                // A shell names 10 before 2.
-                if files.is_sorted() {
+                // A shell names 10 before 2; decimals stand right as it names them.
+                let decimal = |file: &PathBuf| {
+                    let stem =
+                        file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+                    stem.as_bytes()
+                        .windows(3)
+                        .any(|w| w[0].is_ascii_digit() && w[1] == b'.' && w[2].is_ascii_digit())
+                };
+                if files.is_sorted() && !files.iter().any(decimal) {
                     files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
                 }
                 Some(of_steps(&files, &Reading::default())?)

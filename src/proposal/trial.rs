@@ -40,7 +40,7 @@ const AT_ONCE: f64 = 0.01;
 const SINE: Range<f64> = 1.8..2.7;
 
 /// What stands in names of channels with the pulses of a crank.
-const TACHO: [&str; 5] = ["tach", "puls", "trig", "rpm", "drehzahl"];
+const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
 
 /// Files that may be steps of a sweep.
 const STEPS: usize = 5;

@@ -105,10 +105,10 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         }
         // What follows a drop may be no train of bounces; the drop answers nevertheless.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
-            let n: usize = trains.iter().filter_map(train::longer).sum();
-            let doubt = Finding::doubt("drop-flights-grow").count("n", n);
-            findings.push(if n > 0 { doubt } else { Finding::caution("flight-times-ignored") });
-            by.iter_mut().filter(|_| n > 0).for_each(|way| way.restitution.std = None);
+            let grown = trains.iter().enumerate().find_map(|(i, train)| Some((i + 1, train::longer(train)?)));
+            let doubt = |(train, n)| Finding::doubt("drop-flights-grow").count("n", n).count("train", train);
+            findings.push(grown.map_or_else(|| Finding::caution("flight-times-ignored"), doubt));
+            by.iter_mut().filter(|_| grown.is_some()).for_each(|way| way.restitution.std = None);
         }
         Err(error) => return Err(error),
     }

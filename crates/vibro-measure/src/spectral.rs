@@ -19,6 +19,7 @@ use vibro_signal::segment::Segments;
 use vibro_signal::spectrum;
 use vibro_signal::transfer::{Estimator, transfer};
 use vibro_signal::welch::{Averages, Welch};
+use vibro_signal::window::line_shape;
 
 /// Samples of a segment where none is stated.
 const SEGMENT: usize = 8192;
@@ -105,10 +106,11 @@ fn lines(
     scatter.drain(..left_out);
     let mut found = SpectralResult::of(Lines::Spectrum(spectrum), options, fmin, traces.findings());
     found.averages = averages;
-    // Only peaks are listed; in the main lobe of 0 Hz stands what taking out the mean of segments leaves.
-    let lowest = if options.detrended() { window.coefficients().len() } else { 0 };
+    // Only peaks are listed, and none that taking out the mean of segments leaves.
     let clear = |k: usize| {
-        k + left_out >= lowest && found.is_peak(k) && stands_out(&powers, k + left_out, independent, shown)
+        let line = k + left_out;
+        let of_mean = options.detrended() && is_of_mean(&powers, line, window);
+        found.is_peak(k) && !of_mean && stands_out(&powers, line, independent, shown)
     };
     found.clear = (0..found.value.len()).map(clear).collect();
     found.false_alarms = Some(FALSE_ALARMS);
@@ -136,6 +138,13 @@ fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
         ends.into_iter().filter(|_| !levels).map(found).collect::<Vec<Finding>>()
     };
     ranges.iter().zip(traces.channels()).flat_map(of).collect()
+}
+
+/// Whether line `k` is of the shape that the window gives to a constant: nothing is beyond its main lobe, where a sine at `k` would still be.
+fn is_of_mean(powers: &[f64], k: usize, window: Window) -> bool {
+    let beyond = window.coefficients().len();
+    let sine = |line: usize| line_shape(window, (line - k) as f64).powi(2) * powers[k];
+    k < beyond && powers.get(beyond).is_some_and(|power| *power < 0.25 * sine(beyond))
 }
 
 /// Powers of the lines.
@@ -261,4 +270,31 @@ fn whole<const N: usize>(traces: &mut Traces, mut progress: impl FnMut(usize)) -
     };
     let all: Vec<Trace> = columns.into_iter().zip(traces.channels()).map(trace).collect();
     all.try_into().map_err(|all: Vec<Trace>| Error::usage(format!("{} channels", all.len()), N.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::Normal;
+
+    /// Peaks of a sine of amplitude 1 with noise of 0.002, 8 segments of 256 samples at 256 Hz: lines are 1 Hz apart.
+    fn peaks(frequency: f64, window: Window) -> Vec<f64> {
+        let mut noise = Normal(5);
+        let sine = |i: i32| (TAU * frequency * f64::from(i) / 256.0).sin() + 2e-3 * noise.next();
+        let values = (0..2048).map(sine).collect();
+        let axis = Axis::time(0.0, 1.0 / 256.0, 2048);
+        let trace = Trace { meta: Meta::new("v", Unit::opaque("V")), axis, values };
+        let mut traces = Traces::from_memory(vec![trace]).unwrap();
+        let options =
+            SpectralOptions { segment: Some(256), window: Some(window), ..SpectralOptions::default() };
+        let found = spectral(&mut traces, &options, |_| ()).unwrap();
+        found.peaks(8).iter().map(|k| found.frequency[*k]).collect()
+    }
+
+    #[test]
+    fn a_mean_that_was_taken_out_is_no_peak_and_a_low_sine_is_one() {
+        assert_eq!(peaks(31.4, Window::Hann), [31.0]);
+        assert_eq!(peaks(1.0, Window::Hann), [1.0]);
+        assert_eq!(peaks(4.0, Window::FlatTop), [4.0]);
+    }
 }

@@ -138,7 +138,7 @@ mod tests {
 
     /// A stable motion is reached from rest: half of its peak-to-peak within what 800 points resolve of a sine, (π/200)²/2.
     #[test]
-    fn a_motion_followed_comes_to_the_stable_orbit() {
+    fn a_motion_from_rest_comes_to_the_stable_orbit() {
         let scene = Scene::default();
         let rows = scene.motion(5.2);
         assert_eq!(rows.len(), 5 * (SHOWN * POINTS) as usize);

@@ -43,12 +43,12 @@ pub fn impacts(title: &str, trace: &Trace, found: &Impacts) -> Figure {
 
 /// A series of drops, each as [`drop`] has it.
 pub fn drops(name: &str, drops: Vec<Plot>) -> Figure {
-    let (columns, height) = if drops.len() > 1 { (2, 55.0) } else { (1, 70.0) };
+    let columns = drops.len().clamp(1, 2);
+    let rows = drops.len().div_ceil(columns) as f64;
+    // A page holds many drops, too.
+    let height = if columns == 1 { 70.0 } else { rows * (220.0 / rows).clamp(25.0, 55.0) };
     let title = if name.is_empty() { "Drops".to_owned() } else { format!("Drops, {name}") };
-    let figure = Figure::double(title)
-        .height(height * drops.len().div_ceil(columns) as f64)
-        .columns(columns)
-        .caption("Triangles: impacts found.");
+    let figure = Figure::double(title).height(height).columns(columns).caption("Triangles: impacts found.");
     drops.into_iter().fold(figure, Figure::panel)
 }
 

@@ -70,10 +70,13 @@ const LONGER: f64 = 1.2;
 /// So many of them are more than what is heard of a hand before and behind a fall.
 const HANDLED: usize = 2;
 
-/// How many flights are longer than the first, where they are too many for one fall: voices or ringing count as impacts.
+/// How many flights among the others are longer than the first, where they are too many for one fall: voices or ringing count as impacts.
 pub(super) fn longer(train: &Train) -> Option<usize> {
     let (first, rest) = train.intervals.split_first()?;
-    let n = rest.iter().filter(|flight| **flight > LONGER * first).count();
+    let long = |flight: &&f64| **flight > LONGER * first;
+    // What is heard behind the last bounce is another matter.
+    let behind = rest.iter().rev().take_while(long).count();
+    let n = rest[..rest.len() - behind].iter().filter(long).count();
     (n > HANDLED).then_some(n)
 }
 
@@ -91,7 +94,7 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
             let why = format!(
                 "{n} flights of train {train} are longer than the first: other sounds count as impacts"
             );
-            let hint = "cut the record to the bounces, or raise the threshold";
+            let hint = "cut the record to the bounces, or raise the threshold; else intervals in the order of the bounces";
             return Err(Error::refused(why).hint(hint).setting("threshold").setting("refractory"));
         }
         let mut flights: Vec<Flight> =

@@ -4,10 +4,11 @@
 function csv(table) {
   const rows = Array.from(table.rows, (row) => Array.from(row.cells, (c) => c.textContent));
   const unsure = rows[0].map((_, i) => rows.some((row, k) => k > 0 && row[i].includes(" ± ")));
-  const plain = (text) => (text === "–" ? "" : text.replace(/^−/, "-"));
+  const power = (_, digits) => `e${digits.replace(/./g, (c) => ("⁰¹²³⁴⁵⁶⁷⁸⁹".includes(c) ? "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c) : "-"))}`;
+  const plain = (text) => (text === "–" ? "" : text.replace(/^−/, "-").replace(/×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)$/, power));
   const cells = (text, i, head) => {
     if (!unsure[i]) return [plain(text)];
-    const [value, std = ""] = head ? [text, `${text} std`] : text.startsWith("(") ? [text] : text.split(" ± ");
+    const [value, std = ""] = head ? [text, `${text} std`] : text.replace(/^\((.*) ± (.*)\)(.*)$/, "$1$3 ± $2$3").split(" ± ");
     return [plain(value), std];
   };
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);

@@ -156,7 +156,8 @@ class Plot {
     }
     if (this.map && !this.map.key.classes) bar.append(this.scale());
     const any = (holds) => this.series.some((s) => s.y.some(holds));
-    if (any((v) => v > 0) && !any((v) => v < 0) && !this.panel.map) {
+    const { title, reference } = this.panel.y;
+    if (any((v) => v > 0) && !any((v) => v < 0) && !this.panel.map && reference === null && !title.endsWith("(°)")) {
       this.switch = button(this.log ? "linear" : "log", "Scale of the ordinate", () => {
         this.log = !this.log;
         this.switch.textContent = this.log ? "linear" : "log";
