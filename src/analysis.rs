@@ -26,7 +26,7 @@ mod page;
 pub use answer::Answer;
 pub use job::{INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
 pub use kept::Kept;
-pub(crate) use recordings::{OWN, recordings, unnamed};
+pub(crate) use recordings::{OWN, in_order, recordings, unnamed};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 

@@ -311,7 +311,7 @@ impl Analysis for Keys {
         }
         let mut records = Vec::new();
         for (_, name, series) in all.into_iter().filter(|s| !s.2.is_empty()) {
-            let files = series.records.iter().map(|(file, ..)| file.as_str()).collect();
+            let files = series.records.iter().map(|(file, _)| file.as_str()).collect();
             let found = series.answer(&name);
             let Some(answer) = job.found(&name, found)? else { continue };
             let mark = (records.len() + 1).to_string();

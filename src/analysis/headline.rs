@@ -3,31 +3,47 @@
 use crate::report::{Cell, Table};
 use serde_json::{Map, Value};
 
-/// Main numbers of one kind of record: title, key of the results, list of numbers in each record (empty: of the record itself), and names of columns, with
-/// their keys where these differ, and units; `unit` as a unit is that of the record.
-type Headline = (&'static str, &'static str, &'static str, &'static [(&'static str, &'static str)]);
+/// Name, key and unit of a column; `unit` as a unit is that of the record.
+type Column = (&'static str, &'static str, &'static str);
+
+/// Main numbers of one kind of record: title, key of the results, list of numbers in each record (empty: of the record itself), and columns.
+type Headline = (&'static str, &'static str, &'static str, &'static [Column]);
+
+const FREQUENCY: Column = ("frequency", "frequency", "Hz");
+const DAMPING: Column = ("damping ratio", "zeta", "");
+const RESTITUTION: Column = ("restitution", "restitution", "");
 
 /// All headlines, in the order of the report.
 const HEADLINES: &[Headline] = &[
-    ("Resonances", "responses", "resonances", &[("kind", ""), ("frequency", "Hz"), ("amplitude", "unit")]),
-    ("Jumps", "responses", "jumps", &[("change", ""), ("frequency", "Hz")]),
-    ("Modes", "frf", "modes", &[("frequency", "Hz"), ("damping ratio:zeta", "")]),
+    (
+        "Resonances",
+        "responses",
+        "resonances",
+        &[("kind", "kind", ""), FREQUENCY, ("amplitude", "amplitude", "unit")],
+    ),
+    ("Jumps", "responses", "jumps", &[("change", "change", ""), FREQUENCY]),
+    ("Modes", "frf", "modes", &[FREQUENCY, DAMPING]),
     (
         "Hammer drill",
         "drill",
         "",
-        &[("speed", "Hz"), ("velocity before impact:before", "m/s"), ("restitution", ""), ("impacts", "")],
+        &[
+            ("speed", "speed", "Hz"),
+            ("velocity before impact", "before", "m/s"),
+            RESTITUTION,
+            ("impacts", "impacts", ""),
+        ],
     ),
-    ("Impacts", "impacts", "", &[("impacts:n", ""), ("frequency", "Hz"), ("impacts/cycles:per_cycle", "")]),
-    ("Restitution", "drops", "", &[("coefficient of restitution:restitution", "")]),
-    ("Free decays", "decays", "modes", &[("frequency", "Hz"), ("damping ratio:zeta", "")]),
-    ("Contact pulses", "pulses", "", &[("damping ratio ξ:xi", ""), ("restitution", ""), ("duration", "s")]),
+    ("Impacts", "impacts", "", &[("impacts", "n", ""), FREQUENCY, ("impacts/cycles", "per_cycle", "")]),
+    ("Restitution", "drops", "", &[("coefficient of restitution", "restitution", "")]),
+    ("Free decays", "decays", "modes", &[FREQUENCY, DAMPING]),
+    (
+        "Contact pulses",
+        "pulses",
+        "",
+        &[("damping ratio ξ", "xi", ""), RESTITUTION, ("duration", "duration", "s")],
+    ),
 ];
-
-/// Name and key of a column.
-fn named(column: &'static str) -> (&'static str, &'static str) {
-    column.split_once(':').unwrap_or((column, column))
-}
 
 /// Why the modes of a sweep differ from its resonances.
 const OF_SWEEP: &str =
@@ -46,7 +62,7 @@ pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
             fixed => fixed.to_owned(),
         };
         let empty = Table::new(title).column("record", "");
-        let empty = columns.iter().fold(empty, |table, (name, of)| table.column(named(name).0, unit(of)));
+        let empty = columns.iter().fold(empty, |table, (name, _, of)| table.column(*name, unit(of)));
         let empty = empty.column("doubt", "");
         let rows: Vec<Vec<Cell>> = records.iter().flat_map(|record| rows(headline, record)).collect();
         let more = rows.len().saturating_sub(ROWS);
@@ -70,7 +86,7 @@ fn rows((.., list, columns): &Headline, record: &Value) -> Vec<Vec<Cell>> {
     let own = vec![record.clone()];
     let items = if list.is_empty() { Some(&own) } else { record[*list].as_array() };
     let row = |item: &Value| {
-        let cells = columns.iter().map(|(name, _)| cell(item, named(name).1));
+        let cells = columns.iter().map(|(_, key, _)| cell(item, key));
         let doubt = match item["at_jump"].as_bool() {
             _ if doubtful => "see the doubt",
             Some(true) => "ends in a jump",

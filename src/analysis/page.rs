@@ -49,7 +49,7 @@ pub fn page(
     if let Some(start) = what_if(job, &all.result) {
         page = page.heading("What if").paragraph(WHAT_IF).what_if(start);
     }
-    let rest = parts.last().map_or(0, |part| part.1[3].end);
+    let rest = parts.last().map_or(0, |(_, [.., findings])| findings.end);
     page =
         page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
     if let Some(rig) = all.result.get("rig").and_then(Value::as_object) {

@@ -22,8 +22,13 @@ const NO_RECORDINGS: &str =
 pub fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     let (mut found, mut others) = (Vec::new(), Vec::new());
     list(folder, LEVELS, &mut found, &mut others)?;
-    found.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    in_order(&mut found);
     Ok((found, others))
+}
+
+/// Puts files in the order of the numbers in their names: 2 before 10.
+pub fn in_order(files: &mut [PathBuf]) {
+    files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
 }
 
 fn list(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {

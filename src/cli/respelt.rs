@@ -2,6 +2,7 @@
 //! name of another one get their own, with a note.
 
 use super::complain;
+use crate::analysis::in_order;
 use glob::MatchOptions;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ fn named(word: OsString, command: &str) -> Vec<OsString> {
     let files = pattern.and_then(|pattern| glob::glob_with(&pattern.replace('[', "[[]"), options).ok());
     let files: Result<Vec<PathBuf>, _> = files.into_iter().flatten().collect();
     let mut files = files.unwrap_or_default();
-    files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    in_order(&mut files);
     let meant = files.len() == 1 && command != "convert" || files.len() > 1 && SEVERAL.contains(&command);
     if meant { files.into_iter().map(PathBuf::into_os_string).collect() } else { vec![word] }
 }

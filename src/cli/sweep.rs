@@ -4,7 +4,7 @@ use super::convert::{apart, write_beside};
 use super::{Run, init, print};
 use crate::analysis::Kept;
 use crate::analysis::sweep::{Files, Listed, Stored, figures, matching, named, tables};
-use crate::analysis::{self, Answer};
+use crate::analysis::{self, Answer, in_order};
 use crate::campaign::{Reading, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::response::{ResponseOptions, ResponsePoint};
@@ -73,6 +73,13 @@ pub fn of_script(script: &str) -> Finding {
     Finding::caution("legacy-script").name("script", script)
 }
 
+/// Whether a decimal number stands in the name of a file: such names are in order as a shell has them.
+fn has_decimal(file: &Path) -> bool {
+    let digit = |b: u8| b.is_ascii_digit();
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    stem.as_bytes().windows(3).any(|w| digit(w[0]) && w[1] == b'.' && digit(w[2]))
+}
+
 impl Source {
     /// A sweep of the time traces that are named, or that lie in the folder that is.
     fn proposed(&self) -> Result<Option<Proposal>> {
@@ -89,16 +96,9 @@ impl Source {
             all => {
                 let files: Result<Vec<_>> = all.iter().map(|path| matching(path)).collect();
                 let mut files = files?.concat();
-                // A shell names 10 before 2; decimals stand right as it names them.
-                let decimal = |file: &PathBuf| {
-                    let stem =
-                        file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-                    stem.as_bytes()
-                        .windows(3)
-                        .any(|w| w[0].is_ascii_digit() && w[1] == b'.' && w[2].is_ascii_digit())
-                };
-                if files.is_sorted() && !files.iter().any(decimal) {
-                    files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+                // A shell names 10 before 2.
+                if files.is_sorted() && !files.iter().any(|file| has_decimal(file)) {
+                    in_order(&mut files);
                 }
                 Some(of_steps(&files, &Reading::default())?)
             }

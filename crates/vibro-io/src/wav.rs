@@ -186,8 +186,11 @@ impl Stream for Wave {
             let from = column.len();
             sample.take(&self.bytes, channel * size, frame, false, column);
             let values = &mut column[from..];
-            for v in &mut *values {
-                *v = (*v - zero) / full;
+            // Floats are what they are.
+            if full != 1.0 {
+                for v in &mut *values {
+                    *v = (*v - zero) / full;
+                }
             }
             let seen = lanes::survey(values);
             *largest = largest.max(seen.high).max(-seen.low);

@@ -1,6 +1,7 @@
 //! The files of a sweep, before they are read.
 
 use super::Keys;
+use crate::analysis::in_order;
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, response};
@@ -112,6 +113,6 @@ pub fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
     if files.is_empty() {
         return Err(Error::absent(format!("no file matches {text}"), Path::new(""), pattern));
     }
-    files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    in_order(&mut files);
     Ok(files)
 }

@@ -56,7 +56,7 @@ pub(super) struct Jumps<'a> {
 
 impl<'a> Jumps<'a> {
     /// Jumps in these numbered turns, or in parts of a record whose turns are not known: contacts take `contact` samples at most, fits reach over
-    /// `fit` samples on both sides. Where impacts begin the turns, one that is as late as a fit ends belongs to the next.
+    /// `fit` samples on both sides. Where impacts begin the turns, the one that begins a turn belongs to it, however early it is found.
     pub fn of(
         values: &'a [f64],
         states: &'a [State],

@@ -7,6 +7,7 @@ use crate::residuals::NO_SUPPORT;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
+use std::sync::LazyLock;
 use vibro_record::{Error, Finding, Result};
 
 /// A model of a contact.
@@ -37,8 +38,10 @@ impl ContactModel {
 
     /// The contact of its parameters after the duration: the loss α, and both exponents where they are free.
     pub(super) fn rebound(self, shape: &[f64]) -> Option<Rebound> {
+        // It has no shape, and a fit asks for it again and again.
+        static HERTZ: LazyLock<Option<Rebound>> = LazyLock::new(|| Rebound::power_law(0.0, 1.5, 1.5));
         match (self, shape) {
-            (ContactModel::Hertz, []) => Rebound::power_law(0.0, 1.5, 1.5),
+            (ContactModel::Hertz, []) => HERTZ.clone(),
             (ContactModel::HuntCrossley, &[alpha]) => Rebound::power_law(alpha, 1.5, 1.5),
             (ContactModel::PowerLaw, &[alpha, n, s]) => Rebound::power_law(alpha, n, s),
             (ContactModel::Yielding, &[restitution]) => Rebound::yielding(restitution),
