@@ -226,7 +226,7 @@ fn channels_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<
             let error = Error::usage(format!("{} has no sampling rate", path.display()), "rate = HZ");
             return Err(campaign.fault(&entry, error.setting("rate").setting("file")));
         }
-        let names = headers.iter().map(|h| h.name.as_str());
+        let names = headers.iter().map(|h| (h.name.as_str(), h.quantity));
         for (key, name) in named {
             find_channel(&path, name, names.clone()).map_err(|e| campaign.fault(&entry, e.setting(key)))?;
         }

@@ -86,7 +86,9 @@ pub struct Keys {
 fn expected(key: &str) -> (&'static str, &'static str) {
     match key {
         "velocity" => ("a channel, by name or number", "1"),
-        "reference" => ("the channel of the crank's pulses", "2"),
+        "reference" => {
+            ("the channel of the crank's pulses; without one, leave out its pulses and edge, too", "2")
+        }
         "beam_angle" => ("degrees between the laser beam and the axis or normal", "0"),
         "beam_from" => ("axis or normal: where the beam angle counts from", "\"axis\""),
         "pulses_per_turn" => ("reference pulses in a turn of the crank", "1"),
@@ -96,26 +98,27 @@ fn expected(key: &str) -> (&'static str, &'static str) {
     }
 }
 
-/// The channels of a file with their units, to choose one of.
-fn channels_of(source: &Source<'_>) -> Result<String> {
-    let (_, headers, _) = source.reader()?.survey(source.path)?;
-    let one = |(i, header): (usize, &Header)| format!("{} {} [{}]", i + 1, header.name, header.unit);
-    Ok(headers.iter().enumerate().map(one).collect::<Vec<_>>().join(", "))
-}
-
 /// The value of a key that has no default.
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
-    value.ok_or_else(|| missing(&[key], expected(key).0))
+    value.ok_or_else(|| missing(&[key], &[]))
 }
 
-/// The complaint that values are missing; the velocity is one of `channels`.
-fn missing(keys: &[&'static str], channels: &str) -> Error {
-    let what = |key| if key == "velocity" { channels } else { expected(key).0 };
+/// The complaint that values are missing of a file with these channels.
+fn missing(keys: &[&'static str], channels: &[Header]) -> Error {
+    let one = |(i, header): (usize, &Header)| format!("{} {} [{}]", i + 1, header.name, header.unit);
+    let list = channels.iter().enumerate().map(one).collect::<Vec<_>>().join(", ");
+    let velocity = channels.iter().position(|header| header.quantity == "velocity").unwrap_or(0);
+    let what = |key| if key == "velocity" && !channels.is_empty() { &list } else { expected(key).0 };
+    let value = |key| match key {
+        "velocity" => (velocity + 1).to_string(),
+        "reference" if velocity == 1 => "1".to_owned(),
+        _ => expected(key).1.to_owned(),
+    };
     let named = keys.iter().map(|key| format!("{} ({})", key.replace('_', " "), what(*key)));
     let are = if keys.len() == 1 { "is" } else { "are" };
     let named = named.collect::<Vec<_>>().join(", ");
     let error = Error::usage(format!("{} {are} missing: {named}", counted(keys.len(), "value")), "");
-    keys.iter().fold(error, |error, key| error.set(key, expected(key).1))
+    keys.iter().fold(error, |error, key| error.set(key, value(key)))
 }
 
 /// A drill names its channels, and what they measure, by keys of its own.
@@ -131,11 +134,12 @@ fn own_channels(channel: &Channel) -> Result<()> {
 }
 
 impl Keys {
-    /// Whether no key is missing that has no default; the velocity is one of `channels`.
-    fn complete(&self, channels: &str) -> Result<()> {
+    /// Whether no key is missing that has no default, of a file with these channels: where none is chosen yet, one of several may be a reference.
+    fn complete(&self, channels: &[Header]) -> Result<()> {
         let (pulses, edge) = (self.pulses_per_turn.is_some(), self.edge.is_some());
         let reference = self.reference.is_some();
-        let wanted = reference || pulses || edge || self.level.is_some() || self.delay.is_some();
+        let wanted =
+            reference || pulses || edge || self.level.is_some() || self.delay.is_some() || channels.len() > 1;
         let stated = [
             ("velocity", self.velocity.is_some()),
             ("reference", reference || !wanted),
@@ -153,7 +157,7 @@ impl Keys {
     /// # Errors
     /// With the key at fault.
     pub fn usable(&self) -> Result<()> {
-        self.complete(expected("velocity").0)?;
+        self.complete(&[])?;
         // A beam from which nothing is seen leaves its own record out.
         self.options(Beam::new(0.0, From::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {
@@ -203,7 +207,7 @@ impl Keys {
         each: &mut dyn FnMut(&Cycle<'_>) -> Result<()>,
     ) -> Result<Answer> {
         if self.velocity.is_none() {
-            self.complete(&channels_of(source)?)?;
+            self.complete(&source.reader()?.survey(source.path)?.1)?;
         }
         self.usable()?;
         own_channels(source.channel)?;

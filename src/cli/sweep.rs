@@ -94,7 +94,7 @@ impl Source {
             }
             [one] if !is_pattern(one) => None,
             all => {
-                let files: Result<Vec<_>> = all.iter().map(|path| matching(path)).collect();
+                let files: Result<Vec<_>> = all.iter().map(|path| matching(Path::new(""), path)).collect();
                 let mut files = files?.concat();
                 // A shell names 10 before 2.
                 if files.is_sorted() && !files.iter().any(|file| has_decimal(file)) {

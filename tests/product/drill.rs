@@ -280,6 +280,40 @@ fn without_a_reference_the_turns_come_from_the_impacts() {
 }
 
 #[test]
+fn a_mean_velocity_that_is_taken_off_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    // A sawtooth of 200 samples from −1 to 1 V, one in a hundred higher or lower, on a mean; a volt is 4 m/s.
+    let tooth = |i: usize| {
+        let (k, s) = ((i + 100) / 200, (i + 100) % 200);
+        (1.0 + 0.01 * ((7 * k % 5) as f64 - 2.0)) * (2.0 * (s as f64 + 0.5) / 200.0 - 1.0)
+    };
+    let pulse = |i: usize| f64::from(u8::from(i % 200 < 20));
+    let found =
+        |mean: f64| json(&with(&csv(folder.path(), "mean.csv", |i| (tooth(i) + mean, pulse(i))), &[]));
+    let [plain, moved] = [found(0.0), found(0.05)];
+    assert!(finding(&plain, "drill-mean-removed").is_null());
+    // 0.2 m/s; half a turn at either end of a turn is of another tooth, 2 % higher at most: a quarter of that of 4 m/s.
+    let mean = finding(&moved, "drill-mean-removed")["numbers"]["mean"].as_f64().unwrap();
+    assert!((mean - 0.2).abs() < 0.02, "{mean}");
+    // What is said to be taken off was taken off.
+    let before = |d: &Value| d["before"]["value"].as_f64().unwrap();
+    assert!((before(&moved) - before(&plain)).abs() < 1e-9, "{} {}", before(&moved), before(&plain));
+}
+
+#[test]
+fn all_that_is_missing_is_asked_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let file =
+        csv(folder.path(), "asks.csv", |i| ((i as f64 * 0.03).sin(), f64::from(u8::from(i % 200 < 20))));
+    let said = String::from_utf8(drill(&file, &[]).stderr).unwrap();
+    let tried =
+        "--velocity 1 --reference 2 --beam-angle 0 --beam-from axis --pulses-per-turn 1 --edge rising";
+    assert!(said.contains("6 values are missing") && said.contains(tried), "{said}");
+    let typed: Vec<&str> = tried.split(' ').chain(["--sensitivity", "1"]).collect();
+    json(&drill(&file, &typed));
+}
+
+#[test]
 fn channels_of_different_rates_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let made = record::record(0.3);

@@ -102,7 +102,7 @@ fn named<'a>(path: &Path, named: &[&str], all: impl Iterator<Item = &'a Meta> + 
     if named.is_empty() {
         return Ok((0..all.count()).collect());
     }
-    named.iter().map(|name| find_channel(path, name, all.clone().map(|m| m.name.as_str()))).collect()
+    named.iter().map(|name| find_channel(path, name, all.clone().map(Meta::called))).collect()
 }
 
 impl Recording {
@@ -132,7 +132,7 @@ impl Recording {
                 let names = traces.iter().map(|t| t.meta.name.as_str()).enumerate();
                 return Err(none_chosen(&self.path, &names.collect::<Vec<_>>()));
             }
-            (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.name.as_str())),
+            (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.called())),
         };
         let hint = "name one, by its name or its number from 1; `vibro info` lists all";
         let mut trace = traces[chosen.map_err(|e| e.hint(hint).setting("channel"))?].clone();

@@ -13,7 +13,7 @@
 use super::text::encoding;
 use super::{Source, number};
 use std::path::{Component, Path, PathBuf};
-use vibro_record::{Error, Place, Result};
+use vibro_record::{Error, Place, Result, pattern};
 
 /// Files of a stepped-sine sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,6 +134,17 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
         let line = lines.get(at).map_or(end, |(line, _)| *line);
         Error::input(Place::line(path, line), found, expected).hint(HOLDS)
     };
+    if let Some((line, first)) = lines.first().filter(|(_, first)| number::parse(first.as_bytes()).is_none())
+    {
+        let expected =
+            "a list file, which begins with the number of points, or all steps of a sweep, one file each";
+        let error = Error::input(Place::line(path, *line), format!("found {first:?}"), expected);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let all = pattern(&name);
+        let hint =
+            if all == name { HOLDS.to_owned() } else { path.with_file_name(all).display().to_string() };
+        return Err(error.hint(hint));
+    }
     let number = |at: usize, what: &str| {
         let line = lines.get(at).map(|(_, line)| line);
         let value = line.and_then(|l| number::parse(l.as_bytes())).filter(|v| *v > 0.0);

@@ -85,6 +85,14 @@ pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> 
 const DEEP: f64 = 2.0;
 
 impl Resonance {
+    /// Whether it is a maximum that the points around the highest do not determine: the true one may lie between them, and be larger.
+    pub(crate) fn is_largest_point(&self) -> bool {
+        self.kind.is_maximum()
+            && !self.at_jump
+            && self.amplitude_std.is_none()
+            && self.frequency_std.is_some()
+    }
+
     fn moved(self, top: Vertex) -> Resonance {
         Resonance {
             frequency: top.frequency,

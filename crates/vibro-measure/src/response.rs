@@ -120,7 +120,7 @@ pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Exci
 impl Response {
     /// Finds what the points show as a curve; the direction is the one stated, else that of the frequencies.
     pub(crate) fn curve(mut self, stated: Option<Direction>) -> Response {
-        let Response { points, findings, fmin, .. } = &mut self;
+        let Response { points, findings, fmin, mass, .. } = &mut self;
         let frequency: Vec<f64> = points.iter().map(|p| p.excitation).collect();
         let direction = direction(&frequency, stated, findings);
         let faint = points.iter().filter(|p| p.upper_limit.is_some()).count();
@@ -134,7 +134,11 @@ impl Response {
             let receptance = |p: &ResponsePoint| p.receptance.as_ref().map(|r| Complex64::new(r.re, r.im));
             let receptances: Option<Vec<Complex64>> = points.iter().map(receptance).collect();
             let receptances = receptances.unwrap_or_default();
-            let curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, self.mass);
+            let curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, *mass);
+            let coarse = curve.resonances.iter().filter(|r| r.is_largest_point()).map(|r| r.frequency);
+            let coarse: Vec<f64> = coarse.collect();
+            let found = Finding::caution("sweep-steps-coarse").count("n", coarse.len());
+            findings.extend((!coarse.is_empty()).then(|| found.numbers("frequencies", coarse)));
             (self.jumps, self.resonances) = (curve.jumps, curve.resonances);
         } else {
             findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));

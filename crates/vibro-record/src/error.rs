@@ -3,7 +3,7 @@
 //! Every fallible function of this crate returns [`Error`]. What it is decides the exit code of the command: 1 where the data or the
 //! parameters do not allow an answer, 2 for wrong usage and for input that cannot be read.
 
-use crate::nearest;
+use crate::{nearest, pattern};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -261,8 +261,10 @@ fn instead(folder: &Path, name: &Path) -> String {
         let name = entry.ok()?.file_name().into_string().ok()?;
         Some(name).filter(|name| !name.starts_with('.') && path.file_name() != Some(name.as_ref()))
     });
-    let beside: Vec<String> = beside.collect();
     let wrong = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    // A pattern is like those of the names.
+    let beside = beside.map(|name| if wrong.contains('*') { pattern(&name) } else { name });
+    let beside: Vec<String> = beside.collect();
     match nearest(&wrong, beside.iter().map(String::as_str)) {
         Some(near) => name.with_file_name(near).display().to_string(),
         None if folder == Path::new(".") => "ls".to_owned(),

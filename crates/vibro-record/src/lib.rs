@@ -24,7 +24,7 @@ pub use axis::{Axis, AxisKind, Grid};
 pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
-pub use near::nearest;
+pub use near::{nearest, pattern};
 pub use spectrum::{Frf, Scaling, Spectrum, Values};
 pub use sweep::{Direction, StepTraces, Sweep, SweepPoint};
 pub use trace::Trace;

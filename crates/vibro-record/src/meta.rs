@@ -61,6 +61,11 @@ impl Meta {
         Meta { name, quantity, unit, declared_n: None, notes, findings, history }
     }
 
+    /// Name and quantity, by which a channel is looked for.
+    pub fn called(&self) -> (&str, &str) {
+        (&self.name, self.quantity.name())
+    }
+
     /// Adds a finding, once.
     pub fn found(&mut self, finding: Finding) {
         if !self.findings.contains(&finding) {

@@ -14,9 +14,30 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     near.or_else(|| longer.max_by_key(|(_, name)| name.len())).map(|(name, _)| *name)
 }
 
+/// The pattern of all names that differ from this one by their numbers: `step*.csv` of `step01.csv`.
+pub fn pattern(name: &str) -> String {
+    let dot = name.rfind('.').unwrap_or(name.len());
+    let mut pattern = String::new();
+    for c in name[..dot].chars() {
+        match c {
+            '0'..='9' if pattern.ends_with('*') => {}
+            '0'..='9' => pattern.push('*'),
+            other => pattern.push(other),
+        }
+    }
+    pattern + &name[dot..]
+}
+
 #[cfg(test)]
 mod tests {
-    use super::nearest;
+    use super::{nearest, pattern};
+
+    #[test]
+    fn numbers_in_a_name_are_any_numbers_in_a_pattern() {
+        assert_eq!(pattern("run 2, step01.mp3"), "run *, step*.mp3");
+        assert_eq!(pattern("12"), "*");
+        assert_eq!(pattern("notes"), "notes");
+    }
 
     #[test]
     fn a_slip_is_seen_and_another_word_is_not() {

@@ -137,7 +137,7 @@ impl Traces {
     /// # Errors
     /// If there is none, or two have this name.
     pub fn channel(&self, channel: &str) -> Result<usize> {
-        find_channel(&self.path, channel, self.channels.iter().map(|m| m.name.as_str()))
+        find_channel(&self.path, channel, self.channels.iter().map(Meta::called))
     }
 
     /// Sampling rate in Hz.
@@ -221,27 +221,32 @@ impl Traces {
     }
 }
 
-/// Index of a channel by its name, in any case where none has that of `wanted`, or by its number from 1; `path` is for the complaint.
+/// Index of a channel among `all`, names with their quantities, by its name, in any case where none has that of `wanted`, or by its number from 1; `path` is for
+/// the complaint.
 ///
 /// # Errors
 /// If there is none, or two have this name.
 pub fn find_channel<'a>(
     path: &Path,
     wanted: &str,
-    all: impl Iterator<Item = &'a str> + Clone,
+    all: impl Iterator<Item = (&'a str, &'a str)> + Clone,
 ) -> Result<usize> {
+    let names = all.clone().map(|(name, _)| name);
     let named = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
-        all.clone().enumerate().filter(|(_, name)| is(name)).map(|(i, _)| i).collect()
+        names.clone().enumerate().filter(|(_, name)| is(name)).map(|(i, _)| i).collect()
     };
     let mut same = named(&|name| name == wanted);
+    let small = wanted.to_lowercase();
     if same.is_empty() {
-        let small = wanted.to_lowercase();
         same = named(&|name| name.to_lowercase() == small);
     }
     let n = all.clone().count();
-    let mut near = nearest(wanted, all.clone());
+    let mut of_quantity = all.filter(|(_, quantity)| *quantity == small);
+    let only = of_quantity.next().filter(|_| of_quantity.next().is_none());
+    let mut near = nearest(wanted, names.clone()).or(only.map(|(name, _)| name));
     let number = wanted.parse::<usize>().ok().filter(|i| (1..=n).contains(i));
-    let list: Vec<String> = all.take(20).enumerate().map(|(i, name)| format!("{} {name:?}", i + 1)).collect();
+    let list: Vec<String> =
+        names.take(20).enumerate().map(|(i, name)| format!("{} {name:?}", i + 1)).collect();
     let (found, expected) = match (same.as_slice(), number) {
         ([one], _) => return Ok(*one),
         ([], Some(number)) => return Ok(number - 1),

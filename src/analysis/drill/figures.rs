@@ -8,6 +8,9 @@ use crate::units::notation::significant;
 /// Most points of a line: more are not seen in print.
 const POINTS: usize = 4000;
 
+/// Turns whose mean is drawn where each is a whole number of samples.
+const TOGETHER: usize = 10;
+
 /// Most markers over a line: more hide it.
 const MARKERS: usize = 20;
 
@@ -119,14 +122,19 @@ fn trace(name: &str, drill: &Drill) -> Figure {
 }
 
 fn speed(name: &str, drill: &Drill) -> Figure {
-    let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"))
-        .with(
-            Series::line("each turn", thin(&drill.times, POINTS), thin(&drill.speeds, POINTS))
-                .stroke(Stroke::Thin),
-        )
-        .with(Series::horizontal("mean", drill.speed.value));
-    let step = significant(drill.speed.value.powi(2) * drill.excerpt_time.1, 2);
+    let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"));
     let sharp = drill.findings.iter().any(|found| found.code == "drill-edges-sharp");
+    // A turn is a whole number of samples then: a line through each would show steps of one sample alone.
+    let (name_of, turns) = if sharp && drill.speeds.len() > TOGETHER * TOGETHER {
+        (format!("mean of {TOGETHER} turns"), TOGETHER)
+    } else {
+        ("each turn".to_owned(), 1)
+    };
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let over = |values: &[f64]| thin(&values.chunks(turns).map(mean).collect::<Vec<f64>>(), POINTS);
+    let plot = plot.with(Series::line(name_of, over(&drill.times), over(&drill.speeds)).stroke(Stroke::Thin));
+    let plot = plot.with(Series::horizontal("mean", drill.speed.value));
+    let step = significant(drill.speed.value.powi(2) * drill.excerpt_time.1, 2);
     let steps = format!(" The pulses rise within a sample: one more in a turn is {step} Hz less.");
     let caption = format!("Turns of the crank in a second.{}", if sharp { &steps } else { "" });
     Figure::double(format!("Speed, {name}")).height(70.0).panel(plot).caption(caption)

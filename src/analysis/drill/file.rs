@@ -24,7 +24,8 @@ impl Channels {
     pub fn read(reader: Reader, path: &Path, names: &[&str], progress: &dyn Progress) -> Result<Channels> {
         let mut traces = reader.allow_missing(true).stream_channels(path, names)?;
         if traces.channels().len() != names.len() {
-            return Err(Error::refused(format!("the channels {} are not all different", names.join(", "))));
+            return Err(Error::refused(format!("one channel is named twice: {}", names.join(", ")))
+                .hint("vibro info lists the channels with their numbers"));
         }
         let (mut values, mut done) = (Vec::new(), 0);
         loop {

@@ -53,8 +53,9 @@ impl Listed {
                 places: Vec::new(),
             })
         } else {
-            let patterns: Vec<PathBuf> = all("traces", &keys.traces)?;
-            let found: Result<Vec<Vec<PathBuf>>> = patterns.iter().map(|pattern| matching(pattern)).collect();
+            let folder = campaign.folder();
+            let one = |path: &PathBuf| matching(folder, path.strip_prefix(folder).unwrap_or(path));
+            let found: Result<Vec<Vec<PathBuf>>> = all("traces", &keys.traces)?.iter().map(one).collect();
             let files = found.map_err(|e| campaign.fault(entry, e.setting("traces")))?.concat();
             let (force, response) = (keys.force.clone(), keys.response.clone());
             Files::Traces(Steps { files, force, response, rate: keys.rate })
@@ -96,13 +97,14 @@ impl Listed {
     }
 }
 
-/// The files that a name or a pattern with `*`, `?` or `[…]` means, by their names, numbers in them by value.
+/// The files in a folder that a name or a pattern with `*`, `?` or `[…]` means, by their names, numbers in them by value.
 ///
 /// # Errors
 /// If it is no pattern, or no file has such a name.
-pub fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
+pub fn matching(folder: &Path, name: &Path) -> Result<Vec<PathBuf>> {
+    let pattern = folder.join(name);
     if pattern.exists() {
-        return Ok(vec![pattern.to_owned()]);
+        return Ok(vec![pattern]);
     }
     let text = pattern.to_string_lossy();
     let wrong = |e: glob::PatternError| {
@@ -111,7 +113,7 @@ pub fn matching(pattern: &Path) -> Result<Vec<PathBuf>> {
     let mut files: Vec<PathBuf> =
         glob::glob(&text).map_err(wrong)?.filter_map(std::result::Result::ok).collect();
     if files.is_empty() {
-        return Err(Error::absent(format!("no file matches {text}"), Path::new(""), pattern));
+        return Err(Error::absent(format!("no file matches {text}"), folder, name));
     }
     in_order(&mut files);
     Ok(files)

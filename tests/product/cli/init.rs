@@ -154,6 +154,8 @@ fn a_sweep_is_named_by_its_files_a_pattern_or_a_folder() {
     write(&alone, "sound [V]", 1000.0, 1.0, &mut f64::sin);
     let said = complaint(&["response", text(&alone), text(&alone)], 2);
     assert!(said.contains("sound [V]") && said.contains("[[sweep]]"), "{said}");
+    let said = complaint(&["response", text(&root.path().join("step1.csv"))], 2);
+    assert!(said.contains("all steps of a sweep") && said.contains("step*.csv"), "{said}");
 }
 
 #[test]

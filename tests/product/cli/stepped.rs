@@ -87,7 +87,7 @@ fn sweeps_that_cannot_be_say_what_is_wrong() {
     steps(folder.path());
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     for (table, word) in [
-        ("traces = \"stop*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"", "no file matches"),
+        ("traces = \"stop*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"", "try: step*.csv"),
         ("traces = \"../*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"", "leads outside"),
         ("traces = \"step*.csv\"\nforce = \"Accel\"\nresponse = \"Accel\"", "force_calibration"),
         (

@@ -113,6 +113,9 @@ const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
 const STEEP: f64 = 0.005;
 
+/// Part of a velocity without an uncertainty that a mean over turns changes without a word.
+const SMALL: f64 = 0.01;
+
 /// One turn in so many may have no impact without a word.
 const FEW: usize = 10;
 
@@ -128,6 +131,7 @@ pub(super) fn findings(
     let limit = options.instrument.unwrap_or(f64::INFINITY);
     let means =
         [&d.speed, &d.displacement.stroke].into_iter().chain(d.groups.iter().map(|g| &g.before)).map(|e| e.n);
+    let of_a_turn = f64::sqrt(2.0) * r.std * d.speed.value.powi(2);
     let few = means.filter(|n| *n < 4).max();
     let phases: Vec<f64> = d.groups.iter().map(|g| g.phase.value).collect();
     let phase = phases.first().copied().unwrap_or(f64::NAN);
@@ -142,6 +146,10 @@ pub(super) fn findings(
     let limited = Finding::doubt("drill-instrument-limited").number("f2", bandwidth.f2);
     let [stroke, drift] = [d.displacement.stroke.value, d.displacement.drift.value];
     let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
+    let mean = drift * d.speed.value;
+    let moved = |v: &Estimate| mean.abs() > v.std.unwrap_or(SMALL * v.value.abs());
+    let doubted = d.groups.iter().flat_map(|g| &g.findings).any(|found| found.code == "drill-mean-velocity");
+    let removed = Finding::caution("drill-mean-removed").number("mean", mean);
     let own = d.turns_from == TurnsFrom::Impacts;
     let turned = Finding::caution("drill-turns-from-impacts").number("rpm", 60.0 * d.speed.value);
     let turned = if r.extra > 0 { turned.count("others", r.extra) } else { turned };
@@ -154,13 +162,14 @@ pub(super) fn findings(
         (r.missing > 0, Finding::caution(missing).count("n", r.missing)),
         (!own && r.extra > 0, Finding::caution("drill-edges-extra").count("n", r.extra)),
         (r.pauses > 0, Finding::caution("drill-reference-pauses").count("n", r.pauses)),
-        (sharp, Finding::caution("drill-edges-sharp").number("std", r.std)),
+        (sharp, Finding::caution("drill-edges-sharp").number("std", r.std).number("speed", of_a_turn)),
         (pulses > 1, Finding::caution("drill-first-pulse-unknown").count("pulses", pulses)),
         (f.dropouts + f.spikes > 0, bridged),
         (f.lost > 0, lost.count("turns", d.cycles - d.averaged)),
         (f.clipped > 0, over_range.number("low", velocity.low).number("high", velocity.high)),
         (d.hidden > 0, Finding::caution("drill-impacts-hidden").count("n", d.hidden)),
         (drift.abs() > DRIFTING * stroke, drifts),
+        (d.before.as_ref().is_some_and(moved) && !doubted, removed),
         (without > d.hidden && without > d.averaged / FEW, missed.count("n", without)),
         (d.impacts.is_empty(), Finding::caution("drill-no-impact").number("contact", options.contact)),
         (few.is_some(), Finding::caution("drill-few-values").count("n", few.unwrap_or(0))),

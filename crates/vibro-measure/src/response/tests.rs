@@ -5,7 +5,7 @@ use crate::synthetic::{LINES, Normal, spectrum};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Meta, Scaling, Spectrum, Values};
+use vibro_record::{Axis, Fact, Meta, Scaling, Spectrum, Values};
 use vibro_signal::window::line_shape;
 
 /// A response to a given excitation.
@@ -99,6 +99,26 @@ fn harmonics_in_the_noise_have_a_limit_and_no_others() {
         // 5 % of 400, and twice the binomial standard deviation of 4.4.
         assert!(missed <= 28, "{second}: {missed}");
     }
+}
+
+#[test]
+fn a_peak_between_steps_is_told() {
+    let mut normal = Normal(0x5e9);
+    let mut coarse = |step_hz: f64| {
+        // One mode at 80 Hz with 2 %: half of the peak 2.8 Hz beside it.
+        let points = (-6..=6).map(|k| {
+            let f = 80.4 + step_hz * f64::from(k);
+            let u = f / 80.0;
+            let sine = 100.0 / Complex64::new(1.0 - u * u, 0.04 * u);
+            step("response", f, Window::Hann, spectrum(Window::Hann, &[(f, sine)], 0.01, &mut normal))
+        });
+        let sweep = sweep(points.collect());
+        let found = response(&sweep, &ResponseOptions { integrate: Some(0), ..ResponseOptions::default() });
+        finding(&found.unwrap(), "sweep-steps-coarse").cloned()
+    };
+    assert_eq!(coarse(1.0), None);
+    let found = coarse(4.0).unwrap();
+    assert_eq!(found.fact("frequencies"), Some(&Fact::Numbers(vec![80.4])));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::units::Unit;
 #[test]
 fn two_channels_of_one_name_go_by_their_numbers() {
     let twins = [Meta::new("a", Unit::opaque("V")), Meta::new("a", Unit::opaque("V"))];
-    let found = |wanted| find_channel(Path::new("x"), wanted, twins.iter().map(|m| m.name.as_str()));
+    let found = |wanted| find_channel(Path::new("x"), wanted, twins.iter().map(Meta::called));
     assert!(found("a").unwrap_err().to_string().contains("2 channels are called"));
     assert_eq!(found("2").unwrap(), 1);
 }
@@ -12,7 +12,16 @@ fn two_channels_of_one_name_go_by_their_numbers() {
 #[test]
 fn a_name_in_another_case_is_that_of_the_only_channel_it_can_be() {
     let all = ["Force", "Kraft Ä", "a", "A"].map(|name| Meta::new(name, Unit::opaque("V")));
-    let found = |wanted| find_channel(Path::new("x"), wanted, all.iter().map(|m| m.name.as_str()));
+    let found = |wanted| find_channel(Path::new("x"), wanted, all.iter().map(Meta::called));
     assert_eq!((found("force").unwrap(), found("KRAFT ä").unwrap(), found("A").unwrap()), (0, 1, 3));
     assert!(found("forces").unwrap_err().to_string().contains("no channel"));
+}
+
+#[test]
+fn a_quantity_is_the_name_of_the_only_channel_that_has_it() {
+    let all = [("Hammer", "N"), ("Acc 1", "m/s²"), ("Acc 2", "m/s²")];
+    let all = all.map(|(name, unit)| Meta::new(name, Unit::parse(unit).unwrap()));
+    let found = |wanted| find_channel(Path::new("x"), wanted, all.iter().map(Meta::called)).unwrap_err();
+    assert!(found("Force").to_string().contains("try: \"Hammer\""), "{}", found("Force"));
+    assert!(!found("acceleration").to_string().contains("try:"));
 }

@@ -233,6 +233,7 @@ class Plot {
     }
     c.setLineDash([]);
     if (series.shape === "points") mark(c, series.look.marker, 26, 14, 8, c.strokeStyle);
+    c.globalAlpha = series.shape === "band" ? 0.3 : 0.5;
     if (series.shape === "band" || series.shape === "bars") c.fillRect(4, 4, 44, 20);
     return canvas;
   }
