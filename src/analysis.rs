@@ -26,7 +26,7 @@ mod page;
 pub use answer::Answer;
 pub use job::{INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
 pub use kept::Kept;
-pub(crate) use recordings::{OWN, in_order, recordings, unnamed};
+pub(crate) use recordings::{OWN, in_order, is_pattern, matching, recordings, unnamed};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 
@@ -54,7 +54,7 @@ use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
 /// The keys of a kind of record.
-pub(crate) trait Analysis: DeserializeOwned {
+pub(crate) trait Analysis: Clone + DeserializeOwned {
     /// Its section of a campaign: `impacts` for `[[impacts]]`.
     const SECTION: &'static str;
     /// Its heading in the report.
@@ -188,12 +188,32 @@ pub fn channels(campaign: &Campaign, allow_outside: bool) -> Result<()> {
     KINDS.iter().try_for_each(|kind| (kind.channels)(campaign, allow_outside))
 }
 
-/// The tables of a kind of record.
+/// The tables of a kind of record; one whose file is a pattern stands for one of each file that it matches.
 ///
 /// # Errors
 /// As [`Campaign::entries`].
 pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
-    campaign.entries(A::SECTION, A::OF_FILES)
+    let all: Vec<Entry<A>> = campaign.entries(A::SECTION, A::OF_FILES)?;
+    let each = |entry: Entry<A>| {
+        let Some(pattern) = entry.file.clone().filter(|file| is_pattern(&campaign.folder().join(file)))
+        else {
+            return Ok(vec![entry]);
+        };
+        let files =
+            matching(campaign.folder(), &pattern).map_err(|e| campaign.fault(&entry, e.setting("file")))?;
+        let one = |path: PathBuf| {
+            let file = path.strip_prefix(campaign.folder()).unwrap_or(&path).to_owned();
+            let own = |name: &String| {
+                if A::TOGETHER { name.clone() } else { format!("{name}, {}", file_name(&file)) }
+            };
+            let name = entry.name.as_ref().map(own);
+            let mut one = entry.clone();
+            (one.name, one.file) = (name, Some(file));
+            one
+        };
+        Ok(files.into_iter().map(one).collect())
+    };
+    Ok(all.into_iter().map(each).collect::<Result<Vec<_>>>()?.concat())
 }
 
 fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {

@@ -231,6 +231,14 @@ impl Proposal {
             progress.step();
         }
         if proposal.tables.is_empty() && known.is_none() {
+            if proposal.left.is_empty() {
+                let error = Error::input(
+                    Place::file(folder),
+                    "no recording in this folder",
+                    "files of an instrument",
+                );
+                return Err(error.hint("another folder, or vibro demo"));
+            }
             let mut error = Error::input(
                 Place::file(folder),
                 "no recording that can be measured",

@@ -59,8 +59,8 @@ pub struct Keys {
     pub delay: Option<f64>,
     /// Points of the average turn [default: 720]
     pub points: Option<usize>,
-    /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: what the phases of the
-    /// average can show]
+    /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: the highest frequency that the
+    /// points of the average turn resolve]
     #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Time constant in s of exponential smoothing instead of the low-pass

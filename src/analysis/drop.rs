@@ -46,10 +46,13 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(value_name = "M1,M2", value_parser = crate::campaign::two::<','>))]
     pub masses: Option<(f64, f64)>,
     /// Velocities of both masses before the impact, in m/s
-    #[cfg_attr(feature = "cli", arg(value_name = "V1,V2", value_parser = crate::campaign::two::<','>))]
+    #[cfg_attr(feature = "cli", arg(value_name = "V1,V2", allow_hyphen_values = true, value_parser = crate::campaign::two::<','>))]
     pub before: Option<(f64, f64)>,
     /// Velocities of both masses after it, in m/s; of mass 1 alone where masses are given
-    #[cfg_attr(feature = "cli", arg(long, value_name = "V1,V2", value_delimiter = ','))]
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "V1,V2", allow_hyphen_values = true, value_delimiter = ',')
+    )]
     pub after: Vec<f64>,
     /// Velocity of mass 2 after it, in m/s, where that of mass 1 is not known and masses are given
     pub after2: Option<f64>,

@@ -10,7 +10,7 @@ use super::answer::left_out;
 use super::job::Marks;
 use super::spectrum::{self, Detrend};
 use super::{Analysis, Answer, Job, Source, no_file, sweep};
-use crate::campaign::{Entry, above_zero, channel};
+use crate::campaign::{Campaign, Entry, above_zero, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::{Meta, Record, Window};
@@ -46,7 +46,7 @@ pub struct Keys {
     /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
-    /// Samples of a segment [default: 8192, or the whole of a shorter record; of blows, as they ring and are apart]
+    /// Samples of a segment [default: 8192, or the whole of a shorter record; for blows, set by their ringing and spacing]
     pub segment: Option<usize>,
     /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
@@ -232,6 +232,16 @@ impl Analysis for Keys {
             }
             _ => entry.keys.usable(),
         }
+    }
+
+    fn files(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<Vec<PathBuf>> {
+        if let Some(name) = &entry.keys.sweep {
+            let known = sweep::named(campaign, Some(name), allow_outside);
+            known.map_err(|e| campaign.fault(entry, e.hint("the name of a [[sweep]]").setting("sweep")))?;
+        }
+        let own = entry.file.as_ref().map(|file| ("file", file)).into_iter();
+        let all = own.chain(entry.keys.beside());
+        all.map(|(key, file)| campaign.file(entry, key, file, allow_outside)).collect()
     }
 
     fn channels(&self) -> Vec<(&'static str, &String)> {

@@ -63,7 +63,7 @@ pub fn headlines(results: &Map<String, Value>) -> Vec<Table> {
         };
         let empty = Table::new(title).column("record", "");
         let empty = columns.iter().fold(empty, |table, (name, _, of)| table.column(*name, unit(of)));
-        let empty = empty.column("doubt", "");
+        let empty = empty.column("remark", "");
         let rows: Vec<Vec<Cell>> = records.iter().flat_map(|record| rows(headline, record)).collect();
         let more = rows.len().saturating_sub(ROWS);
         let table = rows.into_iter().take(ROWS).fold(empty, Table::row);

@@ -31,7 +31,7 @@ pub struct Keys {
     /// Band in Hz in which the impacts ring: the trace is filtered to it first, without delay
     #[cfg_attr(feature = "cli", arg(value_name = "LO:HI", value_parser = crate::campaign::two::<':'>))]
     pub band: Option<(f64, f64)>,
-    /// Seek impacts in the envelope, which ringing does not part
+    /// Detect impacts in the envelope, so that ringing does not split one impact
     pub envelope: bool,
     /// Do not remove mains hum
     pub keep_hum: bool,

@@ -69,7 +69,7 @@ pub fn page(
         .filter(|line| !line.starts_with('#'))
         .filter_map(|line| line.split_once("  "))
         .map(|(digest, name)| (name, &digest[..16]));
-    page = page.details("Files, and how their SHA-256 begins (whole in inputs.sha256)", files);
+    page = page.details("Files with the start of their SHA-256 (in full in inputs.sha256)", files);
     page = page.details("The campaign as it ran", [("campaign.toml", job.campaign.text())]);
     if !steps.is_empty() {
         page = page.details(

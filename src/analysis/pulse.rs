@@ -149,7 +149,7 @@ fn models(title: &str, result: &PulseResult) -> Table {
         table.push(known.into_iter().chain(own));
     }
     table.note(
-        "The lowest AICc fits best. A p below 0.01: the residual is no noise, the model misses the pulse.",
+        "The lowest AICc fits best. p below 0.01: the residual is not noise, so the model does not describe the pulse.",
     )
 }
 

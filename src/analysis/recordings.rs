@@ -31,6 +31,33 @@ pub fn in_order(files: &mut [PathBuf]) {
     files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
 }
 
+/// Whether a path is the pattern of files, not the name of one.
+pub fn is_pattern(path: &Path) -> bool {
+    path.to_string_lossy().contains(['*', '?']) && !path.exists()
+}
+
+/// The files in a folder that a name or a pattern with `*`, `?` or `[…]` means, by their names, numbers in them by value.
+///
+/// # Errors
+/// If it is no pattern, or no file has such a name.
+pub fn matching(folder: &Path, name: &Path) -> Result<Vec<PathBuf>> {
+    let pattern = folder.join(name);
+    if pattern.exists() {
+        return Ok(vec![pattern]);
+    }
+    let text = pattern.to_string_lossy();
+    let wrong = |e: glob::PatternError| {
+        Error::usage(format!("the pattern {text:?}: {e}"), "a pattern such as step*.csv")
+    };
+    let mut files: Vec<PathBuf> =
+        glob::glob(&text).map_err(wrong)?.filter_map(std::result::Result::ok).collect();
+    if files.is_empty() {
+        return Err(Error::absent(format!("no file matches {text}"), folder, name));
+    }
+    in_order(&mut files);
+    Ok(files)
+}
+
 fn list(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {
     if levels < LEVELS && folder.join(RESULTS).exists() {
         return Ok(());
@@ -64,15 +91,22 @@ pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Res
     let named: BTreeSet<PathBuf> = files(campaign, allow_outside)?.iter().map(|path| plain(path)).collect();
     let folder = plain(campaign.folder());
     let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
+    let quoted = campaign.text().split('"').filter(|text| text.contains('*') && !text.contains('\n'));
+    let patterns: Vec<glob::Pattern> = quoted.filter_map(|text| glob::Pattern::new(text).ok()).collect();
     let said = |path: &Path| {
         let name = path.strip_prefix(&folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
-        campaign.text().match_indices(&name).any(|(at, _)| {
-            let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
-            // A full stop ends a sentence, too.
-            let behind =
-                behind.strip_prefix('.').filter(|b| !b.starts_with(char::is_alphanumeric)).unwrap_or(behind);
-            before.chars().next_back().is_none_or(ends) && behind.chars().next().is_none_or(ends)
-        })
+        let in_words = || {
+            campaign.text().match_indices(&name).any(|(at, _)| {
+                let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
+                // A full stop ends a sentence, too.
+                let behind = behind
+                    .strip_prefix('.')
+                    .filter(|b| !b.starts_with(char::is_alphanumeric))
+                    .unwrap_or(behind);
+                before.chars().next_back().is_none_or(ends) && behind.chars().next().is_none_or(ends)
+            })
+        };
+        patterns.iter().any(|pattern| pattern.matches(&name)) || in_words()
     };
     let new = |path: &&PathBuf| {
         let path = plain(path);

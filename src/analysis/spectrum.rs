@@ -23,7 +23,7 @@ pub struct Keys {
     pub method: Option<Method>,
     /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
     pub tones: Option<usize>,
-    /// Samples of a segment [default: 8192, or the whole of a shorter record; of blows, as they ring and are apart]
+    /// Samples of a segment [default: 8192, or the whole of a shorter record; for blows, set by their ringing and spacing]
     pub segment: Option<usize>,
     /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,

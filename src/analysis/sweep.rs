@@ -7,7 +7,7 @@ pub mod pairing;
 pub mod stored;
 pub mod tables;
 
-pub use listed::{Files, Listed, matching};
+pub use listed::{Files, Listed};
 pub use stored::Stored;
 
 use super::{Analysis, Answer, Job, JobOptions, Progress, entries};

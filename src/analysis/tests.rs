@@ -45,7 +45,7 @@ fn mistakes_point_at_their_line() {
         ("[[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
         ("sweep = \"a\"", "line 1", "double brackets"),
         (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected a name between quotes"),
-        (&format!("{SWEEP}direction = \"left\""), "line 4", "`up` or `down`"),
+        (&format!("{SWEEP}direction = \"left\""), "line 4", "write direction = \"up\""),
         (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected a name between quotes"),
         (&format!("{SWEEP}mass = -1"), "line 4", "integer `-1`; expected a whole number, 0 or more"),
         ("[[sweep]]\nlist = \"L\"", "line 1", "add name = "),

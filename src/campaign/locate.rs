@@ -29,23 +29,32 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     let begins = |with: &str| message.starts_with(with);
     if begins("unknown field") {
         let known = [beside, known].concat();
-        let all = || format!("keys known here: {}", known.join(", "));
-        complaint(&format!("unknown key `{named}`"), "", meant(&known).unwrap_or_else(all))
+        let (what, table) = if line.starts_with('[') { ("table", TABLES) } else { ("key", &[][..]) };
+        let called =
+            table.iter().find(|(word, _)| *word == named).map(|(_, table)| format!("write [[{table}]]"));
+        let all = || format!("{what}s known here: {}", known.join(", "));
+        complaint(&format!("unknown {what} `{named}`"), "", called.or(meant(&known)).unwrap_or_else(all))
     } else if begins("unknown variant") {
         let of_value = line.split_once('=').filter(|(_, value)| value.contains(named));
-        let near = of_value.and_then(|(key, _)| Some((key.trim(), nearest(named, known.iter().copied())?)));
-        let write = near.map(|(key, near)| format!("write {key} = \"{near}\""));
-        complaint(&format!("the name `{named}`"), expected, write.or(meant(known)).unwrap_or_default())
+        let near = nearest(named, known.iter().copied()).or(known.first().copied());
+        let write = of_value.zip(near).map(|((key, _), near)| format!("write {} = \"{near}\"", key.trim()));
+        let found = of_value.map_or_else(|| format!("the name `{named}`"), |_| line.to_owned());
+        complaint(&found, &expected.replace('`', "\""), write.or(meant(known)).unwrap_or_default())
     } else if begins("missing field") {
         complaint(found, "", format!("add {named} = …"))
-    } else if begins("invalid type: map") && line.starts_with("[[") {
+    } else if begins("duplicate key") {
+        complaint(line, "every key once in a table", "remove this line, or the other one".to_owned())
+    } else if line.starts_with("[[") && (begins("invalid type: map") || begins("wanted exactly 1 element")) {
         let single = line.replace("[[", "[").replace("]]", "]");
         complaint(&format!("{line} begins one table of several"), "a single table", format!("write {single}"))
-    } else if begins("unclosed array table") {
-        let head = line.split('#').next().unwrap_or_default().trim_end();
-        complaint(head, "two brackets at the end, too", format!("write {head}]"))
-    } else if let Some((key, stated, expected, meant)) = mended(line, expected) {
-        complaint(&format!("{key} = {stated}"), expected, format!("write {key} = {meant}"))
+    } else if let Some(head) = head_of_tables(line) {
+        complaint(line, "two brackets on both sides", format!("write {head}"))
+    } else if let Some(key) = line.split('#').next().and_then(|line| line.trim_end().strip_suffix('=')) {
+        let key = key.trim_end();
+        complaint(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
+    } else if let Some((key, expected, meant)) = mended(line, expected) {
+        let found = line.split('#').next().unwrap_or_default().trim_end();
+        complaint(found, expected, format!("write {} = {meant}", key.replace(' ', "_")))
     } else if begins("wanted string") {
         complaint(
             line.split('#').next().unwrap_or_default().trim_end(),
@@ -57,18 +66,19 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     }
 }
 
-/// A line that is no TOML, or has a value of another kind: its key, what stands there, what was to stand there, and the value that is meant.
-fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, &'a str, String)> {
-    let (key, value) = line.split_once('=')?;
+/// A line that is no TOML, or has a value of another kind: its key, what was to stand there, and the value that is meant.
+fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, String)> {
+    let (key, value) = line.split_once('=').or_else(|| line.split_once(':'))?;
     let stated = value.split('#').next()?.trim();
-    if stated.is_empty() {
-        return Some((key.trim(), "nothing", "a value", "VALUE".to_owned()));
+    if expected == "`=`" {
+        return Some((key.trim(), "an equals sign behind a key of one word", stated.to_owned()));
     }
     let bare = stated.trim_matches(['"', '\'', '“', '”']).trim();
     let number = |text: &str| text.trim().parse::<f64>().is_ok_and(f64::is_finite);
     let point = bare.replacen(',', ".", 1);
     let word = bare.to_lowercase();
     let truth = expected == "a boolean";
+    let whole = ["u8", "u32", "usize", "u64"].contains(&expected);
     let is = |words: [&str; 2], more: [&str; 2]| {
         !stated.starts_with('"') && words.contains(&&*word)
             || truth && (words.contains(&&*word) || more.contains(&&*word))
@@ -78,10 +88,18 @@ fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, &'a
         (expected, format!("\"{near}\""))
     } else if point != bare && number(&point) {
         ("a number with a decimal point", point)
-    } else if is(["yes", "on"], ["1", "true"]) {
+    } else if is(["yes", "on"], ["1", "true"]) || stated == "True" {
         ("true or false", "true".to_owned())
-    } else if is(["no", "off"], ["0", "false"]) {
+    } else if is(["no", "off"], ["0", "false"]) || stated == "False" {
         ("true or false", "false".to_owned())
+    } else if stated.starts_with('[') && stated.contains(';') {
+        ("commas between values", stated.replace(';', ","))
+    } else if bare.starts_with('.') && number(bare) {
+        ("a digit before the point", format!("0{bare}"))
+    } else if whole && bare.parse::<f64>().is_ok_and(|v| v >= 0.0 && v.fract() == 0.0) {
+        ("a whole number", bare.split('.').next()?.to_owned())
+    } else if bare == stated && number(bare) && ["a string", "path string"].contains(&expected) {
+        (plain(expected), format!("\"{bare}\""))
     } else if bare != stated && number(bare) {
         ("a number without quotes", bare.to_owned())
     } else if let Some((low, high)) =
@@ -97,7 +115,26 @@ fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, &'a
     } else {
         return None;
     };
-    Some((key.trim(), stated, expected, meant))
+    Some((key.trim(), expected, meant))
+}
+
+/// Words of the field, and the tables that are meant by them.
+const TABLES: &[(&str, &str)] = &[
+    ("modal", "frf"),
+    ("hammer", "frf"),
+    ("response", "sweep"),
+    ("restitution", "drop"),
+    ("bounce", "drop"),
+    ("contact", "pulse"),
+];
+
+/// The head of one of several tables that is meant by a line whose brackets are no pairs.
+fn head_of_tables(line: &str) -> Option<String> {
+    let head = line.split('#').next()?.trim();
+    let name = head.trim_start_matches('[').trim_end_matches(']');
+    let outside = head.len() - name.len();
+    let odd = !name.contains(['[', ']', '=']) && (head.starts_with("[[") || head.ends_with("]]"));
+    (odd && outside == 3).then(|| format!("[[{}]]", name.trim()))
 }
 
 /// What the parser expects, without the names of Rust's types.
@@ -106,7 +143,7 @@ fn plain(expected: &str) -> &str {
         "u8" | "u32" | "usize" | "u64" => "a whole number, 0 or more",
         "f64" => "a number",
         "a string" | "path string" => "text between quotes",
-        "an array of length 2" => "two values between square brackets",
+        "an array of length 2" | "a tuple of size 2" => "two values between square brackets",
         "a sequence" => "a list between square brackets, or tables with double brackets",
         "a boolean" => "true or false",
         other => other,
@@ -154,18 +191,23 @@ mod tests {
                 "prior.gapp = [1e-3, 1e-5]",
                 &[
                     "the name `gapp`",
-                    "`k2`, `c1`, `c2`, `gap`, `restitution`, `force`",
+                    "\"k2\", \"c1\", \"c2\", \"gap\", \"restitution\", \"force\"",
                     "did you mean `gap`?",
                 ],
             ),
-            ("starts = 3\nstarts = 4", &["duplicate key"]),
+            ("starts = 3\nstarts = 4", &["every key once", "remove this line"]),
             ("scatter = 0,01", &["scatter = 0,01", "a number with a decimal point", "write scatter = 0.01"]),
             ("scatter = 35k", &["write scatter = 35000"]),
             ("scatter = 3.5 ms", &["scatter = 3.5 ms", "without it", "write scatter = 0.0035"]),
             ("scatter = \"40 cm\"", &["write scatter = 0.4"]),
             ("prior.gap = \"20-30\"", &["write prior.gap = [20, 30]"]),
             ("scatter = \"0.1\"", &["a number without quotes", "write scatter = 0.1"]),
-            ("starts =   # missing: how many", &["starts = nothing", "write starts = VALUE"]),
+            ("starts =   # missing: how many", &["starts has no value", "# starts"]),
+            ("starts = 3.0", &["write starts = 3"]),
+            ("starts : 3", &["write starts = 3"]),
+            ("scatter = .01", &["write scatter = 0.01"]),
+            ("scatter = 300g", &["write scatter = 0.3"]),
+            ("prior.gap = [1; 2]", &["write prior.gap = [1, 2]"]),
             ("starts = three", &["text between quotes", "write starts = \"three\""]),
             ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),
         ] {

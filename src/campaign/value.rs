@@ -23,7 +23,7 @@ pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
 }
 
 /// Units that keys of a campaign have, and parts of them as powers of ten.
-const UNITS: [(&str, i32); 14] = [
+const UNITS: [(&str, i32); 18] = [
     ("k", 3),
     ("Hz", 0),
     ("kHz", 3),
@@ -37,6 +37,10 @@ const UNITS: [(&str, i32); 14] = [
     ("N", 0),
     ("kN", 3),
     ("kg", 0),
+    ("g", -3),
+    ("°", 0),
+    ("deg", 0),
+    ("%", -2),
     ("m/s", 0),
 ];
 

@@ -25,7 +25,7 @@ pub struct Run {
     out: Option<PathBuf>,
     /// Allow files outside the folder of the campaign
     allow_outside: bool,
-    /// Compute all anew, also what has not changed since the last run
+    /// Recompute everything, even what has not changed since the last run
     again: bool,
     /// Run again whenever a file of the folder changes, until Ctrl+C
     watch: bool,

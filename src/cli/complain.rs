@@ -47,7 +47,7 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     error(&plain(complaint), Voice::Command, json)
 }
 
-/// The command that was typed, with its row and the names of its own commands.
+/// The command that was typed, with its row and the names of its own commands and options.
 fn typed() -> (String, Option<&'static Row>, Vec<String>) {
     let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
@@ -59,8 +59,33 @@ fn typed() -> (String, Option<&'static Row>, Vec<String>) {
         command = part;
         names.push(word);
     }
-    let own = command.get_subcommands().map(|part| part.get_name().to_owned()).collect();
-    (names.join(" "), row, own)
+    let parts = command.get_subcommands().map(|part| part.get_name().to_owned());
+    let options = command.get_arguments().filter_map(|arg| Some(format!("--{}", arg.get_long()?)));
+    (names.join(" "), row, parts.chain(options).collect())
+}
+
+/// Words of the field, and the commands that are meant by them.
+const WORDS: [(&str, &str); 11] = [
+    ("modes", "modal"),
+    ("hammer", "modal"),
+    ("frf", "modal"),
+    ("fft", "spectrum"),
+    ("psd", "spectrum"),
+    ("sweep", "response"),
+    ("drop", "restitution"),
+    ("bounce", "restitution"),
+    ("contact", "pulse"),
+    ("report", "run"),
+    ("plot", "run"),
+];
+
+/// The commands that have an option.
+fn commands_with(option: &str) -> Vec<String> {
+    let has = |command: &clap::Command| {
+        let name = option.strip_prefix("--");
+        name.is_some() && command.get_arguments().any(|arg| arg.get_long() == name)
+    };
+    super::command().get_subcommands().filter(|c| has(c)).map(|c| c.get_name().to_owned()).collect()
 }
 
 /// What clap complains of, in our form.
@@ -77,9 +102,19 @@ fn plain(complaint: &clap::Error) -> Error {
     match complaint.kind() {
         ErrorKind::InvalidSubcommand => {
             let name = context(ContextKind::InvalidSubcommand).unwrap_or_default();
-            let near = nearest(&name, own.iter().map(String::as_str));
-            let hint = near.map_or_else(|| help.clone(), |near| format!("{command} {near}"));
-            Error::usage(format!("no command is named {name:?}"), "").hint(hint)
+            let called =
+                WORDS.iter().find(|(word, _)| *word == name && command == "vibro").map(|(_, own)| *own);
+            let near = called.or_else(|| nearest(&name, own.iter().map(String::as_str)));
+            // What was typed behind it stays.
+            let rest =
+                || std::env::args().skip_while(|word| *word != name).skip(1).collect::<Vec<_>>().join(" ");
+            let hint = match near {
+                _ if Path::new(&name).is_file() => format!("vibro info {name}"),
+                _ if Path::new(&name).is_dir() => format!("vibro run {name}"),
+                Some(near) => format!("{command} {near} {}", rest()).trim_end().to_owned(),
+                None => help.clone(),
+            };
+            Error::usage(format!("no command is called {name:?}"), "").hint(hint)
         }
         ErrorKind::MissingRequiredArgument => {
             let example = row.map(|row| format!("vibro {}", row.example));
@@ -92,9 +127,15 @@ fn plain(complaint: &clap::Error) -> Error {
                 .hint("one file at a time; for all of a folder: vibro run FOLDER")
         }
         ErrorKind::UnknownArgument => {
-            let hint = context(ContextKind::SuggestedArg).unwrap_or(help);
-            let what = if option.starts_with('-') { "option" } else { "word" };
-            Error::usage(format!("{of} no {what} {argument}"), "").hint(hint)
+            let what = if option.starts_with('-') { "option" } else { "place for" };
+            let others = commands_with(option);
+            let expected = if others.is_empty() {
+                String::new()
+            } else {
+                format!("an option of its own: {option} is one of {}", others.join(", "))
+            };
+            let near = nearest(option, own.iter().map(String::as_str)).filter(|_| others.is_empty());
+            Error::usage(format!("{of} no {what} {argument}"), expected).hint(near.unwrap_or(&help))
         }
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => {
             let value = context(ContextKind::InvalidValue).unwrap_or_default();
@@ -140,7 +181,7 @@ fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option
     } else if let Some(number) = without_unit(value) {
         typed(&number.to_string())
     } else {
-        near.map_or(help, typed)
+        near.or(names.first().map(String::as_str)).map_or(help, typed)
     };
     Error::usage(format!("{option} is {value}"), expected).hint(hint)
 }

@@ -7,6 +7,7 @@ use crate::campaign::Reading;
 use crate::error::{Error, Result};
 use crate::proposal::{Known, Proposal, Row, Table};
 use crate::report::words::{Voice, graded, put};
+use crate::units::notation::counted;
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::PathBuf;
@@ -131,8 +132,11 @@ impl super::Run for Check {
             print::object(answer)?;
         } else {
             complain::warn(&graded(&commented, Voice::Campaign));
-            let (shown, n) = (print::typed(&self.campaign), files.len());
-            print::text(&format!("{shown}: no fault, {n} files are there\nnext: vibro run {shown}\n"))?;
+            let shown = print::typed(&self.campaign);
+            print::text(&format!(
+                "{shown}: no fault, {} found\nnext: vibro run {shown}\n",
+                counted(files.len(), "file")
+            ))?;
         }
         Ok(0)
     }

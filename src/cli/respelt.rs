@@ -3,6 +3,7 @@
 
 use super::complain;
 use crate::analysis::in_order;
+use crate::campaign::without_unit;
 use glob::MatchOptions;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -41,9 +42,28 @@ pub fn pipes() -> bool {
     std::env::args_os().filter(|word| word == "-").count() > 1
 }
 
+/// Numbers of options with the unit that stands behind them as a word of its own, so that it is seen where it belongs: `--height 0.4 m`.
+fn with_units(typed: Vec<OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    for word in typed {
+        let text = word
+            .to_str()
+            .filter(|unit| without_unit(&format!("1{unit}")).is_some() && !Path::new(unit).exists());
+        if let (Some(unit), [.., option, number]) = (text, joined.as_mut_slice())
+            && option.to_str().is_some_and(|option| option.starts_with("--"))
+            && number.to_str().is_some_and(|number| number.parse::<f64>().is_ok())
+        {
+            number.push(unit);
+        } else {
+            joined.push(word);
+        }
+    }
+    joined
+}
+
 /// What was typed, in the spelling of today.
 pub fn args() -> impl Iterator<Item = OsString> {
-    let typed: Vec<OsString> = std::env::args_os().collect();
+    let typed = with_units(std::env::args_os().collect());
     let words = typed.iter().skip(1).filter_map(|word| word.to_str()).filter(|word| !word.starts_with('-'));
     let command = words.take(2).collect::<Vec<_>>().join(" ");
     let first = command.split(' ').next().unwrap_or_default().to_owned();

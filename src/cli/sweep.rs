@@ -3,8 +3,8 @@
 use super::convert::{apart, write_beside};
 use super::{Run, init, print};
 use crate::analysis::Kept;
-use crate::analysis::sweep::{Files, Listed, Stored, figures, matching, named, tables};
-use crate::analysis::{self, Answer, in_order};
+use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
+use crate::analysis::{self, Answer, in_order, is_pattern, matching};
 use crate::campaign::{Reading, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::response::{ResponseOptions, ResponsePoint};
@@ -84,7 +84,6 @@ impl Source {
     /// A sweep of the time traces that are named, or that lie in the folder that is.
     fn proposed(&self) -> Result<Option<Proposal>> {
         let typed: Vec<&Path> = self.paths.iter().map(Path::new).collect();
-        let is_pattern = |path: &Path| !path.exists() && path.to_string_lossy().contains(['*', '?']);
         Ok(match typed.as_slice() {
             [folder] if folder.is_dir() => {
                 let mut proposal = Proposal::of(folder, &Reading::default(), None, &Kept::default(), &())?;

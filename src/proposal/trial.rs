@@ -122,7 +122,10 @@ impl Trial<'_> {
         }
         let drops = |table: &dyn Fn(&Series) -> Table| {
             let one = |file: &String| table(&Series { files: vec![file.clone()], ..series.clone() });
-            series.files.iter().map(one).collect::<Vec<Table>>()
+            match series.pattern {
+                Some(_) => vec![table(series)],
+                None => series.files.iter().map(one).collect::<Vec<Table>>(),
+            }
         };
         // Repeated drops of one body agree.
         let tried = [drops(&|one| one.bounces(0, &series.name)), drops(&|one| one.fall(0, &series.name))];
@@ -255,7 +258,11 @@ impl Trial<'_> {
             let table = table.guessed("edge", "rising", "the speed is the same with falling");
             let table =
                 table.missing("beam_angle", "0", "degrees between the beam and the axis of the motion");
-            let table = table.guessed("beam_from", "axis", "as beam_angle is stated");
+            let table = table.guessed(
+                "beam_from",
+                "axis",
+                "beam_angle counts from the axis; the other choice is normal",
+            );
             match header.quantity {
                 "velocity" => table,
                 _ => table.missing("sensitivity", "1", "m/s along the beam for one unit of the channel"),
@@ -287,9 +294,10 @@ impl Series {
     }
 
     fn channel_table(&self, k: usize, name: &str, section: &'static str, about: &'static str) -> Table {
-        let (file, several) = (&self.files[0], self.headers.len() > 1);
+        let file = self.pattern.as_ref().filter(|_| self.files.len() > 1).unwrap_or(&self.files[0]);
+        let several = self.headers.len() > 1;
         let called = if several { format!("{name} {}", self.headers[k].name) } else { name.to_owned() };
-        let table = Table::new(section, about, file).found("name", called).found("file", file);
+        let table = Table::new(section, about, &self.in_words()).found("name", called).found("file", file);
         if several { table.found("channel", self.channel(k)) } else { table }
     }
 

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `{gap m}` | the number `gap` with its unit, three digits: `0.6 mm` |
 //! | `{gap.6 m}` | six digits |
+//! | `{rho ± std}` | the number `rho` with its uncertainty `std`, as tables show them |
 //! | `{level @unit}` | with the unit that the fact `unit` names |
 //! | `{part %}` | a part of one as a percentage |
 //! | `{n}` | the number, whole or with three digits; a name as it is; several numbers between commas |
@@ -16,7 +17,7 @@
 //! | `<, at {time s}>` | left out where the fact is missing |
 
 use crate::record::{Fact, Finding, Severity};
-use crate::units::notation::{quantity, significant};
+use crate::units::notation::{estimate, quantity, significant};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -202,6 +203,9 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
     if name == "subject" {
         return finding.subject.clone();
     }
+    if let Some(std) = how.strip_prefix(" ± ") {
+        return Some(estimate(finding.get(name)?, finding.get(std)));
+    }
     let (digits, how) = match how.strip_prefix('.') {
         Some(rest) => {
             let (digits, how) = rest.split_at(rest.find(' ').unwrap_or(rest.len()));
@@ -257,6 +261,8 @@ mod tests {
 
     #[test]
     fn facts_stand_where_the_template_has_them() {
+        let pair = Finding::note("x").number("value", -3.3914).number("std", 0.029);
+        assert_eq!(said("{value ± std} lies outside", &pair), "−3.391 ± 0.029 lies outside");
         let found = Finding::note("x").number("gap", 0.0006).name("unit", "V").count("n", 1).about("laser");
         assert_eq!(said("gap {gap m}, {gap.1 m}", &found), "gap 600 µm, 600 µm");
         assert_eq!(said("{n:impact} {n?is/are} at {subject}", &found), "1 impact is at laser");

@@ -86,6 +86,10 @@ impl Reader {
 /// The complaint that none of several channels, each with its place in the file, was chosen; one whose name is not its own goes by its number.
 fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
     let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
+    if names.is_empty() {
+        return Error::input(Place::file(path), "its only channel is the reference", "a second channel")
+            .hint("another file");
+    }
     let found = format!("{} channels, and none was chosen", names.len());
     let error = Error::input(Place::file(path), found, format!("one of {}", names.join(", ")));
     match channels {
@@ -93,7 +97,7 @@ fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
             error.set("channel", format!("{name:?}"))
         }
         [(i, _), ..] => error.set("channel", (i + 1).to_string()),
-        [] => error.hint("another file"),
+        [] => error,
     }
 }
 
@@ -134,8 +138,7 @@ impl Recording {
             }
             (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.called())),
         };
-        let hint = "name one, by its name or its number from 1; `vibro info` lists all";
-        let mut trace = traces[chosen.map_err(|e| e.hint(hint).setting("channel"))?].clone();
+        let mut trace = traces[chosen?].clone();
         if let Some(factor) = calibration {
             if trace.meta.has(Trace::UNCALIBRATED) {
                 let found = format!("a calibration of {factor} without a unit");

@@ -46,7 +46,7 @@ impl Source {
         }
         let info = std::fs::metadata(path).map_err(|e| {
             if path.to_string_lossy().contains(['*', '?']) {
-                return Error::usage(format!("no single file matches {}", path.display()), "")
+                return Error::usage(format!("no file, or more than one, matches {}", path.display()), "")
                     .hint("name one file; vibro run FOLDER takes all files of a folder");
             }
             Error::io("open", path, e)

@@ -88,10 +88,12 @@ impl SweepReader {
         let meant = stated.map(|unit| unit.quantity());
         if !motion.contains(&trace.meta.quantity) || meant.is_some_and(|meant| meant != trace.meta.quantity) {
             let found = format!("the channel {:?} is in {}", trace.meta.name, trace.meta.unit);
-            let expected = "a displacement, velocity or acceleration, such as mm, m/s or g, as was stated";
-            let hint = "state unit, and calibration: units per stored number";
-            let error = Error::usage(found, expected).hint(hint).setting("unit").setting("calibration");
-            return Err(error.setting("response"));
+            let Some(meant) = meant.filter(|_| motion.contains(&trace.meta.quantity)) else {
+                let error = Error::usage(found, "a displacement, velocity or acceleration");
+                return Err(error.hint("another channel; or state its unit and calibration").setting("unit"));
+            };
+            let error = Error::usage(found, format!("the {} that was stated", meant.name()));
+            return Err(error.hint("leave the unit out to use that of the file").setting("unit"));
         }
         Ok(trace)
     }

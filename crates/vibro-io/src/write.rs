@@ -63,7 +63,7 @@ impl Target {
         TARGETS.iter().find(|row| row.1 == ending).map(|row| row.0).ok_or_else(|| {
             let what = if ending.is_empty() { "has no ending".into() } else { format!("ends in .{ending}") };
             Error::usage(
-                format!("{} {what}, which stands for no format to write", path.display()),
+                format!("{} {what}, which is no format that can be written", path.display()),
                 "a name that ends in .uff, .unv or .58 (UFF-58), .ufb (UFF-58b), .csv, .tsv, .wav or .npy",
             )
             .hint("give the file to write one of these endings")

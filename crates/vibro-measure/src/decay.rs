@@ -46,7 +46,9 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
     let found = loop {
         let found = Sines::of(&trace.values[part.clone()], rate, options);
         let (group, m) = found.strongest().ok_or_else(|| {
-            Error::refused("no mode stands out of the noise").hint("choose a band around it").setting("band")
+            Error::refused("no mode is above the noise")
+                .hint("the frequencies around the mode")
+                .setting("band")
         })?;
         let loss = group.sines[m].decay;
         // As long as the strongest mode is seen, and no longer.

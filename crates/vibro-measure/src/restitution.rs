@@ -207,7 +207,7 @@ fn above_zero(name: &str, value: f64) -> Result<()> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
-    Err(Error::refused(format!("{name} of {value}: it must be above 0")))
+    Err(Error::refused(format!("{name} is {value:.4}: it must be above 0")))
 }
 
 /// Checks an uncertainty.

@@ -260,7 +260,7 @@ pub fn find_channel<'a>(
     let error = Error::input(place(path), found, format!("{expected}: {}", list.join(", ")));
     Err(match near {
         Some(name) => error.hint(format!("{name:?}")),
-        None => error,
+        None => error.hint("one of these names, or its number"),
     })
 }
 

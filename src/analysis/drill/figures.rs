@@ -135,7 +135,8 @@ fn speed(name: &str, drill: &Drill) -> Figure {
     let plot = plot.with(Series::line(name_of, over(&drill.times), over(&drill.speeds)).stroke(Stroke::Thin));
     let plot = plot.with(Series::horizontal("mean", drill.speed.value));
     let step = significant(drill.speed.value.powi(2) * drill.excerpt_time.1, 2);
-    let steps = format!(" The pulses rise within a sample: one more in a turn is {step} Hz less.");
+    let steps =
+        format!(" Pulses rise within one sample, so the speed of one turn is resolved to {step} Hz only.");
     let caption = format!("Turns of the crank in a second.{}", if sharp { &steps } else { "" });
     Figure::double(format!("Speed, {name}")).height(70.0).panel(plot).caption(caption)
 }

@@ -1,7 +1,7 @@
 //! The files of a sweep, before they are read.
 
 use super::Keys;
-use crate::analysis::in_order;
+use crate::analysis::matching;
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, response};
@@ -95,26 +95,4 @@ impl Listed {
             }
         }
     }
-}
-
-/// The files in a folder that a name or a pattern with `*`, `?` or `[…]` means, by their names, numbers in them by value.
-///
-/// # Errors
-/// If it is no pattern, or no file has such a name.
-pub fn matching(folder: &Path, name: &Path) -> Result<Vec<PathBuf>> {
-    let pattern = folder.join(name);
-    if pattern.exists() {
-        return Ok(vec![pattern]);
-    }
-    let text = pattern.to_string_lossy();
-    let wrong = |e: glob::PatternError| {
-        Error::usage(format!("the pattern {text:?}: {e}"), "a pattern such as step*.csv")
-    };
-    let mut files: Vec<PathBuf> =
-        glob::glob(&text).map_err(wrong)?.filter_map(std::result::Result::ok).collect();
-    if files.is_empty() {
-        return Err(Error::absent(format!("no file matches {text}"), folder, name));
-    }
-    in_order(&mut files);
-    Ok(files)
 }

@@ -59,7 +59,7 @@ pub fn response(response: &Response) -> Table {
 }
 
 /// What the kinds of resonances mean, a line each.
-const KINDS: &str = "Resonance: a peak of the amplitude, by the points around it. Modes of the sweep (a table [[frf]] of the campaign) use all points and their phase.\nGrazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: an antiresonance if the phase rises there by 180°; the amplitude alone does not show it.";
+const KINDS: &str = "Resonance: a peak of the amplitude, from the points around it. For modes fitted to all points with their phase, add a table [[frf]].\nGrazing: both masses move in phase and touch lightly.\nClapping: both masses move in antiphase and strike head on.\nAntiresonance: the minimum of the excited mass between resonances, or a deep one of another mass.\nMinimum: an antiresonance if the phase rises there by 180°; the amplitude alone does not show it.";
 
 /// Resonances and antiresonances.
 pub fn resonances(responses: &[Response]) -> Table {

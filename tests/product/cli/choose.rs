@@ -38,7 +38,7 @@ fn a_choice_has_its_keys() {
     assert_eq!(found["audit"]["at"], "kelvin-voigt");
     assert_eq!((&found["law"]["at"], &found["law"]["enough"]), (&"hunt-crossley".into(), &false.into()));
     let warnings = found["warnings"].as_array().unwrap();
-    assert_eq!(warnings.iter().filter(|w| w.as_str().unwrap().contains("law of the contact")).count(), 1);
+    assert_eq!(warnings.iter().filter(|w| w.as_str().unwrap().contains("force over deflection")).count(), 1);
     assert!(found["audit"]["change"].as_f64().unwrap().abs() < 0.003);
     assert_eq!(
         (&found["tolerance"], &found["observable"]),

@@ -146,7 +146,7 @@ fn a_motion_that_does_not_decay_is_refused() {
     };
     assert!(with(|_| 1.0).contains("does not decay: its strongest line, 60.00"));
     assert!(with(|i| (3e-4 * i as f64).exp()).contains("periods of motion lie behind its largest value"));
-    assert!(found(noise.clone()).unwrap_err().to_string().contains("no mode stands out"));
+    assert!(found(noise.clone()).unwrap_err().to_string().contains("no mode is above the noise"));
     // A mode that noise drives, seen where it happens to be largest.
     let mut y = [0.0; 2];
     let driven = noise.iter().map(|force| {

@@ -81,7 +81,7 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         let highest = values.iter().fold(0.0f64, |h, v| h.max(v.abs()));
         let [noise, highest] = [quiet.reach, highest].map(|v| quantity(v, unit, 3));
         let why = format!(
-            "{} found, an interval needs two; an impact must rise {noise} above the level; the trace rises at most {highest}",
+            "{} found, an interval needs two: an impact must exceed {noise}, the trace reaches {highest}",
             counted(each.len(), "impact")
         );
         let refused = Error::refused(why);

@@ -103,10 +103,12 @@ impl Measured {
             let what = channel.map_or_else(String::new, |c| format!(" named {c:?}"));
             return Err(refused.unwrap_or_else(|| {
                 let error = Error::refused(format!("no frequency response function{what}"));
-                if records.iter().any(|record| matches!(record, Record::Trace(_))) {
-                    error.hint("name the channel of the force").setting("reference")
-                } else {
-                    error.hint("`vibro info` lists what is in the file")
+                let traces = records.iter().filter(|record| matches!(record, Record::Trace(_))).count();
+                match traces {
+                    0 => error.hint("`vibro info` lists what is in the file"),
+                    1 => error
+                        .hint("`vibro decay` finds the modes of a free decay; a function needs two channels"),
+                    _ => error.hint("name the channel of the force").setting("reference"),
                 }
             }));
         }

@@ -321,7 +321,7 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     if let Some([back, forth]) = located.ringing(values) {
         let (back, forth) = (100.0 * back, 100.0 * forth);
         let why = format!(
-            "the record rings: behind its largest swing it swings back to −{back:.0} % of it and forth to {forth:.0} %, and a contact pushes once"
+            "the record rings: its largest peak is followed by peaks of −{back:.0} % and {forth:.0} %; a contact pulse has one sign"
         );
         let hint = "`vibro decay` measures a ringing; for the contact record its force, or closer to it";
         return Err(Error::refused(why).hint(hint));

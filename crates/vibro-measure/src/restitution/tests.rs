@@ -64,11 +64,11 @@ fn impossible_drops_are_refused() {
     let why = |d: Drop| {
         restitution(&Measured { drop: Some(d), contact_time: Some(0.0), ..Measured::default() }).unwrap_err()
     };
-    assert!(why(drop(0.0, 0.144)).to_string().contains("height of 0"));
+    assert!(why(drop(0.0, 0.144)).to_string().contains("height is 0"));
     assert!(why(drop(-1.0, 0.144)).to_string().contains("height"));
     // The fall takes 0.341 s, so twice that is the longest flight.
     assert!(why(drop(0.57, 0.70)).to_string().contains("at most"));
-    assert!(why(drop(0.57, 0.0)).to_string().contains("interval of 0"));
+    assert!(why(drop(0.57, 0.0)).to_string().contains("interval is 0"));
     assert_eq!(why(drop(0.57, f64::NAN)).exit_code(), 1);
     assert_eq!(restitution(&Measured::default()).unwrap_err().exit_code(), 2);
 }

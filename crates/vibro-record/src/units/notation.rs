@@ -127,6 +127,7 @@ pub fn engineering(largest: f64) -> i32 {
 /// assert_eq!(quantity(0.018_34, "s", 3), "18.3 ms");
 /// assert_eq!(quantity(-0.25, "m/s", 2), "−0.25 m/s");
 /// assert_eq!(quantity(3e-6, "1", 2), "3.0×10⁻⁶");
+/// assert_eq!(quantity(0.0104, "FS", 3), "10.4×10⁻³ FS");
 /// ```
 pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     let exponent = engineering(value);
@@ -134,7 +135,10 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     if exponent == 0 || unit.is_empty() || !value.is_finite() {
         return format!("{} {unit}", significant(value, digits)).trim_end().to_owned();
     }
-    format!("{} {}", significant(value / 10f64.powi(exponent), digits), scaled_unit(unit, exponent))
+    let (number, unit) = (significant(value / 10f64.powi(exponent), digits), scaled_unit(unit, exponent));
+    // A unit that takes no prefix.
+    let between = if unit.starts_with("10") { "×" } else { " " };
+    [number.as_str(), between, &unit].concat()
 }
 
 /// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`; 0.1 is 100 of the smaller unit.

@@ -52,7 +52,7 @@ fn plot(responses: &[Response], log: bool) -> Plot {
 
 /// What stands below figures of measured points.
 pub(super) const MARKS: &str = "Bars: one standard uncertainty, where larger than the marker. \
-    Triangles pointing down: upper limits of amplitudes below the noise; those at the lower edge lie below it.";
+    Downward triangles: upper limits of amplitudes below the noise; at the lower edge, the limit is off the scale.";
 
 /// Limits of a logarithmic axis that shows all points that stand out of the noise, with their uncertainties but for those that
 /// reach down to nothing; of upper limits where there are no others.
