@@ -26,10 +26,29 @@ pub fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     Ok((found, others))
 }
 
-/// Puts files in the order of the numbers in their names: 2 before 10.
+/// Puts files in the order of the numbers in their names: 2 before 10, and 11.15 before 11.2.
 pub fn in_order(files: &mut [PathBuf]) {
-    files.sort_by(|a, b| natord::compare(&a.to_string_lossy(), &b.to_string_lossy()));
+    files.sort_by(|a, b| natord::compare(&with_decimals(a), &with_decimals(b)));
 }
+
+/// A path in which all numbers have decimals of one length, so that they are in order as whole numbers are; the ending is no decimal.
+fn with_decimals(path: &Path) -> String {
+    let (text, ending) = (path.to_string_lossy(), path.extension().map_or(0, |ending| ending.len() + 1));
+    let (mut rest, ending) = text.split_at(text.len() - ending);
+    let mut out = String::new();
+    let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    while let Some(begins) = rest.find(|c: char| c.is_ascii_digit()) {
+        let (before, number) = rest.split_at(begins);
+        let (whole, behind) = number.split_at(digits(number));
+        let decimals = behind.strip_prefix('.').map_or("", |behind| &behind[..digits(behind)]);
+        out += &format!("{before}{whole}.{decimals:0<DECIMALS$}");
+        rest = if decimals.is_empty() { behind } else { &behind[1 + decimals.len()..] };
+    }
+    [&out, rest, ending].concat()
+}
+
+/// Decimals that a number in a name has at most.
+const DECIMALS: usize = 12;
 
 /// Whether a path is the pattern of files, not the name of one.
 pub fn is_pattern(path: &Path) -> bool {

@@ -87,3 +87,23 @@ fn a_fit_without_a_rig_is_not_passed_over_in_silence() {
     let said = sentences(&answer.findings, Voice::Campaign, true);
     assert!(said.iter().any(|s| s.contains("`fit` needs a table `rig`")), "{said:?}");
 }
+
+#[test]
+fn numbers_in_names_are_in_order() {
+    let names = [
+        "f 9.csv",
+        "f 10.csv",
+        "f 11.csv",
+        "f 11.05 Hz.csv",
+        "f 11.15 Hz.csv",
+        "f 11.2 Hz.csv",
+        "f 11.2 Hz b.csv",
+    ];
+    let mut files: Vec<std::path::PathBuf> = names.iter().rev().map(Into::into).collect();
+    in_order(&mut files);
+    let found: Vec<&str> = files.iter().filter_map(|file| file.to_str()).collect();
+    assert_eq!(found, names);
+    let mut numbered: Vec<std::path::PathBuf> = ["R2.010", "R2.2", "R2.001"].map(Into::into).into();
+    in_order(&mut numbered);
+    assert_eq!(numbered[0].to_str(), Some("R2.001"));
+}

@@ -73,13 +73,6 @@ pub fn of_script(script: &str) -> Finding {
     Finding::caution("legacy-script").name("script", script)
 }
 
-/// Whether a decimal number stands in the name of a file: such names are in order as a shell has them.
-fn has_decimal(file: &Path) -> bool {
-    let digit = |b: u8| b.is_ascii_digit();
-    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-    stem.as_bytes().windows(3).any(|w| digit(w[0]) && w[1] == b'.' && digit(w[2]))
-}
-
 impl Source {
     /// A sweep of the time traces that are named, or that lie in the folder that is.
     fn proposed(&self) -> Result<Option<Proposal>> {
@@ -96,7 +89,7 @@ impl Source {
                 let files: Result<Vec<_>> = all.iter().map(|path| matching(Path::new(""), path)).collect();
                 let mut files = files?.concat();
                 // A shell names 10 before 2.
-                if files.is_sorted() && !files.iter().any(|file| has_decimal(file)) {
+                if files.is_sorted() {
                     in_order(&mut files);
                 }
                 Some(of_steps(&files, &Reading::default())?)

@@ -118,7 +118,9 @@ impl Table {
         if columns.is_empty() {
             return String::new();
         }
-        let mut out = String::from("<div class=\"table\"><table>\n");
+        let csv = self.csv();
+        let rows: Vec<String> = csv.lines().map(escaped).collect();
+        let mut out = format!("<div class=\"table\"><table data-csv=\"{}\">\n", rows.join("\n"));
         if !self.title.is_empty() {
             let _ = writeln!(out, "<caption>{}</caption>", escaped(&self.title));
         }

@@ -1,20 +1,5 @@
 "use strict";
 
-/** Text of a table as CSV: numbers with a hyphen for minus, uncertainties in columns of their own. */
-function csv(table) {
-  const rows = Array.from(table.rows, (row) => Array.from(row.cells, (c) => c.textContent));
-  const unsure = rows[0].map((_, i) => rows.some((row, k) => k > 0 && row[i].includes(" ± ")));
-  const power = (_, digits) => `e${digits.replace(/./g, (c) => ("⁰¹²³⁴⁵⁶⁷⁸⁹".includes(c) ? "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c) : "-"))}`;
-  const plain = (text) => (text === "–" ? "" : text.replace(/^−/, "-").replace(/×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)$/, power));
-  const cells = (text, i, head) => {
-    if (!unsure[i]) return [plain(text)];
-    const [value, std = ""] = head ? [text, `${text} std`] : text.replace(/^\((.*) ± (.*)\)(.*)$/, "$1$3 ± $2$3").split(" ± ");
-    return [plain(value), std];
-  };
-  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-  return rows.map((row, k) => row.flatMap((text, i) => cells(text, i, k === 0)).map(quoted).join(",") + "\n").join("");
-}
-
 /** Buttons and, for a long one, a search above a table. */
 function tableTools(table) {
   const bar = document.createElement("div");
@@ -42,7 +27,7 @@ function tableTools(table) {
   });
   bar.append(copy, button("CSV", "Save as CSV", () => {
     const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([csv(table)], { type: "text/csv" }));
+    link.href = URL.createObjectURL(new Blob([table.dataset.csv], { type: "text/csv" }));
     link.download = `${name.replace(/[^\p{L}\p{N}]+/gu, "_")}.csv`;
     link.click();
     URL.revokeObjectURL(link.href);
