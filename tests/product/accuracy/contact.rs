@@ -3,6 +3,7 @@
 use super::draws::Draws;
 use super::noise::Noise;
 use super::score::Score;
+use vibroimpact::measure::Estimate;
 use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, drill};
 use vibroimpact::record::Fact;
 
@@ -125,7 +126,7 @@ fn parabolas_in_noise_keep_their_intervals(draws: Draws) {
     }
 }
 
-fn what_is_no_parabola_has_no_uncertainty_and_a_finding(draws: Draws) {
+fn what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding(draws: Draws) {
     // Rings from a tenth of the jump down to twice the noise, below, at and above the inverse of the fit's 0.5 ms.
     let rings = [
         (3000.0, 0.3, 3e-4),
@@ -146,9 +147,14 @@ fn what_is_no_parabola_has_no_uncertainty_and_a_finding(draws: Draws) {
             let found = case(spoilt, 1000 * number as u64 + seed);
             let (before, after) = (found.before.as_ref().unwrap(), found.after.as_ref().unwrap());
             assert_eq!(lacking(&found), sides, "case {number}, seed {seed}");
-            assert!(after.std.is_none() && found.restitution.is_none_or(|r| r.std.is_none()));
-            assert!(found.energy_given.unwrap().std.is_none());
-            assert_eq!(before.std.is_none(), sides.contains(&"before"), "case {number}, seed {seed}");
+            // The bias is that of the least bent curve that the parabola leaves: a ring moves the velocity by as much, seldom by more.
+            let within = |e: &Estimate, truth: f64| (e.value - truth).abs() < 2.0 * e.std.unwrap();
+            assert!(within(after, AFTER), "case {number}: {after:?}");
+            assert!(sides == behind || within(before, BEFORE), "case {number}: {before:?}");
+            assert!(found.restitution.is_none_or(|r| within(&r, -AFTER / BEFORE)), "case {number}");
+            let given = 0.5 * 0.14 * (BEFORE * BEFORE - AFTER * AFTER);
+            assert!(within(found.energy_given.as_ref().unwrap(), given), "case {number}");
+            assert_eq!(found.phase.unwrap().std, None);
             if sides == behind {
                 score.own(before, BEFORE);
             }
@@ -178,8 +184,8 @@ mod few {
     }
 
     #[test]
-    fn what_is_no_parabola_has_no_uncertainty_and_a_finding() {
-        super::what_is_no_parabola_has_no_uncertainty_and_a_finding(Draws::Few);
+    fn what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding() {
+        super::what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding(Draws::Few);
     }
 }
 
@@ -195,7 +201,7 @@ mod all {
 
     #[test]
     #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
-    fn what_is_no_parabola_has_no_uncertainty_and_a_finding() {
-        super::what_is_no_parabola_has_no_uncertainty_and_a_finding(Draws::All);
+    fn what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding() {
+        super::what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding(Draws::All);
     }
 }

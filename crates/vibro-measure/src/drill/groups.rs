@@ -194,28 +194,31 @@ impl Group {
             let found = Finding::doubt("drill-impacts-over-range");
             findings.push(found.count("n", clipped).count("all", members.len()));
         }
-        let mut open = |side: usize, name, mean: &Mean| {
+        let mut bias = |side: usize, name, mean: &Mean| {
             let fits: Vec<&[f64]> = residuals.iter().map(|r| r[side].as_slice()).collect();
             // A mean that is moved by less than its scatter leaves open keeps its uncertainty.
             let lack = LackOfFit::of(&fits, gap);
             let moved = lack.filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std));
-            findings.extend(moved.map(|lack| {
-                Finding::doubt("drill-lack-of-fit").name("side", name).number("residual", lack.residual)
+            findings.extend(moved.map(|LackOfFit { residual, bias }| {
+                let found = Finding::doubt("drill-lack-of-fit").name("side", name);
+                found.number("residual", residual).number("bias", bias)
             }));
-            clipped > 0 || moved.is_some()
+            moved.map_or(0.0, |lack| lack.bias)
         };
+        let bias = [bias(0, "before", &before), bias(1, "after", &after)];
         let rings = followed(&own);
-        let (open_before, open_after) =
-            (open(0, "before", &before) || rings > 0, open(1, "after", &after) || rings > 0);
-        let open = open_before || open_after;
+        let open = clipped > 0 || rings > 0;
         if rings > 0 {
             findings.push(Finding::doubt("drill-ringing").count("n", rings).count("all", own.len()));
         }
-        let estimate = |mean: Mean, open: bool, unit, method| {
-            Estimate::new(mean.value, mean.std.filter(|_| !open), unit, mean.n, method)
+        // By how much the biases of both velocities move what changes by these parts of them.
+        let moved = |parts: [f64; 2]| (parts[0] * bias[0]).hypot(parts[1] * bias[1]);
+        let estimate = |mean: Mean, parts, unit, method| {
+            let std = mean.std.filter(|_| !open).map(|std| std.hypot(moved(parts)));
+            Estimate::new(mean.value, std, unit, mean.n, method)
         };
-        let energy = |squares: &dyn Fn(&Impact) -> f64, open, method| {
-            options.mass.map(|m| estimate(mean(&|i| 0.5 * m * squares(i)), open, "J", method))
+        let energy = |squares: &dyn Fn(&Impact) -> f64, parts: [f64; 2], method| {
+            options.mass.map(|m| estimate(mean(&|i| 0.5 * m * squares(i)), parts.map(|v| m * v), "J", method))
         };
         // Along the circle from the point opposite to the mean direction.
         let vectors = own.iter().map(|i| (TAU * i.phase).sin_cos());
@@ -224,24 +227,27 @@ impl Group {
         let along = mean(&|i| (i.phase - from).rem_euclid(1.0));
         let undirected = along.n > 3 && sin * sin + cos * cos < DIRECTED * along.n as f64;
         findings.extend(undirected.then(|| Finding::doubt("drill-phase-undirected")));
-        let phase = Mean { value: (from + along.value).rem_euclid(1.0), ..along };
+        let certain = !undirected && bias == [0.0; 2] && rings == 0;
+        let std = along.std.filter(|_| certain);
+        let phase = (from + along.value).rem_euclid(1.0);
         let phase = if options.turns_from == TurnsFrom::Impacts && own.iter().all(|i| i.phase < ROUNDING) {
             Estimate::new(0.0, None, "1", own.len(), "turns begin at these impacts")
         } else {
-            estimate(phase, undirected || rings > 0, "1", "part of the turn, mean over impacts on the circle")
+            Estimate::new(phase, std, "1", along.n, "part of the turn, mean over impacts on the circle")
         };
-        let restitution = restitution(&own, front, options).map_err(|found| findings.push(found)).ok();
+        let restitution =
+            restitution(&own, front, options, &moved).map_err(|found| findings.push(found)).ok();
         Group {
             n: members.len(),
             clipped,
             share: f64::NAN,
             phase,
-            before: estimate(before, open_before, "m/s", "parabola up to the contact, mean over impacts"),
-            after: estimate(after, open_after, "m/s", "parabola from the contact on, mean over impacts"),
-            energy: energy(&|i| i.before * i.before, open_before, "½ m v² before, mean over impacts"),
+            before: estimate(before, [1.0, 0.0], "m/s", "parabola up to the contact, mean over impacts"),
+            after: estimate(after, [0.0, 1.0], "m/s", "parabola from the contact on, mean over impacts"),
+            energy: energy(&|i| i.before * i.before, [before.value, 0.0], "½ m v² before, mean over impacts"),
             energy_given: energy(
                 &|i| i.before * i.before - i.after * i.after,
-                open,
+                [before.value, after.value],
                 "½ m (v² before − v² after), mean over impacts",
             ),
             restitution: restitution.map(|r| Estimate { std: r.std.filter(|_| !open), ..r }),
@@ -267,11 +273,16 @@ fn followed(impacts: &[&Impact]) -> usize {
 /// R = Σ(v₂⁺ − v₁⁺)/Σv₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before (W. J. Stronge,
 /// Impact Mechanics, 2000, section 2.4); without a struck mass, or away from it (not `front`), v₂⁺ = 0. The mean of the quotients
 /// would weigh slow impacts most. The uncertainty is that of the mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one
-/// (delta method).
+/// (delta method); `moved` is by how much the biases of the velocities before and after move what changes by parts of them.
 ///
 /// There is none where the approach is consistent with 0, as that of a bit, which is struck; nor where it would be negative or above
 /// 1 by more than its uncertainty explains. Without an uncertainty nothing is explained, and a value above 1 stays.
-fn restitution(impacts: &[&Impact], front: bool, options: &DrillOptions) -> Result<Estimate, Finding> {
+fn restitution(
+    impacts: &[&Impact],
+    front: bool,
+    options: &DrillOptions,
+    moved: &dyn Fn([f64; 2]) -> f64,
+) -> Result<Estimate, Finding> {
     let n = impacts.len() as f64;
     let approach = impacts.iter().map(|i| i.before).sum::<f64>() / n;
     let unclear = impacts.iter().filter(|i| i.before.abs() < CLEAR * i.before_std).count();
@@ -287,7 +298,9 @@ fn restitution(impacts: &[&Impact], front: bool, options: &DrillOptions) -> Resu
     let separation = |i: &Impact| ratio * (i.before - i.after) - i.after;
     let value = impacts.iter().map(|i| separation(i)).sum::<f64>() / n / approach;
     let off: Vec<f64> = impacts.iter().map(|i| (separation(i) - value * i.before) / approach).collect();
-    let estimate = Estimate::new(value, Mean::of(&off).std, "1", impacts.len(), method);
+    let biased = moved([(ratio - value) / approach, (1.0 + ratio) / approach]);
+    let std = Mean::of(&off).std.map(|std| std.hypot(biased));
+    let estimate = Estimate::new(value, std, "1", impacts.len(), method);
     match estimate.std {
         Some(std) if value - BEYOND * std > 1.0 || value + BEYOND * std < 0.0 => {
             let found = Finding::doubt("drill-restitution-impossible");
