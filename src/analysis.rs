@@ -194,21 +194,19 @@ pub fn channels(campaign: &Campaign, allow_outside: bool) -> Result<()> {
 /// As [`Campaign::entries`].
 pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
     let all: Vec<Entry<A>> = campaign.entries(A::SECTION, A::OF_FILES)?;
+    let folder = campaign.folder();
     let each = |entry: Entry<A>| {
-        let Some(pattern) = entry.file.clone().filter(|file| is_pattern(&campaign.folder().join(file)))
-        else {
+        let Some(pattern) = entry.file.clone().filter(|file| is_pattern(folder, file)) else {
             return Ok(vec![entry]);
         };
-        let files =
-            matching(campaign.folder(), &pattern).map_err(|e| campaign.fault(&entry, e.setting("file")))?;
-        let one = |path: PathBuf| {
-            let file = path.strip_prefix(campaign.folder()).unwrap_or(&path).to_owned();
+        let files = matching(folder, &pattern).map_err(|e| campaign.fault(&entry, e.setting("file")))?;
+        let one = |file: PathBuf| {
             let own = |name: &String| {
-                if A::TOGETHER { name.clone() } else { format!("{name}, {}", file_name(&file)) }
+                if A::TOGETHER { name.clone() } else { format!("{name}, {}", file.display()) }
             };
-            let name = entry.name.as_ref().map(own);
             let mut one = entry.clone();
-            (one.name, one.file) = (name, Some(file));
+            one.name = entry.name.as_ref().map(own);
+            one.file = Some(file);
             one
         };
         Ok(files.into_iter().map(one).collect())

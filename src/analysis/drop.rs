@@ -13,6 +13,7 @@ use crate::report::words::About;
 use crate::report::{Cell, Plot, Table};
 use crate::units::notation::significant;
 use serde::Deserialize;
+use std::path::Path;
 
 /// What is known of drops of one series beside their records.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -286,6 +287,14 @@ impl Analysis for Keys {
                 "drops of one series have equal keys: give this one another name, or the same value",
             )
             .setting(key));
+        }
+        let again = |e: &&Entry<Keys>| {
+            entry.file.is_some() && (&e.file, &e.channel.channel) == (&entry.file, &entry.channel.channel)
+        };
+        if earlier.iter().filter(|e| e.name.as_ref() == Some(name)).any(|e| again(&e)) {
+            let file = entry.file.as_deref().unwrap_or(Path::new("")).display();
+            let found = format!("{file} is in the series {name:?} twice");
+            return Err(Error::usage(found, "each record once").setting("file"));
         }
         if entry.keys.before.is_some() && series.any(|e| e.keys.before.is_some()) {
             let found = format!("two drops of {name:?} have velocities");

@@ -4,6 +4,7 @@ use super::{RESULTS, file_name, files};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
 use crate::record::Finding;
+use glob::{MatchOptions, Pattern};
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
@@ -31,17 +32,21 @@ pub fn in_order(files: &mut [PathBuf]) {
     files.sort_by(|a, b| natord::compare(&with_decimals(a), &with_decimals(b)));
 }
 
-/// A path in which all numbers have decimals of one length, so that they are in order as whole numbers are; the ending is no decimal.
+/// A path in which all numbers have decimals of one length, so that they are in order as whole numbers are; the ending is no decimal, nor are parts
+/// of a date or a version.
 fn with_decimals(path: &Path) -> String {
-    let (text, ending) = (path.to_string_lossy(), path.extension().map_or(0, |ending| ending.len() + 1));
-    let (mut rest, ending) = text.split_at(text.len() - ending);
+    let text = path.to_string_lossy();
+    let dot = text.rfind('.').filter(|dot| !text[*dot..].contains(['/', '\\'])).unwrap_or(text.len());
+    let (mut rest, ending) = text.split_at(dot);
     let mut out = String::new();
     let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
     while let Some(begins) = rest.find(|c: char| c.is_ascii_digit()) {
         let (before, number) = rest.split_at(begins);
         let (whole, behind) = number.split_at(digits(number));
         let decimals = behind.strip_prefix('.').map_or("", |behind| &behind[..digits(behind)]);
-        out += &format!("{before}{whole}.{decimals:0<DECIMALS$}");
+        let further = behind.get(1 + decimals.len()..).is_some_and(|rest| rest.starts_with('.'));
+        let decimals = if before == "." || further { "" } else { decimals };
+        out.extend([before, whole, ".", &format!("{decimals:0<DECIMALS$}")]);
         rest = if decimals.is_empty() { behind } else { &behind[1 + decimals.len()..] };
     }
     [&out, rest, ending].concat()
@@ -50,28 +55,35 @@ fn with_decimals(path: &Path) -> String {
 /// Decimals that a number in a name has at most.
 const DECIMALS: usize = 12;
 
-/// Whether a path is the pattern of files, not the name of one.
-pub fn is_pattern(path: &Path) -> bool {
-    path.to_string_lossy().contains(['*', '?']) && !path.exists()
+/// A path without `.` in it.
+fn plain(path: &Path) -> PathBuf {
+    path.components().filter(|part| *part != Component::CurDir).collect()
 }
 
-/// The files in a folder that a name or a pattern with `*`, `?` or `[…]` means, by their names, numbers in them by value.
+/// Whether a name is the pattern of files in a folder, not that of one.
+pub fn is_pattern(folder: &Path, name: &Path) -> bool {
+    name.to_string_lossy().contains(['*', '?']) && !folder.join(name).exists()
+}
+
+/// The names of files in a folder that a name or a pattern with `*`, `?` or `[…]` means, numbers in them by value.
 ///
 /// # Errors
 /// If it is no pattern, or no file has such a name.
 pub fn matching(folder: &Path, name: &Path) -> Result<Vec<PathBuf>> {
-    let pattern = folder.join(name);
-    if pattern.exists() {
-        return Ok(vec![pattern]);
+    if folder.join(name).exists() {
+        return Ok(vec![name.to_owned()]);
     }
-    let text = pattern.to_string_lossy();
+    let base = plain(folder);
+    let pattern = Path::new(&Pattern::escape(&base.to_string_lossy())).join(plain(name));
     let wrong = |e: glob::PatternError| {
-        Error::usage(format!("the pattern {text:?}: {e}"), "a pattern such as step*.csv")
+        Error::usage(format!("the pattern {}: {e}", name.display()), "a pattern such as step*.csv")
     };
+    let found = glob::glob(&pattern.to_string_lossy()).map_err(wrong)?.filter_map(std::result::Result::ok);
     let mut files: Vec<PathBuf> =
-        glob::glob(&text).map_err(wrong)?.filter_map(std::result::Result::ok).collect();
+        found.map(|path| path.strip_prefix(&base).map_or_else(|_| path.clone(), Path::to_owned)).collect();
     if files.is_empty() {
-        return Err(Error::absent(format!("no file matches {text}"), folder, name));
+        let found = format!("no file matches {}", folder.join(name).display());
+        return Err(Error::absent(found, folder, name));
     }
     in_order(&mut files);
     Ok(files)
@@ -105,13 +117,16 @@ fn list(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec
 /// # Errors
 /// As [`files`].
 pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    // `./a` is `a`.
-    let plain = |path: &Path| path.components().filter(|c| *c != Component::CurDir).collect::<PathBuf>();
     let named: BTreeSet<PathBuf> = files(campaign, allow_outside)?.iter().map(|path| plain(path)).collect();
     let folder = plain(campaign.folder());
     let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
-    let quoted = campaign.text().split('"').filter(|text| text.contains('*') && !text.contains('\n'));
-    let patterns: Vec<glob::Pattern> = quoted.filter_map(|text| glob::Pattern::new(text).ok()).collect();
+    // A table that is still a comment may name a pattern.
+    let commented = campaign.text().lines().filter_map(|line| {
+        let key = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("file")?;
+        key.trim_start().strip_prefix('=')?.split('"').nth(1)
+    });
+    let patterns: Vec<Pattern> = commented.filter_map(|text| Pattern::new(text).ok()).collect();
+    let how = MatchOptions { require_literal_separator: true, ..MatchOptions::default() };
     let said = |path: &Path| {
         let name = path.strip_prefix(&folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
         let in_words = || {
@@ -125,7 +140,7 @@ pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Res
                 before.chars().next_back().is_none_or(ends) && behind.chars().next().is_none_or(ends)
             })
         };
-        patterns.iter().any(|pattern| pattern.matches(&name)) || in_words()
+        patterns.iter().any(|pattern| pattern.matches_with(&name, how)) || in_words()
     };
     let new = |path: &&PathBuf| {
         let path = plain(path);

@@ -45,10 +45,15 @@ fn mistakes_point_at_their_line() {
         ("[[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
         ("sweep = \"a\"", "line 1", "double brackets"),
         (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected a name between quotes"),
-        (&format!("{SWEEP}direction = \"left\""), "line 4", "write direction = \"up\""),
+        (&format!("{SWEEP}direction = \"left\""), "line 4", "expected \"up\" or \"down\""),
         (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected a name between quotes"),
         (&format!("{SWEEP}mass = -1"), "line 4", "integer `-1`; expected a whole number, 0 or more"),
         ("[[sweep]]\nlist = \"L\"", "line 1", "add name = "),
+        (
+            "[[drop]]\nname = \"x\"\nfile = \"a.wav\"\n[[drop]]\nname = \"x\"\nfile = \"a.wav\"",
+            "line 6",
+            "in the series \"x\" twice",
+        ),
         ("[rig]\nm1 = 0,5\nm2 = 1", "line 2", "write m1 = 0.5"),
         ("[rig]\nm2 = 1.0\nk1 = -1.0", "line 3, column 1", "k1 is -1 N/m"),
         (
@@ -99,11 +104,38 @@ fn numbers_in_names_are_in_order() {
         "f 11.2 Hz.csv",
         "f 11.2 Hz b.csv",
     ];
-    let mut files: Vec<std::path::PathBuf> = names.iter().rev().map(Into::into).collect();
+    let mut files: Vec<PathBuf> = names.iter().rev().map(Into::into).collect();
     in_order(&mut files);
     let found: Vec<&str> = files.iter().filter_map(|file| file.to_str()).collect();
     assert_eq!(found, names);
-    let mut numbered: Vec<std::path::PathBuf> = ["R2.010", "R2.2", "R2.001"].map(Into::into).into();
-    in_order(&mut numbered);
-    assert_eq!(numbered[0].to_str(), Some("R2.001"));
+    for names in [
+        ["R2.001", "R2.010", "R2.2"],
+        ["2024.9.30.csv", "2024.10.1.csv", "v"],
+        ["\u{e9}1.\u{fffd}", "\u{e9}2", "\u{e9}10.5"],
+    ] {
+        let mut files: Vec<PathBuf> = names.iter().rev().map(Into::into).collect();
+        in_order(&mut files);
+        assert!(files.iter().zip(names).all(|(file, name)| file.to_str() == Some(name)), "{files:?}");
+    }
+}
+
+#[test]
+fn a_pattern_means_files_of_its_folder_however_that_is_named() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("d [1]");
+    std::fs::create_dir_all(folder.join("sub")).unwrap();
+    for name in ["a2.csv", "a10.csv", "b1.csv", "sub/a1.csv"] {
+        std::fs::write(folder.join(name), "").unwrap();
+    }
+    let found = |folder: &Path, name: &str| matching(folder, Path::new(name)).map_err(|e| e.to_string());
+    let expected: Vec<PathBuf> = ["a2.csv", "a10.csv"].map(Into::into).into();
+    for folder in
+        [&folder, &root.path().join("./d [1]"), &folder.join("sub/.."), &root.path().join(".//d [1]/.")]
+    {
+        assert_eq!(found(folder, "a*.csv"), Ok(expected.clone()), "{}", folder.display());
+    }
+    assert_eq!(found(&folder, "./a*.csv"), Ok(expected));
+    assert_eq!(found(&folder, "*/a*.csv"), Ok(vec!["sub/a1.csv".into()]));
+    assert!(found(&folder, "c*.csv").unwrap_err().contains("no file matches"));
+    assert!(is_pattern(&folder, Path::new("a*.csv")) && !is_pattern(Path::new("st*r"), Path::new("a.csv")));
 }

@@ -36,7 +36,7 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
         complaint(&format!("unknown {what} `{named}`"), "", called.or(meant(&known)).unwrap_or_else(all))
     } else if begins("unknown variant") {
         let of_value = line.split_once('=').filter(|(_, value)| value.contains(named));
-        let near = nearest(named, known.iter().copied()).or(known.first().copied());
+        let near = nearest(named, known.iter().copied());
         let write = of_value.zip(near).map(|((key, _), near)| format!("write {} = \"{near}\"", key.trim()));
         let found = of_value.map_or_else(|| format!("the name `{named}`"), |_| line.to_owned());
         complaint(&found, &expected.replace('`', "\""), write.or(meant(known)).unwrap_or_default())
@@ -49,18 +49,13 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
         complaint(&format!("{line} begins one table of several"), "a single table", format!("write {single}"))
     } else if let Some(head) = head_of_tables(line) {
         complaint(line, "two brackets on both sides", format!("write {head}"))
-    } else if let Some(key) = line.split('#').next().and_then(|line| line.trim_end().strip_suffix('=')) {
+    } else if let Some(key) = uncommented(line).strip_suffix('=') {
         let key = key.trim_end();
         complaint(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
     } else if let Some((key, expected, meant)) = mended(line, expected) {
-        let found = line.split('#').next().unwrap_or_default().trim_end();
-        complaint(found, expected, format!("write {} = {meant}", key.replace(' ', "_")))
+        complaint(uncommented(line), expected, format!("write {} = {meant}", key.replace(' ', "_")))
     } else if begins("wanted string") {
-        complaint(
-            line.split('#').next().unwrap_or_default().trim_end(),
-            "a name between quotes",
-            String::new(),
-        )
+        complaint(uncommented(line), "a name between quotes", String::new())
     } else {
         complaint(found, plain(expected), String::new())
     }
@@ -69,7 +64,7 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
 /// A line that is no TOML, or has a value of another kind: its key, what was to stand there, and the value that is meant.
 fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, String)> {
     let (key, value) = line.split_once('=').or_else(|| line.split_once(':'))?;
-    let stated = value.split('#').next()?.trim();
+    let stated = uncommented(value).trim();
     if expected == "`=`" {
         return Some((key.trim(), "an equals sign behind a key of one word", stated.to_owned()));
     }
@@ -97,7 +92,7 @@ fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, Str
     } else if bare.starts_with('.') && number(bare) {
         ("a digit before the point", format!("0{bare}"))
     } else if whole && bare.parse::<f64>().is_ok_and(|v| v >= 0.0 && v.fract() == 0.0) {
-        ("a whole number", bare.split('.').next()?.to_owned())
+        ("a whole number", format!("{:.0}", bare.parse::<f64>().ok()?))
     } else if bare == stated && number(bare) && ["a string", "path string"].contains(&expected) {
         (plain(expected), format!("\"{bare}\""))
     } else if bare != stated && number(bare) {
@@ -106,7 +101,7 @@ fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, Str
         bare.split_once([':', '-']).filter(|(low, high)| number(low) && number(high))
     {
         ("two values between square brackets", format!("[{low}, {high}]"))
-    } else if let Some(meant) = without_unit(bare) {
+    } else if let Some(meant) = without_unit(key.trim(), bare) {
         ("a number in the unit of this key, without it", meant.to_string())
     } else if stated.starts_with('"') && bare.contains('\\') {
         ("a path between single quotes", format!("'{bare}'"))
@@ -116,6 +111,16 @@ fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, Str
         return None;
     };
     Some((key.trim(), expected, meant))
+}
+
+/// A line or a part of one without the comment at its end.
+fn uncommented(line: &str) -> &str {
+    let mut quotes = 0;
+    let is_comment = |c: char| {
+        quotes += usize::from(c == '"');
+        c == '#' && quotes % 2 == 0
+    };
+    line.split(is_comment).next().unwrap_or_default().trim_end()
 }
 
 /// Words of the field, and the tables that are meant by them.
@@ -130,7 +135,7 @@ const TABLES: &[(&str, &str)] = &[
 
 /// The head of one of several tables that is meant by a line whose brackets are no pairs.
 fn head_of_tables(line: &str) -> Option<String> {
-    let head = line.split('#').next()?.trim();
+    let head = uncommented(line);
     let name = head.trim_start_matches('[').trim_end_matches(']');
     let outside = head.len() - name.len();
     let odd = !name.contains(['[', ']', '=']) && (head.starts_with("[[") || head.ends_with("]]"));
@@ -203,10 +208,10 @@ mod tests {
             ("prior.gap = \"20-30\"", &["write prior.gap = [20, 30]"]),
             ("scatter = \"0.1\"", &["a number without quotes", "write scatter = 0.1"]),
             ("starts =   # missing: how many", &["starts has no value", "# starts"]),
-            ("starts = 3.0", &["write starts = 3"]),
+            ("starts = 1.5e1", &["write starts = 15"]),
             ("starts : 3", &["write starts = 3"]),
             ("scatter = .01", &["write scatter = 0.01"]),
-            ("scatter = 300g", &["write scatter = 0.3"]),
+            ("scatter = .5 # a \"#\" ", &["scatter = .5;", "write scatter = 0.5"]),
             ("prior.gap = [1; 2]", &["write prior.gap = [1, 2]"]),
             ("starts = three", &["text between quotes", "write starts = \"three\""]),
             ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),

@@ -23,7 +23,7 @@ pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
 }
 
 /// Units that keys of a campaign have, and parts of them as powers of ten.
-const UNITS: [(&str, i32); 18] = [
+const UNITS: [(&str, i32); 17] = [
     ("k", 3),
     ("Hz", 0),
     ("kHz", 3),
@@ -37,20 +37,21 @@ const UNITS: [(&str, i32); 18] = [
     ("N", 0),
     ("kN", 3),
     ("kg", 0),
-    ("g", -3),
     ("°", 0),
     ("deg", 0),
     ("%", -2),
     ("m/s", 0),
 ];
 
-/// The number that is meant by one with its unit.
-pub fn without_unit(text: &str) -> Option<f64> {
+/// The number that is meant by one with its unit, as the value of a key.
+pub fn without_unit(key: &str, text: &str) -> Option<f64> {
     let meant = |(unit, decimals): &(&str, i32)| {
         // By its text, so that no digit is lost.
         format!("{}e{decimals}", text.trim().strip_suffix(unit)?.trim_end()).parse().ok()
     };
-    UNITS.iter().find_map(meant)
+    // Of other keys a g may be that of an acceleration.
+    let grams = key.trim_start_matches('-').contains("mass") || ["m1", "m2"].contains(&key);
+    UNITS.iter().find_map(meant).or_else(|| meant(&("g", -3)).filter(|_| grams))
 }
 
 /// Low-pass of average and displacement of a drill, or of the instrument of a pulse.

@@ -1,6 +1,6 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
-use super::{Row, rows};
+use super::{Row, print, rows};
 use crate::campaign::{two, without_unit};
 use crate::error::Error;
 use crate::record::{Severity, nearest};
@@ -106,11 +106,11 @@ fn plain(complaint: &clap::Error) -> Error {
                 WORDS.iter().find(|(word, _)| *word == name && command == "vibro").map(|(_, own)| *own);
             let near = called.or_else(|| nearest(&name, own.iter().map(String::as_str)));
             // What was typed behind it stays.
-            let rest =
-                || std::env::args().skip_while(|word| *word != name).skip(1).collect::<Vec<_>>().join(" ");
+            let behind = std::env::args_os().skip_while(|word| *word != *name).skip(1);
+            let rest = || behind.map(|word| print::typed(Path::new(&word))).collect::<Vec<_>>().join(" ");
             let hint = match near {
-                _ if Path::new(&name).is_file() => format!("vibro info {name}"),
-                _ if Path::new(&name).is_dir() => format!("vibro run {name}"),
+                _ if Path::new(&name).is_file() => format!("vibro info {}", print::typed(Path::new(&name))),
+                _ if Path::new(&name).is_dir() => format!("vibro run {}", print::typed(Path::new(&name))),
                 Some(near) => format!("{command} {near} {}", rest()).trim_end().to_owned(),
                 None => help.clone(),
             };
@@ -178,10 +178,10 @@ fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option
         typed(&range)
     } else if value != point && expected == NUMBERS[0].1 && point.parse::<f64>().is_ok() {
         typed(&point)
-    } else if let Some(number) = without_unit(value) {
+    } else if let Some(number) = without_unit(option, value) {
         typed(&number.to_string())
     } else {
-        near.or(names.first().map(String::as_str)).map_or(help, typed)
+        near.map_or(help, typed)
     };
     Error::usage(format!("{option} is {value}"), expected).hint(hint)
 }
@@ -196,7 +196,7 @@ const NUMBERS: [(&str, &str); 3] = [
 /// What a program reads in place of an answer.
 fn object(error: &str, exit_code: u8) {
     // There is nobody left to tell of a failure to print a failure.
-    let _ = super::print::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
+    let _ = print::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
 }
 
 /// Prints findings for a person; JSON carries them itself.
@@ -208,5 +208,5 @@ pub(crate) fn warn(findings: &[(Severity, String)]) {
 
 /// One line on standard error.
 pub fn line(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", super::print::printable(text));
+    let _ = writeln!(std::io::stderr(), "{}", print::printable(text));
 }

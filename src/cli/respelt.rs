@@ -43,22 +43,21 @@ pub fn pipes() -> bool {
 }
 
 /// Numbers of options with the unit that stands behind them as a word of its own, so that it is seen where it belongs: `--height 0.4 m`.
-fn with_units(typed: Vec<OsString>) -> Vec<OsString> {
-    let mut joined: Vec<OsString> = Vec::new();
-    for word in typed {
-        let text = word
-            .to_str()
-            .filter(|unit| without_unit(&format!("1{unit}")).is_some() && !Path::new(unit).exists());
-        if let (Some(unit), [.., option, number]) = (text, joined.as_mut_slice())
-            && option.to_str().is_some_and(|option| option.starts_with("--"))
-            && number.to_str().is_some_and(|number| number.parse::<f64>().is_ok())
-        {
-            number.push(unit);
-        } else {
-            joined.push(word);
+fn with_units(mut typed: Vec<OsString>) -> Vec<OsString> {
+    let is_unit =
+        |unit: &str| without_unit("mass", &format!("1{unit}")).is_some() && !Path::new(unit).exists();
+    let joined = |words: &[OsString]| {
+        let [option, number, unit] = [0, 1, 2].map(|k| words.get(k).and_then(|word| word.to_str()));
+        let (option, number, unit) = (option?, number?, unit?);
+        let unit_of = option.starts_with("--") && number.parse::<f64>().is_ok() && is_unit(unit);
+        unit_of.then(|| format!("{option}={number}{unit}"))
+    };
+    for k in (0..typed.len()).rev() {
+        if let Some(word) = joined(&typed[k..]) {
+            typed.splice(k..k + 3, [word.into()]);
         }
     }
-    joined
+    typed
 }
 
 /// What was typed, in the spelling of today.

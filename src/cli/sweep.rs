@@ -84,7 +84,7 @@ impl Source {
                 proposal.left.clear();
                 Some(proposal)
             }
-            [one] if !is_pattern(one) => None,
+            [one] if !is_pattern(Path::new(""), one) => None,
             all => {
                 let files: Result<Vec<_>> = all.iter().map(|path| matching(Path::new(""), path)).collect();
                 let mut files = files?.concat();

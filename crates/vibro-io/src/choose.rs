@@ -138,7 +138,7 @@ impl Recording {
             }
             (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.called())),
         };
-        let mut trace = traces[chosen?].clone();
+        let mut trace = traces[chosen.map_err(|e| e.setting("channel"))?].clone();
         if let Some(factor) = calibration {
             if trace.meta.has(Trace::UNCALIBRATED) {
                 let found = format!("a calibration of {factor} without a unit");

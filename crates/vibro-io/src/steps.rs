@@ -28,8 +28,11 @@ impl SweepReader {
         let reader = Reader::new().rate(steps.rate).format(self.format);
         let one = |file: &Path, force: &str, response: &str| {
             let recording = reader.from_path(file)?;
-            let force = self.force(recording.trace(Some(force), None)?)?;
-            let mut response = self.response(recording.trace(Some(response), None)?)?;
+            let trace = |name: &str| {
+                let trace = recording.trace(Some(name), None);
+                trace.map_err(|e| e.hint("one of these names; all files of a sweep have the same channels"))
+            };
+            let (force, mut response) = (self.force(trace(force)?)?, self.response(trace(response)?)?);
             response.meta.findings.extend(recording.findings);
             Ok(StepTraces { path: file.to_owned(), force, response })
         };

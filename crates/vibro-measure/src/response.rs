@@ -135,7 +135,10 @@ impl Response {
             let receptances: Option<Vec<Complex64>> = points.iter().map(receptance).collect();
             let receptances = receptances.unwrap_or_default();
             let curve = NamedCurve::new(points.iter().map(at).collect(), &receptances, direction, *mass);
+            // Where two steps have one frequency nothing is interpolated, however fine the others are.
+            let alone = |f: f64| points.iter().filter(|p| p.excitation == f).count() == 1;
             let coarse = curve.resonances.iter().filter(|r| r.is_largest_point()).map(|r| r.frequency);
+            let coarse = coarse.filter(|f| alone(*f));
             let coarse: Vec<f64> = coarse.collect();
             let found = Finding::caution("sweep-steps-coarse").count("n", coarse.len());
             findings.extend((!coarse.is_empty()).then(|| found.numbers("frequencies", coarse)));

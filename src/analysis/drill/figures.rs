@@ -131,7 +131,7 @@ fn speed(name: &str, drill: &Drill) -> Figure {
         ("each turn".to_owned(), 1)
     };
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let over = |values: &[f64]| thin(&values.chunks(turns).map(mean).collect::<Vec<f64>>(), POINTS);
+    let over = |values: &[f64]| thin(&values.chunks_exact(turns).map(mean).collect::<Vec<f64>>(), POINTS);
     let plot = plot.with(Series::line(name_of, over(&drill.times), over(&drill.speeds)).stroke(Stroke::Thin));
     let plot = plot.with(Series::horizontal("mean", drill.speed.value));
     let step = significant(drill.speed.value.powi(2) * drill.excerpt_time.1, 2);

@@ -57,6 +57,7 @@ impl Listed {
             let one = |path: &PathBuf| matching(folder, path.strip_prefix(folder).unwrap_or(path));
             let found: Result<Vec<Vec<PathBuf>>> = all("traces", &keys.traces)?.iter().map(one).collect();
             let files = found.map_err(|e| campaign.fault(entry, e.setting("traces")))?.concat();
+            let files = files.iter().map(|name| folder.join(name)).collect();
             let (force, response) = (keys.force.clone(), keys.response.clone());
             Files::Traces(Steps { files, force, response, rate: keys.rate })
         };

@@ -148,7 +148,8 @@ pub(super) fn findings(
     let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
     let mean = drift * d.speed.value;
     let moved = |v: &Estimate| mean.abs() > v.std.unwrap_or(SMALL * v.value.abs());
-    let doubted = d.groups.iter().flat_map(|g| &g.findings).any(|found| found.code == "drill-mean-velocity");
+    let doubted = |g: &Group| g.findings.iter().any(|found| found.code == "drill-mean-velocity");
+    let moved = |g: &Group| !doubted(g) && (moved(&g.before) || moved(&g.after));
     let removed = Finding::caution("drill-mean-removed").number("mean", mean);
     let own = d.turns_from == TurnsFrom::Impacts;
     let turned = Finding::caution("drill-turns-from-impacts").number("rpm", 60.0 * d.speed.value);
@@ -169,7 +170,7 @@ pub(super) fn findings(
         (f.clipped > 0, over_range.number("low", velocity.low).number("high", velocity.high)),
         (d.hidden > 0, Finding::caution("drill-impacts-hidden").count("n", d.hidden)),
         (drift.abs() > DRIFTING * stroke, drifts),
-        (d.before.as_ref().is_some_and(moved) && !doubted, removed),
+        (d.groups.iter().any(moved), removed),
         (without > d.hidden && without > d.averaged / FEW, missed.count("n", without)),
         (d.impacts.is_empty(), Finding::caution("drill-no-impact").number("contact", options.contact)),
         (few.is_some(), Finding::caution("drill-few-values").count("n", few.unwrap_or(0))),

@@ -25,7 +25,7 @@ function tableTools(table) {
       copy.textContent = "selected: press Ctrl+C";
     }
   });
-  bar.append(copy, button("CSV", "Save as CSV", () => {
+  bar.append(copy, button("CSV", "Save as CSV: all digits, in units without prefixes", () => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([table.dataset.csv], { type: "text/csv" }));
     link.download = `${name.replace(/[^\p{L}\p{N}]+/gu, "_")}.csv`;

@@ -141,12 +141,16 @@ fn twenty(before: f64, after: f64, std: f64) -> Vec<Impact> {
 #[test]
 fn what_strikes_has_a_restitution_and_what_is_struck_has_none() {
     // 0.1 kg at 5 m/s on 0.3 kg: they part at 0.4 · 5 m/s; momentum leaves −0.25 and 1.75 m/s.
-    let found =
-        restitution(&twenty(5.0, -0.25, 0.02).iter().collect::<Vec<_>>(), true, &options(Some((0.1, 0.3))))
-            .unwrap();
+    let found = restitution(
+        &twenty(5.0, -0.25, 0.02).iter().collect::<Vec<_>>(),
+        true,
+        &options(Some((0.1, 0.3))),
+        &|_| 0.0,
+    )
+    .unwrap();
     // Scatter of 0.003 a speed over 20 impacts; four times that.
     assert!((found.value - 0.4).abs() < 4.0 * 0.003 / 20f64.sqrt(), "{found:?}");
-    let why = |i: &[Impact], o| restitution(&i.iter().collect::<Vec<_>>(), true, &o).unwrap_err();
+    let why = |i: &[Impact], o| restitution(&i.iter().collect::<Vec<_>>(), true, &o, &|_| 0.0).unwrap_err();
     assert_eq!(why(&twenty(0.01, 2.7, 0.02), options(None)).code, "drill-not-striking");
     for after in [-5.5, 2.5] {
         let why = why(&twenty(5.0, after, 0.02), options(None));
@@ -158,7 +162,8 @@ fn what_strikes_has_a_restitution_and_what_is_struck_has_none() {
 #[test]
 fn what_has_no_uncertainty_explains_nothing() {
     // Three impacts have no uncertainty: that 1.1 is above 1 is not beyond it.
-    let found = restitution(&twenty(5.0, -5.5, 0.02)[..3].iter().collect::<Vec<_>>(), true, &options(None));
+    let found =
+        restitution(&twenty(5.0, -5.5, 0.02)[..3].iter().collect::<Vec<_>>(), true, &options(None), &|_| 0.0);
     let found = found.unwrap();
     assert!((found.value - 1.1).abs() < 0.01 && found.std.is_none(), "{found:?}");
 }
@@ -172,7 +177,7 @@ fn a_striker_whose_speed_varies_by_half_still_strikes() {
         impact.before = 1.1 + 7.9 * ((k * 7) % 20) as f64 / 19.0;
         impact.after = -0.3 * impact.before;
     }
-    let found = restitution(&all.iter().collect::<Vec<_>>(), true, &options(None));
+    let found = restitution(&all.iter().collect::<Vec<_>>(), true, &options(None), &|_| 0.0);
     assert!((found.as_ref().unwrap().value - 0.3).abs() < 1e-12, "{found:?}");
 }
 
@@ -226,4 +231,37 @@ fn fits_that_lead_beyond_the_record_give_no_velocities() {
     assert!((kept.before.value - 6.0).abs() < 0.2 && kept.restitution.is_some());
     assert!(refused.before.value.is_nan() && refused.after.value.is_nan() && refused.restitution.is_none());
     assert!(refused.findings.iter().any(|found| found.code == "drill-velocity-impossible"));
+}
+
+/// Residuals of −√7 P₃, as a parabola leaves of a cubic, in parts of the fit: the bias is that cubic at the contact.
+#[test]
+fn what_parabolas_leave_in_common_is_in_the_uncertainty() {
+    let places = 40;
+    let cubic = |k: usize| {
+        let x = 2.0 * (k as f64 + 0.5) / f64::from(places) - 1.0;
+        0.5 * x * (5.0 * x * x - 3.0) * 7f64.sqrt()
+    };
+    let mut noise = Normal(8);
+    let mut all = impacts(&[(0.3, 6.0, -1.2); 30]);
+    for impact in &mut all {
+        (impact.before, impact.after) = (6.0 + 0.001 * noise.next(), -1.2 + 0.001 * noise.next());
+    }
+    let mut of = |rms: f64| {
+        let one = |_| (0..places as usize).map(|k| rms * cubic(k) + 0.001 * noise.next()).collect();
+        (0..30).map(one).collect::<Vec<Vec<f64>>>()
+    };
+    let (quiet, bent) = (of(0.0), of(0.05));
+    let residuals: Vec<[Vec<f64>; 2]> = quiet.into_iter().zip(bent).map(|(a, b)| [a, b]).collect();
+    let found =
+        groups(&mut all, &residuals, 5, 30, &options(Some((0.14, 0.42))), &Offset { value: 0.0, std: None });
+    let [group] = found.as_slice() else { panic!("{found:?}") };
+    assert_eq!(group.findings.iter().map(|f| f.code.as_ref()).collect::<Vec<_>>(), ["drill-lack-of-fit"]);
+    // x = 1.25 five of forty samples beyond the end.
+    let bias = 0.05 * 7f64.sqrt() * 0.5 * 1.25 * (5.0 * 1.25 * 1.25 - 3.0);
+    let near = |std: Option<f64>, expected: f64| (std.unwrap() / expected - 1.0).abs() < 0.02;
+    assert!(group.before.std.unwrap() < 0.001 && near(group.after.std, bias), "{group:?} {bias}");
+    assert!(near(group.energy_given.as_ref().unwrap().std, 0.14 * 1.2 * bias));
+    // R = (v − v′)/3 − v′ over v.
+    assert!(near(group.restitution.as_ref().unwrap().std, (1.0 + 1.0 / 3.0) / 6.0 * bias));
+    assert_eq!(group.phase.std, None);
 }
