@@ -180,10 +180,13 @@ impl Trial<'_> {
                 proposal.tables.push(pulse);
                 continue;
             }
-            match self.first(&others).or_else(|| self.unexplained(&others)) {
-                Some(table) => proposal.tables.push(table),
-                None => self.add(series.channel_table(k, name, "spectrum", "a time record"), file, proposal),
+            if let Some(table) = self.first(&others).or_else(|| self.unexplained(&others)) {
+                proposal.tables.push(table);
+                continue;
             }
+            let table = series.channel_table(k, name, "spectrum", "a time record");
+            let what = "sines to fit, strongest first; gives their true amplitudes";
+            self.add(table.open("tones", "", what), file, proposal);
         }
     }
 

@@ -47,7 +47,12 @@ impl Whiteness {
 
     /// Whether white noise is rejected.
     pub fn rejected(&self) -> bool {
-        self.p_value.is_some_and(|p| p < REJECTED)
+        self.rejected_among(1)
+    }
+
+    /// Whether white noise is rejected where so many are looked at, one of which shows as much by chance more often.
+    pub fn rejected_among(&self, many: usize) -> bool {
+        self.p_value.is_some_and(|p| p * (many as f64) < REJECTED)
     }
 
     /// That the residuals are not white, with the factor by which that enlarges uncertainties, unless it is 1.00.

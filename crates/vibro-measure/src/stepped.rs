@@ -67,7 +67,10 @@ pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) ->
         step.overrule(point, options.times(&sweep), found.unit);
         found.findings.extend(step.findings.iter().cloned());
     }
-    let restless = taken.iter().filter(|step| step.wanders).map(|step| step.frequency.value);
+    let restless = taken
+        .iter()
+        .filter(|step| step.whiteness.is_some_and(|w| w.rejected_among(steps.len())))
+        .map(|step| step.frequency.value);
     let restless: Vec<f64> = restless.collect();
     if !restless.is_empty() {
         let found_there = Finding::caution("step-wanders").count("n", restless.len());
@@ -94,8 +97,8 @@ struct Step {
     response: Phasor,
     /// Response over force.
     ratio: Phasor,
-    /// Whether the response changes from one stretch to the next by more than its noise.
-    wanders: bool,
+    /// Whether the response changes from one stretch to the next by no more than its noise, where that is known.
+    whiteness: Option<Whiteness>,
     findings: Vec<Finding>,
 }
 
@@ -154,14 +157,14 @@ impl Step {
             findings.push(about(Finding::doubt, "step-not-settled").number("left", part));
             (response, ratio) = (response.doubted(), ratio.doubted());
         }
-        let wanders = response.wanders && response.std.is_some();
+        let whiteness = response.std.map(|_| response.whiteness);
         if cut + cut_force > 0 {
             findings.push(about(Finding::doubt, "step-clipped").count("n", cut + cut_force));
             (response, ratio) = (response.doubted(), ratio.doubted());
             force.1 = force.1.filter(|_| cut_force == 0);
         }
         let begins = blocks.start(begins);
-        Ok(Step { rate, samples, begins, frequency, force, response, ratio, wanders, findings })
+        Ok(Step { rate, samples, begins, frequency, force, response, ratio, whiteness, findings })
     }
 
     fn excitation(&self, step: &StepTraces) -> Excitation {
@@ -227,7 +230,7 @@ struct Phasor {
     /// Number of blocks.
     n: usize,
     /// Whether the blocks depend on each other.
-    wanders: bool,
+    whiteness: Whiteness,
 }
 
 impl Phasor {
@@ -239,7 +242,7 @@ impl Phasor {
         let (along, across): (Vec<f64>, Vec<f64>) = turned.iter().map(|v| (v.re, v.im)).unzip();
         let whiteness = Whiteness::of(&[&along, &across]);
         let std = |values: &[f64]| scatter_of_mean(values).map(|std| std * whiteness.inflation);
-        Phasor { value, std: std(&along), across: std(&across), n, wanders: whiteness.rejected() }
+        Phasor { value, std: std(&along), across: std(&across), n, whiteness }
     }
 
     fn doubted(self) -> Phasor {
