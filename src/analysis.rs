@@ -88,9 +88,7 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
     /// # Errors
     /// If one leads outside the folder or does not exist.
     fn files(campaign: &Campaign, entry: &Entry<Self>, allow_outside: bool) -> Result<Vec<PathBuf>> {
-        let own = entry.file.as_ref().map(|file| ("file", file));
-        let all = own.into_iter().chain(entry.keys.beside());
-        all.map(|(key, file)| campaign.file(entry, key, file, allow_outside)).collect()
+        named_in(campaign, entry, allow_outside)
     }
 
     /// Measures the records of all tables.
@@ -264,6 +262,13 @@ fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
         return job.together(A::SECTION, |job| A::run(&entries, job));
     }
     A::run(&entries, job)
+}
+
+/// The file of a table, and those beside it.
+fn named_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>, allow_outside: bool) -> Result<Vec<PathBuf>> {
+    let own = entry.file.as_ref().map(|file| ("file", file));
+    let all = own.into_iter().chain(entry.keys.beside());
+    all.map(|(key, file)| campaign.file(entry, key, file, allow_outside)).collect()
 }
 
 /// The error of a table that must name a file.

@@ -13,7 +13,6 @@ use crate::report::words::About;
 use crate::report::{Cell, Plot, Table};
 use crate::units::notation::significant;
 use serde::Deserialize;
-use std::path::Path;
 
 /// What is known of drops of one series beside their records.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -288,12 +287,11 @@ impl Analysis for Keys {
             )
             .setting(key));
         }
-        let again = |e: &&Entry<Keys>| {
-            entry.file.is_some() && (&e.file, &e.channel.channel) == (&entry.file, &entry.channel.channel)
-        };
-        if earlier.iter().filter(|e| e.name.as_ref() == Some(name)).any(|e| again(&e)) {
-            let file = entry.file.as_deref().unwrap_or(Path::new("")).display();
-            let found = format!("{file} is in the series {name:?} twice");
+        let same = |e: &Entry<Keys>| (&e.file, &e.channel.channel) == (&entry.file, &entry.channel.channel);
+        if let Some(file) = &entry.file
+            && series.clone().any(same)
+        {
+            let found = format!("{} is in the series {name:?} twice", file.display());
             return Err(Error::usage(found, "each record once").setting("file"));
         }
         if entry.keys.before.is_some() && series.any(|e| e.keys.before.is_some()) {

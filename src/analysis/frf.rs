@@ -9,7 +9,7 @@ pub use function::Function;
 use super::answer::left_out;
 use super::job::Marks;
 use super::spectrum::{self, Detrend};
-use super::{Analysis, Answer, Job, Source, no_file, sweep};
+use super::{Analysis, Answer, Job, Source, named_in, no_file, sweep};
 use crate::campaign::{Campaign, Entry, above_zero, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
@@ -239,9 +239,7 @@ impl Analysis for Keys {
             let known = sweep::named(campaign, Some(name), allow_outside);
             known.map_err(|e| campaign.fault(entry, e.hint("the name of a [[sweep]]").setting("sweep")))?;
         }
-        let own = entry.file.as_ref().map(|file| ("file", file)).into_iter();
-        let all = own.chain(entry.keys.beside());
-        all.map(|(key, file)| campaign.file(entry, key, file, allow_outside)).collect()
+        named_in(campaign, entry, allow_outside)
     }
 
     fn channels(&self) -> Vec<(&'static str, &String)> {

@@ -86,10 +86,6 @@ impl Reader {
 /// The complaint that none of several channels, each with its place in the file, was chosen; one whose name is not its own goes by its number.
 fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
     let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
-    if names.is_empty() {
-        return Error::input(Place::file(path), "its only channel is the reference", "a second channel")
-            .hint("another file");
-    }
     let found = format!("{} channels, and none was chosen", names.len());
     let error = Error::input(Place::file(path), found, format!("one of {}", names.join(", ")));
     match channels {
@@ -97,7 +93,8 @@ fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
             error.set("channel", format!("{name:?}"))
         }
         [(i, _), ..] => error.set("channel", (i + 1).to_string()),
-        [] => error,
+        [] => Error::input(Place::file(path), "its only channel is the reference", "a second channel")
+            .hint("another file"),
     }
 }
 
