@@ -10,11 +10,12 @@ use vibroimpact::Result;
 use vibroimpact::figure::{
     AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Medium, Plot, Series, Stroke, Waterfall,
 };
+use vibroimpact::read::Owner;
 use vibroimpact::report::{Cell, Output, Page, Picture, Table};
 
 fn main() -> Result<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "gallery".to_owned());
-    let mut out = Output::new(folder)?;
+    let mut out = Output::new(std::path::PathBuf::from(folder), Owner::Results)?;
     let mut page = Page::new("Two-mass rig: one figure of each kind")
         .paragraph("All data are made up by formulas: nothing here is a measurement.")
         .heading("Figures");

@@ -24,9 +24,9 @@ mod headline;
 mod page;
 
 pub use answer::Answer;
-pub use job::{INPUTS, JobOptions, Progress, REPORT, RESULTS, Ran, answers, run};
+pub use job::{INPUTS, Progress, REPORT, RESULTS, Ran, answers, run};
 pub use kept::Kept;
-pub(crate) use recordings::{OWN, in_order, is_pattern, matching, recordings, unnamed};
+pub(crate) use recordings::{OWN, Recordings, in_order, is_pattern, matching, recordings, unnamed};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 
@@ -49,7 +49,9 @@ pub mod figures {
 
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
+use crate::read::Folder;
 use crate::record::find_channel;
+use crate::report::files::Names;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
@@ -61,6 +63,9 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
     const TITLE: &'static str;
     /// Whether records lie in files: their tables then have the keys of how a file is read.
     const OF_FILES: bool = true;
+
+    /// Names of the files that it writes.
+    const FILES: Names;
 
     /// Whether its tables are answered together, not each by itself.
     const TOGETHER: bool = false;
@@ -87,8 +92,8 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
     ///
     /// # Errors
     /// If one leads outside the folder or does not exist.
-    fn files(campaign: &Campaign, entry: &Entry<Self>, allow_outside: bool) -> Result<Vec<PathBuf>> {
-        named_in(campaign, entry, allow_outside)
+    fn files(campaign: &Campaign, entry: &Entry<Self>) -> Result<Vec<PathBuf>> {
+        named_in(campaign, entry)
     }
 
     /// Measures the records of all tables.
@@ -112,9 +117,10 @@ pub(crate) trait OfFile {
 pub(crate) struct Kind {
     section: &'static str,
     title: &'static str,
+    names: Names,
     check: fn(&Campaign) -> Result<()>,
-    files: fn(&Campaign, bool) -> Result<Vec<PathBuf>>,
-    channels: fn(&Campaign, bool) -> Result<()>,
+    files: fn(&Campaign) -> Result<Vec<PathBuf>>,
+    channels: fn(&Campaign) -> Result<()>,
     run: fn(&mut Job<'_>) -> Result<()>,
 }
 
@@ -123,11 +129,19 @@ impl Kind {
         Kind {
             section: A::SECTION,
             title: A::TITLE,
+            names: A::FILES,
             check: check::<A>,
             files: files_of::<A>,
             channels: channels_of::<A>,
             run: run_all::<A>,
         }
+    }
+}
+
+impl Kind {
+    /// Whether a campaign may write a file of this name for its records of this kind.
+    fn writes(&self, campaign: &Campaign, name: &str) -> bool {
+        self.names.has(name) && campaign.written(self.section).is_ok_and(|tables| !tables.is_empty())
     }
 }
 
@@ -153,15 +167,23 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
 pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
-    checked(Campaign::from_path(path, &sections().collect::<Vec<_>>())?)
+    open_in(&Folder::default(), path.as_ref())
+}
+
+/// As [`open`], of a disk or a memory; names may lead outside the folder of the campaign where `within` allows it.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_in(within: &Folder, path: &Path) -> Result<Campaign> {
+    checked(Campaign::from_path(within, path, &sections().collect::<Vec<_>>())?)
 }
 
 /// Checks the text of a campaign and all its records, as if it stood in a file.
 ///
 /// # Errors
 /// As [`open`].
-pub fn parse(path: &Path, text: String) -> Result<Campaign> {
-    checked(Campaign::parse(path, text, &sections().collect::<Vec<_>>())?)
+pub fn parse(within: &Folder, path: &Path, text: String) -> Result<Campaign> {
+    checked(Campaign::parse(within, path, text, &sections().collect::<Vec<_>>())?)
 }
 
 fn checked(campaign: Campaign) -> Result<Campaign> {
@@ -173,8 +195,8 @@ fn checked(campaign: Campaign) -> Result<Campaign> {
 ///
 /// # Errors
 /// If one leads outside its folder or does not exist.
-pub fn files(campaign: &Campaign, allow_outside: bool) -> Result<Vec<PathBuf>> {
-    let files: Result<Vec<_>> = KINDS.iter().map(|kind| (kind.files)(campaign, allow_outside)).collect();
+pub fn files(campaign: &Campaign) -> Result<Vec<PathBuf>> {
+    let files: Result<Vec<_>> = KINDS.iter().map(|kind| (kind.files)(campaign)).collect();
     Ok(files?.concat())
 }
 
@@ -182,8 +204,8 @@ pub fn files(campaign: &Campaign, allow_outside: bool) -> Result<Vec<PathBuf>> {
 ///
 /// # Errors
 /// If a file cannot be read, or has no such channel.
-pub fn channels(campaign: &Campaign, allow_outside: bool) -> Result<()> {
-    KINDS.iter().try_for_each(|kind| (kind.channels)(campaign, allow_outside))
+pub fn channels(campaign: &Campaign) -> Result<()> {
+    KINDS.iter().try_for_each(|kind| (kind.channels)(campaign))
 }
 
 /// The tables of a kind of record; one whose file is a pattern stands for one of each file that it matches.
@@ -192,7 +214,7 @@ pub fn channels(campaign: &Campaign, allow_outside: bool) -> Result<()> {
 /// As [`Campaign::entries`].
 pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
     let all: Vec<Entry<A>> = campaign.entries(A::SECTION, A::OF_FILES)?;
-    let folder = campaign.folder();
+    let folder = campaign.within();
     let each = |entry: Entry<A>| {
         let Some(pattern) = entry.file.clone().filter(|file| is_pattern(folder, file)) else {
             return Ok(vec![entry]);
@@ -228,15 +250,15 @@ fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
     Ok(())
 }
 
-fn channels_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<()> {
+fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<()> {
     for entry in entries::<A>(campaign)? {
         let named = entry.channel.channel.iter().map(|name| ("channel", name));
         let named: Vec<_> = named.chain(entry.keys.channels()).collect();
         if entry.file.is_none() && named.is_empty() {
             continue;
         }
-        let Some(path) = A::files(campaign, &entry, allow_outside)?.into_iter().next() else { continue };
-        let (_, headers, _) = entry.reading.reader()?.survey(&path)?;
+        let Some(path) = A::files(campaign, &entry)?.into_iter().next() else { continue };
+        let (_, headers, _) = entry.reading.reader()?.within(campaign.within()).survey(&path)?;
         // Values that are numbered, as a step without a rate shows.
         if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
             let error = Error::usage(format!("{} has no sampling rate", path.display()), "rate = HZ");
@@ -250,9 +272,9 @@ fn channels_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<
     Ok(())
 }
 
-fn files_of<A: Analysis>(campaign: &Campaign, allow_outside: bool) -> Result<Vec<PathBuf>> {
+fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     let files: Result<Vec<_>> =
-        entries::<A>(campaign)?.iter().map(|entry| A::files(campaign, entry, allow_outside)).collect();
+        entries::<A>(campaign)?.iter().map(|entry| A::files(campaign, entry)).collect();
     Ok(files?.concat())
 }
 
@@ -265,10 +287,10 @@ fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
 }
 
 /// The file of a table, and those beside it.
-fn named_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>, allow_outside: bool) -> Result<Vec<PathBuf>> {
+fn named_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<Vec<PathBuf>> {
     let own = entry.file.as_ref().map(|file| ("file", file));
     let all = own.into_iter().chain(entry.keys.beside());
-    all.map(|(key, file)| campaign.file(entry, key, file, allow_outside)).collect()
+    all.map(|(key, file)| campaign.file(entry, key, file)).collect()
 }
 
 /// The error of a table that must name a file.

@@ -41,7 +41,7 @@ pub(crate) use value::{LowPass, channel, channels, one_or_more, two, without_uni
 
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Parameter, Rig, Scene};
-use crate::read::inside;
+use crate::read::Folder;
 use crate::record::Finding;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -77,6 +77,8 @@ pub struct Campaign {
     #[serde(skip)]
     path: PathBuf,
     #[serde(skip)]
+    folder: Folder,
+    #[serde(skip)]
     text: String,
 }
 
@@ -85,11 +87,10 @@ impl Campaign {
     ///
     /// # Errors
     /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
-    pub fn from_path(path: impl AsRef<Path>, sections: &[&str]) -> Result<Campaign> {
-        let path = path.as_ref();
+    pub fn from_path(within: &Folder, path: &Path, sections: &[&str]) -> Result<Campaign> {
         let other = |found: &str, expected: &str| Error::input(Place::file(path), found, expected);
-        if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || path.is_dir() {
-            if !path.exists() {
+        if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || within.is_folder(path) {
+            if !within.exists(path) {
                 return Err(Error::absent(
                     format!("there is no file or folder {}", path.display()),
                     Path::new(""),
@@ -99,7 +100,7 @@ impl Campaign {
             return Err(other("not a campaign", "a campaign file, NAME.toml, or a folder of recordings")
                 .hint("a list of files goes to `vibro response`; docs/campaign.md shows a campaign"));
         }
-        let bytes = std::fs::read(path).map_err(|e| Error::io("open", path, e))?;
+        let bytes = within.read(path)?;
         if bytes.trim_ascii().is_empty() {
             let hint = "write what it is to do, e.g. a table [[sweep]] with name, list and quantity, or [[frf]] with file;";
             let hint = format!("{hint} docs/campaign.md lists every key");
@@ -110,14 +111,14 @@ impl Campaign {
             Error::input(place, "bytes that are not UTF-8", "text in UTF-8")
                 .hint("save the file as UTF-8 in your editor")
         })?;
-        Campaign::parse(path, text, sections)
+        Campaign::parse(within, path, text, sections)
     }
 
     /// The text of a campaign, as if it stood in a file.
     ///
     /// # Errors
     /// As [`Campaign::from_path`].
-    pub fn parse(path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
+    pub fn parse(within: &Folder, path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
         let complaint = |e: &toml::de::Error| locate::toml_error(path, &text, e, sections);
         let table = DeTable::parse(&text).map_err(|e| complaint(&e))?.into_inner();
         let keys = || table.keys().map(|key| key.get_ref().as_ref());
@@ -134,7 +135,9 @@ impl Campaign {
             table.into_iter().partition(|(key, _)| of_records(key.get_ref()));
         let sections = records.len();
         let head: Campaign = locate::keys(head, 0..0).map_err(|e| complaint(&e))?;
-        let campaign = Campaign { sections, path: path.to_owned(), text, ..head };
+        let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let (path, folder) = (path.to_owned(), within.at(parent));
+        let campaign = Campaign { sections, path, folder, text, ..head };
         campaign.check()?;
         Ok(campaign)
     }
@@ -181,7 +184,7 @@ impl Campaign {
             let lacking: Vec<&str> = lacking.map(|(key, _)| key.as_str()).collect();
             let found = Finding::note("table-in-comment").about(file.unwrap_or(&head));
             // One that was only proposed has no lines to look at.
-            let found = if self.path.is_file() { found.count("line", i + 1) } else { found };
+            let found = if self.is_file() { found.count("line", i + 1) } else { found };
             Some(if lacking.is_empty() { found } else { found.name("keys", lacking.join(", ")) })
         };
         let unused = lines.iter().position(|line| *line == "# Not used:");
@@ -204,7 +207,17 @@ impl Campaign {
 
     /// Folder of the campaign file, to which its names are relative.
     pub fn folder(&self) -> &Path {
-        self.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+        self.folder.root()
+    }
+
+    /// The same, and whether names may lead outside it.
+    pub fn within(&self) -> &Folder {
+        &self.folder
+    }
+
+    /// Whether it stands in a file; else it was proposed.
+    pub fn is_file(&self) -> bool {
+        self.folder.is_file(&self.path)
     }
 
     /// Folder for results.
@@ -227,10 +240,7 @@ impl Campaign {
             return Err(at("rig", key, error));
         }
         let out = self.out.as_deref().unwrap_or(Path::new(RESULTS));
-        inside(self.folder(), out, false).map_err(|_| {
-            let found = format!("out = {} leads outside this folder", out.display());
-            at("", "out", Error::usage(found, "a folder beside the campaign"))
-        })?;
+        self.folder.path(out).map_err(|e| at("", "out", e))?;
         let checked =
             [("compute", self.compute.check()), ("model", self.model.check()), ("fit", self.fit.check())];
         for (table, checked) in checked {
@@ -250,29 +260,17 @@ impl Campaign {
     ///
     /// # Errors
     /// If it leads outside the folder.
-    pub(crate) fn path_of<K>(
-        &self,
-        entry: &Entry<K>,
-        key: &'static str,
-        name: &Path,
-        allow_outside: bool,
-    ) -> Result<PathBuf> {
-        inside(self.folder(), name, allow_outside).map_err(|e| self.fault(entry, e.setting(key)))
+    pub(crate) fn path_of<K>(&self, entry: &Entry<K>, key: &'static str, name: &Path) -> Result<PathBuf> {
+        self.folder.path(name).map_err(|e| self.fault(entry, e.setting(key)))
     }
 
     /// Path of a file that a table names under a key, and that is there.
     ///
     /// # Errors
     /// If it leads outside the folder; if it does not exist.
-    pub(crate) fn file<K>(
-        &self,
-        entry: &Entry<K>,
-        key: &'static str,
-        name: &Path,
-        allow_outside: bool,
-    ) -> Result<PathBuf> {
-        let path = self.path_of(entry, key, name, allow_outside)?;
-        if path.exists() {
+    pub(crate) fn file<K>(&self, entry: &Entry<K>, key: &'static str, name: &Path) -> Result<PathBuf> {
+        let path = self.path_of(entry, key, name)?;
+        if self.folder.exists(&path) {
             return Ok(path);
         }
         let error = Error::absent(format!("the file {} does not exist", path.display()), self.folder(), name);

@@ -230,11 +230,14 @@ pub fn main() -> u8 {
     }
     let last = std::iter::successors(Some(&typed), |at| Some(at.subcommand()?.1)).last();
     let style = last.and_then(|typed| typed.try_get_one::<String>("style").ok()?);
-    match style.map(String::as_str) {
-        Some("paper") => drop(print::STYLE.set(Medium::Paper)),
-        Some("slide") => drop(print::STYLE.set(Medium::Slide)),
-        _ => {}
-    }
+    let medium = match style.map(String::as_str) {
+        Some("paper") => Medium::Paper,
+        Some("slide") => Medium::Slide,
+        _ => Medium::Report,
+    };
+    let replace = last.and_then(|typed| typed.try_get_one("replace").ok()?).copied().unwrap_or(false);
+    // Nothing has set it before.
+    let _ = print::WRITTEN.set(print::Written { medium, replace });
     let row = |(name, typed)| Some((rows().find(|row| row.name() == name)?, typed));
     let Some((row, typed)) = typed.subcommand().and_then(row) else {
         return complain::nothing(&short(), json);
@@ -261,12 +264,27 @@ fn options(command: Typed) -> Typed {
         if takes && !own { arg.value_name(kind) } else { arg }
     };
     let command = command.mut_args(option).mut_subcommands(options);
-    if !command.get_arguments().any(|arg| arg.get_id() == "out") {
+    let has = |name: &str| command.get_arguments().any(|arg| arg.get_id() == name);
+    let (draws, writes) = (has("out"), WRITES.iter().any(|name| has(name)));
+    let command = if writes {
+        let replace = Arg::new("replace").long("replace").action(ArgAction::SetTrue).help(REPLACE);
+        command.arg(replace.display_order(order + 2))
+    } else {
+        command
+    };
+    if !draws {
         return command;
     }
     let style = Arg::new("style").long("style").value_name("STYLE").help(STYLES).hide_possible_values(true);
     command.arg(style.value_parser(["report", "paper", "slide"]).display_order(order + 1))
 }
+
+/// Options of commands that write files.
+const WRITES: [&str; 4] = ["out", "output", "each_cycle", "write_lists"];
+
+/// What is replaced where it is stated.
+const REPLACE: &str =
+    "Replace files that vibro did not write, or that were changed since; never what the command reads";
 
 /// The kind of an option's value.
 fn kind(arg: &Arg) -> &'static str {

@@ -15,7 +15,7 @@
 //! use vibroimpact::analysis::{named, open};
 //! use vibroimpact::measure::response::ResponseOptions;
 //! let campaign = open("examples/two_mass_rig/campaign.toml")?;
-//! let (_, found) = named(&campaign, Some("mass 1, up"), false)?.taken(&ResponseOptions::default())?;
+//! let (_, found) = named(&campaign, Some("mass 1, up"))?.taken(&ResponseOptions::default())?;
 //! let largest = found.points.iter().map(|p| &p.amplitude).max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
 //! assert!((largest.value - 14.19e-3).abs() < 0.02e-3); // m
 //! assert!(largest.std.unwrap() < 1e-6);

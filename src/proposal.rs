@@ -5,20 +5,23 @@
 mod folder;
 mod trial;
 
-use folder::Series;
+use folder::{Inventory, Series};
 
 use crate::analysis::{self, Kept, Progress};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Place, Result};
+use crate::read::Folder;
+use crate::record::shown;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// A campaign for a folder.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Proposal {
     /// The folder.
-    pub folder: PathBuf,
+    #[serde(skip)]
+    pub folder: Folder,
     /// Its tables, in the order of a campaign.
     pub tables: Vec<Table>,
     /// Files that stand in no table, and why.
@@ -175,7 +178,7 @@ impl Table {
                 Known::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}"),
             };
         }
-        let about = format!("# {}\n", plain(&self.in_words()));
+        let about = format!("# {}\n", shown(self.in_words()));
         if !self.lacks() {
             return about + &text;
         }
@@ -196,20 +199,25 @@ impl Proposal {
     /// # Errors
     /// If it is no folder, cannot be listed, or holds no recording.
     pub fn of(
-        folder: &Path,
+        within: &Folder,
         reading: &Reading,
         known: Option<&Campaign>,
         kept: &Kept,
         progress: &dyn Progress,
     ) -> Result<Proposal> {
-        if !folder.is_dir() {
+        let folder = within.root();
+        if !within.is_folder(folder) {
             let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
             let absent =
                 || Error::absent(format!("there is no folder {}", folder.display()), Path::new(""), folder);
-            return Err(if folder.exists() { error.hint("name the folder that holds it") } else { absent() });
+            return Err(if within.exists(folder) {
+                error.hint("name the folder that holds it")
+            } else {
+                absent()
+            });
         }
-        let found = folder::Folder::of(folder, reading, known)?;
-        let mut proposal = Proposal { folder: folder.to_owned(), tables: Vec::new(), left: found.left };
+        let found = Inventory::of(within, reading, known)?;
+        let mut proposal = Proposal { folder: within.clone(), tables: Vec::new(), left: found.left };
         let all = found.lists.len() + found.series.len();
         progress.start("looking at files", all);
         for (name, path) in found.lists {
@@ -224,7 +232,7 @@ impl Proposal {
         for series in &found.series {
             let reading = if series.timed { reading.untimed() } else { reading.clone() };
             let before = proposal.tables.len();
-            trial::Trial { folder, reading: &reading, kept, progress }.series(series, &mut proposal);
+            trial::Trial { folder: within, reading: &reading, kept, progress }.series(series, &mut proposal);
             for table in &mut proposal.tables[before..] {
                 *table = table.stated(&reading);
             }
@@ -287,8 +295,9 @@ impl Proposal {
 
     /// The campaign as a file has it.
     pub fn toml(&self) -> String {
-        let folder = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
-        let name = folder.file_name().map_or_else(|| "Campaign".into(), |n| n.to_string_lossy());
+        let root = self.folder.root();
+        let folder = root.canonicalize().unwrap_or_else(|_| root.to_owned());
+        let name = folder.file_name().map_or_else(|| "Campaign".into(), shown);
         let name = serde_json::to_string(&name).unwrap_or_default();
         let mut text = format!(
             "# Proposed by `vibro init`. Check what is guessed, fill in what is missing, then: vibro run {}\n# docs/campaign.md lists every key.\nname = {name}\n",
@@ -309,7 +318,7 @@ impl Proposal {
             text += "\n# Not used:\n";
         }
         for (file, why) in &self.left {
-            let _ = writeln!(text, "# {}", plain(&format!("{file}: {why}")));
+            let _ = writeln!(text, "# {}", shown(format!("{file}: {why}")));
         }
         text
     }
@@ -319,7 +328,7 @@ impl Proposal {
     /// # Errors
     /// As [`analysis::parse`].
     pub fn campaign(&self) -> Result<Campaign> {
-        analysis::parse(&self.folder.join(Proposal::FILE), self.toml())
+        analysis::parse(&self.folder, &self.folder.root().join(Proposal::FILE), self.toml())
     }
 }
 
@@ -328,18 +337,13 @@ fn bare(value: &str) -> &str {
     value.trim_matches(['"', '\''])
 }
 
-/// A text without line breaks and other control characters: a name from a folder must not end a comment.
-fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
-}
-
 /// Time traces that are one sweep, one file a step: a campaign of it alone.
 ///
 /// # Errors
 /// If the first file cannot be read, or holds no force and response.
-pub fn of_steps(files: &[PathBuf], reading: &Reading) -> Result<Proposal> {
+pub fn of_steps(within: &Folder, files: &[PathBuf], reading: &Reading) -> Result<Proposal> {
     let first = files.first().ok_or_else(|| Error::usage("no file", "the files of a sweep"))?;
-    let (_, headers, _) = reading.reader()?.survey(first)?;
+    let (_, headers, _) = reading.reader()?.within(within).survey(first)?;
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let series = Series { name: folder::name(&names), files: names, headers, pattern: None, timed: true };
@@ -348,5 +352,5 @@ pub fn of_steps(files: &[PathBuf], reading: &Reading) -> Result<Proposal> {
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")
             .hint("name them in a campaign: [[sweep]] with traces, force and response; docs/campaign.md shows one")
     })?;
-    Ok(Proposal { folder: PathBuf::from("."), tables: vec![table.stated(reading)], left: Vec::new() })
+    Ok(Proposal { folder: within.at("."), tables: vec![table.stated(reading)], left: Vec::new() })
 }

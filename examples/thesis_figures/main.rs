@@ -13,6 +13,7 @@ mod verdicts;
 use sheet::Sheet;
 use std::path::{Path, PathBuf};
 use vibroimpact::Result;
+use vibroimpact::read::Owner;
 use vibroimpact::report::Output;
 
 /// Dots an inch of the pictures: enough for a screen.
@@ -21,7 +22,7 @@ const DPI: f64 = 130.0;
 fn main() -> Result<()> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/thesis");
     let folder = std::env::args_os().nth(1).map_or(own, PathBuf::from);
-    let mut output = Output::new(folder)?;
+    let mut output = Output::new(folder, Owner::Person)?.replace(true);
     for (heading, sheets) in chapters()? {
         println!("## {heading}");
         for sheet in sheets {

@@ -88,16 +88,12 @@ pub(crate) fn unwritten(error: serde_json::Error) -> Error {
     Error::refused(format!("the result cannot be written as JSON: {error}"))
 }
 
-/// The finding that a record allows no answer, under this code; the error itself where it is another.
-///
-/// # Errors
-/// If the error is no refusal of a record.
-pub fn left_out(code: &'static str, error: Error) -> Result<Finding> {
-    let Some(why) = error.refusal() else { return Err(error) };
-    let found = Finding::caution(code).name("why", why.trim_end_matches('.'));
+/// The finding that a record gave no answer, under this code.
+pub fn left_out(code: &'static str, error: &Error) -> Finding {
+    let found = Finding::caution(code).name("why", error.why().trim_end_matches('.'));
     let keys: Vec<String> = error.settings().map(|key| Voice::Campaign.setting(key)).collect();
     let keys = if keys.is_empty() { String::new() } else { format!(" ({})", keys.join(", ")) };
-    Ok(if error.advice().is_empty() { found } else { found.name("hint", error.advice().to_owned() + &keys) })
+    if error.advice().is_empty() { found } else { found.name("hint", error.advice().to_owned() + &keys) }
 }
 
 #[cfg(test)]
@@ -108,10 +104,11 @@ mod tests {
     #[test]
     fn what_is_left_out_is_told_with_what_to_try() {
         let refusal = Error::refused("no peak. Two are noise.").hint("is it a metre?");
-        let findings =
-            sentences(&[("a".to_owned(), left_out("left-out", refusal).unwrap())], Voice::Campaign, false);
+        let findings = sentences(&[("a".to_owned(), left_out("left-out", &refusal))], Voice::Campaign, false);
         assert_eq!(findings, ["a: Left out: no peak. Two are noise. Try: is it a metre?"]);
-        assert!(left_out("left-out", Error::usage("x", "y")).is_err());
+        let usage = left_out("left-out", &Error::usage("x", "y").set("rate", "1"));
+        let findings = sentences(&[("a".to_owned(), usage)], Voice::Campaign, false);
+        assert_eq!(findings, ["a: Left out: x; expected y."]);
     }
 
     #[test]

@@ -2,13 +2,13 @@
 
 pub mod figures;
 
-use super::job::Marks;
 use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::Entry;
 use crate::error::Result;
 use crate::measure::Estimate;
 use crate::measure::decay::{DecayOptions, DecayResult, decay};
 use crate::record::units::notation;
+use crate::report::files::Names;
 use crate::report::layout::{pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
@@ -86,12 +86,13 @@ fn levels(name: &str, found: &DecayResult) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "decay";
     const TITLE: &'static str = "Free decays";
+    const FILES: Names = Names::numbered(&["modes", "levels", "decay"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file).map(drop)
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        job.each("decays", entries, Marks::Numbers, |entry, source| Ok(vec![entry.keys.measure(source)?]))
+        job.each("decays", entries, |entry, source| Ok(vec![entry.keys.measure(source)?]))
     }
 }

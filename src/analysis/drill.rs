@@ -5,12 +5,12 @@ pub mod figures;
 mod file;
 pub mod tables;
 
-use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
 use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Slices, Smoothing, drill_each};
 use crate::read::Header;
+use crate::report::files::Names;
 use crate::units::notation::counted;
 use file::Channels;
 use serde::Deserialize;
@@ -257,6 +257,8 @@ impl Keys {
 impl Analysis for Keys {
     const SECTION: &'static str = "drill";
     const TITLE: &'static str = "Hammer drills";
+    const FILES: Names =
+        Names::named(&["average", "impacts", "drill_average", "drill_trace", "drill_speed", "drill_noise"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;
@@ -275,7 +277,7 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        job.each("drill", entries, Marks::Names, |entry, source| {
+        job.each("drill", entries, |entry, source| {
             let mut answer = entry.keys.measure(source, &mut |_| Ok(()))?;
             answer.files.iter_mut().for_each(|file| file.0.insert_str(0, "drill_"));
             Ok(vec![answer])

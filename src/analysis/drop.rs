@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
 use crate::record::Trace;
+use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
 use crate::report::words::About;
 use crate::report::{Cell, Plot, Table};
@@ -273,6 +274,7 @@ fn by_method(name: &str, found: &Restitution) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "drop";
     const TITLE: &'static str = "Restitution";
+    const FILES: Names = Names::numbered(&["drop", "restitution"]);
     const TOGETHER: bool = true;
 
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {
@@ -316,14 +318,14 @@ impl Analysis for Keys {
                 let path = job.path(entry)?;
                 let keys = &entry.keys;
                 let added = job.measured(entry, name, &path, |source| series.add_record(keys, source));
-                job.found(&file_name(&path), added)?;
+                job.found(&file_name(&path), added);
             }
         }
         let mut records = Vec::new();
         for (_, name, series) in all.into_iter().filter(|s| !s.2.is_empty()) {
             let files = series.records.iter().map(|(file, _)| file.as_str()).collect();
             let found = series.answer(&name);
-            let Some(answer) = job.found(&name, found)? else { continue };
+            let Some(answer) = job.found(&name, found) else { continue };
             let mark = (records.len() + 1).to_string();
             records.push(Record { name, file: files, mark, answer });
         }

@@ -7,7 +7,6 @@ pub mod tables;
 pub use function::Function;
 
 use super::answer::left_out;
-use super::job::Marks;
 use super::spectrum::{self, Detrend};
 use super::{Analysis, Answer, Job, Source, named_in, no_file, sweep};
 use crate::campaign::{Campaign, Entry, above_zero, channel};
@@ -15,6 +14,7 @@ use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::{Meta, Record, Window};
 use crate::report::files;
+use crate::report::files::Names;
 use crate::report::words::About;
 use crate::signal::transfer::Estimator;
 use serde::{Deserialize, Serialize};
@@ -217,6 +217,7 @@ impl Keys {
 impl Analysis for Keys {
     const SECTION: &'static str = "frf";
     const TITLE: &'static str = "Frequency response functions";
+    const FILES: Names = Names::numbered(&["modes", "methods", "frf"]);
     const RESTS_ON: &'static [&'static str] = &["sweep"];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
@@ -234,12 +235,12 @@ impl Analysis for Keys {
         }
     }
 
-    fn files(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<Vec<PathBuf>> {
+    fn files(campaign: &Campaign, entry: &Entry<Keys>) -> Result<Vec<PathBuf>> {
         if let Some(name) = &entry.keys.sweep {
-            let known = sweep::named(campaign, Some(name), allow_outside);
+            let known = sweep::named(campaign, Some(name));
             known.map_err(|e| campaign.fault(entry, e.hint("the name of a [[sweep]]").setting("sweep")))?;
         }
-        named_in(campaign, entry, allow_outside)
+        named_in(campaign, entry)
     }
 
     fn channels(&self) -> Vec<(&'static str, &String)> {
@@ -251,11 +252,11 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        let (campaign, allow) = (job.campaign, job.options.allow_outside);
-        job.each("frf", entries, Marks::Numbers, |entry, source| {
+        let campaign = job.campaign;
+        job.each("frf", entries, |entry, source| {
             let mut answers = match &entry.keys.sweep {
                 Some(name) => {
-                    let function = Function::of_sweep(campaign, Some(name), allow)?;
+                    let function = Function::of_sweep(campaign, Some(name))?;
                     vec![entry.keys.modes(&function.meta.name, &function)?]
                 }
                 None => entry.keys.measure(source)?,
@@ -265,7 +266,7 @@ impl Analysis for Keys {
                 if let Some(error) = answer.refused.take() {
                     let of_jumps =
                         || Error::refused("the sweep jumps, so its motion is not that of linear modes");
-                    answer.add("", [left_out("no-modes", if jumps { of_jumps() } else { error })?]);
+                    answer.add("", [left_out("no-modes", &if jumps { of_jumps() } else { error })]);
                 }
             }
             Ok(answers)

@@ -2,12 +2,12 @@
 
 pub mod figures;
 
-use super::job::Marks;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts, median};
 use crate::read::Reader;
+use crate::report::files::Names;
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Table};
 use crate::units::notation::quantity;
@@ -67,7 +67,9 @@ impl Keys {
         let trace = source.trace(&recording)?;
         let reference = self.reference.as_ref().map(|channel| recording.trace(Some(channel), None));
         let shape = source.further("shape", self.shape.as_ref())?;
-        let shape = shape.map(|path| Reader::new().rate(self.shape_rate).from_path(path)?.trace(None, None));
+        let shape = shape.map(|path| {
+            Reader::new().within(source.folder).rate(self.shape_rate).from_path(path)?.trace(None, None)
+        });
 
         let options = ImpactsOptions {
             threshold: self.threshold,
@@ -153,6 +155,7 @@ fn times(found: &Impacts) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "impacts";
     const TITLE: &'static str = "Impacts";
+    const FILES: Names = Names::numbered(&["impacts"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;
@@ -168,6 +171,6 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        job.each("impacts", entries, Marks::Numbers, |entry, source| Ok(vec![entry.keys.measure(source)?]))
+        job.each("impacts", entries, |entry, source| Ok(vec![entry.keys.measure(source)?]))
     }
 }

@@ -4,37 +4,29 @@ use super::kept::Kept;
 use super::{file_name, files};
 use crate::campaign::Campaign;
 use crate::error::Result;
+use crate::read::listed;
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// A line for the program, the campaign and each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
 ///
 /// # Errors
 /// As [`files`]; if a file cannot be read.
-pub fn inputs(campaign: &Campaign, allow_outside: bool, kept: &Kept) -> Result<String> {
-    let mut all = files(campaign, allow_outside)?;
+pub fn inputs(campaign: &Campaign, kept: &Kept) -> Result<String> {
+    let mut all = files(campaign)?;
     all.sort();
     all.dedup();
     // The reader says what is wrong with a folder or a pipe.
-    all.retain(|path| path.is_file());
-    let own = line(Sha256::digest(campaign.text()).as_slice(), &file_name(campaign.path()));
+    all.retain(|path| campaign.within().is_file(path));
+    let own = listed(&Sha256::digest(campaign.text()).into(), &file_name(campaign.path()));
     // One that was proposed is no file that could be checked.
-    let own = if campaign.path().is_file() { own } else { format!("# {own}") };
-    let program = line(&kept.program().unwrap_or_default(), concat!("vibro ", env!("CARGO_PKG_VERSION")));
+    let own = if campaign.is_file() { own } else { format!("# {own}") };
+    let program = listed(&kept.program().unwrap_or_default(), concat!("vibro ", env!("CARGO_PKG_VERSION")));
     let of_file = |path: &Path| {
         let name = path.strip_prefix(campaign.folder()).unwrap_or(path).display().to_string();
-        kept.file(path).map(|digest| line(&digest, &name))
+        kept.file(path).map(|digest| listed(&digest, &name))
     };
     let lines: Result<Vec<String>> = all.par_iter().map(|path| of_file(path)).collect();
     Ok(format!("# {program}{own}{}", lines?.concat()))
-}
-
-fn line(digest: &[u8], name: &str) -> String {
-    let mut line = String::new();
-    for byte in digest {
-        let _ = write!(line, "{byte:02x}");
-    }
-    line + "  " + name + "\n"
 }

@@ -2,14 +2,16 @@
 
 use super::answer::{left_out, unwritten};
 use super::inputs::inputs;
-use super::kept::{Digest, Kept, digest, packed};
+use super::kept::{Kept, digest, packed};
 use super::recordings::beside;
 use super::source::{Source, file_name, name_of};
 use super::{Analysis, Answer, KINDS, Kind, page};
 use crate::campaign::{Campaign, Entry};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::read::Digest;
 use crate::record::{Fact, Finding};
 use crate::report::Picture;
+use crate::report::files::Marks;
 use crate::report::words::{About, Voice, put};
 use crate::report::{Output, files};
 use rayon::prelude::*;
@@ -42,21 +44,10 @@ impl Progress for () {
     fn at(&self, _: usize, _: usize) {}
 }
 
-/// How a job may go about its files.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct JobOptions<'a> {
-    /// Allow names that lead outside the campaign's folder.
-    pub allow_outside: bool,
-    /// Answers and pictures of the last run.
-    pub kept: Option<&'a Kept>,
-}
-
 /// A campaign at work: what its analyses ask, and where they put what they find.
 pub struct Job<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
-    /// How it may go about its files.
-    pub options: JobOptions<'a>,
     kept: &'a Kept,
     /// Told how far it is.
     pub progress: &'a dyn Progress,
@@ -68,30 +59,25 @@ pub struct Job<'a> {
     pub(super) answers: usize,
     /// How many answers are those of the last run.
     again: usize,
+    /// The first record that could not be read.
+    failed: Option<Error>,
 }
 
 impl<'a> Job<'a> {
-    fn new(
-        campaign: &'a Campaign,
-        options: JobOptions<'a>,
-        kept: &'a Kept,
-        progress: &'a dyn Progress,
-    ) -> Job<'a> {
+    fn new(campaign: &'a Campaign, kept: &'a Kept, progress: &'a dyn Progress) -> Job<'a> {
         let title = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
-        Job { campaign, options, kept, progress, title, found: Answer::default(), answers: 0, again: 0 }
+        Job { campaign, kept, progress, title, found: Answer::default(), answers: 0, again: 0, failed: None }
     }
 
-    /// What a record gave; `None` and a finding where it allows no answer.
-    ///
-    /// # Errors
-    /// If something else is wrong than the record.
-    pub fn found<T>(&mut self, record: &str, found: Result<T>) -> Result<Option<T>> {
-        match found {
-            Ok(found) => Ok(Some(found)),
-            Err(error) => {
-                self.found.add(record, [left_out("left-out", error)?]);
-                Ok(None)
-            }
+    /// What a record gave; `None` and a finding where it gave none: one bad record loses only itself.
+    pub fn found<T>(&mut self, record: &str, found: Result<T>) -> Option<T> {
+        found.map_err(|error| self.leave_out(record, error)).ok()
+    }
+
+    fn leave_out(&mut self, record: &str, error: Error) {
+        self.found.add(record, [left_out("left-out", &error)]);
+        if error.refusal().is_none() {
+            self.failed.get_or_insert(error);
         }
     }
 
@@ -142,21 +128,25 @@ impl<'a> Job<'a> {
         result
     }
 
-    /// Answers a section as a whole, or as the last run did.
+    /// Answers a section as a whole, or as the last run did. One that fails as a whole loses only itself.
     ///
     /// # Errors
-    /// Those of `measure`.
+    /// If a file cannot be found.
     pub(super) fn together(
         &mut self,
         section: &str,
         measure: impl FnOnce(&mut Job<'_>) -> Result<()>,
     ) -> Result<()> {
         let (on, files) = self.rests_on(&[section])?;
-        let (all, answers) = self.kept.or_make(on, &files, || {
-            let mut own = Job::new(self.campaign, self.options, self.kept, self.progress);
+        let answered = self.kept.or_make(on, &files, || {
+            let mut own = Job::new(self.campaign, self.kept, self.progress);
             measure(&mut own)?;
-            Ok((own.found, own.answers))
-        })?;
+            match own.failed {
+                Some(error) if own.answers == 0 => Err(error),
+                _ => Ok((own.found, own.answers)),
+            }
+        });
+        let Some((all, answers)) = self.found(section, answered) else { return Ok(()) };
         if self.kept.is_old(&on) {
             self.again += answers;
         }
@@ -169,8 +159,7 @@ impl<'a> Job<'a> {
     fn rests_on(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
         let (these, others): (Vec<&Kind>, Vec<&Kind>) =
             KINDS.iter().partition(|kind| sections.contains(&kind.section));
-        let files: Result<Vec<_>> =
-            these.iter().map(|kind| (kind.files)(self.campaign, self.options.allow_outside)).collect();
+        let files: Result<Vec<_>> = these.iter().map(|kind| (kind.files)(self.campaign)).collect();
         let stated = self.campaign.stated_without(|key| others.iter().any(|kind| kind.section == key))?;
         let files = files?.concat();
         Ok((self.digest([sections.concat(), stated], &files)?, files))
@@ -195,13 +184,12 @@ impl<'a> Job<'a> {
         &mut self,
         kind: &str,
         entries: &[Entry<K>],
-        marks: Marks,
         measure: impl Fn(&Entry<K>, &Source<'_>) -> Result<Vec<Answer>>,
     ) -> Result<()> {
         let mut records: Vec<Record> = Vec::new();
         for (i, entry) in entries.iter().enumerate() {
             let name = name_of(entry, i + 1);
-            let mut files = K::files(self.campaign, entry, self.options.allow_outside)?;
+            let mut files = K::files(self.campaign, entry)?;
             // Numbers alone have no file.
             let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();
             let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
@@ -212,14 +200,21 @@ impl<'a> Job<'a> {
             }
             let found = self.kept.or_make(on, &files, || {
                 match self.measured(entry, &name, &path, |source| measure(entry, source)) {
-                    Ok(found) => Ok(Ok(found)),
-                    Err(error) => left_out("left-out", error).map(Err),
+                    Err(error) if error.refusal().is_some() => Ok(Err(left_out("left-out", &error))),
+                    found => found.map(Ok),
                 }
-            })?;
-            let found = found.unwrap_or_else(|left_out: Finding| {
-                self.found.add(&name, [left_out]);
-                Vec::new()
             });
+            let found = match found {
+                Ok(Ok(found)) => found,
+                Ok(Err(left_out)) => {
+                    self.found.add(&name, [left_out]);
+                    Vec::new()
+                }
+                Err(error) => {
+                    self.leave_out(&name, error);
+                    Vec::new()
+                }
+            };
             if self.kept.is_old(&on) {
                 self.again += found.len();
             }
@@ -228,7 +223,7 @@ impl<'a> Job<'a> {
                 records.push(Record { name: name.clone(), file, mark: String::new(), answer });
             }
         }
-        let marks = match marks {
+        let marks = match K::FILES.marks {
             Marks::Names => files::slugs(records.iter().map(|r| r.name.as_str())),
             Marks::Numbers => (1..=records.len()).map(|n| n.to_string()).collect(),
         };
@@ -245,7 +240,7 @@ impl<'a> Job<'a> {
     /// If it leads outside the folder or does not exist.
     pub fn path<K>(&self, entry: &Entry<K>) -> Result<PathBuf> {
         let file = entry.file.as_deref().unwrap_or(Path::new(""));
-        self.campaign.file(entry, "file", file, self.options.allow_outside)
+        self.campaign.file(entry, "file", file)
     }
 
     /// Measures the file of a table; the progress is that of its samples.
@@ -260,26 +255,17 @@ impl<'a> Job<'a> {
         measure: impl FnOnce(&Source<'_>) -> Result<T>,
     ) -> Result<T> {
         self.progress.start(name, 0);
-        let beside =
-            |key: &'static str, file: &Path| self.campaign.file(entry, key, file, self.options.allow_outside);
+        let beside = |key: &'static str, file: &Path| self.campaign.file(entry, key, file);
         measure(&Source {
             name,
             path,
+            folder: self.campaign.within(),
             channel: &entry.channel,
             reading: &entry.reading,
             beside: &beside,
             progress: self.progress,
         })
     }
-}
-
-/// How the files of a kind's records are told apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marks {
-    /// By their numbers, from 1.
-    Numbers,
-    /// By their names.
-    Names,
 }
 
 /// An answer with the record that gave it.
@@ -312,7 +298,7 @@ pub fn answers(
     kept: &Kept,
     progress: &dyn Progress,
 ) -> Result<std::result::Result<Answer, String>> {
-    let mut job = Job::new(campaign, JobOptions::default(), kept, progress);
+    let mut job = Job::new(campaign, kept, progress);
     for kind in KINDS {
         (kind.run)(&mut job)?;
     }
@@ -340,18 +326,14 @@ pub struct Ran {
 /// Does all that a campaign asks for, and writes it to `output`.
 ///
 /// # Errors
-/// If a file cannot be read; if the overlay is not possible; if a file cannot be written.
-pub fn run(
-    campaign: &Campaign,
-    options: JobOptions<'_>,
-    output: &mut Output,
-    progress: &dyn Progress,
-) -> Result<Ran> {
-    let none = Kept::default();
-    let kept = options.kept.unwrap_or(&none);
-    let mut job = Job::new(campaign, options, kept, progress);
+/// If no record was answered and one of them could not be read; if a file cannot be found or written; if a file that is not vibro's stands in
+/// the way.
+pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn Progress) -> Result<Ran> {
+    let own = [RESULTS, REPORT, INPUTS, Kept::FILE];
+    output.expect(|name| own.contains(&name) || KINDS.iter().any(|kind| kind.writes(campaign, name)))?;
+    let mut job = Job::new(campaign, kept, progress);
     // Before anything is read: what changes meanwhile is for the next run.
-    let inputs = inputs(campaign, options.allow_outside, kept)?;
+    let inputs = inputs(campaign, kept)?;
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;
     job.put("version", &version)?;
@@ -363,7 +345,10 @@ pub fn run(
         parts.push((kind.title, [0, 1, 2, 3].map(|i| from[i]..to[i])));
     }
     job.found.add("", campaign.commented());
-    job.found.add("", beside(campaign, options.allow_outside)?);
+    job.found.add("", beside(campaign)?);
+    if let Some(error) = job.failed.take_if(|_| job.answers == 0) {
+        return Err(error);
+    }
     if campaign.is_empty() {
         job.found.add("", [Finding::caution("campaign-without-record")]);
     } else if job.answers == 0 {

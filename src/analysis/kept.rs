@@ -1,19 +1,15 @@
 //! Answers and pictures that are kept for the next run: asked again is only what rests on other words, other files or another program.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::read::{Digest, Folder, Standing};
 use rmp_serde::config::BytesMode;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::SystemTime;
-
-/// A SHA-256.
-pub type Digest = [u8; 32];
 
 /// Length and time of a file.
 type Stamp = Option<(u64, SystemTime)>;
@@ -21,6 +17,8 @@ type Stamp = Option<(u64, SystemTime)>;
 /// Answers and pictures by the digest of all that they rest on.
 #[derive(Debug, Default)]
 pub struct Kept {
+    /// Where files lie.
+    folder: Folder,
     /// Those of the last run.
     old: BTreeMap<Digest, Vec<u8>>,
     /// Those of this run.
@@ -33,11 +31,16 @@ impl Kept {
     /// The file of a folder of results in which they are kept.
     pub const FILE: &str = ".kept";
 
+    /// Nothing is known of an earlier run.
+    pub fn none(folder: &Folder) -> Kept {
+        Kept { folder: folder.clone(), ..Kept::default() }
+    }
+
     /// What the last run of this very program kept in a folder of results; nothing where that cannot be read.
-    pub fn of(folder: &Path) -> Kept {
-        let (kept, path) = (Kept::default(), folder.join(Kept::FILE));
-        // A pipe of that name would wait for ever.
-        let bytes = path.is_file().then(|| std::fs::read(&path).ok()).flatten();
+    pub fn of(folder: &Folder) -> Kept {
+        let (kept, path) = (Kept::none(folder), folder.root().join(Kept::FILE));
+        let own = folder.standing(&path) == Standing::File;
+        let bytes = own.then(|| folder.read(&path).ok()).flatten();
         let old = bytes.and_then(|bytes| {
             let (sum, rest) = bytes.split_at_checked(size_of::<Digest>())?;
             let (program, old): (Digest, BTreeMap<Digest, Vec<u8>>) =
@@ -68,7 +71,7 @@ impl Kept {
         }
         let made = make()?;
         let known = |path: &PathBuf| locked(&self.files).get(path).map(|(_, before)| *before);
-        if files.iter().all(|path| known(path) == Some(stamp(path))) {
+        if files.iter().all(|path| known(path) == Some(self.folder.stamp(path))) {
             locked(&self.now).extend(packed(&made).map(|bytes| (on, bytes)));
         }
         Ok(made)
@@ -88,15 +91,16 @@ impl Kept {
         if let Some(known) = locked(&self.files).get(path) {
             return Ok(known.0);
         }
-        let before = stamp(path);
-        let digest = content(path).map_err(|e| Error::io("read", path, e))?;
+        let before = self.folder.stamp(path);
+        let digest = self.folder.digest(path)?;
         locked(&self.files).insert(path.to_owned(), (digest, before));
         Ok(digest)
     }
 
     /// The digest of the program that runs.
     pub fn program(&self) -> Option<Digest> {
-        std::env::current_exe().ok().and_then(|path| self.file(&path).ok())
+        static OWN: OnceLock<Option<Digest>> = OnceLock::new();
+        *OWN.get_or_init(|| Folder::default().digest(&std::env::current_exe().ok()?).ok())
     }
 }
 
@@ -115,20 +119,6 @@ pub fn packed(value: &impl Serialize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut packer = rmp_serde::Serializer::new(&mut bytes).with_bytes(BytesMode::ForceIterables);
     value.serialize(&mut packer).ok().map(|()| bytes)
-}
-
-fn stamp(path: &Path) -> Stamp {
-    std::fs::metadata(path).ok().and_then(|meta| Some((meta.len(), meta.modified().ok()?)))
-}
-
-fn content(path: &Path) -> std::io::Result<Digest> {
-    let (mut file, mut hash, mut part) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut part)? {
-            0 => return Ok(hash.finalize().into()),
-            n => hash.update(&part[..n]),
-        }
-    }
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

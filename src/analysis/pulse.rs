@@ -2,11 +2,11 @@
 
 pub mod figures;
 
-use super::job::Marks;
 use super::{Analysis, Answer, Job, Source};
 use crate::campaign::{Entry, LowPass, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
+use crate::report::files::Names;
 use crate::report::layout::{headed, pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
@@ -156,13 +156,14 @@ fn models(title: &str, result: &PulseResult) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "pulse";
     const TITLE: &'static str = "Contact pulses";
+    const FILES: Names = Names::numbered(&["pulse", "pulse_fits"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.keys.usable(entry.file.is_some())
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        job.each("pulses", entries, Marks::Numbers, |entry, source| {
+        job.each("pulses", entries, |entry, source| {
             let of_file = entry.file.is_some();
             let answer = if of_file { entry.keys.measure(source) } else { entry.keys.times(source.name) };
             Ok(vec![answer?])

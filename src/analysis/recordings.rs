@@ -3,9 +3,10 @@
 use super::{RESULTS, file_name, files};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
-use crate::record::Finding;
+use crate::read::{Folder, Walk};
+use crate::record::{Finding, shown};
 use glob::{MatchOptions, Pattern};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 /// Levels below a folder that are looked into.
@@ -15,16 +16,38 @@ const LEVELS: usize = 2;
 const NO_RECORDINGS: &str =
     "toml json md html pdf png jpg jpeg svg gif doc docx ppt pptx py m rs zip exe bak log ini tdms_index";
 
-/// The files of a folder and up to two levels below it that may be recordings, numbers by value, and those that are none by their endings. Hidden
-/// files and folders of results are passed over.
+/// What lies in a folder and up to two levels below it.
+#[derive(Debug, Default)]
+pub struct Recordings {
+    /// Files that may be recordings, numbers in names by value.
+    pub files: Vec<PathBuf>,
+    /// Files that are none, by their endings.
+    pub others: Vec<PathBuf>,
+    /// What could not be looked at, and why.
+    pub left: Vec<(PathBuf, String)>,
+}
+
+/// The recordings of a folder. Hidden files and results are passed over.
 ///
 /// # Errors
-/// If a folder cannot be listed.
-pub fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
-    let (mut found, mut others) = (Vec::new(), Vec::new());
-    list(folder, LEVELS, &mut found, &mut others)?;
-    in_order(&mut found);
-    Ok((found, others))
+/// If the folder cannot be listed.
+pub fn recordings(folder: &Folder) -> Result<Recordings> {
+    let Walk { files, left } = folder.walk(folder.root(), LEVELS)?;
+    let top = plain(folder.root());
+    // Results of other versions have no manifest.
+    let results = |path: &Path| path != top && folder.is_file(&path.join(RESULTS));
+    let mut known: BTreeMap<PathBuf, bool> = BTreeMap::new();
+    let is_result = |path: &PathBuf| {
+        let parent = path.parent().unwrap_or(Path::new("")).to_owned();
+        *known.entry(parent).or_insert_with_key(|parent| results(parent))
+    };
+    let (_, files): (Vec<_>, Vec<PathBuf>) = files.into_iter().partition(is_result);
+    let ending =
+        |path: &Path| path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+    let is_none = |path: &PathBuf| NO_RECORDINGS.split(' ').any(|known| known == ending(path));
+    let (others, mut files): (Vec<_>, Vec<_>) = files.into_iter().partition(is_none);
+    in_order(&mut files);
+    Ok(Recordings { files, others, left })
 }
 
 /// Puts files in the order of the numbers in their names: 2 before 10, and 11.15 before 11.2.
@@ -55,69 +78,71 @@ fn with_decimals(path: &Path) -> String {
 /// Decimals that a number in a name has at most.
 const DECIMALS: usize = 12;
 
-/// A path without `.` in it.
-fn plain(path: &Path) -> PathBuf {
-    path.components().filter(|part| *part != Component::CurDir).collect()
-}
-
 /// Whether a name is the pattern of files in a folder, not that of one.
-pub fn is_pattern(folder: &Path, name: &Path) -> bool {
-    name.to_string_lossy().contains(['*', '?']) && !folder.join(name).exists()
+pub fn is_pattern(folder: &Folder, name: &Path) -> bool {
+    name.to_string_lossy().contains(['*', '?']) && !folder.exists(&folder.root().join(name))
 }
 
 /// The names of files in a folder that a name or a pattern with `*`, `?` or `[…]` means, numbers in them by value.
 ///
 /// # Errors
-/// If it is no pattern, or no file has such a name.
-pub fn matching(folder: &Path, name: &Path) -> Result<Vec<PathBuf>> {
-    if folder.join(name).exists() {
+/// If it is no pattern, no file has such a name, or one that has must not be read.
+pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
+    if folder.exists(&folder.root().join(name)) {
         return Ok(vec![name.to_owned()]);
     }
-    let base = plain(folder);
-    let pattern = Path::new(&Pattern::escape(&base.to_string_lossy())).join(plain(name));
+    let name = plain(name);
+    let wild = |part: &Component<'_>| part.as_os_str().to_string_lossy().contains(['*', '?', '[']);
+    let fixed: PathBuf = name.components().take_while(|part| !wild(part)).collect();
+    let levels = name.components().skip_while(|part| !wild(part)).count();
+    let levels = if name.to_string_lossy().contains("**") { DEEPEST } else { levels.saturating_sub(1) };
     let wrong = |e: glob::PatternError| {
-        Error::usage(format!("the pattern {}: {e}", name.display()), "a pattern such as step*.csv")
+        Error::usage(format!("the pattern {}: {e}", shown(&name)), "a pattern such as step*.csv")
     };
-    let found = glob::glob(&pattern.to_string_lossy()).map_err(wrong)?.filter_map(std::result::Result::ok);
+    let pattern = Pattern::new(&name.to_string_lossy()).map_err(wrong)?;
+    let top = plain(&folder.root().join(fixed));
+    let found = if folder.is_folder(&top) || top == Path::new("") {
+        folder.walk(&top, levels)?
+    } else {
+        Walk::default()
+    };
+    let own = plain(folder.root());
+    let within = |path: &Path| path.strip_prefix(&own).map_or_else(|_| path.to_owned(), Path::to_owned);
+    let meant = |path: &Path| pattern.matches_path_with(path, WHOLE_NAMES);
+    if let Some((path, why)) = found.left.iter().find(|(path, _)| meant(&within(path))) {
+        return Err(Error::usage(format!("{}: {why}", shown(path)), "").setting("allow_outside"));
+    }
     let mut files: Vec<PathBuf> =
-        found.map(|path| path.strip_prefix(&base).map_or_else(|_| path.clone(), Path::to_owned)).collect();
+        found.files.iter().map(|path| within(path)).filter(|path| meant(path)).collect();
     if files.is_empty() {
-        let found = format!("no file matches {}", folder.join(name).display());
-        return Err(Error::absent(found, folder, name));
+        let found = format!("no file matches {}", shown(folder.root().join(&name)));
+        return Err(Error::absent(found, folder.root(), &name));
     }
     in_order(&mut files);
     Ok(files)
 }
 
-fn list(folder: &Path, levels: usize, found: &mut Vec<PathBuf>, others: &mut Vec<PathBuf>) -> Result<()> {
-    if levels < LEVELS && folder.join(RESULTS).exists() {
-        return Ok(());
-    }
-    let list_of = |e| Error::io("list", folder, e);
-    let mut below = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(list_of)? {
-        let entry = entry.map_err(list_of)?;
-        let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
-        if name.starts_with('.') {
-            continue;
-        }
-        if path.is_dir() {
-            below.push(path);
-        } else if path.is_file() {
-            let ending = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
-            let none = NO_RECORDINGS.split(' ').any(|known| known == ending);
-            if none { &mut *others } else { &mut *found }.push(path);
-        }
-    }
-    below.iter().filter(|_| levels > 0).try_for_each(|folder| list(folder, levels - 1, found, others))
+/// A star means no more than a part of one name.
+const WHOLE_NAMES: MatchOptions = MatchOptions {
+    case_sensitive: true,
+    require_literal_separator: true,
+    require_literal_leading_dot: false,
+};
+
+/// Levels into which `**` reaches.
+const DEEPEST: usize = 16;
+
+/// A path without `.` in it.
+fn plain(path: &Path) -> PathBuf {
+    path.components().filter(|part| *part != Component::CurDir).collect()
 }
 
 /// Those of the files that the campaign names in no table and in no comment.
 ///
 /// # Errors
 /// As [`files`].
-pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let named: BTreeSet<PathBuf> = files(campaign, allow_outside)?.iter().map(|path| plain(path)).collect();
+pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let named: BTreeSet<PathBuf> = files(campaign)?.iter().map(|path| plain(path)).collect();
     let folder = plain(campaign.folder());
     let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
     // A table that is still a comment may name a pattern.
@@ -126,7 +151,6 @@ pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Res
         key.trim_start().strip_prefix('=')?.split('"').nth(1)
     });
     let patterns: Vec<Pattern> = commented.filter_map(|text| Pattern::new(text).ok()).collect();
-    let how = MatchOptions { require_literal_separator: true, ..MatchOptions::default() };
     let said = |path: &Path| {
         let name = path.strip_prefix(&folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
         let in_words = || {
@@ -140,7 +164,7 @@ pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Res
                 before.chars().next_back().is_none_or(ends) && behind.chars().next().is_none_or(ends)
             })
         };
-        patterns.iter().any(|pattern| pattern.matches_with(&name, how)) || in_words()
+        patterns.iter().any(|pattern| pattern.matches_with(&name, WHOLE_NAMES)) || in_words()
     };
     let new = |path: &&PathBuf| {
         let path = plain(path);
@@ -153,11 +177,11 @@ pub fn unnamed(campaign: &Campaign, allow_outside: bool, all: &[PathBuf]) -> Res
 ///
 /// # Errors
 /// As [`files`].
-pub fn beside(campaign: &Campaign, allow_outside: bool) -> Result<Option<Finding>> {
-    if !campaign.path().is_file() || !campaign.path().ends_with(OWN) {
+pub fn beside(campaign: &Campaign) -> Result<Option<Finding>> {
+    if !campaign.is_file() || !campaign.path().ends_with(OWN) {
         return Ok(None);
     }
-    let new = unnamed(campaign, allow_outside, &recordings(campaign.folder())?.0)?;
+    let new = unnamed(campaign, &recordings(campaign.within())?.files)?;
     let names: Vec<String> = new.iter().take(SHOWN).map(|path| file_name(path)).collect();
     let more = new.len().saturating_sub(SHOWN);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };

@@ -3,7 +3,7 @@
 use super::{Analysis, Progress};
 use crate::campaign::{Channel, Entry, Reading};
 use crate::error::Result;
-use crate::read::{Reader, Recording};
+use crate::read::{Folder, Reader, Recording};
 use crate::record::Trace;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +18,8 @@ pub struct Source<'a> {
     pub channel: &'a Channel,
     /// What the file does not say.
     pub reading: &'a Reading,
+    /// Where files lie.
+    pub folder: &'a Folder,
     /// Path of a further file that a key names.
     pub beside: &'a dyn Fn(&'static str, &Path) -> Result<PathBuf>,
     /// Told how many samples are done, of how many.
@@ -30,7 +32,7 @@ impl Source<'_> {
     /// # Errors
     /// If what is stated cannot be.
     pub fn reader(&self) -> Result<Reader> {
-        self.reading.reader()
+        Ok(self.reading.reader()?.within(self.folder))
     }
 
     /// The recording, in which a base band gives the sampling rate.

@@ -2,12 +2,12 @@
 
 pub mod figures;
 
-use super::job::Marks;
 use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral};
 use crate::record::{Scaling, Window};
+use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
@@ -209,6 +209,7 @@ fn tones(name: &str, found: &SpectralResult) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "spectrum";
     const TITLE: &'static str = "Spectra";
+    const FILES: Names = Names::named(&["spectrum", "frf"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;
@@ -220,7 +221,7 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        job.each("spectra", entries, Marks::Names, |entry, source| {
+        job.each("spectra", entries, |entry, source| {
             let mut answer = entry.keys.measure(source)?;
             // Beside the functions of [[frf]], which are numbered, all are spectra.
             let names = answer.figures.iter_mut().map(|f| &mut f.0);

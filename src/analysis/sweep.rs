@@ -10,7 +10,7 @@ pub mod tables;
 pub use listed::{Files, Listed};
 pub use stored::Stored;
 
-use super::{Analysis, Answer, Job, JobOptions, Progress, entries};
+use super::{Analysis, Answer, Job, Progress, entries};
 use crate::campaign::{Campaign, Entry, above_zero, one_or_more};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};
@@ -18,6 +18,7 @@ use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::read::SweepReader;
 use crate::record::{Direction, Scaling, Sweep, nearest};
 use crate::report::files;
+use crate::report::files::Names;
 use crate::report::words::About;
 use crate::units::Quantity;
 use rayon::prelude::*;
@@ -183,7 +184,7 @@ impl Keys {
 ///
 /// # Errors
 /// If there is no such sweep, or its list cannot be read.
-pub fn named(campaign: &Campaign, name: Option<&str>, allow_outside: bool) -> Result<Listed> {
+pub fn named(campaign: &Campaign, name: Option<&str>) -> Result<Listed> {
     let all = each(entries(campaign)?);
     let names = || all.iter().map(|s| s.keys.name.as_str()).collect::<Vec<_>>().join(", ");
     let none = |found: String| Error::input(Place::file(campaign.path()), found, names());
@@ -200,14 +201,14 @@ pub fn named(campaign: &Campaign, name: Option<&str>, allow_outside: bool) -> Re
             let error = none(format!("{} sweeps and none was chosen", all.len()));
             let path = campaign.path();
             let files = || "name the files of one sweep, by a pattern such as up*.csv".to_owned();
-            return Err(error.hint(if path.is_file() {
+            return Err(error.hint(if campaign.is_file() {
                 format!("name one: {}#NAME", path.display())
             } else {
                 files()
             }));
         }
     };
-    Listed::of(campaign, entry, allow_outside)
+    Listed::of(campaign, entry)
 }
 
 /// The tables of sweeps, one for each response.
@@ -227,38 +228,33 @@ fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
 ///
 /// # Errors
 /// If a list or a spectrum cannot be read, or an excitation cannot be found.
-pub fn responses(
-    campaign: &Campaign,
-    options: JobOptions<'_>,
-    progress: &dyn Progress,
-) -> Result<Vec<Response>> {
-    let taken = taken(campaign, entries(campaign)?, options, progress)?;
-    Ok(taken.into_iter().map(|(_, response, _)| response).collect())
+pub fn responses(campaign: &Campaign, progress: &dyn Progress) -> Result<Vec<Response>> {
+    let taken: Result<Vec<Taken>> =
+        taken(campaign, entries(campaign)?, progress).into_iter().map(|(_, taken)| taken).collect();
+    let mut responses: Vec<Response> = taken?.into_iter().map(|(_, response, _)| response).collect();
+    pairing::name(&mut responses.iter_mut().collect::<Vec<_>>());
+    Ok(responses)
 }
 
 type Taken = (Sweep, Response, ResponseOptions);
 
+/// The sweeps of these tables by their names.
 fn taken(
     campaign: &Campaign,
     entries: Vec<Entry<Keys>>,
-    options: JobOptions<'_>,
     progress: &dyn Progress,
-) -> Result<Vec<Taken>> {
+) -> Vec<(String, Result<Taken>)> {
     let entries = each(entries);
     progress.start("reading sweeps", entries.len());
-    let mut taken: Vec<Taken> = entries
-        .par_iter()
-        .map(|entry| {
-            let listed = Listed::of(campaign, entry, options.allow_outside)?;
-            let compute = &campaign.compute;
-            let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
-            let (sweep, response) = listed.taken(&options)?;
-            progress.step();
-            Ok((sweep, response, options))
-        })
-        .collect::<Result<_>>()?;
-    pairing::name(&mut taken.iter_mut().map(|(_, response, _)| response).collect::<Vec<_>>());
-    Ok(taken)
+    let one = |entry: &Entry<Keys>| {
+        let listed = Listed::of(campaign, entry)?;
+        let compute = &campaign.compute;
+        let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
+        let (sweep, response) = listed.taken(&options)?;
+        progress.step();
+        Ok((sweep, response, options))
+    };
+    entries.par_iter().map(|entry| (entry.keys.name.clone(), one(entry))).collect()
 }
 
 /// What is known of the responses, each about its sweep.
@@ -269,6 +265,17 @@ fn findings_of(responses: &[Response]) -> impl Iterator<Item = About> {
 impl Analysis for Keys {
     const SECTION: &'static str = "sweep";
     const TITLE: &'static str = "Sweeps";
+    const FILES: Names = Names::named(&[
+        "response",
+        "receptance",
+        "waterfall",
+        "map",
+        "overlay",
+        "pairs",
+        "peaks",
+        "fit",
+        "fit_points",
+    ]);
     const OF_FILES: bool = false;
     const TOGETHER: bool = true;
 
@@ -288,14 +295,14 @@ impl Analysis for Keys {
         all.filter(|_| !self.traces.is_empty()).collect()
     }
 
-    fn files(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<Vec<PathBuf>> {
-        let files = match Listed::of(campaign, entry, allow_outside)?.files {
+    fn files(campaign: &Campaign, entry: &Entry<Keys>) -> Result<Vec<PathBuf>> {
+        let files = match Listed::of(campaign, entry)?.files {
             Files::Spectra(list) => [list.force, list.response].concat(),
             Files::Traces(steps) => steps.files,
         };
-        let list = entry.keys.list.as_ref().map(|list| campaign.file(entry, "list", list, allow_outside));
+        let list = entry.keys.list.as_ref().map(|list| campaign.file(entry, "list", list));
         let files = list.transpose()?.into_iter().chain(files).collect::<Vec<_>>();
-        match files.iter().find(|file| !file.exists()) {
+        match files.iter().find(|file| !campaign.within().exists(file)) {
             Some(file) => {
                 let error = Error::usage(format!("the file {} does not exist", file.display()), "");
                 Err(campaign.fault(entry, error.setting("list").setting("response")))
@@ -305,7 +312,9 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        let taken = taken(job.campaign, entries.to_vec(), job.options, job.progress)?;
+        let taken = taken(job.campaign, entries.to_vec(), job.progress).into_iter();
+        let mut taken: Vec<Taken> = taken.filter_map(|(name, taken)| job.found(&name, taken)).collect();
+        pairing::name(&mut taken.iter_mut().map(|(_, response, _)| response).collect::<Vec<_>>());
         let matrix = |(sweep, response, options): Taken| (waterfall(&sweep, &options, &response), response);
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();

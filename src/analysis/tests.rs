@@ -70,7 +70,7 @@ fn mistakes_point_at_their_line() {
 #[test]
 fn a_sweep_is_chosen_by_name() {
     let campaign = of(&format!("{SWEEP}[[sweep]]\nname = \"b\"\nlist = \"M.TXT\"\n")).unwrap();
-    let chosen = |name| named(&campaign, name, false).unwrap_err().to_string();
+    let chosen = |name| named(&campaign, name).unwrap_err().to_string();
     assert!(chosen(None).contains("a, b") && chosen(Some("c")).contains("a, b"));
     assert!(chosen(Some("a")).contains("does not exist"));
 }
@@ -79,16 +79,17 @@ fn a_sweep_is_chosen_by_name() {
 fn a_missing_recording_is_made_by_the_command_that_is_named() {
     let campaign = of("made_by = \"make it\"\n[[impacts]]\nfile = \"x.wav\"\n").unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let mut output = crate::report::Output::new(folder.path()).unwrap();
-    let error = run(&campaign, JobOptions::default(), &mut output, &()).unwrap_err().to_string();
+    let mut output = crate::report::Output::new(folder.path(), crate::read::Owner::Run).unwrap();
+    let error = run(&campaign, &Kept::default(), &mut output, &()).unwrap_err().to_string();
     assert!(error.contains("line 3") && error.contains("try: `make it` makes it"), "{error}");
 }
 
 #[test]
 fn a_fit_without_a_rig_is_not_passed_over_in_silence() {
     let campaign = of("[fit]\nparameters = [\"gap\"]\n").unwrap();
-    let mut output = crate::report::Output::new(tempfile::tempdir().unwrap().path()).unwrap();
-    let Ran { answer, .. } = run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
+    let mut output =
+        crate::report::Output::new(tempfile::tempdir().unwrap().path(), crate::read::Owner::Run).unwrap();
+    let Ran { answer, .. } = run(&campaign, &Kept::default(), &mut output, &()).unwrap();
     let said = sentences(&answer.findings, Voice::Campaign, true);
     assert!(said.iter().any(|s| s.contains("`fit` needs a table `rig`")), "{said:?}");
 }
@@ -127,7 +128,8 @@ fn a_pattern_means_files_of_its_folder_however_that_is_named() {
     for name in ["a2.csv", "a10.csv", "b1.csv", "sub/a1.csv"] {
         std::fs::write(folder.join(name), "").unwrap();
     }
-    let found = |folder: &Path, name: &str| matching(folder, Path::new(name)).map_err(|e| e.to_string());
+    let found =
+        |folder: &Path, name: &str| matching(&folder.into(), Path::new(name)).map_err(|e| e.to_string());
     let expected: Vec<PathBuf> = ["a2.csv", "a10.csv"].map(Into::into).into();
     for folder in
         [&folder, &root.path().join("./d [1]"), &folder.join("sub/.."), &root.path().join(".//d [1]/.")]
@@ -137,5 +139,6 @@ fn a_pattern_means_files_of_its_folder_however_that_is_named() {
     assert_eq!(found(&folder, "./a*.csv"), Ok(expected));
     assert_eq!(found(&folder, "*/a*.csv"), Ok(vec!["sub/a1.csv".into()]));
     assert!(found(&folder, "c*.csv").unwrap_err().contains("no file matches"));
-    assert!(is_pattern(&folder, Path::new("a*.csv")) && !is_pattern(Path::new("st*r"), Path::new("a.csv")));
+    let is_pattern = |folder: &Path, name: &str| is_pattern(&folder.into(), Path::new(name));
+    assert!(is_pattern(&folder, "a*.csv") && !is_pattern(Path::new("st*r"), "a.csv"));
 }

@@ -3,15 +3,18 @@
 use super::convert::folder_of;
 use super::{complain, init, print};
 use crate::analysis::sweep::modelled;
-use crate::analysis::{self, JobOptions, Kept, REPORT, RESULTS, Ran};
+use crate::analysis::{self, Kept, REPORT, Ran};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
+use crate::read::{Folder, Owner};
 use crate::report::Table;
+use crate::report::files::Names;
 use crate::report::words::{Voice, graded};
 use crate::units::notation::counted;
 use indicatif::ProgressBar;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
@@ -48,14 +51,14 @@ pub struct Compare {
 }
 
 /// A campaign file, or that of a folder; an empty one where the folder has none.
-fn opened(path: &Path) -> Result<Campaign> {
+fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
     let of_folder = path.join(Proposal::FILE);
     if !path.is_dir() {
-        analysis::open(path)
+        analysis::open_in(within, path)
     } else if of_folder.exists() {
-        analysis::open(of_folder)
+        analysis::open_in(within, &of_folder)
     } else {
-        analysis::parse(&of_folder, String::new())
+        analysis::parse(within, &of_folder, String::new())
     }
 }
 
@@ -64,8 +67,8 @@ fn proposed(campaign: Campaign, kept: &Kept, json: bool) -> Result<Campaign> {
     if campaign.path().exists() {
         return Ok(campaign);
     }
-    let folder = campaign.folder();
-    let look = |bar: &ProgressBar| Proposal::of(folder, &Reading::default(), None, kept, bar);
+    let (folder, within) = (campaign.folder(), campaign.within());
+    let look = |bar: &ProgressBar| Proposal::of(within, &Reading::default(), None, kept, bar);
     let proposal = print::busy(json, "looking at files", look)?;
     init::tell(&proposal);
     complain::line(&format!("to change any of it: vibro init {}", print::typed(folder)));
@@ -90,16 +93,16 @@ impl super::Run for Run {
             return self.once(json);
         }
         let is_folder = self.campaign.is_dir();
-        let folder = if is_folder { self.campaign.as_path() } else { folder_of(&self.campaign)? };
+        let folder = if is_folder { self.campaign.as_path() } else { folder_of(&self.campaign) };
         loop {
             // What changes while it runs is for the next run.
-            let before = stamps(folder);
+            let before = self.stamps(folder);
             // A campaign that is being written may have a fault for a moment.
             if let Err(error) = self.once(json) {
                 complain::error(&error, Voice::Campaign, json);
             }
             complain::line(&format!("watching {}; Ctrl+C ends", folder.display()));
-            while stamps(folder) == before {
+            while self.stamps(folder) == before {
                 std::thread::sleep(PAUSE);
             }
             // What is still being written lands within another pause.
@@ -111,36 +114,33 @@ impl super::Run for Run {
 /// Time between two looks at a folder that is watched.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// Names, sizes and times of the files of a folder and of those in it, but for folders of results.
-fn stamps(folder: &Path) -> Vec<(PathBuf, u64, Option<SystemTime>)> {
-    let mut found = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        let Ok(entries) = std::fs::read_dir(&folder) else { continue };
-        for entry in entries.flatten() {
-            let path = entry.path();
-            let Ok(meta) = std::fs::metadata(&path) else { continue };
-            if meta.is_file() {
-                found.push((path, meta.len(), meta.modified().ok()));
-            } else if meta.is_dir() && !path.join(RESULTS).exists() {
-                folders.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
-}
+/// Size and time of each file that is watched.
+type Stamps = BTreeMap<PathBuf, Option<(u64, SystemTime)>>;
 
 impl Run {
+    /// Where files lie, and whether names may lead outside the folder of the campaign.
+    fn within(&self) -> Folder {
+        Folder::default().allow_outside(self.allow_outside)
+    }
+
+    /// The files of a folder, but for results, and those that its campaign names.
+    fn stamps(&self, folder: &Path) -> Stamps {
+        let within = self.within().at(folder);
+        let named = opened(&within, &self.campaign).and_then(|campaign| analysis::files(&campaign));
+        let seen = analysis::recordings(&within).unwrap_or_default();
+        let all = seen.files.into_iter().chain(seen.others).chain(named.unwrap_or_default());
+        all.map(|path| (path.clone(), within.stamp(&path))).collect()
+    }
+
     /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
     fn once(&self, json: bool) -> Result<u8> {
-        let campaign = opened(&self.campaign)?;
+        let campaign = opened(&self.within(), &self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
-        let kept = if self.again { Kept::default() } else { Kept::of(&folder) };
+        let results = campaign.within().at(&folder);
+        let kept = if self.again { Kept::none(&results) } else { Kept::of(&results) };
+        let mut output = print::output(results, Owner::Run)?;
         let campaign = proposed(campaign, &kept, json)?;
-        let options = JobOptions { allow_outside: self.allow_outside, kept: Some(&kept) };
-        let mut output = print::output(&folder)?;
-        let run = |bar: &ProgressBar| analysis::run(&campaign, options, &mut output, bar);
+        let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);
         let Ran { answer, answered, again } = print::busy(json, "campaign", run)?;
         output.commit()?;
         if again > 0 {
@@ -173,14 +173,18 @@ impl super::Run for Compare {
 
     /// Prints measured responses over the model.
     fn run(&self, json: bool) -> Result<u8> {
-        let mut campaign = proposed(opened(&self.campaign)?, &Kept::default(), json)?;
+        let within = Folder::default().allow_outside(self.allow_outside);
+        let output = print::results(&within, self.out.as_deref(), COMPARISON)?;
+        let mut campaign = proposed(opened(&within, &self.campaign)?, &Kept::default(), json)?;
         if !self.fit.is_empty() {
             let names = self.fit.iter().map(|name| FitEntry::parameter(name.trim()));
             campaign.fit.parameters = names.collect::<Result<_>>()?;
             campaign.fit.usable()?;
         }
-        let options = JobOptions { allow_outside: self.allow_outside, ..JobOptions::default() };
-        let answer = print::busy(json, "comparing", |bar| modelled::compared(&campaign, options, bar))?;
-        print::answer(answer, self.out.as_deref(), json)
+        let answer = print::busy(json, "comparing", |bar| modelled::compared(&campaign, bar))?;
+        print::answer(answer, output, json)
     }
 }
+
+/// Names of what `vibro compare` writes.
+const COMPARISON: Names = Names::numbered(&["overlay", "pairs", "peaks", "fit", "fit_points"]);

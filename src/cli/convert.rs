@@ -4,7 +4,8 @@ use super::{Run, complain, print};
 use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading, above_zero};
 use crate::error::{Error, Result};
-use crate::record::{Finding, Record, Trace};
+use crate::read::{Folder, Owner};
+use crate::record::{Finding, Record, Trace, shown};
 use crate::report::Output;
 use crate::report::layout::headed;
 use crate::report::words::{Voice, graded};
@@ -50,11 +51,12 @@ impl Run for Convert {
             let found = format!("binary {}", target.name());
             return Err(Error::usage(found, "UFF-58, NAME.uff").setting("binary"));
         }
+        let folder = Folder::default();
         if !piped {
-            apart(&self.input, &self.output)?;
+            free(&folder, &self.input, &self.output, Owner::Recordings)?;
         }
         let one = self.channel.channel.is_some() || self.channel.calibration.is_some();
-        let reader = self.reading.reader()?;
+        let reader = self.reading.reader()?.within(&folder);
         let reader = if one || self.change.wanted() { reader.rate_of_base_band() } else { reader };
         let mut recording = reader.from_path(&self.input)?;
         if one {
@@ -72,7 +74,7 @@ impl Run for Convert {
             return Ok(0);
         }
         let existed = self.output.exists();
-        write_beside(&self.output, &bytes)?;
+        write_file(&folder, &self.output, Owner::Recordings, &bytes)?;
         let written = self.output.display().to_string();
         let (format, records) = (target.name(), recording.records.len());
         let mut answer = Answer::of(&json!({ "written": written, "format": format, "records": records }))?;
@@ -86,32 +88,54 @@ impl Run for Convert {
     }
 }
 
-/// Refuses two names of one file: what is read must not be written.
-pub fn apart(a: &Path, b: &Path) -> Result<()> {
-    let same = match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    };
-    let found = || format!("{} and {} are the same file", a.display(), b.display());
-    if same { Err(Error::usage(found(), "two files").hint("name another file to write")) } else { Ok(()) }
-}
-
-/// The folder of a file to write, which must exist.
-pub fn folder_of(path: &Path) -> Result<&Path> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let found = || format!("the folder {} does not exist", folder.display());
-    folder.is_dir().then_some(folder).ok_or_else(|| Error::usage(found(), "an existing folder"))
+/// Looks before anything is computed whether a file can be written: it is not the one that is read, and nothing of a person's is lost.
+///
+/// # Errors
+/// If it cannot; if its folder does not exist.
+pub fn free(folder: &Folder, read: &Path, written: &Path, owner: Owner) -> Result<()> {
+    let true_path = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    if true_path(read) == true_path(written) {
+        let found = format!("{} and {} are the same file", shown(read), shown(written));
+        return Err(Error::usage(found, "two files").hint("name another file to write"));
+    }
+    let (output, name) = beside(folder, written, owner)?;
+    output.expect(|known| known == name).map_err(|e| e.hint(other(written)))
 }
 
 /// Writes a file whole.
-pub fn write_beside(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
-    let name = path
-        .file_name()
-        .ok_or_else(|| Error::usage(format!("{} is no file name", path.display()), "a file"))?;
-    let folder = folder_of(path)?;
-    let mut output = Output::new(folder)?;
-    output.write(&name.to_string_lossy(), bytes)?;
+///
+/// # Errors
+/// As [`free`].
+pub fn write_file(folder: &Folder, path: &Path, owner: Owner, bytes: impl AsRef<[u8]>) -> Result<()> {
+    let (mut output, name) = beside(folder, path, owner)?;
+    output.write(&name, bytes).map_err(|e| e.hint(other(path)))?;
     output.commit().map(drop)
+}
+
+/// The folder of a file to write, which must exist, and its name there.
+fn beside(folder: &Folder, path: &Path, owner: Owner) -> Result<(Output, String)> {
+    let name = path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
+    let name = name.ok_or_else(|| Error::usage(format!("{} is no file name", shown(path)), "a file"))?;
+    let parent = folder_of(path);
+    if !parent.is_dir() {
+        return Err(Error::usage(
+            format!("the folder {} does not exist", shown(parent)),
+            "an existing folder",
+        ));
+    }
+    Ok((print::output(folder.at(parent), owner)?, name))
+}
+
+/// The folder in which a file lies.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A name beside this one that is free.
+fn other(path: &Path) -> String {
+    let [stem, ending] = [path.file_stem(), path.extension()].map(|part| part.map(shown).unwrap_or_default());
+    let mut names = (2..).map(|n| path.with_file_name(format!("{stem}_{n}.{ending}")));
+    names.find(|path| !path.exists()).map(shown).unwrap_or_default()
 }
 
 /// What is done to time traces on the way.

@@ -1,12 +1,16 @@
 //! `vibro demo` and `vibro open`: an example with its recordings, and the page of a report.
 
 use super::campaign::Run;
+use super::convert::folder_of;
 use super::{complain, print};
 use crate::analysis;
 use crate::error::{Error, Place, Result};
 use crate::proposal::Proposal;
+use crate::read::Owner;
 use crate::record::nearest;
+use crate::report::Output;
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use vibro_demo::{DEMOS, Demo as Example};
@@ -67,22 +71,19 @@ impl super::Run for Demo {
     }
 }
 
-/// Writes the files of an example. One that is there with another content is left, and named.
+/// Writes the files of an example, all or none. One that is there with another content is left, and named.
 fn write(demo: &Example, folder: &Path) -> Result<()> {
+    let mut outputs: BTreeMap<PathBuf, Output> = BTreeMap::new();
     demo.make(&mut |name, bytes| {
         let path = folder.join(name);
-        if let Ok(known) = std::fs::read(&path) {
-            if known == bytes {
-                return Ok(());
-            }
-            let found = "a file of this name with another content";
-            let error = Error::input(Place::file(&path), found, "a folder without it");
-            return Err(error.hint("name another folder with --out"));
+        let parent = folder_of(&path);
+        if !outputs.contains_key(parent) {
+            outputs.insert(parent.to_owned(), print::output(parent.into(), Owner::Recordings)?);
         }
-        let parent = path.parent().unwrap_or(folder);
-        std::fs::create_dir_all(parent).map_err(|e| Error::io("make the folder", parent, e))?;
-        std::fs::write(&path, bytes).map_err(|e| Error::io("write", &path, e))
-    })
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        outputs.get_mut(parent).map_or(Ok(()), |output| output.write(&name, bytes))
+    })?;
+    outputs.into_values().try_for_each(|output| output.commit().map(drop))
 }
 
 /// Programs that open a page, on one system or another.

@@ -1,16 +1,18 @@
 //! `vibro init` and `vibro check`: a campaign for a folder, and whether it can run.
 
+use super::convert::folder_of;
 use super::{complain, print};
 use crate::analysis;
 use crate::analysis::Kept;
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
 use crate::proposal::{Known, Proposal, Row, Table};
+use crate::read::{Folder, Owner, Standing};
+use crate::record::shown;
 use crate::report::words::{Voice, graded, put};
 use crate::units::notation::counted;
 use serde_json::{Map, Value, json};
-use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 pub struct Init {
@@ -19,6 +21,8 @@ pub struct Init {
     folder: PathBuf,
     #[command(flatten)]
     reading: Reading,
+    /// Take files outside the folder, too, where links lead to them
+    allow_outside: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -33,25 +37,34 @@ pub struct Check {
 impl super::Run for Init {
     /// Writes the campaign; to one that is there it adds tables for recordings that it does not name.
     fn run(&self, json: bool) -> Result<u8> {
-        let path = self.folder.join(Proposal::FILE);
-        let known = if path.exists() { Some(analysis::open(&path)?) } else { None };
+        let within = Folder::from(self.folder.as_path()).allow_outside(self.allow_outside);
+        let path = within.path(Path::new(Proposal::FILE))?;
+        // A link within the folder stays one.
+        let linked = within.standing(&path) == Standing::Special;
+        let path = if linked { path.canonicalize().unwrap_or(path) } else { path };
+        let name = path.file_name().map_or_else(String::new, shown);
+        let known = if path.exists() { Some(analysis::open_in(&within, &path)?) } else { None };
         let proposal = print::busy(json, "looking at files", |bar| {
-            Proposal::of(&self.folder, &self.reading, known.as_ref(), &Kept::default(), bar)
+            Proposal::of(&within, &self.reading, known.as_ref(), &Kept::default(), bar)
         })?;
         let text = match &known {
             Some(known) => {
                 let end = if known.text().ends_with('\n') { "" } else { "\n" };
                 let text = format!("{end}{}", proposal.tables());
                 // What cannot stand behind the rest is not written.
-                analysis::parse(&path, known.text().to_owned() + &text)?;
+                analysis::parse(&within, &path, known.text().to_owned() + &text)?;
                 text
             }
             None => proposal.toml(),
         };
         let nothing = text.trim().is_empty();
-        let file = std::fs::OpenOptions::new().append(true).create(true).open(&path);
-        file.and_then(|mut file| if nothing { Ok(()) } else { file.write_all(text.as_bytes()) })
-            .map_err(|e| Error::io("write", &path, e))?;
+        let mut output = print::output(within.at(folder_of(&path)), Owner::Person)?;
+        match &known {
+            Some(_) if nothing => {}
+            Some(known) => output.extend(&name, known.text(), &text)?,
+            None => output.write(&name, &text)?,
+        }
+        output.commit()?;
         if json {
             print::object(json!({
                 "written": path.display().to_string(),
@@ -120,9 +133,12 @@ impl super::Run for Check {
             let error = Error::usage(format!("{shown} has no {}", Proposal::FILE), "");
             return Err(error.hint(format!("vibro init {shown}")));
         }
-        let campaign = analysis::open(if self.campaign.is_dir() { &of_folder } else { &self.campaign })?;
-        let files = analysis::files(&campaign, self.allow_outside)?;
-        analysis::channels(&campaign, self.allow_outside)?;
+        let campaign = analysis::open_in(
+            &Folder::default().allow_outside(self.allow_outside),
+            if self.campaign.is_dir() { &of_folder } else { &self.campaign },
+        )?;
+        let files = analysis::files(&campaign)?;
+        analysis::channels(&campaign)?;
         let commented: Vec<_> =
             campaign.commented().into_iter().map(|found| (String::new(), found)).collect();
         if json {

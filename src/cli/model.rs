@@ -3,6 +3,7 @@
 use super::{Run, print};
 use crate::analysis::model::{branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
+use crate::read::Folder;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -43,17 +44,25 @@ pub struct Asked<K: Args> {
 impl Run for Model {
     /// Computes and prints the answer.
     fn run(&self, json: bool) -> Result<u8> {
-        let (answer, out) = print::busy(json, "computing", |bar| {
-            Ok(match &self.question {
-                Question::Orbit(typed) => (typed.keys.answer()?, &typed.out),
-                Question::Simulate(typed) => (typed.keys.answer()?, &typed.out),
-                Question::Response(typed) => (typed.keys.answer()?, &typed.out),
-                Question::Continue(typed) => (typed.keys.answer()?, &typed.out),
-                Question::Sweep(typed) => (typed.keys.answer()?, &typed.out),
-                Question::Choose(typed) => (typed.keys.answer()?, &typed.out),
-                Question::Map(typed) => (typed.keys.answer(bar)?, &typed.out),
-            })
+        let (out, names) = match &self.question {
+            Question::Orbit(typed) => (&typed.out, orbit::Keys::FILES),
+            Question::Simulate(typed) => (&typed.out, simulate::Keys::FILES),
+            Question::Response(typed) => (&typed.out, response::Keys::FILES),
+            Question::Continue(typed) => (&typed.out, branch::Keys::FILES),
+            Question::Sweep(typed) => (&typed.out, sweep::Keys::FILES),
+            Question::Choose(typed) => (&typed.out, choose::Keys::FILES),
+            Question::Map(typed) => (&typed.out, map::Keys::FILES),
+        };
+        let output = print::results(&Folder::default(), out.as_deref(), names)?;
+        let answer = print::busy(json, "computing", |bar| match &self.question {
+            Question::Orbit(typed) => typed.keys.answer(),
+            Question::Simulate(typed) => typed.keys.answer(),
+            Question::Response(typed) => typed.keys.answer(),
+            Question::Continue(typed) => typed.keys.answer(),
+            Question::Sweep(typed) => typed.keys.answer(),
+            Question::Choose(typed) => typed.keys.answer(),
+            Question::Map(typed) => typed.keys.answer(bar),
         })?;
-        print::answer(answer, out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }

@@ -5,8 +5,9 @@ use crate::analysis::Answer;
 use crate::analysis::precision as shown;
 use crate::error::{Error, Result};
 use crate::precision::{Family, Results, Scene};
+use crate::read::Folder;
 use crate::record::Finding;
-use crate::report::files;
+use crate::report::files::{self, Names};
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -37,11 +38,15 @@ pub struct Precision {
     out: Option<PathBuf>,
 }
 
+/// Names of what is written: one chart a scene, one map a method.
+const NAMES: Names = Names::named(&["precision", "failures"]);
+
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 
 impl Run for Precision {
     /// Measures, or takes up what was measured, and prints it.
     fn run(&self, json: bool) -> Result<u8> {
+        let output = print::results(&Folder::default(), self.out.as_deref(), NAMES)?;
         let mut results = match &self.results {
             Some(path) => Results::from_path(path)?,
             None => self.measured(json)?,
@@ -89,7 +94,7 @@ impl Run for Precision {
                 answer.tables.push(shown::borders(family, &part));
             }
         }
-        print::answer(answer, self.out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }
 

@@ -3,7 +3,10 @@
 use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
+use crate::read::{Folder, Owner};
+use crate::record::{shown, steers};
 use crate::report::Picture;
+use crate::report::files::Names;
 use crate::report::words::{Voice, graded, put};
 use crate::report::{Medium, Output, Table, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -14,14 +17,13 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// Writes the figures and files of an answer where a folder is named, and prints it: as JSON, or its tables. Gives the exit code.
+/// Writes the figures and files of an answer where there is a folder for them, and prints it: as JSON, or its tables. Gives the exit code.
 ///
 /// # Errors
 /// If a file or standard output cannot be written.
-pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> {
+pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<u8> {
     let mut written = Vec::new();
-    if let Some(folder) = out {
-        let mut output = output(folder)?;
+    if let Some(mut output) = output {
         let medium = output.medium;
         files::figures(&mut output, &answer.figures, |figure| Picture::of(figure, medium))?;
         for (name, bytes) in &answer.files {
@@ -47,18 +49,39 @@ pub fn answer(mut answer: Answer, out: Option<&Path>, json: bool) -> Result<u8> 
     Ok(0)
 }
 
-/// A folder for results, with figures in the style that was asked for.
+/// A folder to write into, with figures in the style that was asked for.
 ///
 /// # Errors
 /// As [`Output::new`].
-pub fn output(folder: &Path) -> Result<Output> {
-    let mut output = Output::new(folder)?;
-    output.medium = STYLE.get().copied().unwrap_or_default();
+pub fn output(folder: Folder, owner: Owner) -> Result<Output> {
+    let Written { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
+    let mut output = Output::new(folder, owner)?.replace(replace);
+    output.medium = medium;
     Ok(output)
 }
 
-/// The style of all figures of this program.
-pub static STYLE: OnceLock<Medium> = OnceLock::new();
+/// The folder for the results of a command, if one is named: nothing of a person's may stand there under the names of its files.
+///
+/// # Errors
+/// As [`Output::new`] and [`Output::expect`].
+pub fn results(folder: &Folder, out: Option<&Path>, names: Names) -> Result<Option<Output>> {
+    let Some(out) = out else { return Ok(None) };
+    let output = output(folder.at(out), Owner::Results)?;
+    output.expect(|name| names.has(name))?;
+    Ok(Some(output))
+}
+
+/// How this program writes files.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Written {
+    /// The style of all figures.
+    pub medium: Medium,
+    /// Whether files that are not vibro's are replaced, too.
+    pub replace: bool,
+}
+
+/// What was typed of it.
+pub static WRITTEN: OnceLock<Written> = OnceLock::new();
 
 /// Prints one JSON object.
 ///
@@ -82,13 +105,13 @@ pub fn text(text: &str) -> Result<()> {
 
 /// Text without control characters but line breaks and tabs: a name from a file must not steer a terminal.
 pub(crate) fn printable(text: &str) -> String {
-    let steers = |c: char| c.is_control() && c != '\n' && c != '\t';
-    text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
+    let breaks = |c: char| c == '\n' || c == '\t';
+    text.chars().map(|c| if steers(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// A path as a shell takes it.
 pub fn typed(path: &Path) -> String {
-    let text = path.display().to_string();
+    let text = shown(path);
     if text.contains(char::is_whitespace) { format!("\"{text}\"") } else { text }
 }
 

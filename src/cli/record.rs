@@ -1,18 +1,20 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
-use super::convert::{apart, folder_of, write_beside};
+use super::convert::{free, write_file};
 use super::sweep::{Place, of_script};
 use super::{Run, complain, print};
 use crate::analysis::drill::cycles;
 use crate::analysis::sweep::{Files, Listed, Stored, named};
-use crate::analysis::{self, Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
+use crate::analysis::{self, Analysis, Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::measure::drill::Cycle;
 use crate::measure::response::ResponseOptions;
 use crate::measure::{Estimate, legacy};
-use crate::read::{SweepList, SweepReader};
+use crate::read::{Folder, Owner, SweepList, SweepReader};
 use crate::record::{Finding, Trace};
+use crate::report::Output;
+use crate::report::files::Names;
 use crate::report::layout::{headed, table};
 use clap::Args;
 use serde_json::json;
@@ -81,9 +83,17 @@ pub struct Restitution {
 }
 
 impl Record {
+    /// Where files lie, and the folder for results.
+    fn results(&self, names: Names) -> Result<(Folder, Option<Output>)> {
+        let folder = Folder::default().allow_outside(true);
+        let output = print::results(&folder, self.out.as_deref(), names)?;
+        Ok((folder, output))
+    }
+
     /// Measures the record of a file, with a bar of progress.
     fn measured<T>(
         &self,
+        folder: &Folder,
         file: &Path,
         json: bool,
         measure: impl FnOnce(&Source<'_>) -> Result<T>,
@@ -96,6 +106,7 @@ impl Record {
             measure(&Source {
                 name: &name,
                 path: file,
+                folder,
                 channel: &self.channel,
                 reading: &self.reading,
                 beside: &|_, file| Ok(file.to_owned()),
@@ -106,28 +117,35 @@ impl Record {
 }
 
 impl<K: Args> Measured<K> {
-    fn by<T>(&self, json: bool, measure: impl FnOnce(&K, &Source<'_>) -> Result<T>) -> Result<T> {
-        self.record.measured(&self.file, json, |source| measure(&self.keys, source))
+    fn by<T>(
+        &self,
+        folder: &Folder,
+        json: bool,
+        measure: impl FnOnce(&K, &Source<'_>) -> Result<T>,
+    ) -> Result<T> {
+        self.record.measured(folder, &self.file, json, |source| measure(&self.keys, source))
     }
 }
 
-impl<K: Args + OfFile> Run for Measured<K> {
+impl<K: Args + OfFile + Analysis> Run for Measured<K> {
     /// Prints what is found in one record.
     fn run(&self, json: bool) -> Result<u8> {
-        print::answer(self.by(json, K::measure)?, self.record.out.as_deref(), json)
+        let (folder, output) = self.record.results(K::FILES)?;
+        print::answer(self.by(&folder, json, K::measure)?, output, json)
     }
 }
 
 impl Run for Impacts {
     /// Prints the impacts.
     fn run(&self, json: bool) -> Result<u8> {
-        let answer = self.of.by(json, |keys, source| {
+        let (folder, output) = self.of.record.results(impacts::Keys::FILES)?;
+        let answer = self.of.by(&folder, json, |keys, source| {
             if self.legacy {
                 return of_timeav(&source.trace(&source.recording()?)?);
             }
             keys.measure(source).map_err(|e| e.of_record(&source.path.display().to_string()))
         })?;
-        print::answer(answer, self.of.record.out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }
 
@@ -160,15 +178,17 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
 
 impl Measured<frf::Keys> {
     /// The receptance of a sweep, where the file is its list or a campaign.
-    fn sweep(&self) -> Result<Option<frf::Function>> {
+    fn sweep(&self, folder: &Folder) -> Result<Option<frf::Function>> {
         let typed = self.file.to_string_lossy();
         let Place { path, name, campaign } = Place::of(&typed);
         let listed = if campaign {
-            named(&analysis::open(path)?, name, false)?
+            named(&analysis::open_in(&folder.clone().allow_outside(false), Path::new(path))?, name)?
         } else {
-            let Ok(list) = SweepList::from_path(path, false) else { return Ok(None) };
+            let inside = folder.clone().allow_outside(false);
+            let Ok(list) = SweepList::from_path(path, &inside) else { return Ok(None) };
             let (unit, calibration) = (self.record.reading.unit.clone(), self.record.channel.calibration);
-            let mut reader = SweepReader { name: path.to_owned(), ..SweepReader::default() };
+            let (name, folder) = (path.to_owned(), folder.clone());
+            let mut reader = SweepReader { name, folder, ..SweepReader::default() };
             Stored { unit, calibration, ..Stored::default() }.apply(&mut reader)?;
             Listed { files: Files::Spectra(list), reader }
         };
@@ -180,9 +200,10 @@ impl Measured<frf::Keys> {
 impl Run for Measured<frf::Keys> {
     /// Prints the modes.
     fn run(&self, json: bool) -> Result<u8> {
-        let mut answers = match self.sweep()? {
+        let (folder, output) = self.record.results(frf::Keys::FILES)?;
+        let mut answers = match self.sweep(&folder)? {
             Some(function) => vec![self.keys.modes(&function.meta.name, &function)?],
-            None => self.by(json, frf::Keys::measure)?,
+            None => self.by(&folder, json, frf::Keys::measure)?,
         };
         if answers.len() > 1 {
             let names: Vec<&str> = answers.iter().filter_map(|a| a.result["channel"].as_str()).collect();
@@ -192,7 +213,7 @@ impl Run for Measured<frf::Keys> {
         }
         let mut answer = answers.pop().ok_or_else(|| Error::refused("no frequency response function"))?;
         answer.refused.take().map_or(Ok(()), Err)?;
-        print::answer(answer, self.record.out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }
 
@@ -200,11 +221,12 @@ impl Run for Pulse {
     /// Prints damping ratio and frequency of a contact.
     fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(self.file.is_some())?;
+        let (folder, output) = self.record.results(pulse::Keys::FILES)?;
         let answer = match &self.file {
-            Some(file) => self.record.measured(file, json, |source| self.keys.measure(source))?,
+            Some(file) => self.record.measured(&folder, file, json, |source| self.keys.measure(source))?,
             None => self.keys.times("")?,
         };
-        print::answer(answer, self.record.out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }
 
@@ -212,21 +234,22 @@ impl Run for Restitution {
     /// Prints the restitution by every method that the data allow.
     fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(!self.files.is_empty())?;
+        let (folder, output) = self.record.results(drop::Keys::FILES)?;
         let mut series = drop::Series::new(&self.keys);
         series.add_numbers(&self.keys);
         for file in &self.files {
-            self.record.measured(file, json, |source| series.add_record(&self.keys, source))?;
+            self.record.measured(&folder, file, json, |source| series.add_record(&self.keys, source))?;
         }
-        print::answer(series.answer("")?, self.record.out.as_deref(), json)
+        print::answer(series.answer("")?, output, json)
     }
 }
 
 impl Run for Drill {
     /// Prints speed, impacts and the average turn.
     fn run(&self, json: bool) -> Result<u8> {
+        let (folder, output) = self.of.record.results(drill::Keys::FILES)?;
         if let Some(path) = &self.each_cycle {
-            apart(&self.of.file, path)?;
-            folder_of(path)?;
+            free(&folder, &self.of.file, path, Owner::Results)?;
         }
         let mut turns = String::new();
         let mut each = |cycle: &Cycle<'_>| -> Result<()> {
@@ -238,13 +261,13 @@ impl Run for Drill {
             }
             Ok(())
         };
-        let mut answer = self.of.by(json, |keys, source| keys.measure(source, &mut each))?;
+        let mut answer = self.of.by(&folder, json, |keys, source| keys.measure(source, &mut each))?;
         if let Some(path) = &self.each_cycle {
-            write_beside(path, turns)?;
+            write_file(&folder, path, Owner::Results, turns)?;
             let written = path.display().to_string();
             complain::line(&format!("wrote {written}"));
             answer.result.insert("each_cycle".to_owned(), written.into());
         }
-        print::answer(answer, self.of.record.out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }

@@ -2,9 +2,9 @@
 //! name of another one get their own, with a note.
 
 use super::complain;
-use crate::analysis::in_order;
+use crate::analysis::matching;
 use crate::campaign::without_unit;
-use glob::MatchOptions;
+use crate::read::Folder;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -28,11 +28,9 @@ const SEVERAL: [&str; 2] = ["info", "restitution"];
 fn named(word: OsString, command: &str) -> Vec<OsString> {
     let pattern =
         word.to_str().filter(|w| w.contains(['*', '?']) && !w.starts_with('-') && !Path::new(w).exists());
-    let options = MatchOptions { require_literal_leading_dot: true, ..MatchOptions::default() };
-    let files = pattern.and_then(|pattern| glob::glob_with(&pattern.replace('[', "[[]"), options).ok());
-    let files: Result<Vec<PathBuf>, _> = files.into_iter().flatten().collect();
-    let mut files = files.unwrap_or_default();
-    in_order(&mut files);
+    let any = Folder::default().allow_outside(true);
+    let files = pattern.and_then(|pattern| matching(&any, Path::new(&pattern.replace('[', "[[]"))).ok());
+    let files = files.unwrap_or_default();
     let meant = files.len() == 1 && command != "convert" || files.len() > 1 && SEVERAL.contains(&command);
     if meant { files.into_iter().map(PathBuf::into_os_string).collect() } else { vec![word] }
 }

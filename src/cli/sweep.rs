@@ -1,6 +1,6 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
 
-use super::convert::{apart, write_beside};
+use super::convert::{free, write_file};
 use super::{Run, init, print};
 use crate::analysis::Kept;
 use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
@@ -11,8 +11,9 @@ use crate::measure::response::{ResponseOptions, ResponsePoint};
 use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::proposal::{Proposal, of_steps};
-use crate::read::{SweepList, SweepReader};
+use crate::read::{Folder, Owner, SweepList, SweepReader};
 use crate::record::{Finding, Sweep, SweepPoint};
+use crate::report::files::Names;
 use crate::report::layout::{headed, pair, table};
 use crate::report::{Table, files};
 use ndarray::Array2;
@@ -75,40 +76,46 @@ pub fn of_script(script: &str) -> Finding {
 
 impl Source {
     /// A sweep of the time traces that are named, or that lie in the folder that is.
-    fn proposed(&self) -> Result<Option<Proposal>> {
+    fn proposed(&self, folder: &Folder) -> Result<Option<Proposal>> {
+        let any = folder.clone().allow_outside(true);
         let typed: Vec<&Path> = self.paths.iter().map(Path::new).collect();
         Ok(match typed.as_slice() {
-            [folder] if folder.is_dir() => {
-                let mut proposal = Proposal::of(folder, &Reading::default(), None, &Kept::default(), &())?;
+            [path] if path.is_dir() => {
+                let within = folder.at(*path);
+                let mut proposal = Proposal::of(&within, &Reading::default(), None, &Kept::default(), &())?;
                 proposal.tables.retain(|table| table.section == "sweep");
                 proposal.left.clear();
                 Some(proposal)
             }
-            [one] if !is_pattern(Path::new(""), one) => None,
+            [one] if !is_pattern(&any, one) => None,
             all => {
-                let files: Result<Vec<_>> = all.iter().map(|path| matching(Path::new(""), path)).collect();
+                let files: Result<Vec<_>> = all.iter().map(|path| matching(&any, path)).collect();
                 let mut files = files?.concat();
                 // A shell names 10 before 2.
                 if files.is_sorted() {
                     in_order(&mut files);
                 }
-                Some(of_steps(&files, &Reading::default())?)
+                Some(of_steps(&any, &files, &Reading::default())?)
             }
         })
     }
 
+    /// Where files lie, and whether names may lead outside the folder of the list.
+    fn folder(&self) -> Folder {
+        Folder::default().allow_outside(self.allow_outside)
+    }
+
     /// The files of the sweep, and how to read them.
-    fn listed(&self) -> Result<Listed> {
+    fn listed(&self, folder: &Folder) -> Result<Listed> {
         let Place { path, name, campaign } = Place::of(&self.paths[0]);
-        let mut listed = if let Some(proposal) = self.proposed()? {
+        let mut listed = if let Some(proposal) = self.proposed(folder)? {
             init::tell(&proposal);
-            // Whatever was typed is meant.
-            named(&proposal.campaign()?, None, true)?
+            named(&proposal.campaign()?, None)?
         } else if campaign {
-            named(&analysis::open(path)?, name, self.allow_outside)?
+            named(&analysis::open_in(folder, Path::new(path))?, name)?
         } else {
-            let files = Files::Spectra(SweepList::from_path(path, self.allow_outside)?);
-            Listed { files, reader: SweepReader::default() }
+            let files = Files::Spectra(SweepList::from_path(path, folder)?);
+            Listed { files, reader: SweepReader { folder: folder.clone(), ..SweepReader::default() } }
         };
         let how = &mut listed.reader;
         if how.name.is_empty() {
@@ -141,7 +148,9 @@ impl Place<'_> {
 impl Run for Taken {
     /// Prints the response.
     fn run(&self, json: bool) -> Result<u8> {
-        let listed = self.sweep.listed()?;
+        let folder = self.sweep.folder();
+        let output = print::results(&folder, self.out.as_deref(), RESPONSE)?;
+        let listed = self.sweep.listed(&folder)?;
         let answer = if self.sweep.legacy {
             largest_lines(&listed.spectra()?.1)?
         } else {
@@ -157,9 +166,13 @@ impl Run for Taken {
             answer.tables = vec![tables::curve(&found), tables::resonances(all), tables::jumps(all)];
             answer
         };
-        print::answer(answer, self.out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }
+
+/// Names of what `vibro response` and `vibro waterfall` write.
+const RESPONSE: Names = Names::numbered(&["response", "receptance"]);
+const WATERFALL: Names = Names::numbered(&["waterfall", "map"]);
 
 impl Taken {
     fn options(&self) -> ResponseOptions {
@@ -198,7 +211,9 @@ impl Run for Waterfall {
     /// Prints the matrix of spectra.
     fn run(&self, json: bool) -> Result<u8> {
         above_zero("fmax", self.fmax)?;
-        let listed = self.taken.sweep.listed()?;
+        let folder = self.taken.sweep.folder();
+        let output = print::results(&folder, self.taken.out.as_deref(), WATERFALL)?;
+        let listed = self.taken.sweep.listed(&folder)?;
         let matrix = if self.taken.sweep.legacy {
             let (_, sweep) = listed.spectra()?;
             let excitation = legacy::rounded(&legacy::excitation(&sweep)?);
@@ -235,14 +250,21 @@ impl Run for Waterfall {
         let shape = headed("Waterfall", &[("spectra", ""), ("lines", ""), ("quantity", ""), ("unit", "")]);
         let (quantity, unit) = (matrix.quantity.name(), matrix.unit.as_str());
         answer.tables.push(shape.row([points.into(), lines.into(), quantity.into(), unit.into()]));
-        print::answer(answer, self.taken.out.as_deref(), json)
+        print::answer(answer, output, json)
     }
 }
 
 impl Run for Excitation {
     /// Prints the excitation of each point.
     fn run(&self, json: bool) -> Result<u8> {
-        let listed = self.sweep.listed()?;
+        let folder = self.sweep.folder();
+        let path = Path::new(Place::of(&self.sweep.paths[0]).path);
+        if let Some([force, response]) = self.write_lists.as_deref() {
+            free(&folder, force, response, Owner::Recordings)?;
+            free(&folder, path, force, Owner::Recordings)?;
+            free(&folder, path, response, Owner::Recordings)?;
+        }
+        let listed = self.sweep.listed(&folder)?;
         let (points, findings) = if self.sweep.legacy {
             let (_, sweep) = listed.spectra()?;
             let found = legacy::excitation(&sweep)?.into_iter().zip(&sweep.points);
@@ -269,7 +291,7 @@ impl Run for Excitation {
             (found.points.iter().zip(&sweep.points).map(point).collect(), found.findings)
         };
         let frequencies: Vec<f64> = points.iter().map(|p| p.frequency).collect();
-        let written = self.lists(&listed, &frequencies)?;
+        let written = self.lists(&folder, &listed, &frequencies)?;
         let mut answer = Answer::of(&json!({ "points": points, "written": written }))?;
         answer.add("", findings);
         answer.tables.push(table(
@@ -287,7 +309,7 @@ impl Run for Excitation {
 
 impl Excitation {
     /// Writes the hand-over files; gives their paths.
-    fn lists(&self, listed: &Listed, frequencies: &[f64]) -> Result<Vec<String>> {
+    fn lists(&self, within: &Folder, listed: &Listed, frequencies: &[f64]) -> Result<Vec<String>> {
         let Some([force, response]) = self.write_lists.as_deref() else { return Ok(Vec::new()) };
         let (list, _) = listed.spectra()?;
         if list.force.is_empty() {
@@ -295,15 +317,12 @@ impl Excitation {
             return Err(Error::usage(found, "a list file with them").setting("write_lists"));
         }
         let path = Path::new(Place::of(&self.sweep.paths[0]).path);
-        apart(force, response)?;
-        apart(path, force)?;
-        apart(path, response)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut written = Vec::new();
         for (path, names) in [(force, &list.force), (response, &list.response)] {
             let names: Vec<_> = names.iter().map(|n| n.strip_prefix(folder).unwrap_or(n)).collect();
             let text = legacy::hand_over(list.lines, list.base_band, frequencies, &names);
-            write_beside(path, &text)?;
+            write_file(within, path, Owner::Recordings, &text)?;
             written.push(path.display().to_string());
         }
         Ok(written)

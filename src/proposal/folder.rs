@@ -1,16 +1,17 @@
 //! The recordings of a folder: lists of sweeps, and files in series.
 
 use super::{Known, Table};
-use crate::analysis;
+use crate::analysis::{self, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
-use crate::read::{Header, SweepList};
+use crate::read::{Folder, Header, SweepList};
+use crate::record::shown;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What lies in a folder.
 #[derive(Debug, Default)]
-pub(super) struct Folder {
+pub(super) struct Inventory {
     /// Names and paths of list files.
     pub lists: Vec<(String, String)>,
     /// Files that belong together, in order.
@@ -37,24 +38,27 @@ pub struct Series {
 /// A file and its channels.
 type Member = (PathBuf, Vec<Header>);
 
-impl Folder {
+impl Inventory {
     /// Lists and sorts the files of a folder that no table of `known` names; a sampling rate that is stated is that of files without one.
     ///
     /// # Errors
     /// If a folder cannot be listed.
-    pub fn of(root: &Path, reading: &Reading, known: Option<&Campaign>) -> Result<Folder> {
-        let (reader, with_rate) = (reading.untimed().reader()?, reading.reader()?);
-        let (all, others) = analysis::recordings(root)?;
-        let new = known.map(|campaign| analysis::unnamed(campaign, true, &all)).transpose()?;
+    pub fn of(folder: &Folder, reading: &Reading, known: Option<&Campaign>) -> Result<Inventory> {
+        let (reader, with_rate) =
+            (reading.untimed().reader()?.within(folder), reading.reader()?.within(folder));
+        let Recordings { files: all, others, left } = analysis::recordings(folder)?;
+        let root = folder.root();
+        let new = known.map(|campaign| analysis::unnamed(campaign, &all)).transpose()?;
         let mut paths = new.unwrap_or_else(|| all.clone());
         let within = |path: &Path| {
             let inside = path.strip_prefix(root).unwrap_or(path);
             inside.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
         };
-        let mut found = Folder::default();
+        let left = left.iter().map(|(path, why)| (shown(within(path)), why.clone())).collect();
+        let mut found = Inventory { left, ..Inventory::default() };
         let lists: Vec<(PathBuf, SweepList)> = paths
             .iter()
-            .filter_map(|path| Some((path.clone(), SweepList::from_path(path, false).ok()?)))
+            .filter_map(|path| Some((path.clone(), SweepList::from_path(path, folder).ok()?)))
             .collect();
         for (path, list) in &lists {
             paths.retain(|other| {

@@ -4,11 +4,10 @@ use super::folder::{Series, short};
 use super::{Proposal, Table};
 use crate::analysis::{self, Answer, Kept, Progress};
 use crate::campaign::Reading;
-use crate::read::Header;
+use crate::read::{Folder, Header};
 use crate::record::{Record, Severity};
 use serde_json::Value;
 use std::ops::Range;
-use std::path::Path;
 use std::slice::from_ref;
 
 /// Channels of a file that are tried.
@@ -47,7 +46,7 @@ const STEPS: usize = 5;
 
 /// Tries what a record can be measured for.
 pub(super) struct Trial<'a> {
-    pub folder: &'a Path,
+    pub folder: &'a Folder,
     pub reading: &'a Reading,
     pub kept: &'a Kept,
     pub progress: &'a dyn Progress,
@@ -56,10 +55,10 @@ pub(super) struct Trial<'a> {
 impl Trial<'_> {
     /// The answers of the records of tables; else why there is none.
     fn answers(&self, tables: &[Table]) -> Result<Answer, String> {
-        let path = self.folder.join(Proposal::FILE);
+        let path = self.folder.root().join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml()).collect();
-        let answered =
-            analysis::parse(&path, text).and_then(|c| analysis::answers(&c, self.kept, self.progress));
+        let answered = analysis::parse(self.folder, &path, text)
+            .and_then(|c| analysis::answers(&c, self.kept, self.progress));
         answered.map_err(|error| short(&error))?
     }
 
@@ -232,8 +231,8 @@ impl Trial<'_> {
         if series.headers.len() < 2 || velocities.is_empty() {
             return Vec::new();
         }
-        let path = self.folder.join(file);
-        let Ok(recording) = self.reading.reader().and_then(|reader| reader.from_path(path)) else {
+        let path = self.folder.root().join(file);
+        let Ok(recording) = self.reading.reader().and_then(|r| r.within(self.folder).from_path(path)) else {
             return Vec::new();
         };
         let shares: Vec<f64> = recording.records.iter().map(at_two_levels).collect();

@@ -1,26 +1,36 @@
-//! A folder of results, whose files appear together or not at all.
+//! The one writer: a folder whose files appear together or not at all, and in which nothing of a person's is replaced.
 
 use super::Medium;
 use crate::error::{Error, Place, Result};
-use std::fs;
-use std::io::{ErrorKind, Write};
+use crate::read::{Digest, Folder, Lock, Manifest, Owner, Staged, Standing};
+use crate::record::shown;
+use sha2::{Digest as _, Sha256};
 use std::path::{Component, Path, PathBuf};
-use tempfile::{NamedTempFile, TempPath};
 
-/// Folder into which results are written.
+/// Folder into which files are written.
 ///
 /// Files are written beside their places under temporary names, and get their names together in [`Output::commit`]. A program that is
 /// killed before leaves the old results as they were; one that is killed in between leaves the file [`Output::INCOMPLETE`]. Nothing is
 /// forced to the disk: a power failure in the seconds after may still lose the new content.
+///
+/// A file that this run has opened as a measurement is never replaced. One that vibro did not write there, or that was changed since, is
+/// replaced only where [`Output::replace`] says so. The folder's [`Manifest`] tells them apart.
 #[derive(Debug)]
 pub struct Output {
     /// What its figures are drawn for.
     pub medium: Medium,
-    folder: PathBuf,
+    folder: Folder,
+    owner: Owner,
+    replace: bool,
+    /// From the first file on.
+    claim: Option<Claim>,
     written: Vec<String>,
-    /// The file of each name, closed, and removed unless it gets its name.
-    files: Vec<TempPath>,
+    /// The content of each name; nothing to place where the name holds it already.
+    staged: Vec<(Digest, Option<Staged>)>,
 }
+
+/// What a folder held before, and the right to write into it, which memory does not need.
+type Claim = (Manifest, Option<Lock>);
 
 impl Output {
     /// The file that marks a folder in which old and new results stand side by side.
@@ -30,18 +40,25 @@ impl Output {
     ///
     /// # Errors
     /// If a file has its name.
-    pub fn new(folder: impl Into<PathBuf>) -> Result<Output> {
-        let folder = folder.into();
-        if folder.exists() && !folder.is_dir() {
-            return Err(Error::input(Place::file(&folder), "this is a file", "a folder for results")
+    pub fn new(folder: impl Into<Folder>, owner: Owner) -> Result<Output> {
+        let folder: Folder = folder.into();
+        let root = folder.root();
+        if !root.as_os_str().is_empty() && folder.exists(root) && !folder.is_folder(root) {
+            return Err(Error::input(Place::file(root), "this is a file", "a folder for results")
                 .hint("name another folder"));
         }
-        Ok(Output { medium: Medium::default(), folder, written: Vec::new(), files: Vec::new() })
+        let (medium, written, staged) = (Medium::default(), Vec::new(), Vec::new());
+        Ok(Output { medium, folder, owner, replace: false, claim: None, written, staged })
+    }
+
+    /// States whether files that are not vibro's are replaced, too. Default: they are not.
+    pub fn replace(self, replace: bool) -> Output {
+        Output { replace, ..self }
     }
 
     /// The folder.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        self.folder.root()
     }
 
     /// Names of the files written, in order and each once.
@@ -49,80 +66,185 @@ impl Output {
         &self.written
     }
 
+    /// Looks, before anything is computed, whether a file stands in the way that has a name which may be written.
+    ///
+    /// # Errors
+    /// As [`Output::write`] of that name.
+    pub fn expect(&self, may: impl Fn(&str) -> bool) -> Result<()> {
+        let manifest = Manifest::of(&self.folder);
+        let mut names =
+            self.folder.names().into_iter().filter(|name| OWN.contains(&name.as_str()) || may(name));
+        names.try_for_each(|name| self.holds(&manifest, &name, None).map(drop))
+    }
+
     /// Writes a file, or writes it anew.
     ///
     /// # Errors
-    /// If `name` is no plain name of a file, or the system refuses.
+    /// If `name` is no plain name of a file, has something that is not vibro's, or the system refuses.
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
-        let path = self.folder.join(checked(name)?);
-        fs::create_dir_all(&self.folder).map_err(|e| Error::io("make the folder", &self.folder, e))?;
-        if path.is_dir() {
-            return Err(unusable(name, "names a folder").hint("remove that folder or choose another name"));
-        }
-        if self.written.is_empty() {
-            remove_leftovers(&self.folder);
-        }
-        let refused = |e| Error::io("write", &path, e);
-        let mut file = temporary(&self.folder).map_err(refused)?;
-        file.write_all(bytes.as_ref()).map_err(refused)?;
-        let file = file.into_temp_path();
-        if let Some(i) = self.written.iter().position(|w| w == name) {
-            self.files[i] = file;
-        } else {
-            self.written.push(name.to_owned());
-            self.files.push(file);
-        }
+        let (path, bytes) = (self.folder.root().join(checked(name)?), bytes.as_ref());
+        let digest: Digest = Sha256::digest(bytes).into();
+        let claim = self.claimed()?;
+        let there = self.holds(&claim.0, name, Some(&digest));
+        self.claim = Some(claim);
+        let there = there?;
+        let staged = if there { None } else { Some(self.folder.stage(&path, bytes)?) };
+        self.take(name, digest, staged);
         Ok(())
     }
 
-    /// Gives the files their names, which it returns in the order in which they were written.
+    /// Adds text at the end of a file that a person keeps and that held `before` when it was read.
+    ///
+    /// # Errors
+    /// If it was changed meanwhile, or the system refuses.
+    pub fn extend(&mut self, name: &str, before: &str, addition: &str) -> Result<()> {
+        let path = self.folder.root().join(checked(name)?);
+        self.claim = Some(self.claimed()?);
+        if self.folder.read(&path)? != before.as_bytes() {
+            let error =
+                Error::input(Place::file(&path), "the file changed meanwhile", "nobody else to write it");
+            return Err(error.hint("run the same command again"));
+        }
+        let text = before.to_owned() + addition;
+        let staged = self.folder.stage(&path, text.as_bytes())?;
+        self.take(name, Sha256::digest(text).into(), Some(staged));
+        Ok(())
+    }
+
+    fn take(&mut self, name: &str, digest: Digest, staged: Option<Staged>) {
+        match self.written.iter().position(|written| written == name) {
+            Some(i) => self.staged[i] = (digest, staged),
+            None => {
+                self.written.push(name.to_owned());
+                self.staged.push((digest, staged));
+            }
+        }
+    }
+
+    /// What is held of the folder; for the first time it is made, and this becomes its only writer.
+    fn claimed(&mut self) -> Result<Claim> {
+        if let Some(claim) = self.claim.take() {
+            return Ok(claim);
+        }
+        self.folder.make(self.folder.root())?;
+        let lock = self.folder.lock()?;
+        self.folder.remove_leftovers();
+        let manifest = Manifest::of(&self.folder);
+        OWN.iter().try_for_each(|name| self.holds(&manifest, name, None).map(drop))?;
+        Ok((manifest, lock))
+    }
+
+    /// Whether a name holds these bytes already; it may be written anew where not.
+    ///
+    /// # Errors
+    /// If what has the name must not be replaced.
+    fn holds(&self, manifest: &Manifest, name: &str, new: Option<&Digest>) -> Result<bool> {
+        let path = self.folder.root().join(name);
+        let standing = self.folder.standing(&path);
+        if standing == Standing::Folder {
+            return Err(unusable(name, "names a folder").hint("remove that folder or choose another name"));
+        }
+        let opened = self.folder.opened(&path);
+        if standing == Standing::Free || !opened && self.replace {
+            return Ok(false);
+        }
+        let found = if opened {
+            "is what this command reads"
+        } else if standing == Standing::Special {
+            "is a link or a device, and not vibro's"
+        } else {
+            let digest = self.folder.digest(&path)?;
+            if new == Some(&digest) {
+                return Ok(true);
+            }
+            let mark = || name == Output::INCOMPLETE && digest == Digest::from(Sha256::digest(MARK));
+            let known = || name == Manifest::FILE && Manifest::is_of(&self.folder);
+            if manifest.knows(self.owner, name, &digest) || mark() || known() {
+                return Ok(false);
+            }
+            "is not vibro's: vibro did not write it, or it was changed since"
+        };
+        let error =
+            Error::usage(format!("{} {found}", shown(&path)), "a place where nothing of yours is replaced");
+        Err(error.set("out", shown(self.another())))
+    }
+
+    /// A folder of which nothing is there yet.
+    fn another(&self) -> PathBuf {
+        let root = self.folder.root();
+        let name = root.file_name().map_or_else(|| "results".into(), |name| name.to_string_lossy());
+        let mut names = (2..).map(|n| root.with_file_name(format!("{name}_{n}")));
+        names.find(|path| !self.folder.exists(path)).unwrap_or_default()
+    }
+
+    /// Gives the files their names, which it returns in the order in which they were written. Of a campaign, what the last run wrote and this
+    /// one did not goes.
     ///
     /// # Errors
     /// If the system refuses; the folder is then marked as incomplete.
-    pub fn commit(self) -> Result<Vec<String>> {
-        let mark = self.folder.join(Self::INCOMPLETE);
-        if self.written.len() > 1 {
-            let text = "Old and new results stand side by side here: run the same command again.\n";
-            fs::write(&mark, text).map_err(|e| Error::io("write", &mark, e))?;
+    pub fn commit(mut self) -> Result<Vec<String>> {
+        let Some((mut manifest, lock)) = self.claim.take() else { return Ok(self.written) };
+        let stale = if self.owner == Owner::Run { self.stale(&manifest) } else { Vec::new() };
+        let mut after = manifest.clone();
+        let mut files = Vec::new();
+        for (name, (digest, staged)) in self.written.iter().zip(std::mem::take(&mut self.staged)) {
+            // What holds these bytes, but is not known, stays a person's.
+            let Some(staged) = staged else { continue };
+            after.forget(name);
+            after.add(self.owner, name, digest);
+            // A program that is killed leaves some of the old files and some of the new: all are vibro's.
+            manifest.add(self.owner, name, digest);
+            files.push((name, staged));
         }
-        for (name, file) in self.written.iter().zip(self.files) {
-            let path = self.folder.join(name);
-            file.persist(&path).map_err(|e| Error::io("write", &path, e.error))?;
+        if files.is_empty() && stale.is_empty() {
+            return Ok(self.written);
         }
-        if self.written.len() > 1 {
-            match fs::remove_file(&mark) {
-                // Another run that ended here meanwhile has removed it.
-                Err(e) if e.kind() != ErrorKind::NotFound => return Err(Error::io("remove", &mark, e)),
-                _ => {}
-            }
+        self.remember(&manifest)?;
+        let mark = self.folder.root().join(Self::INCOMPLETE);
+        let several = files.len() + stale.len() > 1;
+        if several {
+            self.folder.place(self.folder.stage(&mark, MARK.as_bytes())?, &mark)?;
         }
+        for (name, staged) in files {
+            self.folder.place(staged, &self.folder.root().join(name))?;
+        }
+        for name in stale {
+            self.folder.remove(&self.folder.root().join(&name))?;
+            after.forget(&name);
+        }
+        self.remember(&after)?;
+        if several {
+            self.folder.remove(&mark)?;
+        }
+        drop(lock);
         Ok(self.written)
     }
-}
 
-/// A file of a hidden name in the same folder, hence on the same file system, which everybody may read who may read a new file there.
-fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
-    let mut named = tempfile::Builder::new();
-    named.prefix(".").suffix(PART);
-    #[cfg(unix)]
-    named.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    named.tempfile_in(folder)
-}
+    /// What an earlier run of a campaign wrote and this one does not, as it was left.
+    fn stale(&self, manifest: &Manifest) -> Vec<String> {
+        let gone = |(name, known): &(&str, &[Digest])| {
+            let path = self.folder.root().join(name);
+            let left = self.folder.standing(&path) == Standing::File && !self.folder.opened(&path);
+            left && !self.written.iter().any(|written| written == name)
+                && self.folder.digest(&path).is_ok_and(|digest| known.contains(&digest))
+        };
+        manifest.owned(Owner::Run).filter(gone).map(|(name, _)| name.to_owned()).collect()
+    }
 
-/// End of the names of temporary files.
-const PART: &str = ".vibro.part";
-
-/// Removes temporary files of killed programs: those that nobody has written to for an hour.
-fn remove_leftovers(folder: &Path) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let ours = entry.file_name().to_str().is_some_and(|n| n.starts_with('.') && n.ends_with(PART));
-        let written = entry.metadata().and_then(|m| m.modified());
-        if ours && written.is_ok_and(|t| t.elapsed().is_ok_and(|age| age.as_secs() > 3600)) {
-            // It is in nobody's way: a leftover that cannot be removed is no failure.
-            let _ = fs::remove_file(entry.path());
+    fn remember(&self, manifest: &Manifest) -> Result<()> {
+        if manifest.is_empty() || self.owner == Owner::Person {
+            return Ok(());
         }
+        let path = self.folder.root().join(Manifest::FILE);
+        self.folder.place(self.folder.stage(&path, manifest.text().as_bytes())?, &path)
     }
 }
+
+/// Files by which a folder of results is kept in order.
+const OWN: [&str; 2] = [Output::INCOMPLETE, Manifest::FILE];
+
+/// What the file says that marks a folder.
+const MARK: &str = "Old and new results stand side by side here: run the same command again.\n";
 
 /// The name as one plain part of a path. A backslash or a colon would mean something else on another system, so both are refused.
 fn checked(name: &str) -> Result<&Path> {
@@ -139,95 +261,4 @@ fn unusable(name: &str, why: &str) -> Error {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> =
-            fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn files_are_replaced_whole_and_remembered_once_in_order() {
-        let dir = tempfile::tempdir().unwrap();
-        let mut out = Output::new(dir.path().join("a/b")).unwrap();
-        out.write("z.txt", "one").unwrap();
-        out.write("x.svg", b"<svg/>").unwrap();
-        out.write("z.txt", "two").unwrap();
-        let folder = out.folder().to_owned();
-        assert_eq!(out.commit().unwrap(), ["z.txt", "x.svg"]);
-        assert_eq!(fs::read_to_string(folder.join("z.txt")).unwrap(), "two");
-        assert_eq!(names(&folder), ["x.svg", "z.txt"]);
-    }
-
-    #[test]
-    fn names_that_lead_outside_are_refused() {
-        let dir = tempfile::tempdir().unwrap();
-        let mut out = Output::new(dir.path().join("in")).unwrap();
-        for name in ["", ".", "..", "../x", "a/x", "/etc/x", "a\\b", "c:x", "a/", "./a", "a\0b"] {
-            let error = out.write(name, "x").unwrap_err();
-            assert_eq!(error.exit_code(), 2, "{name:?}");
-        }
-        // The folder is made for the first file only.
-        assert!(names(dir.path()).is_empty() && out.written().is_empty());
-    }
-
-    #[test]
-    fn a_failure_leaves_the_old_content_and_no_temporary() {
-        let dir = tempfile::tempdir().unwrap();
-        let mut out = Output::new(dir.path()).unwrap();
-        fs::create_dir(dir.path().join("x")).unwrap();
-        fs::write(dir.path().join("x/old"), "old").unwrap();
-        assert!(out.write("x", "new").is_err());
-        assert!(out.written().is_empty());
-        // A name that no file can have: the set stands half, and the folder says so.
-        let long = "n".repeat(300);
-        out.write("a", "new").unwrap();
-        out.write(&long, "new").unwrap();
-        let error = out.commit().unwrap_err().to_string();
-        assert!(error.contains(&long) && !error.contains(PART), "{error}");
-        assert_eq!(names(dir.path()), [Output::INCOMPLETE, "a", "x"]);
-        assert_eq!(fs::read_to_string(dir.path().join("x/old")).unwrap(), "old");
-        let mut again = Output::new(dir.path()).unwrap();
-        again.write("a", "newer").unwrap();
-        again.write("b", "newer").unwrap();
-        again.commit().unwrap();
-        assert_eq!(names(dir.path()), ["a", "b", "x"]);
-    }
-
-    #[test]
-    fn a_set_appears_as_one_or_leaves_the_old_one() {
-        let dir = tempfile::tempdir().unwrap();
-        fs::write(dir.path().join("a"), "old").unwrap();
-        let mut out = Output::new(dir.path()).unwrap();
-        out.write("a", "new").unwrap();
-        assert_eq!(fs::read_to_string(dir.path().join("a")).unwrap(), "old");
-        drop(out);
-        assert_eq!(names(dir.path()), ["a"]);
-        assert_eq!(fs::read_to_string(dir.path().join("a")).unwrap(), "old");
-    }
-
-    #[test]
-    fn leftovers_of_killed_programs_are_removed() {
-        let dir = tempfile::tempdir().unwrap();
-        let day = std::time::Duration::from_secs(24 * 3600);
-        for (name, age) in [(".7.0", day), (".8.1", day / 10_000), ("9.0", day)] {
-            let file = fs::File::create(dir.path().join(format!("{name}{PART}"))).unwrap();
-            file.set_modified(std::time::SystemTime::now() - age).unwrap();
-        }
-        let mut out = Output::new(dir.path()).unwrap();
-        out.write("a.csv", "x").unwrap();
-        out.commit().unwrap();
-        assert_eq!(names(dir.path()), [".8.1.vibro.part", "9.0.vibro.part", "a.csv"]);
-    }
-
-    #[test]
-    fn a_file_in_the_place_of_a_folder_is_an_error() {
-        let dir = tempfile::tempdir().unwrap();
-        fs::write(dir.path().join("f"), "x").unwrap();
-        assert!(Output::new(dir.path().join("f")).is_err());
-        assert_eq!(fs::read_to_string(dir.path().join("f")).unwrap(), "x");
-    }
-}
+mod tests;

@@ -11,7 +11,7 @@ use campaign::{Direction, list, measure, truth_header};
 use rayon::prelude::*;
 use std::path::Path;
 
-use vibroimpact::analysis::{JobOptions, fit, open, responses};
+use vibroimpact::analysis::{fit, open, responses};
 use vibroimpact::campaign::FitEntry;
 use vibroimpact::compare::Fit;
 
@@ -75,7 +75,7 @@ fn lists_name_files_that_are_there() {
 fn the_rig_is_found_again_in_its_spectra() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
     let campaign = open(folder.join("campaign.toml")).unwrap();
-    let found = responses(&campaign, JobOptions::default(), &()).unwrap();
+    let found = responses(&campaign, &()).unwrap();
     let truth = committed("TRUTH.csv");
     // Tops of the closed-form orbits of this rig, as the overlay predicts them, through the same spectra.
     let grazing = [(5.514_65, 14.247_6e-3), (5.513_37, 14.122_6e-3)];
@@ -153,7 +153,7 @@ fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
     let parameters = names.map(|name| FitEntry::parameter(name).unwrap());
     let fitted = |draw: u64| {
         let mut campaign = open(own(draw).join("campaign.toml")).unwrap();
-        let found = responses(&campaign, JobOptions::default(), &()).unwrap();
+        let found = responses(&campaign, &()).unwrap();
         campaign.fit = FitEntry { parameters: parameters.to_vec(), starts: Some(1), ..campaign.fit };
         fit(&campaign, &campaign.rig.unwrap(), &found).unwrap().unwrap()
     };

@@ -3,7 +3,8 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use vibro_demo::drop_test as records;
-use vibroimpact::analysis::{self, JobOptions};
+use vibroimpact::analysis::{self, Kept};
+use vibroimpact::read::Owner;
 use vibroimpact::report::Output;
 
 fn folder() -> PathBuf {
@@ -24,8 +25,8 @@ fn the_records_come_out_again() {
 fn the_campaign_gives_back_the_truth() {
     let campaign = analysis::open(folder().join("campaign.toml")).unwrap();
     let out = tempfile::tempdir().unwrap();
-    let mut output = Output::new(out.path()).unwrap();
-    let results = analysis::run(&campaign, JobOptions::default(), &mut output, &()).unwrap();
+    let mut output = Output::new(out.path(), Owner::Run).unwrap();
+    let results = analysis::run(&campaign, &Kept::default(), &mut output, &()).unwrap();
     output.commit().unwrap();
     let results = Value::Object(results.answer.result);
     let estimate = |found: &Value| (found["value"].as_f64().unwrap(), found["std"].as_f64().unwrap());
@@ -72,8 +73,8 @@ fn drops_of_one_name_with_other_heights_are_refused_with_their_line() {
         );
         std::fs::write(out.path().join("campaign.toml"), text).unwrap();
         let campaign = analysis::open(out.path().join("campaign.toml"))?;
-        let mut output = Output::new(out.path().join("out")).unwrap();
-        analysis::run(&campaign, JobOptions::default(), &mut output, &())
+        let mut output = Output::new(out.path().join("out"), Owner::Run).unwrap();
+        analysis::run(&campaign, &Kept::default(), &mut output, &())
     };
     let name = "name = \"a\"\n";
     let drops = |names| run(names, 0.001).unwrap().answer.result["drops"].as_array().unwrap().len();

@@ -4,8 +4,9 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
-use vibroimpact::analysis::{JobOptions, open, run};
+use vibroimpact::analysis::{Kept, open_in, run};
 use vibroimpact::read::Reader;
+use vibroimpact::read::{Folder, Owner};
 use vibroimpact::report::Output;
 
 fn data() -> Option<PathBuf> {
@@ -16,10 +17,9 @@ fn results(campaign: &str) -> (Value, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("campaign.toml");
     fs::write(&path, campaign).unwrap();
-    let campaign = open(&path).unwrap();
-    let mut output = Output::new(folder.path().join("out")).unwrap();
-    let found = run(&campaign, JobOptions { allow_outside: true, ..JobOptions::default() }, &mut output, &())
-        .unwrap();
+    let campaign = open_in(&Folder::default().allow_outside(true), &path).unwrap();
+    let mut output = Output::new(folder.path().join("out"), Owner::Run).unwrap();
+    let found = run(&campaign, &Kept::default(), &mut output, &()).unwrap();
     for name in &output.commit().unwrap() {
         assert!(folder.path().join("out").join(name).is_file(), "{name}");
     }

@@ -7,6 +7,7 @@ use resvg::usvg::{self, roxmltree};
 use vibroimpact::figure::{
     AxisSpec, Drawing, Figure, Heatmap, Legend, Medium, Panel, Plot, Series, Shape, Stroke, Waterfall,
 };
+use vibroimpact::read::Owner;
 use vibroimpact::report::{Output, Page, Picture, Table};
 
 /// Parses a drawing as XML and as a picture, and returns the texts it shows.
@@ -214,7 +215,7 @@ fn a_legend_covers_no_data_even_where_there_is_no_free_corner() {
 #[test]
 fn a_folder_of_results_is_written_whole() {
     let dir = tempfile::tempdir().unwrap();
-    let mut out = Output::new(dir.path().join("results")).unwrap();
+    let mut out = Output::new(dir.path().join("results"), Owner::Run).unwrap();
     let picture = Picture::of(&everything(), Medium::Report).unwrap();
     out.write("all.svg", &picture.svg).unwrap();
     out.write("all.png", &picture.png).unwrap();

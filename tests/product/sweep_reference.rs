@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use vibroimpact::measure::response::{ResponseOptions, response};
 use vibroimpact::measure::{excitation, legacy};
-use vibroimpact::read::{SweepList, SweepReader};
+use vibroimpact::read::{Folder, SweepList, SweepReader};
 use vibroimpact::record::Sweep;
 
 fn cases() -> PathBuf {
@@ -12,7 +12,7 @@ fn cases() -> PathBuf {
 }
 
 fn load(folder: &Path) -> (SweepList, Sweep) {
-    let list = SweepList::from_path(folder.join("LIST.TXT"), false).expect("a list");
+    let list = SweepList::from_path(folder.join("LIST.TXT"), &Folder::default()).expect("a list");
     let sweep = SweepReader::default().read(&list).expect("its spectra");
     (list, sweep)
 }
@@ -108,7 +108,7 @@ fn a_tie_stops_the_script_and_not_the_default() {
 fn a_hand_over_file_is_a_sweep_too() {
     let folder = cases();
     let path = folder.join("sweep_nominal/RESP.TXT");
-    let list = SweepList::from_path(&path, false).expect("a hand-over file");
+    let list = SweepList::from_path(&path, &Folder::default()).expect("a hand-over file");
     let sweep = SweepReader::default().read(&list).expect("its spectra");
     let found = response(&sweep, &ResponseOptions::default()).expect("a response");
     let truth = table(&folder.join("sweep_nominal/TRUTH.csv")).expect("a truth");

@@ -1,6 +1,6 @@
 //! Records of a file as a person names them: one of a recording, or time traces block by block.
 
-use super::{Format, Reader, Recording, Source};
+use super::{Format, Reader, Recording};
 use crate::wav::Wave;
 use std::path::Path;
 use vibro_record::{Error, Meta, Place, Record, Result, Stream as _, Trace, Traces, find_channel};
@@ -20,7 +20,7 @@ impl Reader {
     /// # Errors
     /// As [`Reader::stream`]; if there is no such channel.
     pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
-        let source = Source::file(path)?;
+        let source = self.source(path)?;
         let path = source.path().to_owned();
         if self.entry(&source)?.format == Format::Wav {
             let mut wave = Wave::open(&source, &self.options)?;

@@ -42,6 +42,7 @@
 mod assemble;
 mod binary;
 mod choose;
+mod folder;
 mod foreign;
 mod format;
 #[cfg(feature = "hdf5")]
@@ -65,11 +66,12 @@ mod wav;
 
 pub mod write;
 
+pub use folder::{Digest, Folder, Lock, Manifest, Owner, Staged, Standing, Walk, listed};
 pub use format::Format;
 pub use reader::{Header, Reader, Recording};
 pub use steps::Steps;
 pub use sweep::SweepReader;
-pub use sweep_list::{SweepList, inside};
+pub use sweep_list::SweepList;
 pub use vibro_record as record;
 
 pub(crate) use reader::Options;

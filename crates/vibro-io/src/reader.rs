@@ -3,7 +3,7 @@
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
-use super::{Source, SweepList, foreign};
+use super::{Folder, Source, SweepList, foreign};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -62,6 +62,7 @@ impl Recording {
 #[derive(Debug, Clone, Default)]
 pub struct Reader {
     format: Option<Format>,
+    folder: Folder,
     pub(super) options: Options,
 }
 
@@ -69,6 +70,20 @@ impl Reader {
     /// A reader that finds out the format and refuses missing values.
     pub fn new() -> Reader {
         Reader::default()
+    }
+
+    /// States where paths lie: on a disk, or in memory. Default: on the disk.
+    pub fn within(mut self, folder: &Folder) -> Reader {
+        self.folder = folder.clone();
+        self
+    }
+
+    /// A file of the reader's folder.
+    ///
+    /// # Errors
+    /// As [`Folder::source`].
+    pub(super) fn source(&self, path: impl AsRef<Path>) -> Result<Source> {
+        self.folder.source(path.as_ref())
     }
 
     /// Forces a format. Default: found out from the first bytes.
@@ -131,7 +146,7 @@ impl Reader {
     /// # Errors
     /// If it cannot be opened, is of no known format, or its content is not what its format requires.
     pub fn from_path(&self, path: impl AsRef<Path>) -> Result<Recording> {
-        self.read(&Source::file(path)?)
+        self.read(&self.source(path)?)
     }
 
     /// Reads many files, in parallel, in the order given.
@@ -179,7 +194,7 @@ impl Reader {
     /// # Errors
     /// As [`Reader::from_path`].
     pub fn survey(&self, path: impl AsRef<Path>) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
-        self.headers(&Source::file(path)?)
+        self.headers(&self.source(path)?)
     }
 
     /// As [`Reader::survey`], of a source.

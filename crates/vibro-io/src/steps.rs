@@ -25,7 +25,7 @@ impl SweepReader {
     /// # Errors
     /// If a file cannot be read or has no such channel; if a force is not one, or a response is no displacement, velocity or acceleration.
     pub fn steps(&self, steps: &Steps) -> Result<Vec<StepTraces>> {
-        let reader = Reader::new().rate(steps.rate).format(self.format);
+        let reader = Reader::new().within(&self.folder).rate(steps.rate).format(self.format);
         let one = |file: &Path, force: &str, response: &str| {
             let recording = reader.from_path(file)?;
             let trace = |name: &str| {

@@ -1,6 +1,6 @@
 //! The spectra of a sweep, read together.
 
-use super::{Format, Reader, Recording, SweepList};
+use super::{Folder, Format, Reader, Recording, SweepList};
 use vibro_record::units::{Quantity, Unit, is_level};
 use vibro_record::{
     Axis, Direction, Error, Finding, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint,
@@ -34,6 +34,8 @@ pub struct SweepReader {
     pub analyser_integrated: Option<u8>,
     /// Format of the files, found out if `None`.
     pub format: Option<Format>,
+    /// Where the files lie.
+    pub folder: Folder,
 }
 
 impl SweepReader {
@@ -42,10 +44,11 @@ impl SweepReader {
     /// # Errors
     /// If files are missing (all are named), cannot be read, or hold another number of lines than the list says.
     pub fn read(&self, list: &SweepList) -> Result<Sweep> {
-        let reader = Reader::new().base_band(Some(list.base_band)).format(self.format);
+        let reader = Reader::new().within(&self.folder).base_band(Some(list.base_band)).format(self.format);
         // One batch, so that all missing files are named at once.
         let paths: Vec<_> = list.response.iter().chain(&list.force).collect();
-        let mut recordings = reader.from_paths(&paths).map_err(|e| list.missing().unwrap_or(e))?;
+        let mut recordings =
+            reader.from_paths(&paths).map_err(|e| list.missing(&self.folder).unwrap_or(e))?;
         let mut forces = recordings.split_off(list.response.len()).into_iter();
         let axis = Axis::frequency(0.0, list.base_band / list.lines as f64, list.lines + 1);
         let (unit, calibration) = (Some(Unit::of(Quantity::Force)), self.force_calibration);

@@ -11,8 +11,8 @@
 //! ```
 
 use super::text::encoding;
-use super::{Source, number};
-use std::path::{Component, Path, PathBuf};
+use super::{Folder, Source, number};
+use std::path::{Path, PathBuf};
 use vibro_record::{Error, Place, Result, pattern};
 
 /// Files of a stepped-sine sweep.
@@ -40,13 +40,13 @@ const HOLDS: &str = "a list holds: number of points, lines, base band in Hz, for
                      time traces, one file a step, go to a campaign: [[sweep]] with name, traces = \"step_*.csv\", force and response";
 
 impl SweepList {
-    /// Reads a list file or a hand-over file. Names are taken relative to its folder.
+    /// Reads a list file or a hand-over file. Names are taken relative to the folder in which it lies.
     ///
     /// # Errors
-    /// If a number or a name is missing or out of range, or a name leads outside the folder and `allow_outside` is not set.
-    pub fn from_path(path: impl AsRef<Path>, allow_outside: bool) -> Result<SweepList> {
+    /// If a number or a name is missing or out of range, or a name leads outside that folder and `within` does not allow it.
+    pub fn from_path(path: impl AsRef<Path>, within: &Folder) -> Result<SweepList> {
         let path = path.as_ref();
-        let several = path.is_dir() || !path.exists() && path.to_string_lossy().contains('*');
+        let several = within.is_folder(path) || !within.exists(path) && path.to_string_lossy().contains('*');
         if several {
             return Err(Error::input(
                 Place::file(path),
@@ -55,15 +55,15 @@ impl SweepList {
             )
             .hint(HOLDS));
         }
-        let source = Source::file(path)?;
+        let source = within.source(path)?;
         if !encoding::is_text(source.head()) {
             return Err(Error::input(Place::file(path), "binary data", "a list file of text")
                 .hint(format!("{HOLDS}; of a measurement file `vibro info` says what is in it")));
         }
         let mut list = parse(path, &encoding::decode(&source.all()?))?;
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let folder = within.at(path.parent().unwrap_or(Path::new("")));
         for (name, place) in list.force.iter_mut().chain(&mut list.response).zip(&list.places) {
-            *name = inside(folder, name, allow_outside).map_err(|e| e.at(place))?;
+            *name = folder.path(name).map_err(|e| e.at(place))?;
         }
         Ok(list)
     }
@@ -75,9 +75,9 @@ impl SweepList {
     }
 
     /// A complaint about all files that do not exist, each with the line that names it; `None` where all exist.
-    pub(super) fn missing(&self) -> Option<Error> {
+    pub(super) fn missing(&self, folder: &Folder) -> Option<Error> {
         let files: Vec<&PathBuf> = self.force.iter().chain(&self.response).collect();
-        let missing: Vec<usize> = (0..files.len()).filter(|i| !files[*i].exists()).collect();
+        let missing: Vec<usize> = (0..files.len()).filter(|i| !folder.exists(files[*i])).collect();
         let place = self.places.get(*missing.first()?).cloned()?;
         let name = |i: &usize| {
             let line = self.places.get(*i).and_then(|p| p.line).unwrap_or_default();
@@ -99,31 +99,6 @@ impl SweepList {
     pub fn is_empty(&self) -> bool {
         self.response.is_empty()
     }
-}
-
-/// `folder/name`, refused where it leads outside the folder (by `..` or an absolute name), unless allowed.
-///
-/// # Errors
-/// As said.
-pub fn inside(folder: &Path, name: &Path, allow_outside: bool) -> Result<PathBuf> {
-    // Lists come from DOS machines, too.
-    let name = PathBuf::from(name.to_string_lossy().replace('\\', "/"));
-    let drive = name.to_string_lossy().as_bytes().get(1) == Some(&b':');
-    let deeper = |depth: usize, part: Component| match part {
-        Component::Normal(_) => Some(depth + 1),
-        Component::ParentDir => depth.checked_sub(1),
-        Component::CurDir => Some(depth),
-        _ => None,
-    };
-    if !allow_outside && (drive || name.components().try_fold(0, deeper).is_none()) {
-        return Err(Error::usage(
-            format!("the name {:?} leads outside the folder of the list", name.display().to_string()),
-            "names of files beside or below the list",
-        )
-        .hint("move the files beside the list, or allow files outside its folder if you trust it")
-        .setting("allow_outside"));
-    }
-    Ok(folder.join(&name))
 }
 
 fn parse(path: &Path, text: &str) -> Result<SweepList> {
@@ -236,15 +211,5 @@ mod tests {
             let error = of(text).unwrap_err().to_string();
             assert!(error.contains(line) && error.contains(word), "{text:?}: {error}");
         }
-    }
-
-    #[test]
-    fn names_stay_in_their_folder() {
-        let ok = |name: &str| inside(Path::new("data"), Path::new(name), false).is_ok();
-        assert!(ok("A.DAT") && ok("sub/A.DAT") && ok("sub/../A.DAT") && ok(r"sub\A.DAT"));
-        assert!(
-            !ok("../A.DAT") && !ok("/etc/passwd") && !ok(r"..\A.DAT") && !ok(r"C:\A.DAT") && !ok("a/../../b")
-        );
-        assert!(inside(Path::new("data"), Path::new("../A.DAT"), true).is_ok());
     }
 }

@@ -3,7 +3,7 @@
 //! Every fallible function of this crate returns [`Error`]. What it is decides the exit code of the command: 1 where the data or the
 //! parameters do not allow an answer, 2 for wrong usage and for input that cannot be read.
 
-use crate::{nearest, pattern};
+use crate::{nearest, pattern, shown};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -108,7 +108,7 @@ impl Error {
         let source = source.to_string();
         // Without Rust's ` (os error 2)`.
         let plain = source.split(" (os error").next().unwrap_or_default().to_lowercase();
-        let found = format!("cannot {action} {}: {plain}", path.display());
+        let found = format!("cannot {action} {}: {plain}", shown(path));
         let error = Error::new(Kind::Io, Place::default(), found, String::new());
         if absent { error.hint(instead(Path::new(""), path)) } else { error }
     }
@@ -137,11 +137,11 @@ impl Error {
 
     /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as `--low-pass`.
     pub fn spoken(&self, typed: impl Fn(&str, &str) -> String) -> String {
-        let Inner { place, found, expected, excerpt, hint, settings, .. } = &*self.0;
+        let Inner { excerpt, hint, settings, .. } = &*self.0;
         let part = |before: &str, text: &str, after: &str| {
             if text.is_empty() { String::new() } else { [before, text, after].concat() }
         };
-        let what = part("", &place.to_string(), ": ") + found + &part("; expected ", expected, "");
+        let what = self.what();
         let values = settings.iter().any(|(_, value)| !value.is_empty());
         let settings: Vec<String> = settings.iter().map(|(key, value)| typed(key, value)).collect();
         let advice = if hint.is_empty() && values {
@@ -247,6 +247,18 @@ impl Error {
         (self.0.kind == Kind::Refused).then_some(self.0.found.as_str())
     }
 
+    fn what(&self) -> String {
+        let Inner { place, found, expected, .. } = &*self.0;
+        let place = if *place == Place::default() { String::new() } else { format!("{place}: ") };
+        let expected = if expected.is_empty() { String::new() } else { format!("; expected {expected}") };
+        place + found + &expected
+    }
+
+    /// Where and what is wrong, on one line, without what to try.
+    pub fn why(&self) -> String {
+        self.what().replace('\n', " ")
+    }
+
     /// Exit code of the command: 1 no answer possible, 2 unreadable input or wrong usage.
     pub fn exit_code(&self) -> u8 {
         if self.0.kind == Kind::Refused { 1 } else { 2 }
@@ -283,7 +295,7 @@ fn floor_char(text: &str, at: usize) -> usize {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let path = self.path.iter().map(|path| path.display().to_string());
+        let path = self.path.iter().map(shown);
         let counts = [("line", self.line), ("column", self.column), ("byte", self.byte)];
         let counts = counts.into_iter().filter_map(|(what, n)| Some(format!("{what} {}", n?)));
         f.write_str(&path.chain(counts).collect::<Vec<_>>().join(", "))

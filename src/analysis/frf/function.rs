@@ -31,10 +31,10 @@ impl Function {
     ///
     /// # Errors
     /// If there is no such sweep, it cannot be read, or has no receptance.
-    pub fn of_sweep(campaign: &Campaign, name: Option<&str>, allow_outside: bool) -> Result<Function> {
+    pub fn of_sweep(campaign: &Campaign, name: Option<&str>) -> Result<Function> {
         let compute = &campaign.compute;
         let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
-        let (_, response) = sweep::named(campaign, name, allow_outside)?.taken(&options)?;
+        let (_, response) = sweep::named(campaign, name)?.taken(&options)?;
         Function::of_response(&response)
     }
 

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::model::continuation::check_range;
 use crate::model::{Branch, Parameter, PeriodicOrbit, Rig, Sine, follow, orbits, search};
 use crate::record::Finding;
+use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
 use crate::units::notation::counted;
@@ -65,6 +66,9 @@ impl From<Over> for Parameter {
 }
 
 impl Keys {
+    /// Names of the files that its answer has.
+    pub const FILES: Names = Names::numbered(&["branches", "marks", "points"]);
+
     /// The branches, with their marks and ends.
     ///
     /// # Errors

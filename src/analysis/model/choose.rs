@@ -10,6 +10,7 @@ use crate::model::ladder::{
     Choice, Model, Need, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
 };
 use crate::record::{Direction, Finding, Severity};
+use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::words::{Voice, sentence, sentences};
 use crate::report::{Cell, Table};
@@ -54,6 +55,9 @@ pub struct Keys {
 }
 
 impl Keys {
+    /// Names of the files that its answer has.
+    pub const FILES: Names = Names::numbered(&["rungs", "sensitivity", "stretches", "points", "ladder"]);
+
     /// The rung that is chosen, at one frequency or along an axis, and why.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use crate::analysis::{Answer, Progress};
 use crate::error::Result;
 use crate::model::map::{Axis, Cell, Plan};
 use crate::record::Finding;
+use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
 use serde_json::json;
 
@@ -29,6 +30,9 @@ pub struct Keys {
 }
 
 impl Keys {
+    /// Names of the files that its answer has.
+    pub const FILES: Names = Names::numbered(&["map"]);
+
     /// The map.
     ///
     /// # Errors

@@ -6,6 +6,7 @@ use crate::campaign::above_zero;
 use crate::error::Result;
 use crate::model::{Compliance, NoImpact, Orbit, Orbits, Rig, Softened, orbits_of, search, softened};
 use crate::record::Finding;
+use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
 use serde_json::{Value, json};
@@ -30,6 +31,9 @@ pub struct Keys {
 }
 
 impl Keys {
+    /// Names of the files that its answer has.
+    pub const FILES: Names = Names::numbered(&["orbits", "verdicts", "impacts", "orbit"]);
+
     /// The motions, each with its verdicts and figure.
     ///
     /// # Errors

@@ -6,6 +6,7 @@ use crate::campaign::above_zero;
 use crate::error::Result;
 use crate::model::{Response, ResponsePoint, response};
 use crate::record::Finding;
+use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
 use num_complex::Complex64;
@@ -33,6 +34,9 @@ pub struct Keys {
 }
 
 impl Keys {
+    /// Names of the files that its answer has.
+    pub const FILES: Names = Names::numbered(&["response", "changes"]);
+
     /// The motions at each frequency, with the places where they appear, vanish and change.
     ///
     /// # Errors

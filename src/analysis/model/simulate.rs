@@ -9,6 +9,7 @@ use crate::model::portrait::{Portrait, Sitting};
 use crate::model::{Motion, Regime, Rig, Simulation, State};
 use crate::record::Finding;
 use crate::report::Table;
+use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::units::notation::counted;
 use serde_json::json;
@@ -61,6 +62,9 @@ struct Seen {
 }
 
 impl Keys {
+    /// Names of the files that its answer has.
+    pub const FILES: Names = Names::numbered(&["traces", "phase_plane", "poincare", "reaction", "impacts"]);
+
     /// The motion with its impacts and its regime.
     ///
     /// # Errors

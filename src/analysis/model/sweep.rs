@@ -12,6 +12,7 @@ use crate::model::sweep::{Observable, Pace, Plan, Point, Swept, apart};
 use crate::model::{Excitation, Rig, Simulation, State};
 use crate::record::{Direction, Finding};
 use crate::report::Table;
+use crate::report::files::Names;
 use crate::report::layout::{headed, pair, table};
 use serde::Deserialize;
 use serde_json::json;
@@ -79,6 +80,9 @@ pub enum Way {
 }
 
 impl Keys {
+    /// Names of the files that its answer has.
+    pub const FILES: Names = Names::numbered(&["sweep", "reaction"]);
+
     /// The sweep with its resonances and jumps.
     ///
     /// # Errors

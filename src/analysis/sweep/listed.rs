@@ -33,16 +33,15 @@ impl Listed {
     ///
     /// # Errors
     /// If its list cannot be read, a name leads outside the folder, or no file has such a name.
-    pub fn of(campaign: &Campaign, entry: &Entry<Keys>, allow_outside: bool) -> Result<Listed> {
+    pub fn of(campaign: &Campaign, entry: &Entry<Keys>) -> Result<Listed> {
         let keys = &entry.keys;
-        let path =
-            |key: &'static str, name: &String| campaign.path_of(entry, key, Path::new(name), allow_outside);
+        let path = |key: &'static str, name: &String| campaign.path_of(entry, key, Path::new(name));
         let all = |key: &'static str, names: &[String]| {
             names.iter().map(|name| path(key, name)).collect::<Result<Vec<_>>>()
         };
         let files = if let Some(list) = &keys.list {
-            let list = campaign.file(entry, "list", list, allow_outside)?;
-            Files::Spectra(SweepList::from_path(list, allow_outside)?)
+            let list = campaign.file(entry, "list", list)?;
+            Files::Spectra(SweepList::from_path(list, campaign.within())?)
         } else if keys.traces.is_empty() {
             Files::Spectra(SweepList {
                 lines: keys.lines.unwrap_or(0),
@@ -53,15 +52,16 @@ impl Listed {
                 places: Vec::new(),
             })
         } else {
-            let folder = campaign.folder();
-            let one = |path: &PathBuf| matching(folder, path.strip_prefix(folder).unwrap_or(path));
+            let (within, folder) = (campaign.within(), campaign.folder());
+            let one = |path: &PathBuf| matching(within, path.strip_prefix(folder).unwrap_or(path));
             let found: Result<Vec<Vec<PathBuf>>> = all("traces", &keys.traces)?.iter().map(one).collect();
             let files = found.map_err(|e| campaign.fault(entry, e.setting("traces")))?.concat();
             let files = files.iter().map(|name| folder.join(name)).collect();
             let (force, response) = (keys.force.clone(), keys.response.clone());
             Files::Traces(Steps { files, force, response, rate: keys.rate })
         };
-        Ok(Listed { files, reader: keys.reader()? })
+        let reader = SweepReader { folder: campaign.within().clone(), ..keys.reader()? };
+        Ok(Listed { files, reader })
     }
 
     /// The spectra of the sweep.

@@ -2,7 +2,7 @@
 
 use super::{figures, findings_of, responses, tables};
 use crate::analysis::model::{choose::climbed, rig_left_out};
-use crate::analysis::{Answer, Job, JobOptions, Progress};
+use crate::analysis::{Answer, Job, Progress};
 use crate::campaign::Campaign;
 use crate::compare::{Fit, Overlay, Predicting, overlay};
 use crate::error::{Error, Place, Result};
@@ -38,12 +38,12 @@ fn predicting(campaign: &Campaign) -> Predicting {
 ///
 /// # Errors
 /// If the campaign has no rig, a sweep cannot be read, or the data allow no overlay or no fit.
-pub fn compared(campaign: &Campaign, options: JobOptions<'_>, progress: &dyn Progress) -> Result<Answer> {
+pub fn compared(campaign: &Campaign, progress: &dyn Progress) -> Result<Answer> {
     let rig = campaign.rig.ok_or_else(|| {
         Error::input(Place::file(campaign.path()), "the campaign has no [rig]", "the rig to compare with")
             .hint("add a [rig] table; keys left out take the values of the thesis' rig")
     })?;
-    let responses = responses(campaign, options, progress)?;
+    let responses = responses(campaign, progress)?;
     let overlay = overlaid(campaign, &rig, &responses)?;
     let fit = fit(campaign, &rig, &responses)?;
     let mut answer = shown(campaign, &responses, &overlay, fit.as_ref());
@@ -76,7 +76,7 @@ fn shown(campaign: &Campaign, responses: &[Response], overlay: &Overlay, fit: Op
 /// Overlays the responses of a campaign on its rig and fits the parameters that it asks for.
 ///
 /// # Errors
-/// If the overlay is not possible. Data that allow no fit are no reason to give up the rest.
+/// If what was found cannot be written as JSON. Data that allow no overlay or no fit are no reason to give up the rest.
 pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
     let campaign = job.campaign;
     let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());
@@ -89,10 +89,11 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<()> {
     }
     let (mut laid, mut found) = (None, None);
     if let Some(rig) = &rig {
-        let overlay = overlaid(campaign, rig, responses)?;
-        found = job.found("fit", fit(campaign, rig, responses))?.flatten();
-        job.show("", "", shown(campaign, responses, &overlay, found.as_ref()));
-        laid = Some(overlay);
+        laid = job.found("overlay", overlaid(campaign, rig, responses));
+        found = job.found("fit", fit(campaign, rig, responses)).flatten();
+        if let Some(overlay) = &laid {
+            job.show("", "", shown(campaign, responses, overlay, found.as_ref()));
+        }
     }
     job.put("rig", &rig)?;
     job.put("overlay", &laid)?;

@@ -1,7 +1,7 @@
 //! What the files of a sweep say of their units beside what a person states.
 
 use super::sentences;
-use vibroimpact::read::{SweepList, SweepReader};
+use vibroimpact::read::{Folder, SweepList, SweepReader};
 use vibroimpact::record::{Sweep, Values};
 use vibroimpact::units::Unit;
 
@@ -12,7 +12,7 @@ fn read(force: &str, response: &str, how: &SweepReader) -> Result<Sweep, String>
     write("L.TXT", "1\n4\n20\nF.DAT\nR.DAT\n");
     write("F.DAT", &format!("{force}\n0.5\n1\n2\n1\n0.5\n"));
     write("R.DAT", &format!("{response}\n0.5\n1\n2\n1\n0.5\n"));
-    let list = SweepList::from_path(folder.path().join("L.TXT"), false).unwrap();
+    let list = SweepList::from_path(folder.path().join("L.TXT"), &Folder::default()).unwrap();
     how.read(&list).map_err(|e| e.to_string())
 }
 

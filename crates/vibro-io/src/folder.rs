@@ -1,0 +1,304 @@
+//! Names and bytes of a run: a folder on disk, or one in memory.
+
+mod lock;
+mod manifest;
+mod staged;
+mod walk;
+
+pub use lock::Lock;
+pub use manifest::{Manifest, Owner, listed};
+pub use staged::Staged;
+pub use walk::Walk;
+
+use super::Source;
+use sha2::{Digest as _, Sha256};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
+use vibro_record::{Error, Place, Result};
+
+/// A SHA-256.
+pub type Digest = [u8; 32];
+
+/// The only way of a run to names and bytes. Paths are those that a person sees: the folder's own path and a name in it.
+///
+/// ```
+/// use std::path::Path;
+/// use vibro_io::Folder;
+/// let folder = Folder::memory("bench", [("drop.csv", b"0,1\n".to_vec())]);
+/// let path = folder.path(Path::new("drop.csv"))?;
+/// assert_eq!(folder.read(&path)?, b"0,1\n");
+/// assert!(folder.path(Path::new("../drop.csv")).is_err());
+/// # Ok::<(), vibro_record::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Folder {
+    root: PathBuf,
+    outside: bool,
+    side: Side,
+    /// Files that were opened as measurements, by their one true path.
+    opened: Arc<Mutex<BTreeSet<PathBuf>>>,
+}
+
+/// Files in memory by their paths.
+type Files = BTreeMap<PathBuf, Arc<[u8]>>;
+
+#[derive(Debug, Clone, Default)]
+enum Side {
+    #[default]
+    Disk,
+    Memory(Arc<Mutex<Files>>),
+}
+
+/// What has a name in a folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// Nothing.
+    Free,
+    /// A regular file.
+    File,
+    /// A folder.
+    Folder,
+    /// A link, a pipe, a socket or a device.
+    Special,
+}
+
+impl From<PathBuf> for Folder {
+    fn from(root: PathBuf) -> Folder {
+        Folder { root, ..Folder::default() }
+    }
+}
+
+impl From<&Path> for Folder {
+    fn from(root: &Path) -> Folder {
+        Folder::from(root.to_owned())
+    }
+}
+
+impl Folder {
+    /// A folder in memory that holds these files.
+    pub fn memory<N: AsRef<Path>>(
+        root: impl Into<PathBuf>,
+        files: impl IntoIterator<Item = (N, Vec<u8>)>,
+    ) -> Folder {
+        let root = root.into();
+        let one = |(name, bytes): (N, Vec<u8>)| (plain(&root.join(name)), bytes.into());
+        let files: Files = files.into_iter().map(one).collect();
+        Folder { side: Side::Memory(Arc::new(Mutex::new(files))), ..Folder::from(root) }
+    }
+
+    /// Another folder of the same disk or memory. Both know what was opened in either.
+    pub fn at(&self, root: impl Into<PathBuf>) -> Folder {
+        Folder { root: root.into(), ..self.clone() }
+    }
+
+    /// States whether names may lead outside the folder. Default: they are refused.
+    pub fn allow_outside(self, outside: bool) -> Folder {
+        Folder { outside, ..self }
+    }
+
+    /// Its path.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// The path of a name in it; refused where it leads outside, by `..`, as an absolute name or through a link, unless that is allowed.
+    ///
+    /// # Errors
+    /// As said.
+    pub fn path(&self, name: &Path) -> Result<PathBuf> {
+        // Lists come from DOS machines, too.
+        let name = PathBuf::from(name.to_string_lossy().replace('\\', "/"));
+        let path = self.root.join(&name);
+        if self.outside {
+            return Ok(path);
+        }
+        let drive = name.to_string_lossy().as_bytes().get(1) == Some(&b':');
+        let deeper = |depth: usize, part: Component| match part {
+            Component::Normal(_) => Some(depth + 1),
+            Component::ParentDir => depth.checked_sub(1),
+            Component::CurDir => Some(depth),
+            _ => None,
+        };
+        let found = if drive || name.components().try_fold(0, deeper).is_none() {
+            format!("the name {:?} leads outside its folder", name.display().to_string())
+        } else if let Some(target) = self.leads_outside(&path) {
+            format!("the link {} leads outside its folder, to {}", path.display(), target.display())
+        } else {
+            return Ok(path);
+        };
+        Err(Error::usage(found, "names of files in the folder or below it")
+            .hint("move the files into the folder, or allow files outside it if you trust it")
+            .setting("allow_outside"))
+    }
+
+    /// Where a path leads through links, if that is outside. A file that is yet to be written lies where its folder does.
+    fn leads_outside(&self, path: &Path) -> Option<PathBuf> {
+        let (Side::Disk, false) = (&self.side, self.outside) else { return None };
+        let root = real(&self.root)?;
+        let target = path.ancestors().find_map(real)?;
+        (!target.starts_with(root)).then_some(target)
+    }
+
+    /// Whether there is anything of this path.
+    pub fn exists(&self, path: &Path) -> bool {
+        self.is_file(path) || self.is_folder(path) || matches!(self.side, Side::Disk) && path.exists()
+    }
+
+    /// Whether it is a regular file, or a link to one.
+    pub fn is_file(&self, path: &Path) -> bool {
+        match &self.side {
+            Side::Disk => path.is_file(),
+            Side::Memory(files) => locked(files).contains_key(&plain(path)),
+        }
+    }
+
+    /// Whether it is a folder, or a link to one.
+    pub fn is_folder(&self, path: &Path) -> bool {
+        match &self.side {
+            Side::Disk => path.is_dir(),
+            Side::Memory(files) => {
+                let path = plain(path);
+                locked(files).keys().any(|file| *file != path && file.starts_with(&path))
+            }
+        }
+    }
+
+    /// What has this path; links are not followed.
+    pub fn standing(&self, path: &Path) -> Standing {
+        match &self.side {
+            Side::Disk => match fs::symlink_metadata(path) {
+                Ok(meta) if meta.is_file() => Standing::File,
+                Ok(meta) if meta.is_dir() => Standing::Folder,
+                Ok(_) => Standing::Special,
+                Err(_) => Standing::Free,
+            },
+            Side::Memory(_) if self.is_file(path) => Standing::File,
+            Side::Memory(_) if self.is_folder(path) => Standing::Folder,
+            Side::Memory(_) => Standing::Free,
+        }
+    }
+
+    /// The names of all that lies in the folder itself, hidden files too, in order; none where it cannot be listed.
+    pub fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = match &self.side {
+            Side::Disk => {
+                let entries = fs::read_dir(or_here(&self.root)).into_iter().flatten().flatten();
+                entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
+            }
+            Side::Memory(files) => {
+                let root = plain(&self.root);
+                let files = locked(files);
+                let own = files.keys().filter_map(|path| path.strip_prefix(&root).ok()?.to_str());
+                own.filter(|name| !name.contains('/')).map(str::to_owned).collect()
+            }
+        };
+        names.sort();
+        names
+    }
+
+    /// The right to write into the folder, until it is dropped; memory needs none.
+    ///
+    /// # Errors
+    /// As [`Lock::of`].
+    pub fn lock(&self) -> Result<Option<Lock>> {
+        if matches!(self.side, Side::Disk) { Lock::of(&self.root).map(Some) } else { Ok(None) }
+    }
+
+    /// All bytes of a file.
+    ///
+    /// # Errors
+    /// If it is no regular file, or cannot be read.
+    pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        match &self.side {
+            // A pipe of that name would wait for ever.
+            Side::Disk if path.exists() && !path.is_file() => {
+                Err(Error::input(Place::file(path), "not a regular file", "a file"))
+            }
+            Side::Disk => fs::read(path).map_err(|e| Error::io("open", path, e)),
+            Side::Memory(files) => {
+                let bytes = locked(files).get(&plain(path)).map(|bytes| bytes.to_vec());
+                bytes.ok_or_else(|| Error::io("open", path, std::io::ErrorKind::NotFound.into()))
+            }
+        }
+    }
+
+    /// A file to be read as a measurement; `-` is standard input.
+    ///
+    /// # Errors
+    /// As [`Source::file`].
+    pub(crate) fn source(&self, path: &Path) -> Result<Source> {
+        if let Some(path) = self.true_path(path) {
+            locked(&self.opened).insert(path);
+        }
+        match &self.side {
+            Side::Disk => Source::file(path),
+            Side::Memory(_) => Source::memory(path, self.read(path)?),
+        }
+    }
+
+    fn true_path(&self, path: &Path) -> Option<PathBuf> {
+        if matches!(self.side, Side::Disk) { real(path) } else { Some(plain(path)) }
+    }
+
+    /// Whether this run has opened a file as a measurement, under this name or another.
+    pub fn opened(&self, path: &Path) -> bool {
+        self.true_path(path).is_some_and(|path| locked(&self.opened).contains(&path))
+    }
+
+    /// Length and time of a file.
+    pub fn stamp(&self, path: &Path) -> Option<(u64, SystemTime)> {
+        match &self.side {
+            Side::Disk => fs::metadata(path).ok().and_then(|meta| Some((meta.len(), meta.modified().ok()?))),
+            Side::Memory(files) => {
+                let bytes = locked(files).get(&plain(path)).map(|bytes| bytes.len() as u64);
+                bytes.map(|n| (n, SystemTime::UNIX_EPOCH))
+            }
+        }
+    }
+
+    /// The SHA-256 of a regular file, of which only a part is held at a time.
+    ///
+    /// # Errors
+    /// As [`Folder::read`].
+    pub fn digest(&self, path: &Path) -> Result<Digest> {
+        if matches!(self.side, Side::Memory(_)) || !path.is_file() {
+            return Ok(Sha256::digest(self.read(path)?).into());
+        }
+        let content = || {
+            let (mut file, mut hash, mut part) = (fs::File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
+            loop {
+                match file.read(&mut part)? {
+                    0 => return Ok(hash.finalize().into()),
+                    n => hash.update(&part[..n]),
+                }
+            }
+        };
+        content().map_err(|e| Error::io("read", path, e))
+    }
+}
+
+/// A path without `.` in it.
+pub(crate) fn plain(path: &Path) -> PathBuf {
+    path.components().filter(|part| *part != Component::CurDir).collect()
+}
+
+/// The folder of the empty path is that in which the program runs.
+fn or_here(path: &Path) -> &Path {
+    if path.as_os_str().is_empty() { Path::new(".") } else { path }
+}
+
+/// The one true path of a file or folder, links followed.
+fn real(path: &Path) -> Option<PathBuf> {
+    or_here(path).canonicalize().ok()
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,147 @@
+//! What vibro wrote into a folder.
+
+use super::{Digest, Folder, Standing};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// Files that vibro wrote into a folder, with what they held then. It lies in the folder as [`Manifest::FILE`], in lines that `sha256sum -c`
+/// takes:
+///
+/// ```text
+/// # Files that vibro wrote here, as it left them. A file changed since is never replaced.
+/// # run
+/// e3b0c44298fc1c14…  report.html
+/// # results
+/// 9f86d081884c7d65…  spectrum.csv
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Manifest(BTreeMap<(Owner, String), Vec<Digest>>);
+
+/// What files were written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Owner {
+    /// The results of a campaign: the next run replaces them all, and removes what it does not write again.
+    Run,
+    /// Figures and tables of one command.
+    Results,
+    /// Recordings that were converted or made: input of what comes next.
+    Recordings,
+    /// A file for a person to change. It is not remembered, so nothing replaces it.
+    Person,
+}
+
+impl Owner {
+    const ALL: [(Owner, &str); 3] =
+        [(Owner::Run, "run"), (Owner::Results, "results"), (Owner::Recordings, "recordings")];
+}
+
+const HEAD: &str =
+    "# Files that vibro wrote here, as it left them. A file changed since is never replaced.\n";
+
+impl Manifest {
+    /// Name of its file.
+    pub const FILE: &str = ".vibro.sha256";
+
+    /// That of a folder; empty where it has none, or none of ours.
+    pub fn of(folder: &Folder) -> Manifest {
+        let path = folder.root().join(Manifest::FILE);
+        let bytes = Some(&path).filter(|path| folder.standing(path) == Standing::File);
+        let text = bytes.and_then(|path| String::from_utf8(folder.read(path).ok()?).ok());
+        Manifest::parse(text.as_deref().unwrap_or_default())
+    }
+
+    /// Whether a folder has one that vibro wrote.
+    pub fn is_of(folder: &Folder) -> bool {
+        folder.read(&folder.root().join(Manifest::FILE)).is_ok_and(|bytes| bytes.starts_with(HEAD.as_bytes()))
+    }
+
+    fn parse(text: &str) -> Manifest {
+        let (mut manifest, mut owner) = (Manifest::default(), None);
+        for line in text.strip_prefix(HEAD).unwrap_or_default().lines() {
+            if let Some(heading) = line.strip_prefix("# ") {
+                owner = Owner::ALL.iter().find(|(_, name)| *name == heading).map(|(owner, _)| *owner);
+            } else if let Some((owner, (digest, name))) = owner.zip(unlisted(line)) {
+                manifest.add(owner, name, digest);
+            }
+        }
+        manifest
+    }
+
+    /// As its file has it.
+    pub fn text(&self) -> String {
+        let mut text = HEAD.to_owned();
+        for (owner, heading) in Owner::ALL {
+            let mut own = self.0.iter().filter(|((known, _), _)| *known == owner).peekable();
+            if own.peek().is_some() {
+                let _ = writeln!(text, "# {heading}");
+            }
+            for ((_, name), digests) in own {
+                text.extend(digests.iter().map(|digest| listed(digest, name)));
+            }
+        }
+        text
+    }
+
+    /// Whether nothing is known.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Whether a file of this name was written as a result.
+    pub fn is_result(&self, name: &str) -> bool {
+        [Owner::Run, Owner::Results].iter().any(|owner| self.0.contains_key(&(*owner, name.to_owned())))
+    }
+
+    /// Whether vibro wrote a file of this name and content: a result, or, for recordings, a recording.
+    pub fn knows(&self, owner: Owner, name: &str, digest: &Digest) -> bool {
+        let results: &[Owner] =
+            if owner == Owner::Recordings { &[Owner::Recordings] } else { &[Owner::Run, Owner::Results] };
+        let of = |owner: &Owner| self.0.get(&(*owner, name.to_owned()));
+        results.iter().filter_map(of).any(|known| known.contains(digest))
+    }
+
+    /// Adds a file, beside what is known of its name.
+    pub fn add(&mut self, owner: Owner, name: impl Into<String>, digest: Digest) {
+        let known = self.0.entry((owner, name.into())).or_default();
+        if owner != Owner::Person && !known.contains(&digest) {
+            known.push(digest);
+        }
+        self.0.retain(|_, digests| !digests.is_empty());
+    }
+
+    /// Forgets a name.
+    pub fn forget(&mut self, name: &str) {
+        self.0.retain(|(_, known), _| known != name);
+    }
+
+    /// Names of one owner, each with what it may hold.
+    pub fn owned(&self, owner: Owner) -> impl Iterator<Item = (&str, &[Digest])> {
+        let own = self.0.iter().filter(move |((known, _), _)| *known == owner);
+        own.map(|((_, name), digests)| (name.as_str(), digests.as_slice()))
+    }
+}
+
+/// A line of `sha256sum`: a name with a line break or a backslash is escaped, as a mark before the digest tells.
+pub fn listed(digest: &Digest, name: &str) -> String {
+    let escaped = name.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r");
+    let mut line = if escaped == name { String::new() } else { "\\".to_owned() };
+    for byte in digest {
+        let _ = write!(line, "{byte:02x}");
+    }
+    line + "  " + &escaped + "\n"
+}
+
+/// Digest and name of a line that [`listed`] made.
+fn unlisted(line: &str) -> Option<(Digest, String)> {
+    let (escaped, line) = line.strip_prefix('\\').map_or((false, line), |rest| (true, rest));
+    let (hex, name) = line.split_once("  ")?;
+    let byte = |i: usize| u8::from_str_radix(hex.get(2 * i..2 * i + 2)?, 16).ok();
+    let mut digest = Digest::default();
+    for (i, place) in digest.iter_mut().enumerate() {
+        *place = byte(i)?;
+    }
+    let plain = |part: &str| part.replace("\\n", "\n").replace("\\r", "\r");
+    let name =
+        if escaped { name.split("\\\\").map(plain).collect::<Vec<_>>().join("\\") } else { name.to_owned() };
+    (hex.len() == 64).then_some((digest, name))
+}

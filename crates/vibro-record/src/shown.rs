@@ -1,0 +1,26 @@
+//! Names as a terminal and a page may show them.
+
+use std::path::Path;
+
+/// Whether a character steers a terminal or a page instead of being shown: a control character, or one that turns the direction of writing
+/// (Unicode Standard Annex 9, section 2).
+pub fn steers(c: char) -> bool {
+    let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || turns
+}
+
+/// A path for people, on one line: a character that steers is shown as �.
+pub fn shown(path: impl AsRef<Path>) -> String {
+    let text = path.as_ref().to_string_lossy();
+    text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shown;
+
+    #[test]
+    fn a_name_stays_on_its_line_and_runs_one_way() {
+        assert_eq!(shown("µ a\nb\u{202e}c.csv"), "µ a\u{fffd}b\u{fffd}c.csv");
+    }
+}
