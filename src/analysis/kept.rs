@@ -29,7 +29,7 @@ pub struct Kept {
 
 impl Kept {
     /// The file of a folder of results in which they are kept.
-    pub const FILE: &str = ".kept";
+    pub const FILE: &str = ".vibro.kept";
 
     /// Nothing is known of an earlier run.
     pub fn none(folder: &Folder) -> Kept {

@@ -142,3 +142,27 @@ fn a_pattern_means_files_of_its_folder_however_that_is_named() {
     let is_pattern = |folder: &Path, name: &str| is_pattern(&folder.into(), Path::new(name));
     assert!(is_pattern(&folder, "a*.csv") && !is_pattern(Path::new("st*r"), "a.csv"));
 }
+
+/// A campaign runs in memory as it does on a disk, and writes the same bytes.
+#[test]
+fn a_run_needs_no_disk() {
+    let path = Path::new("examples/bench/campaign.toml");
+    let held = std::fs::read_dir(path.parent().unwrap()).unwrap().map(|entry| entry.unwrap().path());
+    let held = held.filter(|path| path.is_file()).map(|path| (path.clone(), std::fs::read(path).unwrap()));
+    let memory = Folder::memory("", held);
+    let out = tempfile::tempdir().unwrap();
+    let run = |within: &Folder, out: &Path| {
+        let (campaign, results) = (super::open_in(within, path).unwrap(), within.at(out));
+        let mut output = crate::report::Output::new(results.clone(), crate::read::Owner::Run).unwrap();
+        run(&campaign, &Kept::none(within), &mut output, &()).unwrap();
+        output.commit().unwrap();
+        let names = results.names().into_iter();
+        names.map(|name| (results.read(&out.join(&name)).unwrap(), name)).collect::<Vec<_>>()
+    };
+    let (disk, memory) = (run(&Folder::default(), out.path()), run(&memory, Path::new("results")));
+    let names = |all: &[(Vec<u8>, String)]| all.iter().map(|file| file.1.clone()).collect::<Vec<_>>();
+    assert!(names(&disk).contains(&"results.json".to_owned()), "{:?}", names(&disk));
+    assert_eq!(names(&disk), names(&memory));
+    let other: Vec<_> = disk.iter().zip(&memory).filter(|(a, b)| a != b).map(|(a, _)| &a.1).collect();
+    assert!(other.is_empty(), "{other:?}");
+}

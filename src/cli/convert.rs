@@ -99,7 +99,7 @@ pub fn free(folder: &Folder, read: &Path, written: &Path, owner: Owner) -> Resul
         return Err(Error::usage(found, "two files").hint("name another file to write"));
     }
     let (output, name) = beside(folder, written, owner)?;
-    output.expect(|known| known == name).map_err(|e| e.hint(other(written)))
+    output.expect(|known| known == name).map_err(|e| elsewhere(e, written))
 }
 
 /// Writes a file whole.
@@ -108,7 +108,7 @@ pub fn free(folder: &Folder, read: &Path, written: &Path, owner: Owner) -> Resul
 /// As [`free`].
 pub fn write_file(folder: &Folder, path: &Path, owner: Owner, bytes: impl AsRef<[u8]>) -> Result<()> {
     let (mut output, name) = beside(folder, path, owner)?;
-    output.write(&name, bytes).map_err(|e| e.hint(other(path)))?;
+    output.write(&name, bytes).map_err(|e| elsewhere(e, path))?;
     output.commit().map(drop)
 }
 
@@ -131,11 +131,15 @@ pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// A name beside this one that is free.
-fn other(path: &Path) -> String {
+/// The error, with a name beside this one that is free where something stands in the way.
+fn elsewhere(error: Error, path: &Path) -> Error {
+    if !error.settings().any(|key| key == "replace") {
+        return error;
+    }
     let [stem, ending] = [path.file_stem(), path.extension()].map(|part| part.map(shown).unwrap_or_default());
     let mut names = (2..).map(|n| path.with_file_name(format!("{stem}_{n}.{ending}")));
-    names.find(|path| !path.exists()).map(shown).unwrap_or_default()
+    let free = names.find(|path| !path.exists()).map(shown).unwrap_or_default();
+    error.hint(format!("{free}, or replace it on purpose")).setting("replace")
 }
 
 /// What is done to time traces on the way.

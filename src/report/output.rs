@@ -158,15 +158,17 @@ impl Output {
                 return Ok(true);
             }
             let mark = || name == Output::INCOMPLETE && digest == Digest::from(Sha256::digest(MARK));
-            let known = || name == Manifest::FILE && Manifest::is_of(&self.folder);
-            if manifest.knows(self.owner, name, &digest) || mark() || known() {
+            if manifest.knows(self.owner, name, &digest) || mark() || name.starts_with(OWN_NAMES) {
                 return Ok(false);
             }
             "is not vibro's: vibro did not write it, or it was changed since"
         };
         let error =
             Error::usage(format!("{} {found}", shown(&path)), "a place where nothing of yours is replaced");
-        Err(error.set("out", shown(self.another())))
+        Err(error
+            .hint("another place, or replace it on purpose")
+            .set("out", shown(self.another()))
+            .setting("replace"))
     }
 
     /// A folder of which nothing is there yet.
@@ -239,6 +241,9 @@ impl Output {
         self.folder.place(self.folder.stage(&path, manifest.text().as_bytes())?, &path)
     }
 }
+
+/// With what names of files begin that vibro keeps for itself.
+const OWN_NAMES: &str = ".vibro.";
 
 /// Files by which a folder of results is kept in order.
 const OWN: [&str; 2] = [Output::INCOMPLETE, Manifest::FILE];

@@ -50,15 +50,19 @@ impl Voice {
 
     /// A setting with its value, as this reader types them.
     pub fn set(self, key: &str, value: &str) -> String {
-        match (self, value) {
+        let voice = if OPTIONS.contains(&key) { Voice::Command } else { self };
+        match (voice, value) {
             (Voice::Command, "") => format!("--{}", key.replace('_', "-")),
-            (Voice::Command, value) if value.contains(' ') => format!("{} {value}", self.setting(key)),
-            (Voice::Command, value) => format!("{} {}", self.setting(key), value.trim_matches('"')),
+            (Voice::Command, value) if value.contains(' ') => format!("{} {value}", voice.setting(key)),
+            (Voice::Command, value) => format!("{} {}", voice.setting(key), value.trim_matches('"')),
             (Voice::Campaign, "") => format!("`{key}`"),
             (Voice::Campaign, value) => format!("`{key} = {value}`"),
         }
     }
 }
+
+/// Settings that a campaign has no key for: they are typed behind its name.
+const OPTIONS: [&str; 2] = ["allow_outside", "replace"];
 
 /// The sentence of a finding. A code without a sentence shows itself.
 pub fn sentence(finding: &Finding, voice: Voice) -> String {

@@ -15,6 +15,7 @@ mod modes;
 mod periodic;
 mod precision;
 mod rig;
+mod safe;
 mod simulate;
 mod spectrum;
 mod stepped;

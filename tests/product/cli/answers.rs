@@ -169,7 +169,9 @@ fn convert_keeps_the_values() {
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
     entries
-        .filter(|p| p.is_file() && !p.ends_with(".kept"))
+        .filter(|p| {
+            p.is_file() && !p.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".vibro."))
+        })
         .map(|p| (p.file_name().unwrap().to_string_lossy().into_owned(), fs::read(&p).unwrap()))
         .collect()
 }

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Records of every kind but drills, as a campaign has them.
-fn records(folder: &Path) -> String {
+pub fn records(folder: &Path) -> String {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let mut campaign = String::from("name = \"all\"\n");
     for example in ["bench", "drop_test"] {
@@ -40,11 +40,11 @@ fn records(folder: &Path) -> String {
         + "[[sweep]]\nname = \"s\"\ntraces = \"step*.csv\"\nforce = \"F\"\nresponse = \"v\"\n[[frf]]\nname = \"modes of s\"\nsweep = \"s\"\n"
 }
 
-fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+pub fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     files
         .map(|path| (path.file_name().unwrap().into(), fs::read(&path).unwrap()))
-        .filter(|(name, _): &(PathBuf, _)| name != Path::new(".kept"))
+        .filter(|(name, _): &(PathBuf, _)| !name.to_str().is_some_and(|name| name.starts_with(".vibro.")))
         .collect()
 }
 
@@ -88,7 +88,7 @@ fn a_second_run_computes_what_changed_and_gives_what_a_first_would() {
     fs::rename(root.path().join("step5.csv"), root.path().join("step6.csv")).unwrap();
     assert_eq!(kept(&campaign), all - 2);
     // What was kept is damaged, in part or as a whole.
-    let file = out.join(".kept");
+    let file = out.join(".vibro.kept");
     let bytes = fs::read(&file).unwrap();
     fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
     assert_eq!(kept(&campaign), 0);

@@ -29,7 +29,7 @@ impl Lock {
     /// If another program is still writing there, or the file cannot be made.
     pub fn of(folder: &Path) -> Result<Lock> {
         let (path, began) = (or_here(folder).join(Lock::FILE), Instant::now());
-        let refused = |e| Error::io("write", &path, e);
+        let refused = |e| Error::io("write", or_here(folder), e);
         loop {
             if std::fs::symlink_metadata(&path).is_ok_and(|meta| !meta.is_file()) {
                 return Err(Error::input(Place::file(&path), "not a regular file", "none of this name")
