@@ -50,7 +50,7 @@ pub mod figures {
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Folder;
-use crate::record::find_channel;
+use crate::record::{find_channel, shown};
 use crate::report::files::Names;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -222,7 +222,7 @@ pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>>
         let files = matching(folder, &pattern).map_err(|e| campaign.fault(&entry, e.setting("file")))?;
         let one = |file: PathBuf| {
             let own = |name: &String| {
-                if A::TOGETHER { name.clone() } else { format!("{name}, {}", file.display()) }
+                if A::TOGETHER { name.clone() } else { format!("{name}, {}", shown(&file)) }
             };
             let mut one = entry.clone();
             one.name = entry.name.as_ref().map(own);
@@ -261,7 +261,7 @@ fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<()> {
         let (_, headers, _) = entry.reading.reader()?.within(campaign.within()).survey(&path)?;
         // Values that are numbered, as a step without a rate shows.
         if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
-            let error = Error::usage(format!("{} has no sampling rate", path.display()), "rate = HZ");
+            let error = Error::usage(format!("{} has no sampling rate", shown(&path)), "rate = HZ");
             return Err(campaign.fault(&entry, error.setting("rate").setting("file")));
         }
         let names = headers.iter().map(|h| (h.name.as_str(), h.quantity));

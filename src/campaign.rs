@@ -42,7 +42,7 @@ pub(crate) use value::{LowPass, channel, channels, one_or_more, two, without_uni
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Parameter, Rig, Scene};
 use crate::read::Folder;
-use crate::record::Finding;
+use crate::record::{Finding, shown};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -92,7 +92,7 @@ impl Campaign {
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || within.is_folder(path) {
             if !within.exists(path) {
                 return Err(Error::absent(
-                    format!("there is no file or folder {}", path.display()),
+                    format!("there is no file or folder {}", shown(path)),
                     Path::new(""),
                     path,
                 ));
@@ -127,7 +127,7 @@ impl Campaign {
         {
             let expected = "a campaign: the rig's keys under [rig], and what was measured, such as [[sweep]]";
             let rig = Error::input(Place::file(path), "this is a rig, not a campaign", expected);
-            let hint = format!("`vibro model orbit {}` tells what the rig does", path.display());
+            let hint = format!("`vibro model orbit {}` tells what the rig does", shown(path));
             return Err(rig.hint(format!("{hint}; docs/campaign.md shows a campaign")));
         }
         let of_records = |key: &str| sections.contains(&key);
@@ -273,7 +273,7 @@ impl Campaign {
         if self.folder.exists(&path) {
             return Ok(path);
         }
-        let error = Error::absent(format!("the file {} does not exist", path.display()), self.folder(), name);
+        let error = Error::absent(format!("the file {} does not exist", shown(path)), self.folder(), name);
         let error = match &self.made_by {
             Some(command) => error.hint(format!("`{command}` makes it")),
             None => error,

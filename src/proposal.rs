@@ -209,7 +209,7 @@ impl Proposal {
         if !within.is_folder(folder) {
             let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
             let absent =
-                || Error::absent(format!("there is no folder {}", folder.display()), Path::new(""), folder);
+                || Error::absent(format!("there is no folder {}", shown(folder)), Path::new(""), folder);
             return Err(if within.exists(folder) {
                 error.hint("name the folder that holds it")
             } else {
@@ -255,7 +255,7 @@ impl Proposal {
             if let Some((file, why)) = proposal.left.first() {
                 error = error.aside(format!("{file}: {why}"));
             }
-            return Err(error.hint(format!("`vibro info {}/FILE` tells what is in a file", folder.display())));
+            return Err(error.hint(format!("`vibro info {}/FILE` tells what is in a file", shown(folder))));
         }
         if let Some(known) = known {
             proposal.join(known)?;

@@ -7,7 +7,7 @@ use crate::campaign::{Entry, above_zero};
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
-use crate::record::Trace;
+use crate::record::{Trace, shown};
 use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
 use crate::report::words::About;
@@ -293,7 +293,7 @@ impl Analysis for Keys {
         if let Some(file) = &entry.file
             && series.clone().any(same)
         {
-            let found = format!("{} is in the series {name:?} twice", file.display());
+            let found = format!("{} is in the series {name:?} twice", shown(file));
             return Err(Error::usage(found, "each record once").setting("file"));
         }
         if entry.keys.before.is_some() && series.any(|e| e.keys.before.is_some()) {

@@ -4,7 +4,7 @@ use super::{Analysis, Progress};
 use crate::campaign::{Channel, Entry, Reading};
 use crate::error::Result;
 use crate::read::{Folder, Reader, Recording};
-use crate::record::Trace;
+use crate::record::{Trace, shown};
 use std::path::{Path, PathBuf};
 
 /// A file, how it is read, and who is told of the progress.
@@ -62,7 +62,7 @@ impl Source<'_> {
 
 /// The name of a file without its folder.
 pub fn file_name(path: &Path) -> String {
-    path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
+    shown(path.file_name().map_or(path, Path::new))
 }
 
 /// Name of a table for people: that stated, else the file's, else that of its section with this number.

@@ -16,7 +16,7 @@ use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};
 use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::read::SweepReader;
-use crate::record::{Direction, Scaling, Sweep, nearest};
+use crate::record::{Direction, Scaling, Sweep, nearest, shown};
 use crate::report::files;
 use crate::report::files::Names;
 use crate::report::words::About;
@@ -192,7 +192,7 @@ pub fn named(campaign: &Campaign, name: Option<&str>) -> Result<Listed> {
         (Some(name), all) => all.iter().find(|s| s.keys.name == name).ok_or_else(|| {
             let error = none(format!("no sweep is named {name:?}"));
             match nearest(name, all.iter().map(|s| s.keys.name.as_str())) {
-                Some(near) => error.hint(format!("{}#{near}", campaign.path().display())),
+                Some(near) => error.hint(format!("{}#{near}", shown(campaign.path()))),
                 None => error,
             }
         })?,
@@ -202,7 +202,7 @@ pub fn named(campaign: &Campaign, name: Option<&str>) -> Result<Listed> {
             let path = campaign.path();
             let files = || "name the files of one sweep, by a pattern such as up*.csv".to_owned();
             return Err(error.hint(if campaign.is_file() {
-                format!("name one: {}#NAME", path.display())
+                format!("name one: {}#NAME", shown(path))
             } else {
                 files()
             }));
@@ -304,7 +304,7 @@ impl Analysis for Keys {
         let files = list.transpose()?.into_iter().chain(files).collect::<Vec<_>>();
         match files.iter().find(|file| !campaign.within().exists(file)) {
             Some(file) => {
-                let error = Error::usage(format!("the file {} does not exist", file.display()), "");
+                let error = Error::usage(format!("the file {} does not exist", shown(file)), "");
                 Err(campaign.fault(entry, error.setting("list").setting("response")))
             }
             None => Ok(files),

@@ -152,7 +152,7 @@ fn a_run_needs_no_disk() {
     let memory = Folder::memory("", held);
     let out = tempfile::tempdir().unwrap();
     let run = |within: &Folder, out: &Path| {
-        let (campaign, results) = (super::open_in(within, path).unwrap(), within.at(out));
+        let (campaign, results) = (open_in(within, path).unwrap(), within.at(out));
         let mut output = crate::report::Output::new(results.clone(), crate::read::Owner::Run).unwrap();
         run(&campaign, &Kept::none(within), &mut output, &()).unwrap();
         output.commit().unwrap();

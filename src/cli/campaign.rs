@@ -8,6 +8,7 @@ use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
 use crate::read::{Folder, Owner};
+use crate::record::shown;
 use crate::report::Table;
 use crate::report::files::Names;
 use crate::report::words::{Voice, graded};
@@ -101,7 +102,7 @@ impl super::Run for Run {
             if let Err(error) = self.once(json) {
                 complain::error(&error, Voice::Campaign, json);
             }
-            complain::line(&format!("watching {}; Ctrl+C ends", folder.display()));
+            complain::line(&format!("watching {}; Ctrl+C ends", shown(folder)));
             while self.stamps(folder) == before {
                 std::thread::sleep(PAUSE);
             }
@@ -155,7 +156,7 @@ impl Run {
         } else {
             complain::warn(&graded(&answer.findings, Voice::Campaign));
             let tables = answer.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
-            print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", folder.display()))?;
+            print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", shown(&folder)))?;
         }
         Ok(u8::from(!answered && !campaign.is_empty()))
     }

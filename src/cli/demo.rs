@@ -7,7 +7,7 @@ use crate::analysis;
 use crate::error::{Error, Place, Result};
 use crate::proposal::Proposal;
 use crate::read::Owner;
-use crate::record::nearest;
+use crate::record::{nearest, shown};
 use crate::report::Output;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -66,7 +66,7 @@ impl super::Run for Demo {
             }
             return Ok(0);
         }
-        complain::line(&format!("wrote the recordings and campaign.toml into {}", folder.display()));
+        complain::line(&format!("wrote the recordings and campaign.toml into {}", shown(&folder)));
         Run::of(folder.join(Proposal::FILE)).run(json)
     }
 }
@@ -98,7 +98,7 @@ impl super::Run for Open {
         let is_page =
             |place: &&PathBuf| place.is_file() && place.extension().is_some_and(|ending| ending == "html");
         let page = places.iter().find(is_page).ok_or_else(|| {
-            let shown = self.report.display();
+            let shown = shown(&self.report);
             if !self.report.exists() {
                 return Error::absent(format!("there is no {shown}"), Path::new(""), &self.report);
             }
@@ -114,7 +114,7 @@ impl super::Run for Open {
         };
         if !OPENERS.iter().any(opens) {
             return Err(Error::refused("no program opens a page here")
-                .hint(format!("open {} in a browser", page.display())));
+                .hint(format!("open {} in a browser", shown(page))));
         }
         if json {
             print::object(json!({ "opened": page.display().to_string(), "warnings": [], "findings": [] }))?;

@@ -5,7 +5,7 @@ use crate::analysis::Answer;
 use crate::campaign::Reading;
 use crate::error::Result;
 use crate::read::Header;
-use crate::record::Finding;
+use crate::record::{Finding, shown};
 use crate::report::words::{Voice, graded, put};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -45,10 +45,11 @@ impl Run for Info {
                 records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
             findings.extend(Finding::gathered(&of_records));
             let numbered = findings.iter().any(|f| f.code == "abscissa-unsaid");
+            let shown_path = shown(path);
             let path = path.display().to_string();
             let file = if self.files.len() > 1 { path.as_str() } else { "" };
             about.extend(findings.into_iter().map(|finding| (file.to_owned(), finding)));
-            let _ = writeln!(text, "{path} ({})", format.name());
+            let _ = writeln!(text, "{shown_path} ({})", format.name());
             for record in &records {
                 line(&mut text, record, numbered);
             }

@@ -85,7 +85,7 @@ impl super::Run for Init {
                 (Some(_), false) => "added to the end of",
                 (Some(_), true) => "every recording of the folder stands in",
             };
-            print::text(&format!("{done} {}\nnext: vibro run {}\n", path.display(), print::typed(&path)))?;
+            print::text(&format!("{done} {}\nnext: vibro run {}\n", shown(&path), print::typed(&path)))?;
         }
         Ok(0)
     }

@@ -12,7 +12,7 @@ use crate::measure::drill::Cycle;
 use crate::measure::response::ResponseOptions;
 use crate::measure::{Estimate, legacy};
 use crate::read::{Folder, Owner, SweepList, SweepReader};
-use crate::record::{Finding, Trace};
+use crate::record::{Finding, Trace, shown};
 use crate::report::Output;
 use crate::report::files::Names;
 use crate::report::layout::{headed, table};
@@ -98,7 +98,7 @@ impl Record {
         json: bool,
         measure: impl FnOnce(&Source<'_>) -> Result<T>,
     ) -> Result<T> {
-        let name = match file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned()) {
+        let name = match file.file_stem().map_or_else(String::new, shown) {
             pipe if pipe == "-" => "standard input".to_owned(),
             name => name,
         };

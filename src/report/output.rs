@@ -112,12 +112,11 @@ impl Output {
     }
 
     fn take(&mut self, name: &str, digest: Digest, staged: Option<Staged>) {
-        match self.written.iter().position(|written| written == name) {
-            Some(i) => self.staged[i] = (digest, staged),
-            None => {
-                self.written.push(name.to_owned());
-                self.staged.push((digest, staged));
-            }
+        if let Some(i) = self.written.iter().position(|written| written == name) {
+            self.staged[i] = (digest, staged);
+        } else {
+            self.written.push(name.to_owned());
+            self.staged.push((digest, staged));
         }
     }
 

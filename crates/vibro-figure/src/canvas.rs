@@ -8,6 +8,7 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use ndarray::Array2;
 use resvg::tiny_skia::{ColorU8, Pixmap};
 use std::fmt::Write;
+use vibro_record::steers;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -192,7 +193,7 @@ pub(super) fn document(
     svg
 }
 
-/// Text for use between tags and in attributes; characters that XML 1.0 forbids (2.2) become `\u{FFFD}`.
+/// Text for use between tags and in attributes; characters that XML 1.0 forbids (2.2), and those that steer, become `\u{FFFD}`.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -203,7 +204,8 @@ pub fn escaped(text: &str) -> String {
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
             '\t' | '\n' | '\r' => out.push(' '),
-            '\0'..='\u{1F}' | '\u{FFFE}' | '\u{FFFF}' => out.push('\u{FFFD}'),
+            '\u{FFFE}' | '\u{FFFF}' => out.push('\u{FFFD}'),
+            c if steers(c) => out.push('\u{FFFD}'),
             c => out.push(c),
         }
     }
@@ -291,6 +293,9 @@ mod tests {
 
     #[test]
     fn markup_in_texts_is_only_text() {
-        assert_eq!(escaped("<a href='x'>&\"\u{1}\n"), "&lt;a href=&#39;x&#39;&gt;&amp;&quot;\u{FFFD} ");
+        assert_eq!(
+            escaped("<a href='x'>&\"\u{1}\u{202e}\n"),
+            "&lt;a href=&#39;x&#39;&gt;&amp;&quot;\u{FFFD}\u{FFFD} "
+        );
     }
 }

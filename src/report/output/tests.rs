@@ -84,7 +84,7 @@ fn leftovers_of_killed_programs_are_removed_by_who_holds_the_lock() {
     }
     let mut first = results(dir.path());
     first.write("a.csv", "x").unwrap();
-    let parts = || names(dir.path()).iter().filter(|name| name.ends_with(".part")).count();
+    let parts = || names(dir.path()).iter().filter(|name| name.ends_with(".vibro.part")).count();
     // Its own file has no name yet; that without a dot is not vibro's.
     assert_eq!(parts(), 2);
     // A second writer waits for the first, and does not take its files for leftovers.

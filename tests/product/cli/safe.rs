@@ -354,7 +354,7 @@ mod on_unix {
             );
             let output = Command::new("sh").args(["-c", &limited]).output().unwrap();
             assert_eq!(output.status.code(), Some(2));
-            assert!(!written(root.path()).iter().any(|name| name.ends_with(".part")));
+            assert!(!written(root.path()).iter().any(|name| name.ends_with(".vibro.part")));
         };
         full();
         assert!(!path.exists());
@@ -417,7 +417,7 @@ mod on_unix {
                 .into_iter()
                 .filter(|(name, _)| {
                     let name = text(name);
-                    !name.starts_with(".vibro") && !name.ends_with(".part")
+                    !name.starts_with(".vibro") && !name.ends_with(".vibro.part")
                 })
                 .collect();
             during += u64::from(mark.exists());
@@ -429,7 +429,7 @@ mod on_unix {
         }
         assert!(run(0).wait().unwrap().success());
         assert!(contents(&out) == sets[0]);
-        assert!(!written(&out).iter().any(|name| name.ends_with(".part") || name == ".vibro.lock"));
+        assert!(!written(&out).iter().any(|name| name.ends_with(".vibro.part") || name == ".vibro.lock"));
         assert!(during > times / 8, "{during} of {times} while files got their names");
     }
 
