@@ -156,7 +156,8 @@ impl Output {
             if new == Some(&digest) {
                 return Ok(true);
             }
-            let mark = || name == Output::INCOMPLETE && digest == Digest::from(Sha256::digest(MARK));
+            let of = |text: &&str| digest == Digest::from(Sha256::digest(text));
+            let mark = || name == Output::INCOMPLETE && MARKS.iter().any(of);
             if manifest.knows(self.owner, name, &digest) || mark() || name.starts_with(OWN_NAMES) {
                 return Ok(false);
             }
@@ -190,21 +191,23 @@ impl Output {
         let mut files = Vec::new();
         for (name, (digest, staged)) in self.written.iter().zip(std::mem::take(&mut self.staged)) {
             // What holds these bytes, but is not known, stays a person's.
-            let Some(staged) = staged else { continue };
-            after.forget(name);
-            after.add(self.owner, name, digest);
-            // A program that is killed leaves some of the old files and some of the new: all are vibro's.
-            manifest.add(self.owner, name, digest);
-            files.push((name, staged));
+            if staged.is_some() || manifest.knows(self.owner, name, &digest) {
+                after.forget(name);
+                after.add(self.owner, name, digest);
+            }
+            if let Some(staged) = staged {
+                // A program that is killed leaves some of the old files and some of the new: all are vibro's.
+                manifest.add(self.owner, name, digest);
+                files.push((name, staged));
+            }
         }
-        if files.is_empty() && stale.is_empty() {
-            return Ok(self.written);
-        }
-        self.remember(&manifest)?;
         let mark = self.folder.root().join(Self::INCOMPLETE);
-        let several = files.len() + stale.len() > 1;
-        if several {
-            self.folder.place(self.folder.stage(&mark, MARK.as_bytes())?, &mark)?;
+        let (marks, marked) = (MARKS[usize::from(self.owner == Owner::Run)], self.folder.is_file(&mark));
+        if files.len() + stale.len() > 0 {
+            self.remember(&manifest)?;
+        }
+        if files.len() + stale.len() > 1 && !marked {
+            self.folder.place(self.folder.stage(&mark, marks.as_bytes())?, &mark)?;
         }
         for (name, staged) in files {
             self.folder.place(staged, &self.folder.root().join(name))?;
@@ -213,8 +216,11 @@ impl Output {
             self.folder.remove(&self.folder.root().join(&name))?;
             after.forget(&name);
         }
-        self.remember(&after)?;
-        if several {
+        if after != Manifest::of(&self.folder) {
+            self.remember(&after)?;
+        }
+        // What another kind of command left half stays marked.
+        if self.folder.is_file(&mark) && self.folder.read(&mark)? == marks.as_bytes() {
             self.folder.remove(&mark)?;
         }
         drop(lock);
@@ -247,8 +253,11 @@ const OWN_NAMES: &str = ".vibro.";
 /// Files by which a folder of results is kept in order.
 const OWN: [&str; 2] = [Output::INCOMPLETE, Manifest::FILE];
 
-/// What the file says that marks a folder.
-const MARK: &str = "Old and new results stand side by side here: run the same command again.\n";
+/// What the file says that marks a folder, of a command and of a campaign.
+const MARKS: [&str; 2] = [
+    "Old and new results stand side by side here: run the same command again.\n",
+    "Old and new results of a campaign stand side by side here: run it again.\n",
+];
 
 /// The name as one plain part of a path. A backslash or a colon would mean something else on another system, so both are refused.
 fn checked(name: &str) -> Result<&Path> {

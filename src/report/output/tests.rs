@@ -174,6 +174,21 @@ fn a_run_removes_what_it_does_not_write_again() {
 }
 
 #[test]
+fn a_folder_stays_marked_until_the_same_kind_of_command_completes_it() {
+    each_side(|folder| {
+        let out = |owner| Output::new(folder.clone(), owner).unwrap();
+        let (mark, set) = (folder.root().join(Output::INCOMPLETE), [("a.csv", "1"), ("b.csv", "1")]);
+        written(out(Owner::Run), &set).unwrap();
+        // As a run leaves it that is killed after its last file.
+        written(out(Owner::Person), &[(Output::INCOMPLETE, MARKS[1])]).unwrap();
+        written(out(Owner::Results), &[("c.csv", "1"), ("d.csv", "1")]).unwrap();
+        assert!(folder.is_file(&mark));
+        written(out(Owner::Run), &set).unwrap();
+        assert!(!folder.is_file(&mark));
+    });
+}
+
+#[test]
 fn a_text_is_extended_unless_it_changed_meanwhile() {
     each_side(|folder| {
         let out = || Output::new(folder.clone(), Owner::Person).unwrap();
