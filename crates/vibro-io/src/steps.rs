@@ -20,11 +20,12 @@ pub struct Steps {
 }
 
 impl SweepReader {
-    /// Reads force and response of all steps, in SI units: calibrated where that is stated, a response of unknown unit in the unit that is stated.
+    /// Reads force and response of all steps, in SI units: calibrated where that is stated, a response of unknown unit in the unit that is stated. A step
+    /// has an error of its own if its file cannot be read or has no such channel; if its force is not one, or its response is no motion.
     ///
     /// # Errors
-    /// If a file cannot be read or has no such channel; if a force is not one, or a response is no displacement, velocity or acceleration.
-    pub fn steps(&self, steps: &Steps) -> Result<Vec<StepTraces>> {
+    /// If several files come with several channels.
+    pub fn steps(&self, steps: &Steps) -> Result<Vec<(PathBuf, Result<StepTraces>)>> {
         let reader = Reader::new().within(&self.folder).rate(steps.rate).format(self.format);
         let one = |file: &Path, force: &str, response: &str| {
             let recording = reader.from_path(file)?;
@@ -36,24 +37,22 @@ impl SweepReader {
             response.meta.findings.extend(recording.findings);
             Ok(StepTraces { path: file.to_owned(), force, response })
         };
-        let one = |file: &Path, force: &str, response: &str| {
-            one(file, force, response).map_err(|e: Error| e.in_file(file))
+        let one = |file: &PathBuf, force: &str, response: &str| {
+            (file.clone(), one(file, force, response).map_err(|e: Error| e.in_file(file)))
         };
         match (steps.files.as_slice(), steps.force.as_slice(), steps.response.as_slice()) {
             (files, [force], [response]) => {
-                in_order(files.par_iter().map(|file| one(file, force, response)).collect())
+                Ok(files.par_iter().map(|file| one(file, force, response)).collect())
             }
             ([file], forces, responses) => {
                 let pairs = forces.par_iter().zip(responses.par_iter());
                 let pair = |(force, response): (&String, &String)| {
-                    let step = one(file, force, response)?;
                     // Each step has a name of its own.
-                    Ok(StepTraces {
-                        path: PathBuf::from(format!("{}#{response}", step.path.display())),
-                        ..step
-                    })
+                    let path = PathBuf::from(format!("{}#{response}", file.display()));
+                    let (_, step) = one(file, force, response);
+                    (path.clone(), step.map(|step| StepTraces { path, ..step }))
                 };
-                in_order(pairs.map(pair).collect())
+                Ok(pairs.map(pair).collect())
             }
             (files, forces, _) => {
                 let found = format!("{} files and {} channels of force", files.len(), forces.len());
@@ -100,9 +99,4 @@ impl SweepReader {
         }
         Ok(trace)
     }
-}
-
-/// All of them, or the complaint about the first that has one, whichever was read first.
-fn in_order(all: Vec<Result<StepTraces>>) -> Result<Vec<StepTraces>> {
-    all.into_iter().collect()
 }

@@ -32,6 +32,14 @@ const ABOVE_FLOOR: f64 = 8.0;
 /// # Errors
 /// If a force spectrum is zero, holds no line above its noise, or has its largest line at the end of the base band.
 pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
+    each(sweep, fmin)?.into_iter().collect()
+}
+
+/// As [`excitations`], each step with its own error.
+///
+/// # Errors
+/// If the lines are not evenly spaced or end below `fmin`.
+pub(crate) fn each(sweep: &Sweep, fmin: f64) -> Result<Vec<Result<Excitation>>> {
     let df =
         sweep.line_width().ok_or_else(|| Error::refused("the lines of the sweep are not evenly spaced"))?;
     let (start, last) = (sweep.axis.start(), sweep.axis.at(sweep.axis.len().saturating_sub(1)));
@@ -60,7 +68,7 @@ pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
             force_std: peak.amplitude_std,
         })
     };
-    sweep.points.iter().map(one).collect()
+    Ok(sweep.points.iter().map(one).collect())
 }
 
 /// The largest local maximum from `first` on, interpolated; what an offset spreads beside line 0 is passed over.

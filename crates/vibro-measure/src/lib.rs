@@ -8,6 +8,7 @@
 //! # Ok::<(), vibro_record::Error>(())
 //! ```
 
+mod answered;
 mod clipping;
 pub mod crossing;
 pub mod decay;

@@ -3,7 +3,8 @@
 mod result;
 mod taker;
 
-use super::excitation::{Excitation, excitations};
+use super::answered::answered;
+use super::excitation::{Excitation, each, excitations};
 use super::resonance::NamedCurve;
 use crate::line::deviation;
 use crate::mean::upper_median;
@@ -41,6 +42,22 @@ impl ResponseOptions {
             _ => 0,
         })
     }
+}
+
+/// The sweep without the steps whose excitation is not found, each of which is named in a finding.
+///
+/// # Errors
+/// If no step has an excitation, or the lines are not evenly spaced.
+pub fn answerable(mut sweep: Sweep, options: &ResponseOptions) -> Result<Sweep> {
+    let found = each(&sweep, options.fmin.unwrap_or(0.0))?;
+    let steps = sweep.points.into_iter().zip(found).map(|(point, found)| {
+        let path = point.force_path.clone().unwrap_or_else(|| point.response_path.clone());
+        (path, found.map(|_| point))
+    });
+    let (points, left_out) = answered(steps)?;
+    sweep.points = points;
+    sweep.findings.extend(left_out);
+    Ok(sweep)
 }
 
 /// Takes the response curve of a sweep.

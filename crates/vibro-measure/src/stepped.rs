@@ -5,6 +5,7 @@
 //! force in the same block, are free of its drift; those from where they stay are averaged, and their scatter is the uncertainty of amplitude, phase
 //! and receptance.
 
+use super::answered::answered;
 use super::clipping::clipped;
 use super::excitation::Excitation;
 use super::noise::upper_limit;
@@ -15,6 +16,7 @@ use super::{Estimate, mean};
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 use vibro_record::units::Quantity;
 use vibro_record::{
     Axis, Error, Finding, Place, Result, Scaling, Spectrum, StepTraces, Sweep, SweepPoint, Trace, Window,
@@ -35,16 +37,24 @@ const SETTLED: f64 = 1e-3;
 const FAINT: f64 = 3.0;
 
 /// The sweep that traces of its steps make: amplitude, phase and receptance from the traces, harmonics and the rest from the spectra of the settled
-/// parts, which it gives, too. `named` has name, direction and mass.
+/// parts, which it gives, too. `named` has name, direction and mass. A step is left out, and named in a finding, where it was not read, its traces are
+/// not sampled together and evenly, or it holds no sine of force or fewer than eight periods.
 ///
 /// # Errors
-/// If the traces of a step are not sampled together and evenly, those of two steps not at the same rate, or a step holds no sine of force or fewer
-/// than eight periods.
-pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) -> Result<(Sweep, Response)> {
-    let taken = |step: &StepTraces| Step::of(step).map_err(|e| e.in_file(&step.path));
-    let taken: Vec<Step> = steps.iter().map(taken).collect::<Result<_>>()?;
+/// If no step is left, or two are not sampled at the same rate.
+pub fn stepped(
+    named: Sweep,
+    steps: Vec<(PathBuf, Result<StepTraces>)>,
+    options: &ResponseOptions,
+) -> Result<(Sweep, Response)> {
+    let taken = steps.into_iter().map(|(path, step)| {
+        let taken = step.and_then(|step| Ok((Step::of(&step)?, step))).map_err(|e| e.in_file(&path));
+        (path, taken)
+    });
+    let (taken, left_out) = answered(taken)?;
+    let (taken, steps): (Vec<Step>, Vec<StepTraces>) = taken.into_iter().unzip();
     let rate = taken.first().map_or(0.0, |step| step.rate);
-    if let Some((step, at)) = taken.iter().zip(steps).find(|(step, _)| (step.rate / rate - 1.0).abs() > 1e-6)
+    if let Some((step, at)) = taken.iter().zip(&steps).find(|(step, _)| (step.rate / rate - 1.0).abs() > 1e-6)
     {
         let found = format!("the step is sampled at {} Hz", step.rate);
         return Err(Error::input(Place::file(&at.path), found, format!("{rate} Hz, as the steps before")));
@@ -55,13 +65,14 @@ pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) ->
         steps.iter().zip(&taken).map(|(step, taken)| taken.spectra(step, n)).collect::<Result<Vec<_>>>()?;
     let axis = points.first().map_or_else(|| Axis::index(0), |p| p.response.axis.clone());
     let mut sweep = Sweep { axis, points, ..named };
+    sweep.findings.extend(left_out);
     for found in steps.iter().flat_map(|s| s.force.meta.findings.iter().chain(&s.response.meta.findings)) {
         if !sweep.findings.contains(found) {
             sweep.findings.push(found.clone());
         }
     }
     let excitations: Vec<Excitation> =
-        taken.iter().zip(steps).map(|(taken, step)| taken.excitation(step)).collect();
+        taken.iter().zip(&steps).map(|(taken, step)| taken.excitation(step)).collect();
     let mut found = read(&sweep, options, &excitations)?;
     for (point, step) in found.points.iter_mut().zip(&taken) {
         step.overrule(point, options.times(&sweep), found.unit);
@@ -80,6 +91,8 @@ pub fn stepped(named: Sweep, steps: &[StepTraces], options: &ResponseOptions) ->
     Ok((sweep, found.curve(direction)))
 }
 
+/// What to try where a force has no sine.
+const SHAKER: &str = "check the channel of the force, and that the shaker ran";
 /// Steps that a finding names, at most.
 const NAMED: usize = 4;
 
@@ -116,11 +129,9 @@ impl Step {
         if force.values.iter().chain(&response.values).any(|v| !v.is_finite()) {
             return Err(Error::refused("samples are missing").hint("cut the file before them"));
         }
-        let found = sine(force, None)?;
+        let found = sine(force, None).map_err(|error| error.hint(SHAKER))?;
         let Some(tone) = found.tones.into_iter().next() else {
-            return Err(Error::refused("the force holds no sine")
-                .hint("name the channel of the force, or leave this step out")
-                .setting("force"));
+            return Err(Error::refused("the force holds no sine").hint(SHAKER));
         };
         let frequency = tone.frequency;
         let periods = samples as f64 / rate * frequency.value;

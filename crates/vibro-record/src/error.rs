@@ -137,11 +137,8 @@ impl Error {
 
     /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as `--low-pass`.
     pub fn spoken(&self, typed: impl Fn(&str, &str) -> String) -> String {
-        let Inner { excerpt, hint, settings, .. } = &*self.0;
-        let part = |before: &str, text: &str, after: &str| {
-            if text.is_empty() { String::new() } else { [before, text, after].concat() }
-        };
-        let what = self.what();
+        let Inner { place, excerpt, hint, settings, .. } = &*self.0;
+        let what = self.what(place);
         let values = settings.iter().any(|(_, value)| !value.is_empty());
         let settings: Vec<String> = settings.iter().map(|(key, value)| typed(key, value)).collect();
         let advice = if hint.is_empty() && values {
@@ -150,6 +147,16 @@ impl Error {
             part("\n  try: ", hint, "") + &part(" (", &settings.join(", "), ")")
         };
         what + &part("\n", excerpt, "") + &advice
+    }
+
+    /// What was found and expected at this place.
+    fn what(&self, place: &Place) -> String {
+        part("", &place.to_string(), ": ") + &self.0.found + &part("; expected ", &self.0.expected, "")
+    }
+
+    /// The error in one line, without the name of its file and without advice.
+    pub fn reason(&self) -> String {
+        self.what(&Place { path: None, ..self.0.place.clone() })
     }
 
     /// Adds what to try; in place of an earlier hint with its settings.
@@ -247,22 +254,20 @@ impl Error {
         (self.0.kind == Kind::Refused).then_some(self.0.found.as_str())
     }
 
-    fn what(&self) -> String {
-        let Inner { place, found, expected, .. } = &*self.0;
-        let place = if *place == Place::default() { String::new() } else { format!("{place}: ") };
-        let expected = if expected.is_empty() { String::new() } else { format!("; expected {expected}") };
-        place + found + &expected
-    }
-
     /// Where and what is wrong, on one line, without what to try.
     pub fn why(&self) -> String {
-        self.what().replace('\n', " ")
+        self.what(&self.0.place).replace('\n', " ")
     }
 
     /// Exit code of the command: 1 no answer possible, 2 unreadable input or wrong usage.
     pub fn exit_code(&self) -> u8 {
         if self.0.kind == Kind::Refused { 1 } else { 2 }
     }
+}
+
+/// A text between two others; nothing where it is empty.
+fn part(before: &str, text: &str, after: &str) -> String {
+    if text.is_empty() { String::new() } else { [before, text, after].concat() }
 }
 
 /// What to type in place of a name that is not there in a folder: the nearest one beside it.
@@ -345,6 +350,14 @@ mod tests {
         let error = Error::usage("x", "").hint("lower it").setting("low_pass").setting("low_pass");
         assert_eq!(error.to_string(), "x\n  try: lower it (low_pass)");
         assert_eq!(error.hint("name the file").to_string(), "x\n  try: name the file");
+    }
+
+    #[test]
+    fn a_reason_is_one_line_without_the_file() {
+        let place = Place::line("a/b.csv", 7);
+        let error = Error::input(place, "\"x\"", "a number").excerpt("x\n", 0..1).hint("write one");
+        assert_eq!(error.reason(), "line 1, column 1: \"x\"; expected a number");
+        assert_eq!(Error::refused("no").hint("yes").reason(), "no");
     }
 
     #[test]

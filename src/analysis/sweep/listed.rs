@@ -4,7 +4,7 @@ use super::Keys;
 use crate::analysis::matching;
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
-use crate::measure::response::{Response, ResponseOptions, response};
+use crate::measure::response::{Response, ResponseOptions, answerable, response};
 use crate::measure::stepped::stepped;
 use crate::read::{Steps, SweepList, SweepReader};
 use crate::record::{Axis, Sweep};
@@ -84,7 +84,7 @@ impl Listed {
     pub fn taken(&self, options: &ResponseOptions) -> Result<(Sweep, Response)> {
         match &self.files {
             Files::Spectra(list) => {
-                let sweep = self.reader.read(list)?;
+                let sweep = answerable(self.reader.read(list)?, options)?;
                 let response = response(&sweep, options)?;
                 Ok((sweep, response))
             }
@@ -92,7 +92,7 @@ impl Listed {
                 let SweepReader { name, direction, mass, .. } = self.reader.clone();
                 let (axis, points, findings) = (Axis::index(0), Vec::new(), Vec::new());
                 let named = Sweep { name, direction, mass, axis, analyser_integrated: 0, points, findings };
-                stepped(named, &self.reader.steps(steps)?, options)
+                stepped(named, self.reader.steps(steps)?, options)
             }
         }
     }

@@ -70,8 +70,12 @@ fn named() -> Sweep {
     }
 }
 
+fn read(steps: &[StepTraces]) -> Vec<(PathBuf, Result<StepTraces>)> {
+    steps.iter().map(|step| (step.path.clone(), Ok(step.clone()))).collect()
+}
+
 fn taken(steps: &[StepTraces]) -> Response {
-    stepped(named(), steps, &ResponseOptions::default()).unwrap().1
+    stepped(named(), read(steps), &ResponseOptions::default()).unwrap().1
 }
 
 /// Draws of steps in noise; how many amplitudes, phases and real parts lie within 1.96 of their standard uncertainties, of how many, and the worst in them.
@@ -157,7 +161,41 @@ fn steps_that_do_not_go_together_are_refused() {
     let mut one = step(25.0, 4.0, 0.0, (1e-3, &mut noise));
     let short = step(25.0, 0.2, 0.0, (1e-3, &mut noise));
     let how = ResponseOptions::default();
-    assert!(stepped(named(), &[short], &how).unwrap_err().to_string().contains("periods"));
+    assert!(stepped(named(), read(&[short]), &how).unwrap_err().to_string().contains("periods"));
     one.response.values.pop();
-    assert!(stepped(named(), &[one], &how).unwrap_err().to_string().contains("sampled together"));
+    assert!(stepped(named(), read(&[one]), &how).unwrap_err().to_string().contains("sampled together"));
+}
+
+/// A step with the shaker off and a file that was not read: the others have the numbers that they have alone.
+#[test]
+fn a_step_without_an_answer_is_left_out_and_named() {
+    let mut noise = Noise::new(4);
+    let steps: Vec<StepTraces> =
+        (0..8).map(|k| step(22.0 + 2.0 * f64::from(k), 4.0, 0.0, (1e-3, &mut noise))).collect();
+    let how = ResponseOptions::default();
+    let mut all = read(&steps);
+    for trace in &mut all[3].1.as_mut().map(|dead| [&mut dead.force, &mut dead.response]).unwrap() {
+        trace.values.iter_mut().for_each(|v| *v = 1e-3 * noise.normal());
+    }
+    let text = Error::input(Place::line("36.csv", 5), "\"x\"", "a number");
+    all[7].1 = Err(text);
+    let (sweep, found) = stepped(named(), all, &how).unwrap();
+    let left = [0, 1, 2, 4, 5, 6].map(|k| steps[k].clone());
+    let alone = stepped(named(), read(&left), &how).unwrap().1;
+    assert_eq!((sweep.points.len(), &found.points), (6, &alone.points));
+    assert_eq!((&found.resonances, found.resonances.len()), (&alone.resonances, 1));
+    let named_there: Vec<&Finding> = found.findings.iter().filter(|f| f.code == "step-left-out").collect();
+    let about = |f: &&Finding| (f.subject.clone().unwrap(), f.get("step").unwrap());
+    assert_eq!(
+        named_there.iter().map(about).collect::<Vec<_>>(),
+        [("28.csv".to_owned(), 4.0), ("36.csv".to_owned(), 8.0)]
+    );
+    assert_eq!(
+        named_there[1].fact("why"),
+        Some(&vibro_record::Fact::Name("line 5: \"x\"; expected a number".into()))
+    );
+    // Nothing is left: the first step's reason, with its name.
+    let none =
+        ["a.csv", "b.csv"].map(|name| (PathBuf::from(name), Err(Error::refused(format!("no {name}")))));
+    assert_eq!(stepped(named(), none.into(), &how).unwrap_err().to_string(), "a.csv: no a.csv");
 }
