@@ -17,13 +17,16 @@ use vibro_record::lanes;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Meta, Result, Trace};
 
-/// Part of the largest force, above the level before it, at which a blow is noticed, and of a blow's own peak at which a second one is.
+/// Part of the largest force, above the level before it, at which a blow is noticed.
 const TRIGGER: f64 = 0.2;
+/// A second blow from this part of the smoothed peak on: from a tenth, where noise and filters take less than a third of it.
+const SECOND: f64 = 0.07;
+/// A second blow rises from a valley by this factor; the flank of a blow, however bent, does not.
+const RISE: f64 = 2.0;
+/// Standard deviations of the noise that no sample of a record reaches by chance: 1 in 10⁹.
+const SIGMAS: f64 = 6.0;
 /// A hammer that bounces does so within this time in s; nobody strikes again so soon.
 const BOUNCE: f64 = 0.1;
-/// A blow has ended below this part of its peak, or below so many standard deviations of the noise before it.
-const ENDED: f64 = 0.05;
-const SIGMAS: f64 = 3.0;
 /// A force that stands less than this factor (10 dB) above its noise tells nothing of the response to it.
 const AUDIBLE: f64 = 10.0;
 /// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
@@ -128,14 +131,14 @@ pub fn from_blows(
     let mut sums = Sums::new(2, true, transform.lines());
     let mut noise = 0.0;
     for start in &kept {
-        // Steps from sample to sample: hum and drift before the blow are no noise of all lines.
-        let before = force.values.get(*start..start + how.before).unwrap_or_default();
+        // Steps from sample to sample: hum and drift before the blow are no noise of all lines. A blow begins below the trigger.
+        let before = force.values.get(*start..start + how.before / 2).unwrap_or_default();
         let squares: f64 = before.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
         noise += 0.5 * squares / before.len().saturating_sub(1).max(1) as f64 / kept.len() as f64;
         for ((work, weights), trace) in work.iter_mut().zip(&weights).zip([force, response]) {
             let part = trace.values.get(*start..start + how.length).unwrap_or_default();
             // The level before the blow is the zero of this record.
-            let level = part[..how.before].iter().sum::<f64>() / how.before.max(1) as f64;
+            let level = part[..how.before / 2].iter().sum::<f64>() / (how.before / 2).max(1) as f64;
             work.load(part, level, weights);
             transform.run(work);
         }
@@ -210,6 +213,8 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
     let extreme = values.iter().map(|v| v - zero).fold(0.0f64, |m, v| if v.abs() > m.abs() { v } else { m });
     let sign = if extreme < 0.0 { -1.0 } else { 1.0 };
     let trigger_level = TRIGGER * extreme.abs();
+    let smooth = smoothed(values);
+    let smooth_rest = Quiet::of(&smooth);
     let channels = [values, &response.values];
     let mut rails = [Vec::new(), Vec::new()];
     let (mut found, mut i) = (Vec::new(), 0);
@@ -222,17 +227,8 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
         let start = trigger.saturating_sub(how.before);
         // The zero may wander from blow to blow.
         let quiet = if trigger > start { Quiet::of(&values[start..trigger]) } else { rest };
-        let push = |j: usize| sign * (values[j] - quiet.level);
-        let (mut peak, mut first_end) = (0.0f64, end);
-        for j in trigger..end {
-            peak = peak.max(push(j));
-            // Noise must not prolong a blow, nor may much of it hide that there was one.
-            if push(j) <= (SIGMAS * quiet.sigma).clamp(ENDED * peak, TRIGGER * peak) {
-                first_end = j;
-                break;
-            }
-        }
-        let second = (first_end..end).any(|j| push(j) > TRIGGER * peak);
+        let peak = values[trigger..end].iter().map(|v| sign * (v - quiet.level)).fold(0.0, f64::max);
+        let second = second(&smooth[start..end], trigger - start, sign, smooth_rest.sigma);
         for (channel, rails) in channels.iter().zip(&mut rails) {
             rails.extend(overloaded(&channel[start..end], trigger - start));
         }
@@ -253,6 +249,34 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
         }
     }
     found
+}
+
+/// Samples of the force, averaged with the Hann window of eight: what a filter near the end of the band rings with, above a fifth of the rate, is
+/// 18 dB down there and above a quarter 31 dB, and a blow is not, whose force has one sign.
+fn smoothed(values: &[f64]) -> Vec<f64> {
+    let weights: [f64; 7] = std::array::from_fn(|k| 0.25 * (PI * (k + 1) as f64 / 8.0).sin().powi(2));
+    let last = values.len().saturating_sub(1);
+    let at = |i: usize| {
+        weights.iter().enumerate().map(|(k, w)| w * values[(i + k).saturating_sub(3).min(last)]).sum()
+    };
+    (0..values.len()).map(at).collect()
+}
+
+/// Whether a smoothed force, quiet in its first `before` samples, rises again behind its largest blow or before it.
+fn second(values: &[f64], before: usize, sign: f64, noise: f64) -> bool {
+    let quiet = Quiet::of(if before > 0 { &values[..before] } else { values });
+    let push = |j: usize| sign * (values[j] - quiet.level);
+    let Some(top) = (before..values.len()).max_by(|a, b| push(*a).total_cmp(&push(*b))) else { return false };
+    let peak = push(top);
+    let level = (SIGMAS * noise.max(quiet.sigma)).clamp(SECOND * peak, TRIGGER * peak);
+    let rises = |mut side: Box<dyn Iterator<Item = usize>>| {
+        let mut valley = peak;
+        side.any(|j| {
+            valley = valley.min(push(j));
+            push(j) > level.max(RISE * valley)
+        })
+    };
+    rises(Box::new(top..values.len())) || rises(Box::new((before..top).rev()))
 }
 
 /// Level and noise of samples of which most are quiet.
