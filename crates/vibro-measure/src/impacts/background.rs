@@ -1,5 +1,6 @@
 //! Level and noise of a trace between its impacts, and its bursts with the ringing that each impact leaves behind.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 use vibro_record::lanes::{Survey, survey};
 
@@ -27,10 +28,33 @@ pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<us
     (firsts.iter().zip(ends).map(whole).collect(), stable)
 }
 
-/// Stretches of samples beyond the noise.
+/// Stretches of samples beyond the noise. One that rises again from a valley, as an envelope does that rings until the next impact, is parted there; each
+/// part ends where it has fallen as far as an impact rises.
 fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
     let beyond: Vec<usize> = (0..values.len()).filter(|i| values[*i].abs() > reach).collect();
-    beyond.chunk_by(|a, b| a + 1 == *b).map(|run| run[0]..run[0] + run.len()).collect()
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for run in beyond.chunk_by(|a, b| a + 1 == *b) {
+        let (mut start, mut valley, mut peak, mut fallen) = (run[0], run[0], 0.0f64, None);
+        for i in run.iter().copied() {
+            let height = values[i].abs();
+            if let Some(end) = fallen.filter(|_| height > RISE * values[valley].abs()) {
+                found.push(start..end);
+                (start, peak, fallen) = (valley, 0.0, None);
+            }
+            if height > peak {
+                (peak, valley) = (height, i);
+            } else if height < values[valley].abs() {
+                valley = i;
+            }
+            if fallen.is_none() && RISE * height < peak {
+                fallen = Some(i);
+            }
+        }
+        let parted = found.last().is_some_and(|last| last.end > run[0]);
+        let end = run[0] + run.len();
+        found.push(start..if parted { fallen.unwrap_or(end) } else { end });
+    }
+    found
 }
 
 /// Runs that begin an impact if ringing decays by e in `decay` samples at least: those that rise above an envelope which follows every
@@ -95,6 +119,25 @@ pub struct Background {
     /// Noise limit: the distance from the level that noise alone reaches in fewer than one of a thousand such records.
     pub reach: f64,
 }
+
+impl Background {
+    /// That of the envelope of the same samples, less their level: the noise of an envelope has Rayleigh's distribution, whose mean is √(π/2)σ and whose
+    /// variance (2 − π/2)σ², and which passes a limit zσ by the same bound. Samples of an envelope lie `apart` where they depend little on each other.
+    pub fn of_envelope(self, envelope: &[f64], apart: f64) -> Background {
+        let stretch = ((STRETCH * apart) as usize).max(1);
+        let power = |part: &[f64]| 0.5 * part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
+        let lowest = quantile(envelope.chunks(stretch).map(power).collect(), QUIETEST).sqrt();
+        // What rings until the next impact leaves no quiet half: its valleys are no lower than the noise.
+        let part = if lowest < 0.5 * self.sigma { lowest / self.sigma } else { 1.0 };
+        let (sigma, level) = (part * self.sigma, (0.5 * PI).sqrt() * part * self.sigma);
+        Background { level, sigma: (2.0 - 0.5 * PI).sqrt() * sigma, reach: part * self.reach - level }
+    }
+}
+
+/// Independent samples of a stretch, and the part of all stretches that are quiet: of 4 in noise (χ² of 8 degrees of freedom) a tenth has σ below 0.66 of
+/// its value, so that half of it is no chance.
+const STRETCH: f64 = 4.0;
+const QUIETEST: f64 = 0.1;
 
 /// Lower quartile of |N(0, 1)|.
 const QUARTILE: f64 = 0.318_639_363_964_375;

@@ -48,12 +48,17 @@ pub struct Detected {
 pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
-    let mut values = prepared(trace, options, rate)?;
+    let mut values = banded(trace, options, rate)?;
     let mut findings = Vec::new();
     let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), &mut findings) };
-    let quiet = background(&values);
-    for v in &mut values {
-        *v -= quiet.level;
+    let mut quiet = background(&values);
+    let zeroed = |values: &mut [f64], level: f64| values.iter_mut().for_each(|v| *v -= level);
+    zeroed(&mut values, quiet.level);
+    if options.envelope {
+        values = envelope(&values);
+        let width = options.band.map_or(0.5 * rate, |(low, high)| high.min(0.5 * rate) - low);
+        quiet = quiet.of_envelope(&values, rate / width);
+        zeroed(&mut values, quiet.level);
     }
     let pause = options.refractory.map(|s| ((s * rate) as usize).max(1));
     let (mut bursts, stable) = bursts(&values, quiet.reach, pause);
@@ -85,9 +90,14 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
             counted(each.len(), "impact")
         );
         let refused = Error::refused(why);
+        let joined = || pause.is_some() && self::bursts(&values, quiet.reach, None).0.len() > 1;
+        let hidden = match options.band {
+            Some(_) => "another band: a spectrum shows where the impacts ring",
+            None => "a band above hum and slow levels, in which the impacts ring: it is a high-pass",
+        };
         return Err(match low {
-            0 if options.refractory.is_some() => refused.hint("a shorter pause").setting("refractory"),
-            0 => refused.hint("high-pass the record first, where hum or a slow level hides the impacts"),
+            0 if joined() => refused.hint("a shorter pause").setting("refractory"),
+            0 => refused.hint(hidden).setting("band"),
             _ => refused.hint("a lower threshold, as lower bursts were ignored").setting("threshold"),
         });
     }
@@ -141,8 +151,8 @@ fn chatter(values: &[f64], bursts: &[Range<usize>], rate: f64) -> Option<Finding
 /// Order of one pass of a filter.
 const ORDER: usize = 4;
 
-/// The values in their band, without delay, or the envelope of that.
-fn prepared(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f64>> {
+/// The values in their band, without delay.
+fn banded(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f64>> {
     let mut values = trace.values.clone();
     if let Some((low, high)) = options.band {
         if low.partial_cmp(&high) != Some(Ordering::Less) {
@@ -153,7 +163,7 @@ fn prepared(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f6
         values = Filter::high_pass(low, ORDER, rate)?.zero_phase(&values)?;
         values = Filter::low_pass(high, ORDER, rate)?.zero_phase(&values)?;
     }
-    Ok(if options.envelope { envelope(&values) } else { values })
+    Ok(values)
 }
 
 /// The shape of a recorded pulse, for a trace of this sampling rate in Hz.

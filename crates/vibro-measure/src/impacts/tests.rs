@@ -290,3 +290,66 @@ fn what_has_no_period_is_refused() {
     let found = impacts(&record, &ImpactsOptions { complete: true, ..ImpactsOptions::default() }).unwrap();
     assert!((found.n as f64 - 100.0).abs() < 12.0, "{}", found.n);
 }
+
+/// A train of bursts at 25.6 kHz that ring at 3 kHz and decay by e within this part of their period, in noise of 1/200 of their height.
+fn ringing(part: f64, offset: f64) -> Trace {
+    let (rate, n, period) = (25_600.0, 25_600, 0.0123);
+    let mut noise = Noise::new(12);
+    let mut values: Vec<f64> = (0..n).map(|_| offset + 5e-3 * noise.normal()).collect();
+    for k in 0..81 {
+        let at = 0.0071 + period * f64::from(k);
+        for (i, v) in values.iter_mut().enumerate().skip((at * rate) as usize + 1) {
+            let t = i as f64 / rate - at;
+            *v += (-t / (part * period)).exp() * (std::f64::consts::TAU * 3000.0 * t).sin();
+        }
+    }
+    trace(values, rate)
+}
+
+#[test]
+fn an_envelope_that_rings_until_the_next_impact_has_them_all() {
+    for (part, offset) in [(0.05, 0.0), (0.2, 0.0), (0.25, 0.0), (0.33, 2.0), (0.5, 0.0)] {
+        for band in [Some((2100.0, 3900.0)), None] {
+            let options = ImpactsOptions { band, envelope: true, ..ImpactsOptions::default() };
+            let found = impacts(&ringing(part, offset), &options).unwrap();
+            assert_eq!(
+                (found.n, found.missed, found.doubled),
+                (81, 0, 0),
+                "{part} {band:?}: {:?}",
+                found.findings
+            );
+            // Noise of 1/200 of the height over a flank of a few samples: 0.05 samples, and so by a line through 81 points 1e-7 s of 80 intervals.
+            assert!((found.interval.value - 0.0123).abs() < 1e-6, "{part} {band:?}: {:?}", found.interval);
+            assert!(!has(&found, "count-depends-on-ringing"), "{part} {band:?}: {:?}", found.findings);
+        }
+    }
+}
+
+/// What a refusal proposes is tried: with it the impacts are found.
+#[test]
+fn the_hints_of_a_refusal_find_the_impacts() {
+    let plain = ImpactsOptions::default();
+    // Bursts of 1 V on a slow swing of 60 V.
+    let mut slow = ringing(0.05, 0.0);
+    for (i, v) in slow.values.iter_mut().enumerate() {
+        *v += 60.0 * (std::f64::consts::TAU * 3.0 * i as f64 / 25_600.0).sin();
+    }
+    let why = impacts(&slow, &plain).unwrap_err().to_string();
+    assert!(why.contains("(band)") && why.contains("high-pass"), "{why}");
+    let band = ImpactsOptions { band: Some((2000.0, 4000.0)), ..plain.clone() };
+    assert_eq!(impacts(&slow, &band).unwrap().n, 81);
+    // A band in which nothing rings.
+    let beside = ImpactsOptions { band: Some((9000.0, 11_000.0)), ..plain.clone() };
+    let mut noise = Noise::new(3);
+    let hiss = trace((0..25_600).map(|_| noise.normal()).collect(), 25_600.0);
+    let why = impacts(&hiss, &beside).unwrap_err().to_string();
+    assert!(why.contains("another band"), "{why}");
+    // A pause longer than the period joins all impacts; where there is one alone, no pause is at fault.
+    let long = ImpactsOptions { refractory: Some(0.1), ..plain.clone() };
+    let why = impacts(&ringing(0.05, 0.0), &long).unwrap_err().to_string();
+    assert!(why.contains("shorter pause"), "{why}");
+    let short = ImpactsOptions { refractory: Some(0.001), ..plain };
+    assert_eq!(impacts(&ringing(0.05, 0.0), &short).unwrap().n, 81);
+    let why = impacts(&pulses(&[0.3], 1000, 1000.0, 0.005), &long).unwrap_err().to_string();
+    assert!(!why.contains("pause"), "{why}");
+}
