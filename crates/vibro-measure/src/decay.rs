@@ -44,7 +44,8 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
     let Usable { mut part, block, limit, findings } = usable(trace, rate, options.band)?;
     let mut lengths = 2;
     let found = loop {
-        let found = Sines::of(&trace.values[part.clone()], rate, options);
+        let least = if lengths > 0 { 3 * block } else { usize::MAX };
+        let found = Sines::of(&trace.values[part.clone()], rate, options, least);
         let (group, m) = found.strongest().ok_or_else(|| {
             Error::refused("no mode is above the noise")
                 .hint("the frequencies around the mode")
@@ -56,7 +57,7 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
         let change = wanted.max(part.start + 3 * block) as f64 - part.end as f64;
         if loss > 0.0 && lengths > 0 && change.abs() > 0.1 * part.len() as f64 {
             part.end = (part.end as f64 + change) as usize;
-            lengths -= 1;
+            lengths -= usize::from(!found.is_long());
             continue;
         }
         match found.contact(&trace.values[part.clone()], block) {

@@ -20,6 +20,8 @@ const WORTH: f64 = 10.0;
 const PARTED: f64 = 1.5;
 /// Decay over the part, in natural logarithms: later there is nothing to be learnt.
 pub(super) const ENOUGH: f64 = 6.0;
+/// A part so many times as long as its strongest mode is seen is cut before others are sought: its lines, of which a mode has thousands, say no more.
+const LONG: f64 = 4.0;
 /// Standard uncertainties by which a decay has to be above nothing.
 const SURE: f64 = 3.0;
 /// Fall of what is left from block to block where a contact ends.
@@ -39,8 +41,9 @@ pub struct Sines {
 }
 
 impl Sines {
-    /// Finds the sines of a part, the strongest first.
-    pub fn of(part: &[f64], rate: f64, options: &DecayOptions) -> Sines {
+    /// Finds the sines of a part, the strongest first; no more than that one where the part is much too long for it, and more than `least` samples, or where
+    /// it does not decay.
+    pub fn of(part: &[f64], rate: f64, options: &DecayOptions, least: usize) -> Sines {
         let n = part.len();
         let mean = average(part);
         let spectrum = lines(&part.iter().map(|v| v - mean).collect::<Vec<f64>>());
@@ -61,7 +64,13 @@ impl Sines {
                 {
                     let rest = sines.rest(&spectrum, None);
                     let Some(top) = sines.next(&rest, (*range).clone()) else { break };
+                    if sines.is_steady(rest[top].norm()) {
+                        return sines;
+                    }
                     sines.add(&spectrum, &rest, top);
+                    if sines.is_long() && LONG * (least as f64) < n as f64 {
+                        return sines;
+                    }
                 }
             }
             sines.settle(&spectrum);
@@ -110,6 +119,17 @@ impl Sines {
             sine.amplitude.norm() / if decays(group, *m) { sine.decay.max(1.0) } else { ENOUGH }
         };
         self.asked().max_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    /// Whether the strongest mode is over long before the part is.
+    pub fn is_long(&self) -> bool {
+        self.strongest().is_some_and(|(group, m)| decays(group, m) && group.sines[m].decay > LONG * ENOUGH)
+    }
+
+    /// Whether the strongest sine does not decay, and none of a line this high can be stronger: a sine is as high as its line.
+    fn is_steady(&self, line: f64) -> bool {
+        let steady = self.strongest().filter(|(group, m)| !decays(group, *m));
+        steady.is_some_and(|(group, m)| group.sines[m].amplitude.norm() > 2.0 * ENOUGH * line)
     }
 
     /// What is left of the lines without the sines of all groups but one.
