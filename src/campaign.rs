@@ -29,6 +29,7 @@
 
 mod entry;
 mod locate;
+mod range;
 mod reading;
 mod tables;
 mod value;
@@ -36,6 +37,7 @@ mod value;
 pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 
 pub(crate) use entry::Entry;
+pub(crate) use range::in_range;
 pub(crate) use reading::{Channel, Reading, above_zero};
 pub(crate) use value::{LowPass, channel, channels, one_or_more, two, without_unit, word};
 

@@ -15,6 +15,7 @@ mod shell;
 mod sweep;
 
 use crate::analysis::{decay, frf, spectrum};
+use crate::campaign::{LowPass, in_range};
 use crate::error::{Error, Result};
 use crate::report::Medium;
 use crate::report::words::Voice;
@@ -238,11 +239,36 @@ pub fn main() -> u8 {
     let replace = last.and_then(|typed| typed.try_get_one("replace").ok()?).copied().unwrap_or(false);
     // Nothing has set it before.
     let _ = print::WRITTEN.set(print::Written { medium, replace });
+    if let Err(error) = numbers(last.unwrap_or(&typed)) {
+        return complain::error(&error, Voice::Command, json);
+    }
     let row = |(name, typed)| Some((rows().find(|row| row.name() == name)?, typed));
     let Some((row, typed)) = typed.subcommand().and_then(row) else {
         return complain::nothing(&short(), json);
     };
     (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
+}
+
+/// Checks all numbers that were typed behind a command.
+fn numbers(typed: &ArgMatches) -> Result<()> {
+    fn all<T: Clone + Send + Sync + 'static>(
+        typed: &ArgMatches,
+        key: &str,
+        of: impl Fn(&T) -> Vec<f64>,
+    ) -> Vec<f64> {
+        typed.try_get_many(key).ok().flatten().into_iter().flatten().flat_map(of).collect()
+    }
+    for key in typed.ids().map(clap::Id::as_str) {
+        let found = [
+            all(typed, key, |v: &f64| vec![*v]),
+            all(typed, key, |(low, high): &(f64, f64)| vec![*low, *high]),
+            all(typed, key, |low_pass: &LowPass| low_pass.corner().into_iter().collect()),
+            all(typed, key, |n: &usize| vec![*n as f64]),
+            all(typed, key, |n: &u32| vec![f64::from(*n)]),
+        ];
+        found.concat().into_iter().try_for_each(|value| in_range(key, value))?;
+    }
+    Ok(())
 }
 
 /// Makes options of the fields of all keys, in their order: each has the name of its field and, where it names no other, a value of the kind

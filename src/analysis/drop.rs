@@ -3,7 +3,7 @@
 use super::job::Record;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Job, Source, impacts};
-use crate::campaign::{Entry, above_zero};
+use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
@@ -104,15 +104,6 @@ impl Keys {
         ];
         if let Some((_, keys, found, expected)) = wrong.into_iter().find(|w| w.0) {
             return Err(keys.iter().fold(Error::usage(found, expected), |error, key| error.setting(key)));
-        }
-        above_zero("height", self.height)?;
-        above_zero("interval", self.interval)?;
-        let stds = [("height_std", self.height_std), ("interval_std", self.interval_std)];
-        let more = [("velocity_std", self.velocity_std), ("gravity_std", self.gravity_std)];
-        for (key, std) in stds.into_iter().chain(more) {
-            if let Some(std) = std.filter(|std| !(std.is_finite() && *std >= 0.0)) {
-                return Err(Error::usage(format!("{key} is {std}"), "0 or more").setting(key));
-            }
         }
         let given = self.after.len() + usize::from(self.after2.is_some());
         if given > 2 {

@@ -9,7 +9,7 @@ pub use function::Function;
 use super::answer::left_out;
 use super::spectrum::{self, Detrend};
 use super::{Analysis, Answer, Job, Source, named_in, no_file, sweep};
-use crate::campaign::{Campaign, Entry, above_zero, channel};
+use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::{Meta, Record, Window};
@@ -104,7 +104,6 @@ impl Keys {
     /// # Errors
     /// With the key that does not.
     pub fn usable(&self) -> Result<()> {
-        above_zero("mass", self.mass)?;
         let taken = self.taken();
         if self.reference.is_some() {
             if self.coherence.is_some() {

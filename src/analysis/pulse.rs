@@ -3,7 +3,7 @@
 pub mod figures;
 
 use super::{Analysis, Answer, Job, Source};
-use crate::campaign::{Entry, LowPass, above_zero};
+use crate::campaign::{Entry, LowPass};
 use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};
 use crate::report::files::Names;
@@ -44,7 +44,6 @@ impl Keys {
     /// # Errors
     /// With the key that does not.
     pub fn usable(&self, file: bool) -> Result<()> {
-        above_zero("mass", self.mass)?;
         let times = [
             ("time_to_peak", self.time_to_peak.is_some()),
             ("duration", self.duration.is_some()),

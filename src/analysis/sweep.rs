@@ -11,7 +11,7 @@ pub use listed::{Files, Listed};
 pub use stored::Stored;
 
 use super::{Analysis, Answer, Job, Progress, entries};
-use crate::campaign::{Campaign, Entry, above_zero, one_or_more};
+use crate::campaign::{Campaign, Entry, one_or_more};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};
 use crate::measure::waterfall::{Waterfall, waterfall};
@@ -74,7 +74,6 @@ impl Keys {
         if self.name.is_empty() {
             return Err(Error::usage("the key `name` is missing", "").hint("add name = …"));
         }
-        above_zero("rate", self.rate)?;
         if !self.traces.is_empty() {
             return self.usable_traces();
         }
@@ -145,7 +144,6 @@ impl Keys {
             let found = format!("mass = {mass}");
             return Err(Error::usage(found, "1 (excited) or 2 (passive)").setting("mass"));
         }
-        above_zero("force_calibration", self.force_calibration)?;
         self.reader().map(drop)
     }
 

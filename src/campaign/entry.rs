@@ -1,6 +1,6 @@
 //! One table of a section of a campaign: `[[impacts]]`.
 
-use super::{Campaign, Channel, Reading, locate};
+use super::{Campaign, Channel, Reading, locate, range};
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -97,6 +97,10 @@ impl Campaign {
             rows.iter().map(|(k, v)| (k.get_ref().to_string(), k.span().start..v.span().end)).collect();
         let beside: Vec<&str> =
             if of_a_file { [&NAMED[..], &Channel::KEYS, &Reading::KEYS].concat() } else { Vec::new() };
+        for (key, value) in &rows {
+            let span = || key.span().start..value.span().end;
+            range::all_in_range(key.get_ref(), value.get_ref()).map_err(|e| self.pointed(e, span()))?;
+        }
         let mut part = |keys: &[&str]| -> DeTable<'_> {
             keys.iter().filter(|key| beside.contains(key)).filter_map(|key| rows.remove_entry(*key)).collect()
         };

@@ -91,10 +91,8 @@ impl Reading {
     /// A reader that knows what is stated.
     ///
     /// # Errors
-    /// On an unknown format or unit, and on rates that are not above 0.
+    /// On an unknown format or unit.
     pub fn reader(&self) -> Result<Reader> {
-        above_zero("rate", self.rate)?;
-        above_zero("base_band", self.base_band)?;
         let unknown = |key: &'static str, name: &str, expected: &str| {
             Error::usage(format!("the {key} {name:?} is not known"), expected).setting(key)
         };

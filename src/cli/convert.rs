@@ -2,7 +2,7 @@
 
 use super::{Run, complain, print};
 use crate::analysis::Answer;
-use crate::campaign::{Channel, Reading, above_zero};
+use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
 use crate::record::{Finding, Record, Trace, shown};
@@ -177,11 +177,6 @@ impl Change {
     /// # Errors
     /// If options contradict each other, a record is no time trace, or it cannot be filtered or integrated.
     fn apply(&self, records: &mut [Record]) -> Result<Vec<Finding>> {
-        above_zero("low_pass", self.low_pass)?;
-        above_zero("high_pass", self.high_pass)?;
-        above_zero("fmin", self.fmin)?;
-        above_zero("excitation", self.excitation)?;
-        above_zero("smoothing", self.smoothing)?;
         if self.integrate > 0 && self.fmin.is_none() {
             let expected = "a cut-off in Hz: below it noise and drift would be all that is seen";
             return Err(Error::usage("an integration in time without a cut-off", expected)

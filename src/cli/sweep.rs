@@ -5,7 +5,7 @@ use super::{Run, init, print};
 use crate::analysis::Kept;
 use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
 use crate::analysis::{self, Answer, in_order, is_pattern, matching};
-use crate::campaign::{Reading, above_zero};
+use crate::campaign::Reading;
 use crate::error::{Error, Result};
 use crate::measure::response::{ResponseOptions, ResponsePoint};
 use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
@@ -122,7 +122,6 @@ impl Source {
             let stem = Path::new(path).file_stem();
             how.name = stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         }
-        above_zero("fmin", self.fmin)?;
         self.stored.apply(how)?;
         Ok(listed)
     }
@@ -210,7 +209,6 @@ fn largest_lines(sweep: &Sweep) -> Result<Answer> {
 impl Run for Waterfall {
     /// Prints the matrix of spectra.
     fn run(&self, json: bool) -> Result<u8> {
-        above_zero("fmax", self.fmax)?;
         let folder = self.taken.sweep.folder();
         let output = print::results(&folder, self.taken.out.as_deref(), WATERFALL)?;
         let listed = self.taken.sweep.listed(&folder)?;

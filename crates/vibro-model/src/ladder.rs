@@ -153,6 +153,7 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
         ));
     }
     scales::check_swings(&scene.rig, frequency, MOST_SWINGS)?;
+    scales::check_slow(&scene.rig, frequency, reading::MOST_CYCLES)?;
     let stage = Stage { scene, excitation: &excitation, question };
     let mut choice = Climb::new(stage)?.choose(bend);
     if bend && question.gap_std > 0.0 {

@@ -1,7 +1,7 @@
 //! Response curves: all motions with one impact a period over a range of frequencies, and where they change.
 
 use super::orbit::{backbone, orbits_of};
-use super::{Excitation, Loss, NoImpact, Orbit, Rig, parallel};
+use super::{Excitation, Loss, NoImpact, Orbit, Rig, parallel, scales};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -86,7 +86,8 @@ pub fn response(
     cycles: u32,
 ) -> Result<Response> {
     let at = axis(from, to, points, MOST_POINTS)?;
-    rig.check()?;
+    scales::check_values(rig, [excitation.size()])?;
+    scales::check_points(rig, from, cycles, points)?;
     let points = parallel::each(points, |i| point(rig, excitation, at(i), cycles));
     if let Some(ResponsePoint { frequency, .. }) =
         points.first().filter(|_| points.iter().all(|p| p.refused.is_some()))

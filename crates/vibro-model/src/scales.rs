@@ -13,6 +13,13 @@ use vibro_record::{Error, Result};
 const LARGEST: f64 = 1e50;
 /// Swings, or decays by e, of a mass in a cycle of the excitation.
 const MOST_SWINGS: f64 = 1e7;
+/// Impacts and other events of a motion in a cycle, or in a swing where that is shorter: a chatter with R = 0.996 takes 36/(1 − R) from its
+/// height to the rounding of that. A million take a second.
+pub(super) const MOST_EVENTS: f64 = 1e4;
+/// Swings in which a motion can settle, if hardly: a damping ratio of 1 % leaves e⁻¹ of it.
+const SWINGS: f64 = 16.0;
+/// Swings of a mass that the closed forms of a curve are searched over: some ten seconds.
+const MOST_SEARCHED: f64 = 4e6;
 
 /// What a number may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,19 +54,60 @@ pub(super) fn number(name: &str, value: f64, unit: &str, least: Least) -> Result
 /// If a value is impossible, or outside 1e-50 to 1e50 in SI units and not 0; if a mass swings, or its damper slows it, more than ten million
 /// times in a cycle.
 pub(super) fn check(rig: &Rig, excitation: &Excitation) -> Result<()> {
-    rig.check()?;
     excitation.check()?;
+    check_values(rig, [excitation.size(), excitation.frequency()])?;
+    check_swings(rig, excitation.frequency(), MOST_SWINGS)
+}
+
+/// Checks that the values of a rig, and others beside it, are possible, and within 1e-50 to 1e50 in SI units or 0.
+///
+/// # Errors
+/// If one is not.
+pub(super) fn check_values<const N: usize>(rig: &Rig, beside: [f64; N]) -> Result<()> {
+    rig.check()?;
     let own = Parameter::of_rig().filter(|p| *p != Parameter::Restitution).filter_map(|p| p.counting(rig));
     let in_range = |value: f64| value == 0.0 || (LARGEST.recip()..=LARGEST).contains(&value.abs());
-    if let Some(value) =
-        own.chain([excitation.size(), excitation.frequency()]).find(|value| !in_range(*value))
-    {
+    if let Some(value) = own.chain(beside).find(|value| !in_range(*value)) {
         return Err(Error::refused(format!(
             "a value of {value:e}: products of such values leave the range of numbers"
         ))
         .hint("give 0, or a size between 1e-50 and 1e50 in SI units"));
     }
-    check_swings(rig, excitation.frequency(), MOST_SWINGS)
+    Ok(())
+}
+
+/// Checks that a motion can settle within `most` cycles of `frequency` (Hz): the faster mass swings in them at least [`SWINGS`] times.
+///
+/// # Errors
+/// If it does not.
+pub(super) fn check_slow(rig: &Rig, frequency: f64, most: f64) -> Result<()> {
+    let natural = rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
+    let highest = natural * most / SWINGS;
+    if frequency <= highest {
+        return Ok(());
+    }
+    let (f, natural) = (significant(frequency, 3), significant(natural, 3));
+    let found = format!(
+        "{f} Hz is too far above the natural frequency of {natural} Hz: {most} cycles hold no {SWINGS} swings"
+    );
+    Err(Error::refused(found).hint(format!("give a frequency up to {} Hz", significant(highest, 2))))
+}
+
+/// Checks that closed forms of so many points can be waited for: each is searched for contacts at every swing of a mass, a million a second.
+///
+/// # Errors
+/// If they cannot.
+pub(super) fn check_points(rig: &Rig, frequency: f64, cycles: u32, points: usize) -> Result<()> {
+    let natural = rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max);
+    let swings = points as f64 * f64::from(cycles) * natural / frequency;
+    if swings <= MOST_SEARCHED {
+        return Ok(());
+    }
+    let (all, at, natural) = (significant(swings, 2), significant(frequency, 3), significant(natural, 3));
+    let found = format!(
+        "{all} swings of a mass of {natural} Hz over cycles of {at} Hz: more than {MOST_SEARCHED:.0e} are not searched"
+    );
+    Err(Error::refused(found).hint("ask for fewer points; a fixed mass 2 is m2=inf").setting("points"))
 }
 
 /// Checks that no mass swings, or is slowed by its damper, more than `most` times in a cycle of `frequency` (Hz).

@@ -9,7 +9,7 @@
 mod meet;
 
 use super::drive::Drive;
-use super::scales::{self, check_time, check_work};
+use super::scales::{self, MOST_EVENTS, check_time, check_work};
 use super::stick::Pair;
 use super::{Event, Excitation, Flight, Motion, Path, Piece, Rig, State};
 use serde::Serialize;
@@ -22,7 +22,9 @@ use vibro_record::{Error, Result};
 pub const GRAZING_SPEED: f64 = 1e-3;
 
 /// The most legs that one call follows: some ten seconds of work.
-const MOST_LEGS: u64 = 20_000_000;
+const MOST_LEGS: f64 = 2e7;
+/// Cycles whose events a shorter call may use up: a chatter at its beginning is no reason to end.
+const AT_LEAST: f64 = 10.0;
 
 /// One impact.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -309,10 +311,13 @@ impl Simulation {
     /// Follows the motion to the time `until`, showing each leg, the last with [`Event::Reached`].
     ///
     /// # Errors
-    /// As [`Simulation::fly`]; if more than 1e8 cycles are asked for, or more than 20 million legs are needed.
+    /// As [`Simulation::fly`]; if more than 1e8 cycles are asked for, or more than 10 000 legs a cycle or 20 million legs are needed.
     pub fn run(&mut self, until: f64, mut visit: impl FnMut(&Leg)) -> Result<()> {
-        check_work((until - self.time) * self.frequency())?;
-        for _ in 0..MOST_LEGS {
+        let cycles = (until - self.time) * self.frequency();
+        check_work(cycles)?;
+        let swings = self.rig.natural_frequencies().into_iter().fold(1.0, f64::max) / self.frequency();
+        let most = (MOST_EVENTS * cycles.max(AT_LEAST) * swings.max(1.0)).min(MOST_LEGS);
+        for _ in 0..most as u64 {
             let leg = self.fly(until)?;
             visit(&leg);
             if leg.event == Event::Reached {
@@ -320,7 +325,7 @@ impl Simulation {
             }
         }
         Err(Error::refused(format!(
-            "more than {MOST_LEGS} impacts and other events before {} s of {} s",
+            "more than {most:.0} impacts and other events before {} s of {} s",
             significant(self.time, 6),
             significant(until, 6)
         ))

@@ -3,7 +3,6 @@
 use super::contact::{self, Contact};
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::Answer;
-use crate::campaign::above_zero;
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, Sitting};
 use crate::model::{Motion, Regime, Rig, Simulation, State};
@@ -72,7 +71,6 @@ impl Keys {
     pub fn answer(&self) -> Result<Answer> {
         let Driven { scene, excitation, finding } = self.scene.driven(self.frequency)?;
         let start = self.start(&scene.rig)?;
-        above_zero("grazing", Some(self.grazing))?;
         let make = contact::motions(&scene, self.model, self.grazing)?;
         let seen = self.seen(&mut *make(&excitation, start, self.phase)?)?;
         let Seen { portrait, end: (time, phase, state), grazing, flights } = &seen;

@@ -48,7 +48,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let n = trace.values.len();
     let line = |f: f64| (f * n as f64 / rate) as usize;
     let (low, high) = band.map_or((LOWEST, lines.len()), |(low, high)| {
-        (line(low).max(LOWEST), (line(high) + 1).min(lines.len()))
+        (line(low).max(LOWEST), line(high).saturating_add(1).min(lines.len()))
     });
     // Drift is high where all lines are, however steep: a mode stands out of the lines from half to twice its frequency.
     let over = |k: &usize| {

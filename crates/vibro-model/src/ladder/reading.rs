@@ -15,6 +15,8 @@ const MULTIPLE: f64 = 50.0;
 const DECAY: f64 = 0.3;
 /// Blocks at most, and at least where a cycle holds many swings of a mass.
 const BLOCKS: (usize, usize) = (6, 64);
+/// Cycles that a motion is followed for at most.
+pub const MOST_CYCLES: f64 = BLOCK as f64 * MULTIPLE * BLOCKS.1 as f64;
 /// Blocks at most of motions whose contacts are integrated: no more than can be had in a second or so.
 pub const BRIEF: usize = 12;
 /// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.

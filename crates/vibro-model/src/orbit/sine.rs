@@ -2,7 +2,7 @@
 
 use super::conditions::{Conditions, Root};
 use super::{Course, Orbit, driven};
-use crate::scales::{Least, number};
+use crate::scales::{Least, check_values, number};
 use crate::waves::Waves;
 use crate::{Excitation, Flight, Rig, Sine, Steady};
 use num_complex::Complex64;
@@ -136,8 +136,8 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<Shown> {
 /// # Errors
 /// If a parameter is impossible, or the frequency is a whole part of a natural frequency.
 pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
-    rig.check()?;
     number("frequency", frequency, "Hz", Least::AboveZero)?;
+    check_values(rig, [frequency])?;
     let lossless = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..*rig };
     let conditions = Conditions::new(&lossless, frequency, 1, 0.0)?;
     let impulse = -rig.gap / conditions.c;

@@ -9,8 +9,8 @@ use vibro_record::Result;
 
 /// Approach speed in m/s below which the end of a chatter is looked for; above it, impacts do not yet accumulate closely enough.
 const SLOW: f64 = 1e-3;
-/// The same over the speeds of the masses: slower approaches come after times too short beside a cycle for the digits of a number.
-const SLOW_PART: f64 = 1e-9;
+/// The same over the speeds of the masses: a bounce at 6e-8 of them, √(16ε), rises no higher than the rounding of the gap, which is rest.
+const SLOW_PART: f64 = 1e-7;
 
 impl Simulation {
     /// Exchanges momentum in the present state, which is at contact.
@@ -28,11 +28,12 @@ impl Simulation {
         Ok(Impact { time: self.time, phase: self.drive.forcing.phase, approach_velocity: approach, impulse })
     }
 
-    /// Scale of the speeds in m/s: of velocities and of displacements times ω.
+    /// Scale of the speeds in m/s: of velocities, and of displacements times ω, those under the force too.
     #[inline]
     fn speed(&self) -> f64 {
         let State { x1, v1, x2, v2 } = self.state;
-        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency * (x1.abs() + x2.abs())
+        let way = x1.abs() + x2.abs() + self.drive.alone().amplitude;
+        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency * way
     }
 
     /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.

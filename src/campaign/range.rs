@@ -1,0 +1,111 @@
+//! Ranges of the numbers that options of the command line and keys of a campaign take: the one table that both are checked with.
+//! Values of the rig and its excitation have theirs in [`crate::model::Parameter`].
+
+use crate::error::{Error, Result};
+use toml::de::DeValue;
+
+/// Largest value of any quantity, and the reciprocal of its least above 0: estimators multiply at most six values of a person, and
+/// such products stay within 10^±308.
+const LARGEST: f64 = 1e50;
+/// Largest frequency in Hz, and the reciprocal of its least: readers know no instrument beyond.
+const FASTEST: f64 = 1e12;
+/// Longest time in s, and the reciprocal of its least: thirty years, and shorter than any contact.
+const LONGEST: f64 = 1e9;
+
+/// What a number may be beside its size.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    /// Above 0.
+    Above,
+    /// 0 or more.
+    Zero,
+    /// Any.
+    Any,
+}
+use Sign::{Above, Any, Zero};
+
+/// Keys of one kind: sign, largest value, least size that is not 0, unit.
+type Row = (Sign, f64, f64, &'static str, &'static [&'static str]);
+
+const ROWS: &[Row] = &[
+    (Above, FASTEST, 1.0 / FASTEST, "Hz", &["rate", "base_band", "shape_rate", "excitation", "instrument"]),
+    (Above, FASTEST, 1.0 / FASTEST, "Hz", &["low_pass", "high_pass", "fmin", "fmax"]),
+    (Zero, FASTEST, 1.0 / FASTEST, "Hz", &["band"]),
+    (Above, LARGEST, 1.0 / LARGEST, "Hz/s", &["sweep_rate"]),
+    (Above, LONGEST, 1.0 / LONGEST, "s", &["smoothing", "interval", "intervals", "force_window", "contact"]),
+    (Above, LONGEST, 1.0 / LONGEST, "s", &["fit_duration", "time_to_peak", "duration"]),
+    (
+        Zero,
+        LONGEST,
+        1.0 / LONGEST,
+        "s",
+        &["refractory", "interval_std", "contact_time", "longest_dropout", "std"],
+    ),
+    (Any, LONGEST, 1.0 / LONGEST, "s", &["delay"]),
+    (Above, LARGEST, 1.0 / LARGEST, "kg", &["mass", "struck_mass", "masses"]),
+    (Above, LARGEST, 1.0 / LARGEST, "", &["height", "gravity", "grazing", "decibel"]),
+    (Above, LARGEST, 1.0 / LARGEST, "", &["force_calibration"]),
+    (
+        Zero,
+        LARGEST,
+        1.0 / LARGEST,
+        "",
+        &["height_std", "gravity_std", "velocity_std", "gap_std", "noise_floor"],
+    ),
+    (
+        Any,
+        LARGEST,
+        1.0 / LARGEST,
+        "",
+        &["calibration", "sensitivity", "handle_sensitivity", "level", "before"],
+    ),
+    (Any, LARGEST, 1.0 / LARGEST, "", &["after", "after2", "initial", "phase"]),
+    (Any, 360.0, 1.0 / LARGEST, "°", &["beam_angle"]),
+    (Any, 1000.0, 1.0 / LARGEST, "dB", &["margin"]),
+    (Zero, 24.0, 1.0 / LARGEST, "h", &["exposure"]),
+    (Above, 1e3, 1e-9, "", &["threshold", "tolerance", "step"]),
+    (Zero, 1.0, 1e-9, "", &["overlap", "least_coherence", "left_at_end", "scatter"]),
+    (Zero, 1e3, 1.0, "", &["modes", "tones", "order", "peak_lines", "starts", "analyser_integrated"]),
+    (Zero, 1e9, 1.0, "", &["segment", "points", "pulses_per_turn", "impacts", "cycles", "settle", "measure"]),
+    (Zero, 1e9, 1.0, "", &["steps", "lines"]),
+    (Any, 1e3, 1.0, "", &["integrate"]),
+];
+
+/// Checks the value of an option or a key; what has no row is checked where its table is.
+///
+/// # Errors
+/// With the key and its range, if the value lies outside.
+pub fn in_range(key: &str, value: f64) -> Result<()> {
+    let row = ROWS.iter().find_map(|row| Some((row, row.4.iter().find(|known| **known == key)?)));
+    let Some(((sign, most, least, unit, _), key)) = row else { return Ok(()) };
+    let signed = match sign {
+        Above => value > 0.0,
+        Zero => value >= 0.0,
+        Any => !value.is_nan(),
+    };
+    let sized = value == 0.0 || (*least..=*most).contains(&value.abs());
+    let expected = match sign {
+        _ if signed && value.is_finite() => format!("{least:e} to {most:e} {unit}"),
+        Above => "a finite number above 0".to_owned(),
+        Zero => "a finite number of 0 or more".to_owned(),
+        Any => "a finite number".to_owned(),
+    };
+    if signed && sized {
+        Ok(())
+    } else {
+        Err(Error::usage(format!("{key} is {value:?}"), expected.trim_end()).setting(key))
+    }
+}
+
+/// Checks every number of a key's value in a campaign.
+///
+/// # Errors
+/// As [`in_range`].
+pub(super) fn all_in_range(key: &str, value: &DeValue<'_>) -> Result<()> {
+    match value {
+        DeValue::Float(number) => number.as_str().parse().map_or(Ok(()), |number| in_range(key, number)),
+        DeValue::Integer(number) => number.as_str().parse().map_or(Ok(()), |number| in_range(key, number)),
+        DeValue::Array(all) => all.iter().try_for_each(|one| all_in_range(key, one.get_ref())),
+        _ => Ok(()),
+    }
+}
