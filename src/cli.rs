@@ -17,6 +17,7 @@ mod sweep;
 use crate::analysis::{decay, frf, spectrum};
 use crate::campaign::{LowPass, in_range};
 use crate::error::{Error, Result};
+use crate::read::Limit;
 use crate::report::Medium;
 use crate::report::words::Voice;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
@@ -173,6 +174,10 @@ impl Row {
 const STYLES: &str =
     "Figures for a report, paper (86 mm wide, grey) or slide (1.6 times larger) [default: report]";
 
+/// What bounds the memory that a file may take.
+const MEMORY: &str =
+    "Memory that a file and its analysis may take, such as 2GB [default: a quarter of the machine's]";
+
 /// What the program is for.
 const ABOUT: &str = "Measure impacting machines: from analyser files to answers, each with its uncertainty";
 
@@ -194,12 +199,15 @@ fn long() -> String {
     };
     let groups: String = GROUPS.iter().map(group).collect();
     format!(
-        "{ABOUT}\n\nUsage: vibro COMMAND\n\n{groups}Options:\n  --json       Print one JSON object instead of a table\n  --version    Print the version\n\nOptions and an example of a command: vibro COMMAND --help\n"
+        "{ABOUT}\n\nUsage: vibro COMMAND\n\n{groups}Options:\n  --json              Print one JSON object instead of a table\n  --max-memory SIZE   {MEMORY}\n  --version           Print the version\n\nOptions and an example of a command: vibro COMMAND --help\n"
     )
 }
 
 fn command() -> Typed {
     let json = Arg::new("json").action(ArgAction::SetTrue).global(true);
+    let size = |text: &str| Limit::parse(text).ok_or("a size such as 2GB or 500MB");
+    let memory = Arg::new("max_memory").long("max-memory").value_name("SIZE").global(true);
+    let memory = memory.value_parser(size).help(MEMORY);
     let commands = rows().map(|row| {
         let example = format!("Example:\n  vibro {}", row.example);
         (row.options)(Typed::new(row.name())).about(row.about).after_help(example)
@@ -209,7 +217,8 @@ fn command() -> Typed {
         .about(ABOUT)
         .max_term_width(100)
         .override_help(long())
-        .arg(json.help("Print one JSON object instead of a table"));
+        .arg(json.help("Print one JSON object instead of a table"))
+        .arg(memory);
     options(all.subcommands(commands))
 }
 
@@ -225,6 +234,9 @@ pub fn main() -> u8 {
         }
     };
     let json = typed.get_flag("json");
+    if let Some(limit) = typed.get_one::<Limit>("max_memory") {
+        limit.state();
+    }
     if respelt::pipes() {
         let twice = Error::usage("- stands twice", "standard input once: it is one record");
         return complain::error(&twice, Voice::Command, json);
@@ -325,4 +337,37 @@ fn kind(arg: &Arg) -> &'static str {
     ];
     let is = arg.get_value_parser().type_id();
     kinds.into_iter().find(|(id, _)| is == *id).map_or("NAME", |(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Parameter;
+
+    #[test]
+    fn every_option_that_takes_a_number_has_its_range() {
+        // Ends of a range of a model are checked as what is varied.
+        let of_model = |key: &str| Parameter::named(key).is_some() || ["from", "to"].contains(&key);
+        let mut left = vec![command()];
+        let mut seen = 0;
+        while let Some(mut at) = left.pop() {
+            left.extend(at.get_subcommands_mut().map(|part| part.clone()));
+            let numbers = [
+                TypeId::of::<f64>(),
+                TypeId::of::<(f64, f64)>(),
+                TypeId::of::<LowPass>(),
+                TypeId::of::<usize>(),
+                TypeId::of::<u32>(),
+            ];
+            for arg in at
+                .get_arguments()
+                .filter(|arg| numbers.iter().any(|of| arg.get_value_parser().type_id() == *of))
+            {
+                let key = arg.get_id().as_str();
+                assert!(of_model(key) || in_range(key, f64::NAN).is_err(), "{key} of {}", at.get_name());
+                seen += 1;
+            }
+        }
+        assert!(seen > 80, "{seen}");
+    }
 }

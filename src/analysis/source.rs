@@ -43,6 +43,17 @@ impl Source<'_> {
         self.reader()?.rate_of_base_band().from_path(self.path)
     }
 
+    /// As [`Source::recording`], with values at least of the channel that is meant and of those `also` named, of which what is made takes
+    /// `beside` times their memory.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or would take more memory than is allowed.
+    pub fn channels(&self, also: Option<&String>, beside: f64) -> Result<Recording> {
+        let only = self.channel.channel.iter().chain(also).cloned();
+        let only = only.take(if self.channel.channel.is_some() { 2 } else { 0 });
+        self.reader()?.rate_of_base_band().beside(beside).only(only).from_path(self.path)
+    }
+
     /// The trace that is meant of a recording.
     ///
     /// # Errors

@@ -109,3 +109,22 @@ pub(super) fn all_in_range(key: &str, value: &DeValue<'_>) -> Result<()> {
         _ => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_stands_once_and_lets_in_no_value_that_is_no_number() {
+        let keys: Vec<&str> = ROWS.iter().flat_map(|row| row.4).copied().collect();
+        for (i, key) in keys.iter().enumerate() {
+            assert!(!keys[..i].contains(key), "{key} stands twice");
+            for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, 1e-300, -1e300] {
+                let said = in_range(key, value).unwrap_err().to_string();
+                assert!(said.starts_with(&format!("{key} is ")) && said.contains("expected "), "{said}");
+            }
+        }
+        assert!(in_range("band", 0.0).is_ok() && in_range("delay", -1e-3).is_ok());
+        assert!(in_range("mass", 0.0).is_err() && in_range("overlap", 1.5).is_err());
+    }
+}

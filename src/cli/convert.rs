@@ -36,6 +36,10 @@ pub struct Convert {
     reading: Reading,
 }
 
+/// Memory that a file takes while it is written, in that of the values.
+const BESIDE: [(Target, f64); 5] =
+    [(Target::Uff, 4.5), (Target::Csv, 4.5), (Target::Tsv, 4.5), (Target::Npy, 2.5), (Target::Wav, 1.5)];
+
 impl Run for Convert {
     /// Writes the file and prints what is in it.
     fn run(&self, json: bool) -> Result<u8> {
@@ -58,9 +62,11 @@ impl Run for Convert {
         let one = self.channel.channel.is_some() || self.channel.calibration.is_some();
         let reader = self.reading.reader()?.within(&folder);
         let reader = if one || self.change.wanted() { reader.rate_of_base_band() } else { reader };
+        let beside = BESIDE.iter().find(|row| row.0 == target).map_or(1.0, |row| row.1);
+        let reader = reader.beside(beside).only(self.channel.channel.clone());
         let mut recording = reader.from_path(&self.input)?;
         if one {
-            let trace = recording.trace(self.channel.channel.as_deref(), self.channel.calibration)?;
+            let trace = recording.take_trace(self.channel.channel.as_deref(), self.channel.calibration)?;
             recording.records = vec![Record::Trace(trace)];
         }
         let changes = self.change.apply(&mut recording.records)?;

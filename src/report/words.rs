@@ -62,7 +62,7 @@ impl Voice {
 }
 
 /// Settings that a campaign has no key for: they are typed behind its name.
-const OPTIONS: [&str; 2] = ["allow_outside", "replace"];
+const OPTIONS: [&str; 3] = ["allow_outside", "max_memory", "replace"];
 
 /// The sentence of a finding. A code without a sentence shows itself.
 pub fn sentence(finding: &Finding, voice: Voice) -> String {

@@ -14,6 +14,7 @@ mod model;
 mod modes;
 mod periodic;
 mod precision;
+mod ranges;
 mod rig;
 mod safe;
 mod simulate;

@@ -99,11 +99,15 @@ fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
 }
 
 /// Indices of the channels named; of all where none is.
-fn named<'a>(path: &Path, named: &[&str], all: impl Iterator<Item = &'a Meta> + Clone) -> Result<Vec<usize>> {
+pub(crate) fn named<'a>(
+    path: &Path,
+    named: &[impl AsRef<str>],
+    all: impl Iterator<Item = &'a Meta> + Clone,
+) -> Result<Vec<usize>> {
     if named.is_empty() {
         return Ok((0..all.count()).collect());
     }
-    named.iter().map(|name| find_channel(path, name, all.clone().map(Meta::called))).collect()
+    named.iter().map(|name| find_channel(path, name.as_ref(), all.clone().map(Meta::called))).collect()
 }
 
 impl Recording {
@@ -124,27 +128,43 @@ impl Recording {
     /// If there is no such trace, or several and none was named; if a calibration is not a number other than 0, or is given
     /// for fractions of full scale without a unit.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
-        let trace = |i: usize| if let Record::Trace(trace) = &self.records[i] { Some(trace) } else { None };
-        let traces: Vec<&Trace> = (0..self.records.len()).filter_map(trace).collect();
+        let chosen = self.chosen(channel)?;
+        let found = if let Record::Trace(trace) = &self.records[chosen] {
+            Ok(trace.clone())
+        } else {
+            Err(self.no_trace())
+        };
+        calibrated(found?, calibration)
+    }
+
+    /// As [`Recording::trace`], with the values taken out of the recording instead of held twice.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn take_trace(&mut self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
+        let (chosen, nothing) = (self.chosen(channel)?, self.no_trace());
+        let Record::Trace(trace) = &mut self.records[chosen] else { return Err(nothing) };
+        let values = std::mem::take(&mut trace.values);
+        calibrated(Trace { values, ..trace.clone() }, calibration)
+    }
+
+    /// Index among the records of the trace that is meant.
+    fn chosen<'a>(&'a self, channel: Option<&str>) -> Result<usize> {
+        let all = self.records.iter().enumerate();
+        let trace = |(i, record): (usize, &'a Record)| {
+            if let Record::Trace(trace) = record { Some((i, trace)) } else { None }
+        };
+        let traces: Vec<(usize, &Trace)> = all.filter_map(trace).collect();
         let chosen = match (channel, traces.len()) {
             (_, 0) => return Err(self.no_trace()),
             (None, 1) => Ok(0),
             (None, _) => {
-                let names = traces.iter().map(|t| t.meta.name.as_str()).enumerate();
+                let names = traces.iter().map(|(_, t)| t.meta.name.as_str()).enumerate();
                 return Err(none_chosen(&self.path, &names.collect::<Vec<_>>()));
             }
-            (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|t| t.meta.called())),
+            (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|(_, t)| t.meta.called())),
         };
-        let mut trace = traces[chosen.map_err(|e| e.setting("channel"))?].clone();
-        if let Some(factor) = calibration {
-            if trace.meta.has(Trace::UNCALIBRATED) {
-                let found = format!("a calibration of {factor} without a unit");
-                return Err(Error::usage(found, "the unit, too").setting("unit"));
-            }
-            let unit = trace.meta.unit.clone();
-            trace.calibrate(factor, &unit)?;
-        }
-        Ok(trace)
+        Ok(traces[chosen.map_err(|e| e.setting("channel"))?].0)
     }
 
     fn no_trace(&self) -> Error {
@@ -152,4 +172,17 @@ impl Recording {
             .hint("`vibro info` lists what is in the file; samples over time need a sampling rate")
             .setting("rate")
     }
+}
+
+/// A trace times a calibration.
+fn calibrated(mut trace: Trace, calibration: Option<f64>) -> Result<Trace> {
+    if let Some(factor) = calibration {
+        if trace.meta.has(Trace::UNCALIBRATED) {
+            let found = format!("a calibration of {factor} without a unit");
+            return Err(Error::usage(found, "the unit, too").setting("unit"));
+        }
+        let unit = trace.meta.unit.clone();
+        trace.calibrate(factor, &unit)?;
+    }
+    Ok(trace)
 }

@@ -60,7 +60,7 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
 
 /// All records, or, for a `survey`, the ends of their values where these are enough.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
-    let mut file = File::open(source)?;
+    let mut file = File::open(source, options)?;
     let root = file.root()?;
     let members = file.members(&root, "")?;
     let (dialect, variables) = if matlab::is(&members) {
@@ -71,6 +71,9 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
         walk.group("", members, scale)?;
         (&DIALECT, walk.variables)
     };
+    if let Some(error) = file.refused.take() {
+        return Err(error);
+    }
     variables::contents(source, dialect, variables, file.close(), options)
 }
 

@@ -48,6 +48,7 @@ mod format;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod held;
+mod limit;
 mod lvm;
 mod mat;
 mod missing;
@@ -68,6 +69,7 @@ pub mod write;
 
 pub use folder::{Digest, Folder, Lock, Manifest, Owner, Staged, Standing, Walk, listed};
 pub use format::Format;
+pub use limit::Limit;
 pub use reader::{Header, Reader, Recording};
 pub use steps::Steps;
 pub use sweep::SweepReader;

@@ -34,7 +34,7 @@ pub static DIALECT: Dialect = Dialect {
 };
 
 /// What gives the variables of a file.
-type Parse = fn(&[u8]) -> Result<Vec<(String, Content)>>;
+type Parse = fn(&[u8], &Options) -> Result<Vec<(String, Content)>>;
 
 /// What reads a MAT-file, or which one it is that is not read here; `None` for other files. Level 4 has no signature: it is found only in a `named` file.
 fn level(head: &[u8], named: bool) -> Option<std::result::Result<Parse, &'static str>> {
@@ -44,7 +44,7 @@ fn level(head: &[u8], named: bool) -> Option<std::result::Result<Parse, &'static
         Some(b"\0\x02IM" | b"\x02\0MI") => Some(Err(LEVEL_7)),
         _ if !named => None,
         _ if head.starts_with(HDF5) || head.get(512..520) == Some(HDF5) => Some(Err(LEVEL_7)),
-        _ => level4::header(head).map(|_| Ok(level4::all as Parse)),
+        _ => level4::header(head).map(|_| Ok((|bytes, _| level4::all(bytes)) as Parse)),
     }
 }
 
@@ -61,7 +61,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
         Error::usage(found, "a MAT-file of level 4 or 5")
             .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
     })?;
-    variables::contents(source, &DIALECT, parse(&source.all()?)?, Vec::new(), options)
+    variables::contents(source, &DIALECT, parse(&source.all()?, options)?, Vec::new(), options)
 }
 
 #[cfg(test)]

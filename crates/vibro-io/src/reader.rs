@@ -3,7 +3,7 @@
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
-use super::{Folder, Source, SweepList, foreign};
+use super::{Folder, Limit, Source, SweepList, foreign};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -32,6 +32,12 @@ pub(crate) struct Options {
     pub complex: bool,
     /// Whether rows continue each other as one series; `None` to find out.
     pub wrapped: Option<bool>,
+    /// Memory that may be filled.
+    pub limit: Limit,
+    /// What is held beside the values by what is made of them, in their size.
+    pub beside: f64,
+    /// Channels whose values are asked for; all where none is named.
+    pub only: Vec<String>,
 }
 
 /// Everything a file holds.
@@ -141,6 +147,24 @@ impl Reader {
         self
     }
 
+    /// Bounds the memory that values may fill. Default: see [`Limit`].
+    pub fn max_memory(mut self, limit: Limit) -> Reader {
+        self.options.limit = limit;
+        self
+    }
+
+    /// What is held beside the values by what is made of them, in their size: it counts for the memory that may be filled. Default: 0.
+    pub fn beside(mut self, times: f64) -> Reader {
+        self.options.beside = times;
+        self
+    }
+
+    /// Asks for the values of these channels, by name or number from 1: others may come without. Default: all.
+    pub fn only(mut self, channels: impl IntoIterator<Item = String>) -> Reader {
+        self.options.only = channels.into_iter().collect();
+        self
+    }
+
     /// Reads a file.
     ///
     /// # Errors
@@ -208,7 +232,10 @@ impl Reader {
 
     fn contents(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
         let entry = self.entry(source)?;
-        let contents = (entry.read)(source, &self.options, survey);
+        // These hold their bytes beside the values, which take no less.
+        let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
+        let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
+        let contents = room.and_then(|()| (entry.read)(source, &self.options, survey));
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
     }
 

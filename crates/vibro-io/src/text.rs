@@ -26,7 +26,7 @@ mod wrapped;
 
 use crate::held::Contents;
 use crate::reader::Options;
-use crate::{Format, Source, missing};
+use crate::{Format, Limit, Source, missing};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
@@ -62,9 +62,13 @@ impl<'a> Text<'a> {
 }
 
 /// Hands a source to `read`, UTF-16, other scripts and lone CRs turned into UTF-8 with LF.
-fn with_text<T>(source: &Source, read: impl FnOnce(&Text) -> Result<T>) -> Result<T> {
+fn with_text<T>(source: &Source, limit: Limit, read: impl FnOnce(&Text) -> Result<T>) -> Result<T> {
     let head = source.head();
     let cut = source.len() > head.len() as u64;
+    if encoding::is_utf16(head) || encoding::foreign(head).is_some() || encoding::lone_cr(head, cut) {
+        // The bytes, and twice their text.
+        limit.hold(3.0 * source.len() as f64)?;
+    }
     let converted = if encoding::is_utf16(head) {
         Some(encoding::decode(&source.all()?).into_owned().into_bytes())
     } else if let Some(encoding) = encoding::foreign(head) {
@@ -84,7 +88,7 @@ pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
     // Names need a letter that numbers do not hold; most files of numbers have none.
     let letter = |b: &u8| !b.is_ascii() || b.is_ascii_alphabetic() && !b"eEdDqQijIJ".contains(b);
     let words = head[..head.len().min(encoding::LOOK)].iter().any(letter);
-    let found = || with_text(source, |text| Ok(table::detect(text, &Options::default())));
+    let found = || with_text(source, Limit::default(), |text| Ok(table::detect(text, &Options::default())));
     words && encoding::is_text(head) && found().is_ok_and(|found| found.is_some())
 }
 
@@ -97,14 +101,14 @@ pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<
         .hint("read numbers without names as the format ascii")
         .setting("format")
     };
-    with_text(source, |text| match table::detect(text, options) {
+    with_text(source, options.limit, |text| match table::detect(text, options) {
         Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
         None => without_words(text, options, without_names()),
     })
 }
 
 pub(crate) fn read_numbers(source: &Source, options: &Options, _: bool) -> Result<Contents> {
-    with_text(source, |text| match numbers::detect(text, options) {
+    with_text(source, options.limit, |text| match numbers::detect(text, options) {
         Ok(dialect) => read(text, &dialect, options),
         Err(why) => without_words(text, options, why),
     })
@@ -119,7 +123,13 @@ fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents>
     Ok(contents)
 }
 
+/// What an abscissa takes while it is looked whether it is even, beside all columns and in their size.
+const ABSCISSA: f64 = 0.75;
+
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Contents> {
+    // As many rows as the first bytes let expect.
+    let lines = text.head.lines().count() as f64 / text.head.len().max(1) as f64;
+    options.hold(text.source.len() as f64 * lines * dialect.columns as f64 * (1.0 + ABSCISSA))?;
     let tail = tail::of(text.source)?;
     let plain = dialect.columns > 1 && dialect.names.is_none() && !dialect.complex;
     let stated = Stated::of(dialect.header.iter().map(String::as_str));

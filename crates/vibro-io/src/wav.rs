@@ -20,6 +20,7 @@ use super::missing::Missing;
 use super::reader::Options;
 use super::source::ReadSeek;
 use crate::binary::Kind;
+use crate::choose::named;
 use crate::held::Contents;
 use layout::Layout;
 use std::io::{Read, SeekFrom};
@@ -42,8 +43,13 @@ pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let mut wave = Wave::open(source, options)?;
     let n = wave.channels.len();
+    let named = named(source.path(), &options.only, wave.channels.iter().map(|t| &t.meta))?;
+    if !survey {
+        options.hold(wave.frames() as f64 * named.len() as f64)?;
+        wave.keep(&named);
+    }
     let room = if survey { 0 } else { wave.frames() };
-    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(room); n];
+    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(room); wave.kept.len()];
     let mut ends = vec![Extremes::NONE; n];
     while wave.append(&mut values)? > 0 {
         for (values, ends) in values.iter_mut().zip(&mut ends).filter(|_| survey) {
@@ -51,11 +57,13 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             values.clear();
         }
     }
-    let mut metas: Vec<Meta> = wave.channels.iter().map(|t| t.meta.clone()).collect();
+    let mut metas: Vec<Meta> = wave.kept.iter().map(|i| wave.channels[*i].meta.clone()).collect();
     wave.finish(&mut metas);
-    let traces = wave.channels.into_iter().zip(metas).zip(values);
-    let traces = traces.map(|((trace, meta), values)| Record::Trace(Trace { meta, values, ..trace }));
-    let records = traces.zip(ends.into_iter().map(|ends| survey.then_some(ends)));
+    for ((i, meta), values) in wave.kept.iter().zip(metas).zip(values) {
+        wave.channels[*i] = Trace { meta, values, ..wave.channels[*i].clone() };
+    }
+    let records =
+        wave.channels.into_iter().map(Record::Trace).zip(ends.into_iter().map(|ends| survey.then_some(ends)));
     Ok(Contents { records: records.collect(), findings: wave.layout.findings })
 }
 

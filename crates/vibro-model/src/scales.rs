@@ -213,6 +213,41 @@ mod tests {
     }
 
     #[test]
+    fn what_would_take_minutes_is_refused_by_the_scales_of_the_rig() {
+        let t = Rig::thesis();
+        let said = |rig: Rig| response(&rig, &SINE.into(), 5.0, 15.0, 400, 1).unwrap_err().to_string();
+        assert!(said(Rig { gap: 1e-300, ..t }).starts_with("a value of 1e-300"));
+        // √(1e12/0.094)/2π = 519 kHz: 400 points × 104 000 swings in a cycle of 5 Hz.
+        let many = said(Rig { k2: 1e12, ..t });
+        assert!(many.starts_with("42000000 swings") || many.starts_with("4.2"), "{many}");
+        let question = ladder::Question::new(Observable::Fundamental);
+        let scene = Scene { excitation: Some(SINE.into()), ..Scene::thesis() };
+        // 192 000 cycles hold 16 swings of mass 2, of 5.873 Hz, up to 70.5 kHz.
+        assert!(ladder::choose(&scene, 7e4, &question).is_ok());
+        for frequency in [7.1e4, 4_294_967_296.0] {
+            let fast = ladder::choose(&scene, frequency, &question).unwrap_err().to_string();
+            assert!(fast.contains("too far above the natural frequency of 5.87 Hz"), "{fast}");
+            assert!(fast.contains("up to 70000 Hz"), "{fast}");
+        }
+    }
+
+    #[test]
+    fn bounces_without_loss_end_at_any_force() {
+        // Ways, speeds and forces have no scale of their own: with 2e20 times the force the gap is 2e20 times smaller beside them.
+        let rig = Rig { restitution: 1.0, c1: 0.0, c2: 0.0, ..Rig::thesis() };
+        let flights = |gap: f64, force: f64| {
+            let mut motion = Simulation::new(&Rig { gap, ..rig }, &Sine { force, frequency: 11.0 }).unwrap();
+            motion.run(20.0 / 11.0, |_| {}).unwrap();
+            motion.counts().flights
+        };
+        assert_eq!(flights(1e-3, 1e20), flights(5e-24, 0.5));
+        // Between both, bounces may be more than are followed: 50 000 a cycle.
+        let mut motion = Simulation::new(&rig, &Sine { force: 1e13, frequency: 11.0 }).unwrap();
+        let said = motion.run(20.0 / 11.0, |_| {}).unwrap_err().to_string();
+        assert!(said.starts_with("more than 200000 impacts"), "{said}");
+    }
+
+    #[test]
     fn masses_pressed_together_need_no_stiffness() {
         let rig = Rig { gap: -1e-3, ..Rig::thesis() };
         let question = ladder::Question::new(Observable::Fundamental);

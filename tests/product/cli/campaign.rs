@@ -369,7 +369,7 @@ fn known(path: &Path, campaign: &str) -> Vec<String> {
 fn every_option_of_a_command_is_a_key_of_its_section() {
     let folder = tempfile::tempdir().unwrap();
     // Of the terminal, or of single files that a campaign writes in any case.
-    let general = ["style", "json", "help", "out", "replace", "legacy", "each_cycle"];
+    let general = ["style", "json", "max_memory", "help", "out", "replace", "legacy", "each_cycle"];
     let pairs = [
         ("spectrum", "spectrum"),
         ("drill", "drill"),

@@ -3,11 +3,11 @@
 //! The crate gives integers and floats their size alone; one whose bits lie otherwise, as the message of its datatype says, is not read as a number.
 
 use super::lzf;
-use crate::Source;
 use crate::assemble::fewer;
 use crate::binary::Kind;
 use crate::held::{Held, rises};
 use crate::variables::EXPORT;
+use crate::{Options, Source};
 use hdf5_reader::attribute_api::Attribute;
 use hdf5_reader::dataset::{Dataset, SliceInfo, SliceInfoElem};
 use hdf5_reader::error::Error as Fault;
@@ -20,6 +20,7 @@ use hdf5_reader::{
 };
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::cell::{Cell, OnceCell};
 use std::collections::{BTreeSet, HashSet};
 use std::sync::{Arc, Mutex};
 use vibro_record::lanes::Extremes;
@@ -80,6 +81,11 @@ pub struct File {
     outside: Arc<Outside>,
     /// Addresses of what was given out.
     seen: HashSet<u64>,
+    options: Options,
+    /// Values held so far.
+    held: Cell<f64>,
+    /// Why values are more than may be held.
+    pub refused: OnceCell<Error>,
     pub findings: Vec<Finding>,
 }
 
@@ -95,7 +101,8 @@ impl ExternalLinkResolver for Outside {
 }
 
 impl File {
-    pub fn open(source: &Source) -> Result<File> {
+    pub fn open(source: &Source, options: &Options) -> Result<File> {
+        let limit = options.clone();
         let most = usize::try_from(source.len().saturating_mul(MOST_UNPACKED)).unwrap_or(usize::MAX);
         let outside = Arc::new(Outside::default());
         let mut filters = FilterRegistry::new();
@@ -111,7 +118,19 @@ impl File {
                 .and_then(|file| Hdf5File::from_storage_with_options(Arc::new(file), options)),
         };
         let open = open.map_err(|fault| damaged(&fault))?;
-        Ok(File { open, len: source.len(), outside, seen: HashSet::new(), findings: Vec::new() })
+        let (held, refused) = (Cell::new(0.0), OnceCell::new());
+        let (seen, findings) = (HashSet::new(), Vec::new());
+        Ok(File { open, len: source.len(), outside, seen, options: limit, held, refused, findings })
+    }
+
+    /// Asks for room for so many values beside those held.
+    fn hold(&self, values: f64) -> std::result::Result<(), Fault> {
+        self.held.set(self.held.get() + values);
+        self.options.hold(self.held.get()).map_err(|error| {
+            let fault = Fault::InvalidData(error.to_string());
+            let _ = self.refused.set(error);
+            fault
+        })
     }
 
     pub fn root(&mut self) -> Result<Group> {
@@ -199,9 +218,12 @@ impl File {
                 Ok(Data::Texts(dataset.read_strings()?))
             }
             kind if number(kind).is_some() && described(&layout, &[kind])[0] && dataset.ndim() > 0 => {
-                Ok(Data::Numbers(by_rows(dataset, ends)?))
+                Ok(Data::Numbers(by_rows(dataset, ends, |values| self.hold(values))?))
             }
-            kind => decoded(kind, &layout, dataset.raw_element_size()?, || dataset.read_raw_bytes()),
+            kind => {
+                self.hold(declared as f64 / 4.0)?;
+                decoded(kind, &layout, dataset.raw_element_size()?, || dataset.read_raw_bytes())
+            }
         }
     }
 }
@@ -255,7 +277,11 @@ impl H5Type for Number {
 }
 
 /// The numbers of a dataset, some rows at a time: what is read needs no room of its size beside them, and of the `ends` alone none.
-fn by_rows(dataset: &Dataset, ends: bool) -> std::result::Result<Held, Fault> {
+fn by_rows(
+    dataset: &Dataset,
+    ends: bool,
+    hold: impl Fn(f64) -> std::result::Result<(), Fault>,
+) -> std::result::Result<Held, Fault> {
     let (n, all) = (dataset.num_elements()? as usize, dataset.shape()[0]);
     let row = n / all as usize;
     let chunk = dataset.chunks().and_then(|chunk| chunk.first().copied()).unwrap_or(1).max(1) as usize;
@@ -268,6 +294,11 @@ fn by_rows(dataset: &Dataset, ends: bool) -> std::result::Result<Held, Fault> {
         Ok(numbers.into_iter().map(|Number(value)| value).collect::<Vec<f64>>())
     };
     let blocks = n.div_ceil(rows * row);
+    // Each thread unpacks a block.
+    let threads = rayon::current_num_threads().clamp(1, blocks);
+    hold((threads * rows * row) as f64)?;
+    // Of a matrix each column is copied.
+    let held = if row > 1 { 2 * n } else { n } as f64;
     if ends && blocks > 1 && !rises(&block(0)?) {
         let parts = (0..blocks).into_par_iter().map(|k| block(k).map(|values| Extremes::of(&values)));
         let mut whole = Extremes::NONE;
@@ -276,6 +307,7 @@ fn by_rows(dataset: &Dataset, ends: bool) -> std::result::Result<Held, Fault> {
             return Ok(Held::Ends(whole));
         }
     }
+    hold(held)?;
     let mut values = vec![0.0; n];
     values.par_chunks_mut(rows * row).enumerate().try_for_each(|(k, part)| {
         part.copy_from_slice(&block(k)?);

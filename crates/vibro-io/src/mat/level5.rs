@@ -2,6 +2,7 @@
 //!
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 5 MAT-File Format".
 
+use crate::Options;
 use crate::binary::Kind;
 use crate::variables::{Array, Content, MOST_TEXT};
 use flate2::read::ZlibDecoder;
@@ -10,6 +11,8 @@ use vibro_record::{Error, Place, Result, Values};
 
 /// Bytes before the first variable, of which the last two are IM (little endian) or MI.
 const HEADER: usize = 128;
+/// Bytes that zlib makes of one at most: 258 of two bits.
+const MOST_UNPACKED: u64 = 1032;
 /// Structs and cell arrays within each other are read to this depth, and to names of this length: both bound what one byte of a file can cost.
 const MOST_DEPTH: usize = 32;
 const MOST_NAME: usize = 512;
@@ -97,7 +100,8 @@ pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
 }
 
 /// All variables of a file behind its header, with their names. What stands in structs and cell arrays is named as MATLAB writes it.
-pub fn all(bytes: &[u8]) -> Result<Vec<(String, Content)>> {
+pub fn all(bytes: &[u8], options: &Options) -> Result<Vec<(String, Content)>> {
+    let mut held = 0.0;
     let mut variables = Vec::new();
     let mut file =
         Elements { rest: &bytes[HEADER..], big_endian: bytes[HEADER - 2] == b'M', place: Place::default() };
@@ -106,7 +110,11 @@ pub fn all(bytes: &[u8]) -> Result<Vec<(String, Content)>> {
         let Some((kind, content)) = file.next()? else { return Ok(variables) };
         match kind {
             14 => variable(&mut file.within(content), None, &mut variables)?,
-            15 => variable(&mut file.within(&unpacked(&file, content)?), None, &mut variables)?,
+            15 => variable(
+                &mut file.within(&unpacked(&file, content, options, &mut held)?),
+                None,
+                &mut variables,
+            )?,
             // Zeros that fill up a block.
             0 if content.is_empty() => {}
             kind => return Err(file.fault(format!("an element of kind {kind}"), "a variable")),
@@ -114,8 +122,9 @@ pub fn all(bytes: &[u8]) -> Result<Vec<(String, Content)>> {
     }
 }
 
-/// The content of the variable that `packed` holds. No more is unpacked than the variable declares.
-fn unpacked(file: &Elements, packed: &[u8]) -> Result<Vec<u8>> {
+/// The content of the variable that `packed` holds. No more is unpacked than the variable declares, nor than may be held as numbers beside
+/// it and what was `held` before.
+fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -> Result<Vec<u8>> {
     let damaged = |e: std::io::Error| {
         let found = format!("a packed variable that is damaged: {e}");
         file.fault(found, "data that agree with their checksum")
@@ -123,6 +132,9 @@ fn unpacked(file: &Elements, packed: &[u8]) -> Result<Vec<u8>> {
     let (mut zlib, mut tag, mut inflated) = (ZlibDecoder::new(packed), [0; 8], Vec::new());
     zlib.read_exact(&mut tag).map_err(damaged)?;
     let declared = u64::from(file.words(&tag[4..]).next().unwrap_or(0));
+    // A variable that lies is told by its end.
+    *held += declared.min(MOST_UNPACKED * packed.len() as u64) as f64 / 4.0;
+    options.hold(*held)?;
     // Up to its end the stream is not compared with its checksum: eight bytes are more than any padding.
     zlib.by_ref().take(declared + 8).read_to_end(&mut inflated).map_err(damaged)?;
     let behind = packed.get(zlib.total_in() as usize..).unwrap_or_default();

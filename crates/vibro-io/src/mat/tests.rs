@@ -801,3 +801,13 @@ proptest! {
         let _ = Reader::new().from_reader("x.mat", bytes.as_slice());
     }
 }
+
+#[test]
+fn a_packed_variable_is_refused_by_what_it_unpacks_to() {
+    // 1000 zeros take 8000 bytes, which are held twice while they are read.
+    let file = LITTLE.file(&[packed(&LITTLE.column("x", &[0.0; 1000]))]);
+    let read = |limit| Reader::new().max_memory(crate::Limit(limit)).from_reader("x.mat", file.as_slice());
+    assert!(file.len() < 1000 && read(20_000.0).is_ok());
+    let said = read(12_000.0).unwrap_err().to_string();
+    assert!(said.contains("x.mat: it needs 16 kB"), "{said}");
+}

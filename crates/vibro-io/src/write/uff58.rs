@@ -68,9 +68,9 @@ pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -
         let size = storage.binary.then_some(layout.point_size(false) * record.len());
         let mut bytes = header::text(record, layout, size, form).into_bytes();
         if storage.binary {
-            binary(record, layout, &mut bytes);
+            binary(record, layout, &mut bytes, out)?;
         } else {
-            text(record, layout, &mut bytes);
+            text(record, layout, &mut bytes, out)?;
         }
         bytes.extend(format!("{:80}\n", "    -1").bytes());
         out.write_all(&bytes).map_err(failed)?;
@@ -78,8 +78,21 @@ pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -
     Ok(())
 }
 
-fn binary(record: &Record, layout: Layout, bytes: &mut Vec<u8>) {
+/// Bytes that are written at once.
+const BLOCK: usize = 64 * 1024;
+
+/// Writes what was gathered, once it is a block.
+fn written(bytes: &mut Vec<u8>, out: &mut impl Write) -> Result<()> {
+    if bytes.len() > BLOCK {
+        out.write_all(bytes).map_err(failed)?;
+        bytes.clear();
+    }
+    Ok(())
+}
+
+fn binary(record: &Record, layout: Layout, bytes: &mut Vec<u8>, out: &mut impl Write) -> Result<()> {
     for i in 0..record.len() {
+        written(bytes, out)?;
         if !layout.even {
             bytes.extend((record.axis().at(i) as f32).to_le_bytes());
         }
@@ -91,15 +104,17 @@ fn binary(record: &Record, layout: Layout, bytes: &mut Vec<u8>) {
             }
         }
     }
+    Ok(())
 }
 
-fn text(record: &Record, layout: Layout, bytes: &mut Vec<u8>) {
+fn text(record: &Record, layout: Layout, bytes: &mut Vec<u8>, out: &mut impl Write) -> Result<()> {
     let abscissa = |i: usize| (!layout.even).then(|| record.axis().at(i));
     let numbers = (0..record.len()).flat_map(|i| abscissa(i).into_iter().chain(parts(record, i)));
     let widths = layout.widths();
     for (column, value) in numbers.enumerate() {
         if column > 0 && column % widths.len() == 0 {
             bytes.push(b'\n');
+            written(bytes, out)?;
         }
         let width = widths[column % widths.len()];
         bytes.extend(field(value, width, width - 8).bytes());
@@ -107,6 +122,7 @@ fn text(record: &Record, layout: Layout, bytes: &mut Vec<u8>) {
     if !record.is_empty() {
         bytes.push(b'\n');
     }
+    Ok(())
 }
 
 /// Fortran's `1PEw.d`: the letter makes room for a third digit of the exponent.
