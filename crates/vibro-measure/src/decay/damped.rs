@@ -6,6 +6,7 @@
 use crate::residuals::{Whiteness, student};
 use nalgebra::{DMatrix, DVector, SVD};
 use num_complex::Complex64;
+use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::ops::Range;
 use vibro_math::{Fit, least_squares};
@@ -26,7 +27,11 @@ pub struct Damped {
 impl Damped {
     /// Line `k` of a part of `n` samples, (2/N) Σ xⱼ e^(−2πijk/N).
     pub fn line(&self, k: usize, n: usize) -> Complex64 {
-        let [own, image] = exponentials(self.periods, self.decay, k, n);
+        self.of(exponentials(self.periods, self.decay, k, n))
+    }
+
+    /// A line of these exponentials.
+    fn of(&self, [own, image]: [Complex64; 2]) -> Complex64 {
         self.amplitude * own + self.amplitude.conj() * image
     }
 
@@ -111,10 +116,18 @@ impl Group {
         }
         let largest = scale.iter().skip(2).copied().fold(f64::MIN_POSITIVE, f64::max);
         scale.extend([largest; REST]);
+        // A difference quotient moves one parameter: the exponentials of all other sines are those of before.
+        let known = RefCell::new(vec![([f64::NAN; 2], Vec::new()); starts.len()]);
         let residuals = |p: &[f64], out: &mut [f64]| {
-            let rest = &p[p.len() - REST..];
+            let (rest, mut known) = (&p[p.len() - REST..], known.borrow_mut());
+            for (p, (at, of)) in p.chunks_exact(OWN).zip(known.iter_mut()) {
+                if *at != [p[0], p[1]] {
+                    *at = [p[0], p[1]];
+                    *of = lines.clone().map(|k| exponentials(p[0], p[1], k, n)).collect();
+                }
+            }
             for ((i, k), out) in lines.clone().enumerate().zip(out.chunks_exact_mut(2)) {
-                let sines = p.chunks_exact(OWN).take(starts.len()).map(|p| sine(p).line(k, n));
+                let sines = p.chunks_exact(OWN).zip(known.iter()).map(|(p, (_, of))| sine(p).of(of[i]));
                 let left = spectrum[k] - sines.sum::<Complex64>() - beside(rest, place(i, lines.len()));
                 out.copy_from_slice(&[left.re, left.im]);
             }

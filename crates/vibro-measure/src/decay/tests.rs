@@ -177,3 +177,20 @@ fn damping_that_changes_with_amplitude_has_no_uncertainty() {
     let zeta: Vec<f64> = found.levels.iter().map(|level| level.mode.zeta.value).collect();
     assert!(zeta.len() > 1 && zeta.is_sorted() && zeta[zeta.len() - 1] > 2.0 * zeta[0], "{zeta:?}");
 }
+
+/// A record a hundred times as long as its motion is seen: it is cut before further modes are sought, and the second mode is found all the same.
+#[test]
+fn bounces_in_a_long_record_are_cut_to_the_first() {
+    let mut normal = Normal(11);
+    let modes = [(180.0, 0.02, 1.0, 0.3), (310.0, 0.015, 0.5, 1.0)];
+    let mut values = record(30_000, 700, &modes, 1e-3, &mut normal);
+    for onset in [4000, 6500, 8500, 10_000, 11_100] {
+        let again = record(30_000, onset, &modes, 0.0, &mut normal);
+        values.iter_mut().zip(again).for_each(|(v, more)| *v += 0.7 * more);
+    }
+    check(&found(values.clone()).unwrap(), &modes);
+    // Hum that is stronger than all of them leaves nothing to be sought.
+    let hum = |i: usize| 3.0 * (TAU * 0.05 * i as f64).cos();
+    let why = found(values.iter().enumerate().map(|(i, v)| v + hum(i)).collect()).unwrap_err();
+    assert!(why.to_string().contains("does not decay"), "{why}");
+}
