@@ -7,6 +7,7 @@ mod drill_limits;
 mod example_campaign;
 mod example_drop_test;
 mod failure_map;
+mod found;
 mod impacts_reference;
 mod layers;
 mod model_reference;

@@ -1,0 +1,114 @@
+//! Records that were once answered wrongly, or not at all, with their truth. They were drawn by others, and are no part of the project.
+
+use crate::others_files::folder;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A record, unpacked into a folder of its own.
+fn unpacked(name: &str) -> Option<(TempDir, PathBuf)> {
+    let (from, root) = (folder("../found")?, tempfile::tempdir().unwrap());
+    let (archive, packed) = (from.join(format!("{name}.tar.gz")), from.join(format!("{name}.gz")));
+    let path = root.path().join(name);
+    if archive.is_file() {
+        let status = Command::new("tar").arg("xzf").arg(&archive).arg("-C").arg(root.path()).status();
+        assert!(status.unwrap().success());
+    } else {
+        let bytes = Command::new("gunzip").arg("-c").arg(packed).output().unwrap().stdout;
+        std::fs::write(&path, bytes).unwrap();
+    }
+    Some((root, path))
+}
+
+/// Exit code and object of `vibro … --json`, and how long it took.
+fn vibro(arguments: &[&str]) -> (i32, Value, Duration) {
+    let began = Instant::now();
+    let output = Command::new(env!("CARGO_BIN_EXE_vibro")).args(arguments).arg("--json").output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    (output.status.code().unwrap(), serde_json::from_slice(&output.stdout).unwrap_or(Value::Null), began.elapsed())
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// How many standard uncertainties an estimate lies from the truth.
+fn off(estimate: &Value, truth: f64) -> f64 {
+    (estimate["value"].as_f64().unwrap() - truth).abs() / estimate["std"].as_f64().unwrap()
+}
+
+fn finding<'a>(answer: &'a Value, code: &str) -> Option<&'a Value> {
+    answer["findings"].as_array().unwrap().iter().find(|found| found["code"] == code)
+}
+
+#[test]
+fn a_dead_step_loses_only_itself() {
+    let Some((_root, path)) = unpacked("sweep_dead_step") else { return };
+    let (code, answer, _) = vibro(&["run", text(&path)]);
+    assert_eq!(code, 0);
+    let results = &answer["results"];
+    assert_eq!(results["responses"][0]["points"].as_array().unwrap().len(), 35);
+    let left = finding(&results["responses"][0], "step-left-out").expect("the dead step is named");
+    assert!(left["subject"].as_str().unwrap().contains("step004.csv"), "{left}");
+    assert!(!results["decays"][0]["modes"].as_array().unwrap().is_empty());
+    assert!(!results["frf"][0]["modes"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn blows_of_a_few_samples_have_a_mode() {
+    for (name, blows) in [("hammer_no_values.csv", 5), ("hammer_false_double.csv", 5)] {
+        let Some((_root, path)) = unpacked(name) else { return };
+        let (code, answer, _) =
+            vibro(&["modal", text(&path), "--reference", "Force", "--channel", "Disp", "--hammer"]);
+        assert_eq!(code, 0, "{name}");
+        let mode = &answer["modes"][0];
+        // Beyond four standard uncertainties lies one record in 10⁴.
+        assert!(off(&mode["frequency"], 60.0) < 4.0, "{name}: {mode}");
+        let said = answer["warnings"].to_string();
+        assert!(!said.contains("double hit") && blows == 5, "{said}");
+    }
+}
+
+#[test]
+fn bursts_that_ring_for_a_quarter_of_their_period_are_all_found() {
+    let Some((_root, path)) = unpacked("bursts_ring_quarter.csv") else { return };
+    let (code, answer, _) = vibro(&["impacts", text(&path), "--band", "2100:3900", "--envelope"]);
+    assert_eq!((code, &answer["n"]), (0, &80.into()));
+    assert!(off(&answer["interval"], 12.3e-3) < 4.0, "{}", answer["interval"]);
+}
+
+#[test]
+fn a_sine_of_few_counts_that_is_clipped_is_named() {
+    let Some((_root, path)) = unpacked("sweep_clip_21") else { return };
+    let steps = path.join("step*.csv");
+    let (code, answer, _) = vibro(&["response", text(&steps)]);
+    assert_eq!(code, 0);
+    let clipped = finding(&answer, "step-clipped").expect("the clipped step is named");
+    let frequency = clipped["numbers"]["frequencies"].as_array().map_or(&clipped["numbers"], |all| &all[0]);
+    assert!(frequency.to_string().contains("27.6"), "{clipped}");
+    let std: Vec<bool> = answer["points"].as_array().unwrap().iter().map(|p| p["amplitude"]["std"].is_null()).collect();
+    assert_eq!(std.iter().filter(|none| **none).count(), 1, "{std:?}");
+}
+
+/// What an attack made hang, panic or take its time.
+#[test]
+fn inputs_of_an_attack_are_answered_or_refused_soon() {
+    let Some((root, _)) = unpacked("redteam") else { return };
+    let at = |name: &str| root.path().join(name);
+    // The build of tests has the speed of the program; other tests run beside it.
+    let soon = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
+    let (code, _, took) = vibro(&["run", text(&at("decay_band"))]);
+    assert!(code == 2 && took < soon, "{code} {took:?}");
+    for name in ["1838_key.csv", "2548_wr.txt"] {
+        let folder = at(&format!("{name}.d"));
+        std::fs::create_dir(&folder).unwrap();
+        std::fs::copy(at(name), folder.join(name)).unwrap();
+        let (_, _, took) = vibro(&["run", text(&folder)]);
+        assert!(took < soon, "{name}: {took:?}");
+    }
+    let (code, _, took) = vibro(&["init", text(&at("init_series_hang"))]);
+    assert!(code == 0 && took < soon, "{code} {took:?}");
+}
