@@ -346,8 +346,9 @@ mod tests {
 
     #[test]
     fn every_option_that_takes_a_number_has_its_range() {
-        // Ends of a range of a model are checked as what is varied.
-        let of_model = |key: &str| Parameter::named(key).is_some() || ["from", "to"].contains(&key);
+        // The model checks these: ends of a range as what is varied, the others with what is asked of it.
+        let asked = ["from", "to", "step", "tolerance", "noise_floor", "gap_std"];
+        let of_model = |key: &str| Parameter::named(key).is_some() || asked.contains(&key);
         let mut left = vec![command()];
         let mut seen = 0;
         while let Some(mut at) = left.pop() {

@@ -13,8 +13,8 @@ use crate::report::layout::{pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 
-/// Memory that is worked in, in that of the trace: 9.9 times it in all were measured of ten million samples before the trace was held once.
-const BESIDE: f64 = 9.0;
+/// Memory that the search works in, as a multiple of the trace: of ten million samples, 8.8 traces were measured in all.
+const BESIDE: f64 = 8.0;
 
 /// How modes of a decay are found.
 #[derive(Debug, Clone, Default, Deserialize)]

@@ -14,8 +14,8 @@ use crate::units::notation::quantity;
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// Memory that is worked in, in that of the trace: 4.7 times it in all were measured of ten million samples before the trace was held once.
-const BESIDE: f64 = 4.0;
+/// Memory that the search works in, as a multiple of the trace: of ten million samples, 3.6 traces were measured in all.
+const BESIDE: f64 = 3.0;
 
 /// How impacts are found, and what is known of them.
 #[derive(Debug, Clone, Default, Deserialize)]

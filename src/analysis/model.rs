@@ -96,3 +96,13 @@ fn judged(orbit: &Orbit, gap_std: Option<f64>) -> Value {
     all["near_grazing"] = json!(gap_std.filter(|_| v.exists).map(|std| v.grazing_distance <= std));
     all
 }
+
+/// Checks an uncertainty of the gap.
+fn check_gap_std(gap_std: Option<f64>) -> Result<()> {
+    match gap_std {
+        Some(v) if !(v.is_finite() && v >= 0.0) => {
+            Err(Error::usage(format!("gap_std is {v} m"), "a finite value of 0 or more").setting("gap_std"))
+        }
+        _ => Ok(()),
+    }
+}

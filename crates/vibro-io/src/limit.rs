@@ -9,6 +9,8 @@ use vibro_record::{Error, Result};
 const GB: f64 = 1e9;
 /// Memory in bytes of a machine that does not say how much it has.
 const UNKNOWN: f64 = 4.0 * GB;
+/// Part of the machine's memory that a hint names at most: the system and other programs need theirs.
+const MOST_OF_MACHINE: f64 = 0.8;
 /// Bytes of a value in memory.
 const VALUE: f64 = 8.0;
 
@@ -65,10 +67,10 @@ impl Limit {
         let error = Error::usage(found, "");
         // A tenth more is for the program itself, and for rounding.
         let enough = (1.1 * bytes / GB).max(0.1);
-        Err(if enough * GB <= machine() {
+        Err(if enough * GB <= MOST_OF_MACHINE * machine() {
             error.set("max_memory", format!("{}GB", (enough * 10.0).ceil() / 10.0))
         } else {
-            error.hint("cut the record, or convert one of its channels to a file of its own")
+            error.hint("give a shorter record; of several channels, name one").setting("channel")
         })
     }
 }

@@ -260,9 +260,13 @@ impl Reader {
     }
 }
 
+/// Bytes of a list of a sweep: ten thousand points.
+const LONGEST_LIST: u64 = 1 << 20;
+
 /// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.
 fn no_list(source: &Source, error: Error) -> Error {
-    let Some(list) = SweepList::of(source) else { return error };
+    let short = source.len() <= LONGEST_LIST;
+    let Some(list) = short.then(|| SweepList::of(source)).flatten() else { return error };
     let (points, lines, band) = (list.len(), list.lines, list.base_band);
     error
         .aside(format!("this reads as the list of a sweep: {points} points, {lines} lines to {band} Hz"))

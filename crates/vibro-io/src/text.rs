@@ -129,7 +129,10 @@ const ABSCISSA: f64 = 0.75;
 fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Contents> {
     // As many rows as the first bytes let expect.
     let lines = text.head.lines().count() as f64 / text.head.len().max(1) as f64;
-    options.hold(text.source.len() as f64 * lines * dialect.columns as f64 * (1.0 + ABSCISSA))?;
+    let bytes = text.source.len() as f64;
+    // A value takes two bytes with what ends it.
+    let values = (bytes * lines * dialect.columns as f64).min(bytes / 2.0);
+    options.hold(values * (1.0 + ABSCISSA))?;
     let tail = tail::of(text.source)?;
     let plain = dialect.columns > 1 && dialect.names.is_none() && !dialect.complex;
     let stated = Stated::of(dialect.header.iter().map(String::as_str));

@@ -1,6 +1,6 @@
 //! All motions with one impact a period at one frequency, and those with several that are found: `vibro model orbit`.
 
-use super::{Driven, SceneKeys, figures, judged, pattern};
+use super::{Driven, SceneKeys, check_gap_std, figures, judged, pattern};
 use crate::analysis::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
@@ -40,6 +40,7 @@ impl Keys {
     /// If the scene or a key cannot be, or nothing drives the rig.
     pub fn answer(&self) -> Result<Answer> {
         above_zero("frequency", self.frequency)?;
+        check_gap_std(self.gap_std)?;
         let driven = self.scene.driven(self.frequency)?;
         if self.impacts != 1 {
             return self.several(&driven);

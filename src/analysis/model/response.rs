@@ -1,6 +1,6 @@
 //! Motions with one impact a period over frequency: `vibro model response`.
 
-use super::{Driven, SceneKeys, figures, judged};
+use super::{Driven, SceneKeys, check_gap_std, figures, judged};
 use crate::analysis::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
@@ -44,6 +44,7 @@ impl Keys {
     pub fn answer(&self) -> Result<Answer> {
         above_zero("from", Some(self.from))?;
         above_zero("to", Some(self.to))?;
+        check_gap_std(self.gap_std)?;
         let Driven { scene, excitation, finding } = self.scene.driven(Some(self.from))?;
         let found = response(&scene.rig, &excitation, self.from, self.to, self.points, self.cycles)?;
         let mut answer = Answer::of(&json!({

@@ -26,7 +26,8 @@ fn a_band_without_end_is_refused_by_the_command_and_by_a_campaign() {
     let file = record(folder.path());
     let channel = ["--channel", "velocity"];
     for band in ["0:inf", "nan:5", "-5:20", "1e-300:20", "0:1e300"] {
-        let typed = [&["decay", &file, "--band", band][..], &channel].concat();
+        let band = format!("--band={band}");
+        let typed = [&["decay", &file, &band][..], &channel].concat();
         let found = complaint(&typed, 2);
         assert!(found.contains("band is ") && found.contains("(--band)"), "{found}");
     }

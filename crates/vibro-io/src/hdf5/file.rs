@@ -203,8 +203,18 @@ impl File {
         let (declared, most) = (dataset.raw_byte_len()? as u64, if packed { MOST_UNPACKED } else { 1 });
         let layout = dataset.raw_datatype()?;
         if declared > self.len.saturating_mul(most.min(MANY)) && dataset.ndim() == 1 {
-            let there = written(dataset).unwrap_or_default();
+            // The bytes, and the numbers that they are.
+            let values = |bytes: usize| self.held.get() + bytes as f64 / 4.0;
+            let room = |bytes: usize| {
+                // All that is declared would be needed.
+                self.options.hold(values(bytes)).or_else(|_| self.hold(declared as f64 / 4.0))
+            };
+            let there = match written(dataset, room) {
+                Err(fault) if self.refused.get().is_some() => return Err(fault),
+                there => there.unwrap_or_default(),
+            };
             if !there.is_empty() {
+                self.held.set(values(there.len()));
                 return decoded(dataset.dtype(), &layout, dataset.raw_element_size()?, || Ok(there));
             }
         }
@@ -234,9 +244,18 @@ fn damaged(fault: &Fault) -> Error {
 }
 
 /// The bytes of a dataset of one dimension up to the first chunk that was not written.
-fn written(dataset: &Dataset) -> std::result::Result<Vec<u8>, Fault> {
+fn written(
+    dataset: &Dataset,
+    room: impl Fn(usize) -> std::result::Result<(), Fault>,
+) -> std::result::Result<Vec<u8>, Fault> {
     let (size, mut bytes) = (dataset.raw_element_size()?, Vec::new());
-    let mut chunks = dataset.iter_chunks()?.collect::<std::result::Result<Vec<_>, _>>()?;
+    let (mut chunks, mut held) = (Vec::new(), 0);
+    for chunk in dataset.iter_chunks()? {
+        let chunk = chunk?;
+        held += chunk.bytes().len();
+        room(held)?;
+        chunks.push(chunk);
+    }
     chunks.sort_by_key(|chunk| chunk.offsets()[0]);
     for chunk in chunks {
         if chunk.offsets()[0] as usize * size == bytes.len() {
