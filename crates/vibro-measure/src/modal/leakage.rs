@@ -43,8 +43,9 @@ impl Leakage {
         let sum = self.terms.iter().map(|(shift, square, b)| {
             let z = s * self.length - Complex64::new(0.0, *shift);
             // z = 0 is a mode without damping on a line; beside it both are as near as makes no difference to their limits 1 and ½.
-            let e = if z.norm() < 1e-6 { Complex64::new(1.0, 0.0) } else { (1.0 - decayed) / z };
-            let l = if z.norm() < 1e-6 { Complex64::new(0.5, 0.0) } else { (1.0 - e) / z };
+            let small = z.norm_sqr() < 1e-12;
+            let e = if small { Complex64::new(1.0, 0.0) } else { (1.0 - decayed) / z };
+            let l = if small { Complex64::new(0.5, 0.0) } else { (1.0 - e) / z };
             square * l + b * e
         });
         self.length * sum.sum::<Complex64>()

@@ -7,6 +7,7 @@ use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
+use std::cell::RefCell;
 use std::f64::consts::TAU;
 use vibro_math::{Fit, least_squares, minimise};
 use vibro_record::{Error, Result, Window};
@@ -41,7 +42,12 @@ struct Scaled<'a> {
     /// Of the segments that the function was averaged over.
     leakage: Option<Leakage>,
     magnitude_only: bool,
+    /// Each mode at all lines, for the last shape that it had.
+    known: RefCell<Vec<Option<Known>>>,
 }
+
+/// Frequency and damping of a mode, bit by bit, and what it is at all lines.
+type Known = ([u64; 2], Vec<Complex64>);
 
 /// How much of the lines modes `starts` leave at the least, unweighted: to choose among first guesses.
 pub(super) fn left_by(
@@ -80,6 +86,7 @@ impl<'a> Scaled<'a> {
             power,
             leakage: measured.window.map(|window| Leakage::of(window, TAU * unit / measured.spacing())),
             magnitude_only: measured.magnitude_only,
+            known: RefCell::new(vec![None; starts.len()]),
         }
     }
 }
@@ -94,7 +101,19 @@ impl Scaled<'_> {
         ((f + p[4 * m] * zeta * f) / self.unit, p[4 * m + 1] * zeta)
     }
 
-    fn mode(&self, i: usize, (own, zeta): (f64, f64)) -> Complex64 {
+    /// Mode `m` at line `i`. All but a few steps of a fit leave its shape as it was: its lines are computed once a shape.
+    fn mode(&self, i: usize, p: &[f64], m: usize) -> Complex64 {
+        let shape = self.shape(p, m);
+        let bits = [shape.0.to_bits(), shape.1.to_bits()];
+        let mut known = self.known.borrow_mut();
+        let (_, lines) = match known[m].take().filter(|(of, _)| *of == bits) {
+            Some(same) => known[m].insert(same),
+            None => known[m].insert((bits, (0..self.x.len()).map(|i| self.shaped(i, shape)).collect())),
+        };
+        lines[i]
+    }
+
+    fn shaped(&self, i: usize, (own, zeta): (f64, f64)) -> Complex64 {
         let x = self.x[i];
         if let Some(leakage) = self.leakage.as_ref().filter(|_| zeta.abs() < 1.0) {
             return leakage.mode(x, (own, zeta), self.power);
@@ -106,7 +125,7 @@ impl Scaled<'_> {
     fn at(&self, p: &[f64], i: usize) -> Complex64 {
         let amplitude = |at: usize| Complex64::new(p[at], p[at + 1]);
         let modes = self.starts.len();
-        let sum: Complex64 = (0..modes).map(|m| amplitude(4 * m + 2) * self.mode(i, self.shape(p, m))).sum();
+        let sum: Complex64 = (0..modes).map(|m| amplitude(4 * m + 2) * self.mode(i, p, m)).sum();
         let (above, below) = (amplitude(4 * modes), amplitude(4 * modes + 2));
         sum + self.factor[i] * (above + below / (self.x[i] * self.x[i]))
     }
@@ -127,7 +146,7 @@ impl Scaled<'_> {
         let modes = self.starts.len();
         let columns = modes + 2;
         let column = |i: usize, j: usize| match j.checked_sub(modes) {
-            None => self.mode(i, self.shape(p, j)),
+            None => self.mode(i, p, j),
             Some(0) => self.factor[i],
             Some(_) => self.factor[i] / (self.x[i] * self.x[i]),
         };
@@ -238,7 +257,8 @@ impl Scaled<'_> {
         let first = self.x[0] - MARGIN as f64 * step;
         let x: Vec<f64> = (0..=last).map(|k| (first + k as f64 * step).abs().max(step)).collect();
         let factor = x.iter().map(|x| Complex64::new(0.0, *x).powi(self.power)).collect();
-        let plain = Scaled { x, factor, values: Vec::new(), leakage: None, ..*self };
+        let known = RefCell::new(vec![None; self.starts.len()]);
+        let plain = Scaled { x, factor, values: Vec::new(), leakage: None, known, ..*self };
         let h: Vec<Complex64> = (0..=last).map(|k| plain.at(p, k)).collect();
         of_segments(window, &h, &at, total)
     }
