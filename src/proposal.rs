@@ -2,7 +2,9 @@
 //!
 //! A record of unknown kind is tried: the first analysis that answers without a doubt is proposed.
 
+mod alike;
 mod folder;
+mod found;
 mod trial;
 
 use folder::{Inventory, Series};
@@ -216,10 +218,8 @@ impl Proposal {
                 absent()
             });
         }
-        let found = Inventory::of(within, reading, known)?;
+        let found = Inventory::of(within, reading, known, progress)?;
         let mut proposal = Proposal { folder: within.clone(), tables: Vec::new(), left: found.left };
-        let all = found.lists.len() + found.series.len();
-        progress.start("looking at files", all);
         for (name, path) in found.lists {
             let table =
                 Table::new("sweep", "the list of a sweep", &path).found("name", name).found("list", path);
@@ -227,16 +227,10 @@ impl Proposal {
             let table = table.open("quantity", "", "\"displacement\", \"velocity\" or \"acceleration\"");
             let table = table.open("window", "", "\"hann\", \"flat-top\", ... as the analyser was set");
             proposal.tables.push(table.open("scaling", "", "\"peak\" or \"rms\""));
-            progress.step();
         }
-        for series in &found.series {
-            let reading = if series.timed { reading.untimed() } else { reading.clone() };
-            let before = proposal.tables.len();
-            trial::Trial { folder: within, reading: &reading, kept, progress }.series(series, &mut proposal);
-            for table in &mut proposal.tables[before..] {
-                *table = table.stated(&reading);
-            }
-            progress.step();
+        for series in alike::all(&found.series, (within, reading), kept, progress) {
+            proposal.tables.extend(series.tables);
+            proposal.left.extend(series.left);
         }
         if proposal.tables.is_empty() && known.is_none() {
             if proposal.left.is_empty() {

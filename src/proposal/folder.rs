@@ -1,12 +1,13 @@
 //! The recordings of a folder: lists of sweeps, and files in series.
 
 use super::{Known, Table};
-use crate::analysis::{self, Recordings};
+use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Header, SweepList};
 use crate::record::shown;
-use std::collections::BTreeMap;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 /// What lies in a folder.
@@ -43,7 +44,12 @@ impl Inventory {
     ///
     /// # Errors
     /// If a folder cannot be listed.
-    pub fn of(folder: &Folder, reading: &Reading, known: Option<&Campaign>) -> Result<Inventory> {
+    pub fn of(
+        folder: &Folder,
+        reading: &Reading,
+        known: Option<&Campaign>,
+        progress: &dyn Progress,
+    ) -> Result<Inventory> {
         let (reader, with_rate) =
             (reading.untimed().reader()?.within(folder), reading.reader()?.within(folder));
         let Recordings { files: all, others, left } = analysis::recordings(folder)?;
@@ -56,8 +62,9 @@ impl Inventory {
         };
         let left = left.iter().map(|(path, why)| (shown(within(path)), why.clone())).collect();
         let mut found = Inventory { left, ..Inventory::default() };
+        progress.start("reading files", paths.len());
         let lists: Vec<(PathBuf, SweepList)> = paths
-            .iter()
+            .par_iter()
             .filter_map(|path| Some((path.clone(), SweepList::from_path(path, folder).ok()?)))
             .collect();
         for (path, list) in &lists {
@@ -69,11 +76,21 @@ impl Inventory {
         let mut groups: BTreeMap<(String, String, bool), Vec<Member>> = BTreeMap::new();
         let mut order = Vec::new();
         let names: Vec<String> = paths.iter().map(|path| within(path)).collect();
-        for path in &paths {
-            let untimed = |headers: &[Header]| headers.iter().all(|h| h.kind == "trace" && h.rate.is_none());
-            let own = reader.survey(path).ok().filter(|(_, headers, _)| !untimed(headers));
-            let timed = own.is_some();
-            match own.map_or_else(|| with_rate.survey(path), Ok) {
+        let numbers = numbers(&names);
+        let every: Vec<String> = all.iter().map(|path| within(path)).collect();
+        let untimed = |headers: &[Header]| headers.iter().all(|h| h.kind == "trace" && h.rate.is_none());
+        let stated = reading.rate.or(reading.base_band).is_some();
+        let surveyed: Vec<_> = paths
+            .par_iter()
+            .map(|path| {
+                let own = reader.survey(path);
+                let timed = own.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
+                progress.step();
+                (timed, if timed || !stated { own } else { with_rate.survey(path) })
+            })
+            .collect();
+        for (path, (timed, found_in)) in paths.iter().zip(surveyed) {
+            match found_in {
                 Ok((_, headers, _)) if headers.is_empty() => {
                     found.left.push((within(path), "no records".to_owned()));
                 }
@@ -86,7 +103,7 @@ impl Inventory {
                     found.left.push((within(path), why.to_owned()));
                 }
                 Ok((_, headers, _)) => {
-                    let key = (apart(&within(path), &names).join("*"), signature(&headers), timed);
+                    let key = (apart(&within(path), &numbers).join("*"), signature(&headers), timed);
                     if !groups.contains_key(&key) {
                         order.push(key.clone());
                     }
@@ -98,14 +115,13 @@ impl Inventory {
         for key in order {
             let Some(members) = groups.remove(&key) else { continue };
             let files: Vec<String> = members.iter().map(|(path, _)| within(path)).collect();
-            let [before, after] = apart(&files[0], &names);
+            let [before, after] = apart(&files[0], &numbers);
             let name = name(&files);
-            let meant = |path: &&PathBuf| {
-                let own = within(path);
+            let meant = |own: &&String| {
                 own.len() > before.len() + after.len() && own.starts_with(&before) && own.ends_with(&after)
             };
             let plain = !key.0.replacen('*', "", 1).contains(['*', '?', '[']);
-            let pattern = (plain && all.iter().filter(meant).count() == files.len()).then(|| key.0.clone());
+            let pattern = (plain && every.iter().filter(meant).count() == files.len()).then(|| key.0.clone());
             let mut headers = members[0].1.clone();
             for (k, header) in headers.iter_mut().enumerate() {
                 // Channels of several names go by their numbers.
@@ -189,41 +205,47 @@ pub(super) fn stem(path: &Path) -> String {
 pub(super) fn name(files: &[String]) -> String {
     match files {
         [one] => stem(Path::new(one)),
-        [first, ..] => common(&apart(first, files)[0]),
+        [first, ..] => common(&apart(first, &numbers(files))[0]),
         [] => String::new(),
     }
 }
 
-/// What stands before and behind the number by which a name differs from others that are like it but for one number; else behind the last. A
-/// name without a number is all before.
-fn apart(name: &str, others: &[String]) -> [String; 2] {
+/// What stands before and behind each number of a name, which is none of its folder or its ending.
+fn runs(name: &str) -> Vec<[String; 2]> {
     let from = name.rfind('/').map_or(0, |at| at + 1);
     let to = name[from..].rfind('.').map_or(name.len(), |at| from + at);
-    let mut runs: Vec<(usize, usize)> = Vec::new();
-    for (i, c) in name[from..to].bytes().enumerate() {
-        if c.is_ascii_digit() {
-            match runs.last_mut() {
-                Some(run) if run.1 == from + i => run.1 += 1,
-                _ => runs.push((from + i, from + i + 1)),
-            }
-        }
+    let digits = |at: usize| name[at..to].bytes().take_while(u8::is_ascii_digit).count();
+    let begins = (from..to).filter(|at| digits_at(name, *at) && (*at == from || !digits_at(name, at - 1)));
+    begins.map(|at| [name[..at].to_owned(), name[at + digits(at)..].to_owned()]).collect()
+}
+
+fn digits_at(name: &str, at: usize) -> bool {
+    name.as_bytes()[at].is_ascii_digit()
+}
+
+/// How many of the names have a number in the same place between the same words.
+type Numbers = HashMap<[String; 2], usize>;
+
+fn numbers(names: &[String]) -> Numbers {
+    let mut numbers = Numbers::new();
+    names.iter().flat_map(|name| runs(name)).for_each(|run| *numbers.entry(run).or_default() += 1);
+    numbers
+}
+
+/// What stands before and behind the number by which a name differs from others that are like it but for one number; else behind the last. A
+/// name without a number is all before.
+fn apart(name: &str, numbers: &Numbers) -> [String; 2] {
+    let mut runs = runs(name);
+    let varies = |run: &[String; 2]| numbers.get(run).is_some_and(|n| *n > 1);
+    match runs.iter().rposition(varies).or(runs.len().checked_sub(1)) {
+        Some(at) => runs.swap_remove(at),
+        None => [name.to_owned(), String::new()],
     }
-    let ends = |(begin, end): (usize, usize)| [name[..begin].to_owned(), name[end..].to_owned()];
-    let varies = |run: &&(usize, usize)| {
-        let [before, after] = ends(**run);
-        let like = |other: &&String| {
-            let inside = other.strip_prefix(&before).and_then(|rest| rest.strip_suffix(&after));
-            inside.is_some_and(|n| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit()))
-        };
-        others.iter().filter(like).count() > 1
-    };
-    let run = runs.iter().rev().find(varies).or(runs.last());
-    run.map_or_else(|| [name.to_owned(), String::new()], |run| ends(*run))
 }
 
 /// Whether two names differ in one number alone.
 pub(super) fn alike(one: &str, other: &str) -> bool {
-    let both = [one.to_owned(), other.to_owned()];
+    let both = numbers(&[one.to_owned(), other.to_owned()]);
     one != other && apart(one, &both) == apart(other, &both)
 }
 
@@ -267,7 +289,7 @@ mod tests {
             ("record.mp3", ["record.mp3", ""]),
             ("a5/plain", ["a5/plain", ""]),
         ] {
-            assert_eq!(apart(name, &all), expected, "{name}");
+            assert_eq!(apart(name, &numbers(&all)), expected, "{name}");
         }
         assert_eq!([common("x/step_"), common("")], ["step", "series"]);
     }

@@ -1,11 +1,13 @@
 //! Records of unknown kind, tried with one analysis after another.
 
 use super::folder::{Series, short};
+use super::found::Found;
 use super::{Proposal, Table};
-use crate::analysis::{self, Answer, Kept, Progress};
+use crate::analysis::{self, Answer, Kept};
 use crate::campaign::Reading;
 use crate::read::{Folder, Header};
 use crate::record::{Record, Severity};
+use rayon::prelude::*;
 use serde_json::Value;
 use std::ops::Range;
 use std::slice::from_ref;
@@ -44,12 +46,18 @@ const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
 /// Files that may be steps of a sweep.
 const STEPS: usize = 5;
 
+/// Values of a file that are tried: five minutes of eight channels at 51.2 kHz are 123 million, some minutes' work and 80 bytes each in memory.
+const VALUES: usize = 1 << 27;
+
+/// The table of a channel of a series, under a name.
+type Kind = fn(&Series, usize, &str) -> Table;
+
 /// Tries what a record can be measured for.
+#[derive(Clone, Copy)]
 pub(super) struct Trial<'a> {
     pub folder: &'a Folder,
     pub reading: &'a Reading,
     pub kept: &'a Kept,
-    pub progress: &'a dyn Progress,
 }
 
 impl Trial<'_> {
@@ -57,8 +65,8 @@ impl Trial<'_> {
     fn answers(&self, tables: &[Table]) -> Result<Answer, String> {
         let path = self.folder.root().join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml()).collect();
-        let answered = analysis::parse(self.folder, &path, text)
-            .and_then(|c| analysis::answers(&c, self.kept, self.progress));
+        let answered =
+            analysis::parse(self.folder, &path, text).and_then(|c| analysis::answers(&c, self.kept, &()));
         answered.map_err(|error| short(&error))?
     }
 
@@ -97,108 +105,115 @@ impl Trial<'_> {
         self.answers(tables).ok().filter(sure)
     }
 
-    /// Adds the tables of a series.
-    pub fn series(&self, series: &Series, proposal: &mut Proposal) {
-        let table = series.sweep().filter(|_| series.files.len() >= STEPS);
-        let heard = table.as_ref().and_then(|table| self.answers(from_ref(table)).ok());
-        if let (Some(table), Some(heard)) = (table, heard.filter(settled)) {
-            let (_, responses) = series.force_and_responses().unwrap_or_default();
-            let name = |k: usize| match responses.len() {
-                1 => series.name.clone(),
-                _ => format!("{} {}", series.name, series.channel(k).to_string().trim_matches('"')),
-            };
-            let jumps =
-                |i: usize| heard.result["responses"][i]["jumps"].as_array().is_some_and(|j| !j.is_empty());
-            // A motion that jumps is not that of linear modes.
-            let modes = responses.iter().enumerate().filter(|(i, _)| !jumps(*i)).map(|(_, k)| {
-                let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
-                table.found("name", format!("{}, modes", name(*k)))
-            });
-            let modes: Vec<Table> = modes.collect();
-            proposal.tables.push(table);
-            proposal.tables.extend(modes);
-            return;
+    /// The tables of a sweep, if a series is one; a few of its files tell whether to read all.
+    pub fn sweep(&self, series: &Series, few: &Series) -> Option<Found> {
+        let table = series.sweep().filter(|_| series.files.len() >= STEPS)?;
+        let answer = |table: &Table| self.answers(from_ref(table)).ok();
+        if few.files.len() < series.files.len() {
+            answer(&few.sweep()?).filter(|heard| settled(heard, 0.0))?;
         }
-        let drops = |table: &dyn Fn(&Series) -> Table| {
-            let one = |file: &String| table(&Series { files: vec![file.clone()], ..series.clone() });
+        let heard = answer(&table).filter(|heard| settled(heard, 0.5))?;
+        let (_, responses) = series.force_and_responses().unwrap_or_default();
+        let name = |k: usize| match responses.len() {
+            1 => series.name.clone(),
+            _ => format!("{} {}", series.name, series.channel(k).to_string().trim_matches('"')),
+        };
+        let jumps =
+            |i: usize| heard.result["responses"][i]["jumps"].as_array().is_some_and(|j| !j.is_empty());
+        // A motion that jumps is not that of linear modes.
+        let modes = responses.iter().enumerate().filter(|(i, _)| !jumps(*i)).map(|(_, k)| {
+            let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
+            table.found("name", format!("{}, modes", name(*k)))
+        });
+        Some(Found { tables: [table].into_iter().chain(modes).collect(), ..Found::default() })
+    }
+
+    /// The tables of repeated drops, if a few files of a series are such.
+    pub fn drops(&self, series: &Series, few: &Series) -> Option<Found> {
+        if series.files.len() < 2 || series.headers.len() != 1 || series.headers[0].n > VALUES {
+            return None;
+        }
+        let drops = |series: &Series, table: Kind| {
+            let one = |file: &String| {
+                table(&Series { files: vec![file.clone()], ..series.clone() }, 0, &series.name)
+            };
             match series.pattern {
-                Some(_) => vec![table(series)],
+                Some(_) => vec![table(series, 0, &series.name)],
                 None => series.files.iter().map(one).collect::<Vec<Table>>(),
             }
         };
         // Repeated drops of one body agree.
-        let tried = [drops(&|one| one.bounces(0, &series.name)), drops(&|one| one.fall(0, &series.name))];
-        if series.files.len() > 1
-            && series.headers.len() == 1
-            && let Some(drops) = tried.into_iter().find(|tables| self.sensibly(tables).is_some())
-        {
-            proposal.tables.extend(drops);
-            return;
-        }
-        for file in &series.files {
-            let one = Series { files: vec![file.clone()], ..series.clone() };
-            let name = if series.files.len() > 1 { file.clone() } else { series.name.clone() };
-            self.file(&one, &name, proposal);
-        }
+        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).is_some();
+        let kind = [Series::bounces as Kind, Series::fall].into_iter().find(agree)?;
+        Some(Found { tables: drops(series, kind), ..Found::default() })
     }
 
-    /// Adds the tables of one file.
-    fn file(&self, series: &Series, name: &str, proposal: &mut Proposal) {
+    /// What one file is.
+    pub fn file(&self, series: &Series, name: &str) -> Found {
         let file = &series.files[0];
+        let mut found = Found::default();
         let spectra: Vec<&Header> = series.headers.iter().filter(|h| h.kind != "trace").collect();
         if !spectra.is_empty() {
             if spectra.iter().all(|h| h.kind != "frf") {
                 let why = "a spectrum; those of a sweep stand in a list file, or in [[sweep]] as force and response";
-                proposal.left.push((file.clone(), why.to_owned()));
-                return;
+                return Found::left(file, why);
             }
             let table = Table::new("frf", "a frequency response function", file);
-            return self.add(table.found("name", name).found("file", file), file, proposal);
+            return self.answering(table.found("name", name).found("file", file));
         }
         if let Some((force, responses)) = series.force_and_responses() {
             for response in responses {
-                self.function(series, name, [force, response], proposal);
+                found.add(self.function(series, name, [force, response]));
             }
-            return;
+            return found;
+        }
+        let channels = series.headers.len().min(CHANNELS);
+        let values: usize = series.headers[..channels].iter().map(|header| header.n).sum();
+        if values > VALUES {
+            let why = format!(
+                "{values} values, more than the {VALUES} that are tried; write its table by hand, as docs/campaign.md shows, or: vibro spectrum {file} --channel 1"
+            );
+            return Found::left(file, why);
         }
         let drills = self.drill(series, name);
         if !drills.is_empty() {
-            proposal.tables.extend(drills);
-            return;
+            return Found { tables: drills, ..found };
         }
-        for k in 0..series.headers.len().min(CHANNELS) {
-            let [pulse, others @ ..] = series.of_channel(k, name);
-            // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
-            let alone = |heard: Answer| {
-                let record = heard.result.get("pulses").and_then(|all| all.get(0));
-                let short =
-                    record.and_then(|pulse| pulse["duration"]["value"].as_f64()) < Some(LONGEST_CONTACT);
-                short && heard.findings.iter().all(|(_, finding)| finding.code != ANOTHER)
-            };
-            if self.answers(from_ref(&pulse)).is_ok_and(alone) {
-                proposal.tables.push(pulse);
-                continue;
-            }
-            if let Some(table) = self.first(&others).or_else(|| self.unexplained(&others)) {
-                proposal.tables.push(table);
-                continue;
-            }
-            let table = series.channel_table(k, name, "spectrum", "a time record");
-            let what = "sines to fit, strongest first; gives their true amplitudes";
-            self.add(table.open("tones", "", what), file, proposal);
-        }
+        let each = (0..channels).into_par_iter().map(|k| self.channel(series, k, name));
+        each.collect::<Vec<Found>>().into_iter().for_each(|one| found.add(one));
+        found
     }
 
-    /// Adds a table that answers; else says of its file why not.
-    fn add(&self, table: Table, file: &str, proposal: &mut Proposal) {
+    /// What one channel is.
+    fn channel(&self, series: &Series, k: usize, name: &str) -> Found {
+        let [pulse, others @ ..] = series.of_channel(k, name);
+        // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
+        let alone = |heard: Answer| {
+            let record = heard.result.get("pulses").and_then(|all| all.get(0));
+            let short = record.and_then(|pulse| pulse["duration"]["value"].as_f64()) < Some(LONGEST_CONTACT);
+            short && heard.findings.iter().all(|(_, finding)| finding.code != ANOTHER)
+        };
+        if self.answers(from_ref(&pulse)).is_ok_and(alone) {
+            return Found::table(pulse);
+        }
+        if let Some(table) = self.first(&others).or_else(|| self.unexplained(&others)) {
+            return Found::table(table);
+        }
+        let table = series.channel_table(k, name, "spectrum", "a time record");
+        let what = "sines to fit, strongest first; gives their true amplitudes";
+        self.answering(table.open("tones", "", what))
+    }
+
+    /// A table that answers; else why its file does not.
+    fn answering(&self, table: Table) -> Found {
         match self.answers(from_ref(&table)) {
-            Ok(_) => proposal.tables.push(table),
-            Err(why) => proposal.left.push((file.to_owned(), why)),
+            Ok(_) => Found::table(table),
+            Err(why) => Found::left(table.files, why),
         }
     }
 
     /// The function between two channels: of noise, else of blows.
-    fn function(&self, series: &Series, name: &str, [force, response]: [usize; 2], proposal: &mut Proposal) {
+    fn function(&self, series: &Series, name: &str, [force, response]: [usize; 2]) -> Found {
         let file = &series.files[0];
         let called = format!("{name} {}", series.headers[response].name);
         let table = |about| {
@@ -217,8 +232,8 @@ impl Trial<'_> {
         };
         let blows = table("a hammer test").guessed("hammer", true, "the force is zero between blows");
         match self.first(&[steady.clone(), blows]) {
-            Some(table) => proposal.tables.push(table),
-            None => self.add(steady, file, proposal),
+            Some(table) => Found::table(table),
+            None => self.answering(steady),
         }
     }
 
@@ -319,13 +334,13 @@ impl Series {
     }
 }
 
-/// Whether half of the steps of each sweep or more have an uncertainty: one that is clipped makes no other kind of the rest.
-fn settled(heard: &Answer) -> bool {
+/// Whether this share of the steps of each sweep or more have an uncertainty, and one at least: one that is clipped makes no other kind of the rest.
+fn settled(heard: &Answer, share: f64) -> bool {
     let responses = heard.result.get("responses").and_then(Value::as_array);
     let most = |response: &Value| {
         let points = response["points"].as_array().map_or(&[][..], Vec::as_slice);
         let sure = points.iter().filter(|point| point["amplitude"]["std"].is_number()).count();
-        2 * sure >= points.len() && sure > 0
+        sure as f64 >= share * points.len() as f64 && sure > 0
     };
     responses.is_some_and(|all| !all.is_empty() && all.iter().all(most))
 }

@@ -10,6 +10,7 @@ mod documents;
 mod impacts;
 mod init;
 mod kept;
+mod many;
 mod model;
 mod modes;
 mod periodic;

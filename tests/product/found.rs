@@ -28,7 +28,11 @@ fn vibro(arguments: &[&str]) -> (i32, Value, Duration) {
     let output = Command::new(env!("CARGO_BIN_EXE_vibro")).args(arguments).arg("--json").output().unwrap();
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(!stderr.contains("panicked"), "{stderr}");
-    (output.status.code().unwrap(), serde_json::from_slice(&output.stdout).unwrap_or(Value::Null), began.elapsed())
+    (
+        output.status.code().unwrap(),
+        serde_json::from_slice(&output.stdout).unwrap_or(Value::Null),
+        began.elapsed(),
+    )
 }
 
 fn text(path: &Path) -> &str {
@@ -89,7 +93,8 @@ fn a_sine_of_few_counts_that_is_clipped_is_named() {
     let clipped = finding(&answer, "step-clipped").expect("the clipped step is named");
     let frequency = clipped["numbers"]["frequencies"].as_array().map_or(&clipped["numbers"], |all| &all[0]);
     assert!(frequency.to_string().contains("27.6"), "{clipped}");
-    let std: Vec<bool> = answer["points"].as_array().unwrap().iter().map(|p| p["amplitude"]["std"].is_null()).collect();
+    let std: Vec<bool> =
+        answer["points"].as_array().unwrap().iter().map(|p| p["amplitude"]["std"].is_null()).collect();
     assert_eq!(std.iter().filter(|none| **none).count(), 1, "{std:?}");
 }
 

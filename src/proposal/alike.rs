@@ -1,0 +1,176 @@
+//! Files that are alike: a few are tried, and stand for the others where they agree.
+
+use super::folder::Series;
+use super::found::Found;
+use super::trial::Trial;
+use crate::analysis::{Kept, Progress};
+use crate::campaign::Reading;
+use crate::read::{Folder, Header};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Files that are tried each. Of more that are alike so many are, at even distances.
+const FEW: usize = 8;
+
+/// Files that are tried at most of those that are alike and do not agree: 20 s of work with functions of noise.
+const MOST: usize = 256;
+
+/// What each series is, in order. Series are tried side by side, and so are their files.
+pub(super) fn all(
+    series: &[Series],
+    (folder, reading): (&Folder, &Reading),
+    kept: &Kept,
+    progress: &dyn Progress,
+) -> Vec<Found> {
+    progress.start("looking at files", series.iter().map(|one| one.files.len()).sum());
+    let untimed = reading.untimed();
+    let trial = |one: &Series| Trial { folder, reading: if one.timed { &untimed } else { reading }, kept };
+    let together = |one: &Series| {
+        let (trial, few) = (trial(one), one.part(spread(one.files.len())));
+        let found = trial.sweep(one, &few).or_else(|| trial.drops(one, &few))?;
+        one.files.iter().for_each(|_| progress.step());
+        Some(found)
+    };
+    let mut found: Vec<Option<Found>> = series.par_iter().map(together).collect();
+    let mut kin: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (i, one) in series.iter().enumerate().filter(|(i, _)| found[*i].is_none()) {
+        kin.entry(one.kin()).or_default().push(i);
+    }
+    let each = |at: &Vec<usize>| {
+        let of: Vec<&Series> = at.iter().map(|i| &series[*i]).collect();
+        each(&of, trial(of[0]), progress)
+    };
+    let at: Vec<Vec<usize>> = kin.into_values().collect();
+    let tried: Vec<Vec<Found>> = at.par_iter().map(each).collect();
+    at.iter().flatten().zip(tried.into_iter().flatten()).for_each(|(i, one)| found[*i] = Some(one));
+    let stated = |(mut found, one): (Found, &Series)| {
+        found.tables.iter_mut().for_each(|table| *table = table.stated(trial(one).reading));
+        found
+    };
+    found.into_iter().flatten().zip(series).map(stated).collect()
+}
+
+/// What series are whose files are alike.
+fn each(all: &[&Series], trial: Trial<'_>, progress: &dyn Progress) -> Vec<Found> {
+    let files: Vec<(&Series, &String)> =
+        all.iter().flat_map(|series| series.files.iter().map(|file| (*series, file))).collect();
+    let name = |k: usize| if files[k].0.files.len() > 1 { files[k].1 } else { &files[k].0.name };
+    let known = tried(files.len(), Found::agrees, |k| {
+        let (series, file) = files[k];
+        let found = trial.file(&Series { files: vec![file.clone()], ..series.clone() }, name(k));
+        progress.step();
+        found.renamed(name(k), [""; 3])
+    });
+    (known.len()..files.len()).for_each(|_| progress.step());
+    let nearest = |k: usize| {
+        let (below, above) = (known.range(..=k).next_back()?.1, known.range(k..).next()?.1);
+        below.agrees(above).then_some(below)
+    };
+    let mut first = 0;
+    let of_series = |series: &&Series| {
+        let own: Vec<(usize, Option<&Found>)> =
+            (first..first + series.files.len()).map(|k| (k, nearest(k))).collect();
+        first += own.len();
+        let same = |one: &Found| own.iter().all(|(_, other)| other.is_some_and(|other| other.agrees(one)));
+        if let (Some(pattern), Some(one)) = (&series.pattern, own[0].1)
+            && own.len() > FEW
+            && same(one)
+        {
+            return one.renamed("", [&series.name, pattern, &series.in_words()]);
+        }
+        let mut found = Found::default();
+        for (k, one) in &own {
+            let file = files[*k].1;
+            found.add(one.map(|one| one.renamed("", [name(*k), file, file])).unwrap_or_default());
+        }
+        let untried: Vec<usize> = (0..own.len()).filter(|k| own[*k].1.is_none()).collect();
+        if !untried.is_empty() {
+            let why = format!(
+                "{} files like these were tried and are of several kinds; write a table for each kind by hand, as docs/campaign.md shows",
+                known.len()
+            );
+            found.add(Found::left(series.part(untried).in_words(), why));
+        }
+        found
+    };
+    all.iter().map(of_series).collect()
+}
+
+/// Those of so many files that are tried first.
+fn spread(n: usize) -> Vec<usize> {
+    if n <= FEW { (0..n).collect() } else { (0..FEW).map(|k| k * (n - 1) / (FEW - 1)).collect() }
+}
+
+/// Tries a few of `n` files, and one in the middle between two that do not agree, until neighbours are left or [`MOST`] are tried. What it tries does
+/// not depend on the number of cores.
+fn tried<T: Send + Sync>(
+    n: usize,
+    agree: impl Fn(&T, &T) -> bool,
+    trial: impl Fn(usize) -> T + Sync,
+) -> BTreeMap<usize, T> {
+    let (mut known, mut next) = (BTreeMap::new(), spread(n));
+    while !next.is_empty() && known.len() + next.len() <= MOST {
+        known.extend(next.par_iter().map(|k| (*k, trial(*k))).collect::<Vec<_>>());
+        let pairs = known.iter().zip(known.iter().skip(1));
+        let differ = pairs.filter(|((a, one), (b, other))| **b - **a > 1 && !agree(one, other));
+        next = differ.map(|((a, _), (b, _))| usize::midpoint(*a, *b)).collect();
+    }
+    known
+}
+
+impl Series {
+    /// Some of its files, by their places.
+    fn part(&self, places: Vec<usize>) -> Series {
+        let pattern = self.pattern.clone().filter(|_| places.len() == self.files.len());
+        Series { files: places.into_iter().map(|k| self.files[k].clone()).collect(), pattern, ..self.clone() }
+    }
+
+    /// What files have in common that are probably of one kind: names but for numbers, channels, and about as many values.
+    fn kin(&self) -> String {
+        let channel =
+            |h: &Header| format!("\n{}|{}|{}|{:?}|{}", h.name, h.unit, h.kind, h.rate, h.n.max(1).ilog2());
+        let words = self.files[0].chars().filter(|c| !c.is_ascii_digit());
+        let start = if self.timed { "timed\n" } else { "" };
+        start.chars().chain(words).collect::<String>() + &self.headers.iter().map(channel).collect::<String>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// How many of `n` files of these kinds are tried, and those that are.
+    fn tries(n: usize, kind: impl Fn(usize) -> usize + Sync) -> (usize, BTreeMap<usize, usize>) {
+        let count = AtomicUsize::new(0);
+        let known = tried(
+            n,
+            |a, b| a == b,
+            |k| {
+                count.fetch_add(1, Ordering::Relaxed);
+                kind(k)
+            },
+        );
+        (count.into_inner(), known)
+    }
+
+    #[test]
+    fn work_grows_with_the_kinds_of_files_and_not_with_their_number() {
+        assert_eq!(tries(FEW, |_| 0).0, FEW);
+        for n in [FEW + 1, 250, 5000, 100_000] {
+            assert_eq!(tries(n, |_| 0).0, FEW, "{n}");
+        }
+        // Where each is another the budget bounds them; up to that all are tried.
+        assert_eq!(tries(MOST, |k| k).0, MOST);
+        assert!(tries(5000, |k| k).0 <= MOST);
+    }
+
+    #[test]
+    fn a_change_is_found_at_its_place() {
+        for at in [1, 7, 249, 2500, 4999] {
+            let (n, known) = tries(5000, |k| usize::from(k >= at));
+            // Halving a seventh of 5000 files takes ten steps.
+            assert!(n <= FEW + 10 && known[&(at - 1)] == 0 && known[&at] == 1, "{at}: {n}");
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! What files are.
+
+use super::Table;
+
+/// The tables of files, and those that stand in none.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(super) struct Found {
+    /// Tables of a campaign.
+    pub tables: Vec<Table>,
+    /// Files that stand in no table, and why.
+    pub left: Vec<(String, String)>,
+}
+
+impl Found {
+    /// One table.
+    pub fn table(table: Table) -> Found {
+        Found { tables: vec![table], ..Found::default() }
+    }
+
+    /// No table, and why.
+    pub fn left(file: impl Into<String>, why: impl Into<String>) -> Found {
+        Found { left: vec![(file.into(), why.into())], ..Found::default() }
+    }
+
+    /// Adds what more files are.
+    pub fn add(&mut self, more: Found) {
+        self.tables.extend(more.tables);
+        self.left.extend(more.left);
+    }
+
+    /// The same of another file or of a pattern: its name, with which names of tables begin, how a table names it, and how a person is told.
+    pub fn renamed(&self, from: &str, [name, file, words]: [&str; 3]) -> Found {
+        let table = |table: &Table| {
+            let mut table = Table { files: words.to_owned(), ..table.clone() };
+            for row in &mut table.rows {
+                let value: String = serde_json::from_str(&row.value).unwrap_or_default();
+                let renamed = match row.key {
+                    "file" => file.to_owned(),
+                    "name" => name.to_owned() + value.strip_prefix(from).unwrap_or(&value),
+                    _ => continue,
+                };
+                row.value = serde_json::to_string(&renamed).unwrap_or_default();
+            }
+            table
+        };
+        let left = self.left.iter().map(|(_, why)| (words.to_owned(), why.clone()));
+        Found { tables: self.tables.iter().map(table).collect(), left: left.collect() }
+    }
+
+    /// Whether two files without their names have the same tables; why they have none may differ in numbers.
+    pub fn agrees(&self, other: &Found) -> bool {
+        self.tables == other.tables && self.left.len() == other.left.len()
+    }
+}
