@@ -2,7 +2,7 @@
 
 mod walk;
 
-use super::{Loss, Parameter, PeriodicOrbit};
+use super::{Loss, Parameter, PeriodicOrbit, scales};
 use serde::Serialize;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
@@ -47,6 +47,9 @@ pub struct Branch {
     pub ends: [End; 2],
 }
 
+/// Swings of a mass in a period up to which a motion is followed: each of thousands of steps searches all of them.
+const MOST_SWINGS: f64 = 1000.0;
+
 /// Follows the branch of `start` both ways while the value of `over` lies in `low..=high` (SI units): the frequency, the force, or a value of
 /// the rig.
 ///
@@ -55,7 +58,7 @@ pub struct Branch {
 /// the amplitude, a restitution itself.
 ///
 /// # Errors
-/// If the range or the step is impossible or does not hold the start.
+/// If the range or the step is impossible or does not hold the start; if a mass swings more than 1000 times in a period.
 pub fn follow(start: &PeriodicOrbit, over: Parameter, low: f64, high: f64, step: f64) -> Result<Branch> {
     let value = over.of(&start.rig, &start.sine);
     check_range(over, low, high, value)?;
@@ -64,6 +67,7 @@ pub fn follow(start: &PeriodicOrbit, over: Parameter, low: f64, high: f64, step:
             .hint("0.05")
             .setting("step"));
     }
+    scales::check_swings(&start.rig, start.sine.frequency / f64::from(start.cycles), MOST_SWINGS)?;
     let walk = Walk { start, over, low, high, step };
     let origin = walk.point(start)?;
     let mut forth = walk.run(&origin, 1.0)?;

@@ -69,6 +69,9 @@ pub struct Point {
     pub reaction: Reaction,
 }
 
+/// Swings of a mass in a cycle up to which a sweep is followed: a hundred cycles at each of a hundred points are then a minute.
+const MOST_SWINGS: f64 = 1e4;
+
 impl Plan {
     /// Checks the plan.
     ///
@@ -108,6 +111,9 @@ impl Plan {
     /// As [`Plan::check`] and [`Motion::advance`].
     pub fn frequency(&self, motion: &mut dyn Motion, force: f64, direction: Direction) -> Result<Vec<Point>> {
         self.check()?;
+        if self.from > 0.0 {
+            scales::check_swings(motion.rig(), self.from, MOST_SWINGS)?;
+        }
         let Pace::Rate { rate, points } = self.pace else {
             return self.steps(motion, direction, |motion, value| {
                 motion.set_frequency(value)?;

@@ -1,6 +1,7 @@
 //! Whatever number is typed, a command ends soon, with an answer or a reason.
 
 use super::{complaint, text, vibro};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -13,7 +14,7 @@ fn record(folder: &Path) -> String {
         let t = f64::from(i % 2000) * 1e-3 - 0.1;
         let blow = if (0.0..0.003).contains(&t) { 10.0 } else { 0.0 };
         let rings = if t < 0.0 { 0.0 } else { (-4.0 * t).exp() * (251.3 * t).sin() };
-        rows += &format!("{:.3},{blow},{rings:.9}\n", f64::from(i) * 1e-3);
+        let _ = writeln!(rows, "{:.3},{blow},{rings:.9}", f64::from(i) * 1e-3);
     }
     let path = folder.join("record.csv");
     fs::write(&path, rows).unwrap();
