@@ -9,11 +9,22 @@ use crate::read::{Folder, Header};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
+/// Channels of a file that are tried.
+pub(super) const CHANNELS: usize = 8;
+
 /// Files that are tried each. Of more that are alike so many are, at even distances.
 const FEW: usize = 8;
 
 /// Files that are tried at most of those that are alike and do not agree: 20 s of work with functions of noise.
 const MOST: usize = 256;
+
+/// Values that are tried side by side at most, 80 bytes each in memory: larger files are tried one after the other.
+const TOGETHER: usize = 1 << 25;
+
+/// How many files of so many values one core tries before another begins.
+pub(super) fn share(values: usize) -> usize {
+    if values.saturating_mul(rayon::current_num_threads()) > TOGETHER { usize::MAX } else { 1 }
+}
 
 /// What each series is, in order. Series are tried side by side, and so are their files.
 pub(super) fn all(
@@ -31,7 +42,8 @@ pub(super) fn all(
         one.files.iter().for_each(|_| progress.step());
         Some(found)
     };
-    let mut found: Vec<Option<Found>> = series.par_iter().map(together).collect();
+    let share = share(series.iter().map(Series::values).max().unwrap_or(0));
+    let mut found: Vec<Option<Found>> = series.par_iter().with_min_len(share).map(together).collect();
     let mut kin: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, one) in series.iter().enumerate().filter(|(i, _)| found[*i].is_none()) {
         kin.entry(one.kin()).or_default().push(i);
@@ -41,7 +53,7 @@ pub(super) fn all(
         each(&of, trial(of[0]), progress)
     };
     let at: Vec<Vec<usize>> = kin.into_values().collect();
-    let tried: Vec<Vec<Found>> = at.par_iter().map(each).collect();
+    let tried: Vec<Vec<Found>> = at.par_iter().with_min_len(share).map(each).collect();
     at.iter().flatten().zip(tried.into_iter().flatten()).for_each(|(i, one)| found[*i] = Some(one));
     let stated = |(mut found, one): (Found, &Series)| {
         found.tables.iter_mut().for_each(|table| *table = table.stated(trial(one).reading));
@@ -55,7 +67,7 @@ fn each(all: &[&Series], trial: Trial<'_>, progress: &dyn Progress) -> Vec<Found
     let files: Vec<(&Series, &String)> =
         all.iter().flat_map(|series| series.files.iter().map(|file| (*series, file))).collect();
     let name = |k: usize| if files[k].0.files.len() > 1 { files[k].1 } else { &files[k].0.name };
-    let known = tried(files.len(), Found::agrees, |k| {
+    let known = tried((files.len(), share(all[0].values())), Found::agrees, |k| {
         let (series, file) = files[k];
         let found = trial.file(&Series { files: vec![file.clone()], ..series.clone() }, name(k));
         progress.step();
@@ -104,13 +116,13 @@ fn spread(n: usize) -> Vec<usize> {
 /// Tries a few of `n` files, and one in the middle between two that do not agree, until neighbours are left or [`MOST`] are tried. What it tries does
 /// not depend on the number of cores.
 fn tried<T: Send + Sync>(
-    n: usize,
+    (n, share): (usize, usize),
     agree: impl Fn(&T, &T) -> bool,
     trial: impl Fn(usize) -> T + Sync,
 ) -> BTreeMap<usize, T> {
     let (mut known, mut next) = (BTreeMap::new(), spread(n));
     while !next.is_empty() && known.len() + next.len() <= MOST {
-        known.extend(next.par_iter().map(|k| (*k, trial(*k))).collect::<Vec<_>>());
+        known.extend(next.par_iter().with_min_len(share).map(|k| (*k, trial(*k))).collect::<Vec<_>>());
         let pairs = known.iter().zip(known.iter().skip(1));
         let differ = pairs.filter(|((a, one), (b, other))| **b - **a > 1 && !agree(one, other));
         next = differ.map(|((a, _), (b, _))| usize::midpoint(*a, *b)).collect();
@@ -123,6 +135,11 @@ impl Series {
     fn part(&self, places: Vec<usize>) -> Series {
         let pattern = self.pattern.clone().filter(|_| places.len() == self.files.len());
         Series { files: places.into_iter().map(|k| self.files[k].clone()).collect(), pattern, ..self.clone() }
+    }
+
+    /// Values of a file that are tried.
+    pub(super) fn values(&self) -> usize {
+        self.headers.iter().take(CHANNELS).map(|header| header.n).sum()
     }
 
     /// What files have in common that are probably of one kind: names but for numbers, channels, and about as many values.
@@ -144,7 +161,7 @@ mod tests {
     fn tries(n: usize, kind: impl Fn(usize) -> usize + Sync) -> (usize, BTreeMap<usize, usize>) {
         let count = AtomicUsize::new(0);
         let known = tried(
-            n,
+            (n, 1),
             |a, b| a == b,
             |k| {
                 count.fetch_add(1, Ordering::Relaxed);

@@ -1,5 +1,6 @@
 //! Records of unknown kind, tried with one analysis after another.
 
+use super::alike::{CHANNELS, share};
 use super::folder::{Series, short};
 use super::found::Found;
 use super::{Proposal, Table};
@@ -11,9 +12,6 @@ use rayon::prelude::*;
 use serde_json::Value;
 use std::ops::Range;
 use std::slice::from_ref;
-
-/// Channels of a file that are tried.
-const CHANNELS: usize = 8;
 
 /// What a fall is measured by.
 const HEIGHT: &str = "height of the fall in m";
@@ -130,7 +128,7 @@ impl Trial<'_> {
 
     /// The tables of repeated drops, if a few files of a series are such.
     pub fn drops(&self, series: &Series, few: &Series) -> Option<Found> {
-        if series.files.len() < 2 || series.headers.len() != 1 || series.headers[0].n > VALUES {
+        if series.files.len() < 2 || series.headers.len() != 1 || series.values() > VALUES {
             return None;
         }
         let drops = |series: &Series, table: Kind| {
@@ -167,8 +165,7 @@ impl Trial<'_> {
             }
             return found;
         }
-        let channels = series.headers.len().min(CHANNELS);
-        let values: usize = series.headers[..channels].iter().map(|header| header.n).sum();
+        let (channels, values) = (series.headers.len().min(CHANNELS), series.values());
         if values > VALUES {
             let why = format!(
                 "{values} values, more than the {VALUES} that are tried; write its table by hand, as docs/campaign.md shows, or: vibro spectrum {file} --channel 1"
@@ -179,7 +176,8 @@ impl Trial<'_> {
         if !drills.is_empty() {
             return Found { tables: drills, ..found };
         }
-        let each = (0..channels).into_par_iter().map(|k| self.channel(series, k, name));
+        let each = (0..channels).into_par_iter().with_min_len(share(values));
+        let each = each.map(|k| self.channel(series, k, name));
         each.collect::<Vec<Found>>().into_iter().for_each(|one| found.add(one));
         found
     }
