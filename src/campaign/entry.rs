@@ -97,10 +97,11 @@ impl Campaign {
             rows.iter().map(|(k, v)| (k.get_ref().to_string(), k.span().start..v.span().end)).collect();
         let beside: Vec<&str> =
             if of_a_file { [&NAMED[..], &Channel::KEYS, &Reading::KEYS].concat() } else { Vec::new() };
-        for (key, value) in &rows {
+        // A value of the wrong kind is complained of first.
+        let in_range = rows.iter().try_for_each(|(key, value)| {
             let span = || key.span().start..value.span().end;
-            range::all_in_range(key.get_ref(), value.get_ref()).map_err(|e| self.pointed(e, span()))?;
-        }
+            range::all_in_range(key.get_ref(), value.get_ref()).map_err(|e| self.pointed(e, span()))
+        });
         let mut part = |keys: &[&str]| -> DeTable<'_> {
             keys.iter().filter(|key| beside.contains(key)).filter_map(|key| rows.remove_entry(*key)).collect()
         };
@@ -110,6 +111,7 @@ impl Campaign {
         let Named { name, file } = locate::keys(named, head.clone()).map_err(complaint)?;
         let channel = locate::keys(channel, head.clone()).map_err(complaint)?;
         let reading = locate::keys(reading, head.clone()).map_err(complaint)?;
+        in_range?;
         Ok(Entry { name, file, channel, reading, keys, head, places })
     }
 
