@@ -15,8 +15,11 @@ pub(super) const CHANNELS: usize = 8;
 /// Files that are tried each. Of more that are alike so many are, at even distances.
 const FEW: usize = 8;
 
-/// Files that are tried at most of those that are alike and do not agree: 20 s of work with functions of noise.
+/// Files that are tried of those that are alike and do not agree: 20 s of work with functions of noise.
 const MOST: usize = 256;
+
+/// Files of one kind in a row, at least, on average: in a mixture of two kinds by chance there are two.
+const IN_A_ROW: usize = 8;
 
 /// Values that are tried side by side at most, 80 bytes each in memory: larger files are tried one after the other.
 const TOGETHER: usize = 1 << 25;
@@ -37,7 +40,7 @@ pub(super) fn all(
     let untimed = reading.untimed();
     let trial = |one: &Series| Trial { folder, reading: if one.timed { &untimed } else { reading }, kept };
     let together = |one: &Series| {
-        let (trial, few) = (trial(one), one.part(spread(one.files.len())));
+        let (trial, few) = (trial(one), one.part(spread(one.files.len(), FEW)));
         let found = trial.sweep(one, &few).or_else(|| trial.drops(one, &few))?;
         one.files.iter().for_each(|_| progress.step());
         Some(found)
@@ -67,7 +70,7 @@ fn each(all: &[&Series], trial: Trial<'_>, progress: &dyn Progress) -> Vec<Found
     let files: Vec<(&Series, &String)> =
         all.iter().flat_map(|series| series.files.iter().map(|file| (*series, file))).collect();
     let name = |k: usize| if files[k].0.files.len() > 1 { files[k].1 } else { &files[k].0.name };
-    let known = tried((files.len(), share(all[0].values())), Found::agrees, |k| {
+    let (known, rows) = tried((files.len(), share(all[0].values())), Found::agrees, |k| {
         let (series, file) = files[k];
         let found = trial.file(&Series { files: vec![file.clone()], ..series.clone() }, name(k));
         progress.step();
@@ -76,7 +79,7 @@ fn each(all: &[&Series], trial: Trial<'_>, progress: &dyn Progress) -> Vec<Found
     (known.len()..files.len()).for_each(|_| progress.step());
     let nearest = |k: usize| {
         let (below, above) = (known.range(..=k).next_back()?.1, known.range(k..).next()?.1);
-        below.agrees(above).then_some(below)
+        ((rows || known.contains_key(&k)) && below.agrees(above)).then_some(below)
     };
     let mut first = 0;
     let of_series = |series: &&Series| {
@@ -108,26 +111,40 @@ fn each(all: &[&Series], trial: Trial<'_>, progress: &dyn Progress) -> Vec<Found
     all.iter().map(of_series).collect()
 }
 
-/// Those of so many files that are tried first.
-fn spread(n: usize) -> Vec<usize> {
-    if n <= FEW { (0..n).collect() } else { (0..FEW).map(|k| k * (n - 1) / (FEW - 1)).collect() }
+/// At most `few` of so many files, at even distances.
+fn spread(n: usize, few: usize) -> Vec<usize> {
+    if n <= few { (0..n).collect() } else { (0..few).map(|k| k * (n - 1) / (few - 1)).collect() }
 }
 
-/// Tries a few of `n` files, and one in the middle between two that do not agree, until neighbours are left or [`MOST`] are tried. What it tries does
-/// not depend on the number of cores.
+/// Tries a few of `n` files; where they do not agree many, and where kinds stand in rows, their ends by halving: those between two that agree are
+/// then like them. Says whether they are. What it tries does not depend on the number of cores.
 fn tried<T: Send + Sync>(
     (n, share): (usize, usize),
     agree: impl Fn(&T, &T) -> bool,
     trial: impl Fn(usize) -> T + Sync,
-) -> BTreeMap<usize, T> {
-    let (mut known, mut next) = (BTreeMap::new(), spread(n));
-    while !next.is_empty() && known.len() + next.len() <= MOST {
+) -> (BTreeMap<usize, T>, bool) {
+    let more = |known: &mut BTreeMap<usize, T>, mut next: Vec<usize>| {
+        next.retain(|k| !known.contains_key(k));
         known.extend(next.par_iter().with_min_len(share).map(|k| (*k, trial(*k))).collect::<Vec<_>>());
         let pairs = known.iter().zip(known.iter().skip(1));
-        let differ = pairs.filter(|((a, one), (b, other))| **b - **a > 1 && !agree(one, other));
-        next = differ.map(|((a, _), (b, _))| usize::midpoint(*a, *b)).collect();
+        let differ = pairs.filter(|((_, one), (_, other))| !agree(one, other));
+        differ.map(|((a, _), (b, _))| (*a, *b)).collect::<Vec<(usize, usize)>>()
+    };
+    let (mut known, mut rows) = (BTreeMap::new(), true);
+    let mut differ = more(&mut known, spread(n, FEW));
+    if !differ.is_empty() {
+        differ = more(&mut known, spread(n, MOST));
+        rows = differ.len() * IN_A_ROW <= known.len();
     }
-    known
+    while rows {
+        let apart = differ.iter().filter(|(a, b)| b - a > 1);
+        let next: Vec<usize> = apart.map(|(a, b)| usize::midpoint(*a, *b)).collect();
+        if next.is_empty() {
+            break;
+        }
+        differ = more(&mut known, next);
+    }
+    (known, rows)
 }
 
 impl Series {
@@ -158,9 +175,9 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// How many of `n` files of these kinds are tried, and those that are.
-    fn tries(n: usize, kind: impl Fn(usize) -> usize + Sync) -> (usize, BTreeMap<usize, usize>) {
+    fn tries(n: usize, kind: impl Fn(usize) -> usize + Sync) -> (usize, BTreeMap<usize, usize>, bool) {
         let count = AtomicUsize::new(0);
-        let known = tried(
+        let (known, rows) = tried(
             (n, 1),
             |a, b| a == b,
             |k| {
@@ -168,7 +185,7 @@ mod tests {
                 kind(k)
             },
         );
-        (count.into_inner(), known)
+        (count.into_inner(), known, rows)
     }
 
     #[test]
@@ -177,17 +194,19 @@ mod tests {
         for n in [FEW + 1, 250, 5000, 100_000] {
             assert_eq!(tries(n, |_| 0).0, FEW, "{n}");
         }
-        // Where each is another the budget bounds them; up to that all are tried.
-        assert_eq!(tries(MOST, |k| k).0, MOST);
-        assert!(tries(5000, |k| k).0 <= MOST);
+        // Of a mixture all are tried, or a budget is spent and nothing is said of the others.
+        let mixed = |k: usize| (k * k) % 7 % 2;
+        assert_eq!(tries(MOST, mixed).0, MOST);
+        let (n, _, rows) = tries(5000, mixed);
+        assert!(n <= FEW + MOST && !rows, "{n}");
     }
 
     #[test]
     fn a_change_is_found_at_its_place() {
         for at in [1, 7, 249, 2500, 4999] {
-            let (n, known) = tries(5000, |k| usize::from(k >= at));
-            // Halving a seventh of 5000 files takes ten steps.
-            assert!(n <= FEW + 10 && known[&(at - 1)] == 0 && known[&at] == 1, "{at}: {n}");
+            let (n, known, rows) = tries(5000, |k| usize::from(k >= at));
+            // Halving 5000/255 files takes five steps.
+            assert!(rows && n <= FEW + MOST + 5 && known[&(at - 1)] == 0 && known[&at] == 1, "{at}: {n}");
         }
     }
 }
