@@ -224,7 +224,9 @@ impl Campaign {
 
     /// Folder for results.
     pub fn out(&self) -> PathBuf {
-        self.folder().join(self.out.as_deref().unwrap_or(Path::new(RESULTS)))
+        let out = self.folder().join(self.out.as_deref().unwrap_or(Path::new(RESULTS)));
+        // Without `.` between its parts.
+        out.components().collect()
     }
 
     /// Whether it asks for nothing.

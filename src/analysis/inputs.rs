@@ -5,6 +5,7 @@ use super::{file_name, files};
 use crate::campaign::Campaign;
 use crate::error::Result;
 use crate::read::listed;
+use crate::record::shown;
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
@@ -12,7 +13,7 @@ use std::path::Path;
 /// A line for the program, the campaign and each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
 ///
 /// # Errors
-/// As [`files`]; if a file cannot be read.
+/// As [`files`].
 pub fn inputs(campaign: &Campaign, kept: &Kept) -> Result<String> {
     let mut all = files(campaign)?;
     all.sort();
@@ -24,9 +25,11 @@ pub fn inputs(campaign: &Campaign, kept: &Kept) -> Result<String> {
     let own = if campaign.is_file() { own } else { format!("# {own}") };
     let program = listed(&kept.program().unwrap_or_default(), concat!("vibro ", env!("CARGO_PKG_VERSION")));
     let of_file = |path: &Path| {
-        let name = path.strip_prefix(campaign.folder()).unwrap_or(path).display().to_string();
-        kept.file(path).map(|digest| listed(&digest, &name))
+        let name = path.strip_prefix(campaign.folder()).unwrap_or(path);
+        // The record says why.
+        let unread = |_| format!("# {} cannot be read\n", shown(name));
+        kept.file(path).map_or_else(unread, |digest| listed(&digest, &name.to_string_lossy()))
     };
-    let lines: Result<Vec<String>> = all.par_iter().map(|path| of_file(path)).collect();
-    Ok(format!("# {program}{own}{}", lines?.concat()))
+    let lines: Vec<String> = all.par_iter().map(|path| of_file(path)).collect();
+    Ok(format!("# {program}{own}{}", lines.concat()))
 }

@@ -5,7 +5,7 @@ use super::inputs::inputs;
 use super::kept::{Kept, digest, packed};
 use super::recordings::beside;
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, Answer, KINDS, Kind, page};
+use super::{Analysis, Answer, KINDS, Kind, files as files_of, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;
@@ -162,18 +162,18 @@ impl<'a> Job<'a> {
         let files: Result<Vec<_>> = these.iter().map(|kind| (kind.files)(self.campaign)).collect();
         let stated = self.campaign.stated_without(|key| others.iter().any(|kind| kind.section == key))?;
         let files = files?.concat();
-        Ok((self.digest([sections.concat(), stated], &files)?, files))
+        Ok((self.digest([sections.concat(), stated], &files), files))
     }
 
-    /// The digest of words, and of names and contents of files.
-    fn digest(&self, words: impl IntoIterator<Item = String>, files: &[PathBuf]) -> Result<Digest> {
+    /// The digest of words, and of names and contents of files; what cannot be read is not kept.
+    fn digest(&self, words: impl IntoIterator<Item = String>, files: &[PathBuf]) -> Digest {
         let words = words.into_iter().map(String::into_bytes);
         let of_file = |file: &PathBuf| {
             let name = file.strip_prefix(self.campaign.folder()).unwrap_or(file);
-            Ok([name.to_string_lossy().as_bytes(), &self.kept.file(file)?].concat())
+            [name.to_string_lossy().as_bytes(), &self.kept.file(file).unwrap_or_default()].concat()
         };
-        let files: Result<Vec<_>> = files.par_iter().map(of_file).collect();
-        Ok(digest(words.chain(files?)))
+        let files: Vec<Vec<u8>> = files.par_iter().map(of_file).collect();
+        digest(words.chain(files))
     }
 
     /// Measures the record of each table by itself.
@@ -193,7 +193,7 @@ impl<'a> Job<'a> {
             // Numbers alone have no file.
             let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();
             let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
-            let mut on = self.digest(own, &files)?;
+            let mut on = self.digest(own, &files);
             if entry.file.is_none() && !K::RESTS_ON.is_empty() {
                 let (others, beside) = self.rests_on(K::RESTS_ON)?;
                 (on, files) = (digest([on, others]), beside);
@@ -329,6 +329,8 @@ pub struct Ran {
 /// If no record was answered and one of them could not be read; if a file cannot be found or written; if a file that is not vibro's stands in
 /// the way.
 pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn Progress) -> Result<Ran> {
+    // What an earlier run has read and kept is an input, too.
+    files_of(campaign)?.iter().for_each(|path| campaign.within().reads(path));
     let own = [RESULTS, REPORT, INPUTS, Kept::FILE];
     output.expect(|name| own.contains(&name) || KINDS.iter().any(|kind| kind.writes(campaign, name)))?;
     let mut job = Job::new(campaign, kept, progress);

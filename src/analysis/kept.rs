@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::read::{Digest, Folder, Standing};
+use crate::report::Output;
 use rmp_serde::config::BytesMode;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -29,7 +30,7 @@ pub struct Kept {
 
 impl Kept {
     /// The file of a folder of results in which they are kept.
-    pub const FILE: &str = ".vibro.kept";
+    pub const FILE: &str = Output::KEPT;
 
     /// Nothing is known of an earlier run.
     pub fn none(folder: &Folder) -> Kept {

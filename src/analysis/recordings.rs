@@ -1,9 +1,9 @@
 //! The recordings of a folder, and those of them that its campaign does not name.
 
-use super::{RESULTS, file_name, files};
+use super::{REPORT, RESULTS, file_name, files};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
-use crate::read::{Folder, Walk};
+use crate::read::{Folder, Left, Manifest, Walk};
 use crate::record::{Finding, shown};
 use glob::{MatchOptions, Pattern};
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,7 +24,7 @@ pub struct Recordings {
     /// Files that are none, by their endings.
     pub others: Vec<PathBuf>,
     /// What could not be looked at, and why.
-    pub left: Vec<(PathBuf, String)>,
+    pub left: Vec<(PathBuf, Left)>,
 }
 
 /// The recordings of a folder. Hidden files and results are passed over.
@@ -34,8 +34,10 @@ pub struct Recordings {
 pub fn recordings(folder: &Folder) -> Result<Recordings> {
     let Walk { files, left } = folder.walk(folder.root(), LEVELS)?;
     let top = plain(folder.root());
-    // Results of other versions have no manifest.
-    let results = |path: &Path| path != top && folder.is_file(&path.join(RESULTS));
+    // Results of versions that kept no manifest are all that lies in their folder.
+    let has = |path: &Path, name: &str| folder.is_file(&path.join(name));
+    let results =
+        |path: &Path| path != top && has(path, RESULTS) && has(path, REPORT) && !has(path, Manifest::FILE);
     let mut known: BTreeMap<PathBuf, bool> = BTreeMap::new();
     let is_result = |path: &PathBuf| {
         let parent = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -109,8 +111,10 @@ pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
     let own = plain(folder.root());
     let within = |path: &Path| path.strip_prefix(&own).map_or_else(|_| path.to_owned(), Path::to_owned);
     let meant = |path: &Path| pattern.matches_path_with(path, WHOLE_NAMES);
-    if let Some((path, why)) = found.left.iter().find(|(path, _)| meant(&within(path))) {
-        return Err(Error::usage(format!("{}: {why}", shown(path)), "").setting("allow_outside"));
+    let outside = |(path, why): &&(PathBuf, Left)| matches!(why, Left::Outside(_)) && meant(&within(path));
+    if let Some((path, why)) = found.left.iter().find(outside) {
+        let found = format!("{}: {why}", shown(path));
+        return Err(Error::usage(found, "").hint("allow it if you trust it").setting("allow_outside"));
     }
     let mut files: Vec<PathBuf> =
         found.files.iter().map(|path| within(path)).filter(|path| meant(path)).collect();
@@ -173,20 +177,27 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(all.iter().filter(new).cloned().collect())
 }
 
-/// What is said of files in the folder of a campaign that it does not name, where it is the folder's own.
+/// What is said of files in the folder of a campaign that it does not name, and of what could not be looked at, where it is the folder's own.
 ///
 /// # Errors
 /// As [`files`].
-pub fn beside(campaign: &Campaign) -> Result<Option<Finding>> {
+pub fn beside(campaign: &Campaign) -> Result<Vec<Finding>> {
     if !campaign.is_file() || !campaign.path().ends_with(OWN) {
-        return Ok(None);
+        return Ok(Vec::new());
     }
-    let new = unnamed(campaign, &recordings(campaign.within())?.files)?;
+    let seen = recordings(campaign.within())?;
+    let new = unnamed(campaign, &seen.files)?;
     let names: Vec<String> = new.iter().take(SHOWN).map(|path| file_name(path)).collect();
     let more = new.len().saturating_sub(SHOWN);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let found = Finding::note("files-not-named").count("n", new.len());
-    Ok((!new.is_empty()).then(|| found.name("files", names.join(", ") + &more)))
+    let found = (!new.is_empty()).then(|| found.name("files", names.join(", ") + &more));
+    let left = seen.left.iter().map(|(path, why)| (shown(file_name(path)), why));
+    // One that the campaign names says itself why it is not used.
+    let left = left.filter(|(name, _)| !campaign.text().contains(name));
+    let left =
+        left.map(|(name, why)| Finding::note("file-not-used").about(name).name("why", why.to_string()));
+    Ok(found.into_iter().chain(left).collect())
 }
 
 /// Name of the file of a folder's own campaign.

@@ -7,7 +7,7 @@ use crate::analysis::{self, Kept, REPORT, Ran};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
-use crate::read::{Folder, Owner};
+use crate::read::{Folder, Owner, Standing};
 use crate::record::shown;
 use crate::report::Table;
 use crate::report::files::Names;
@@ -56,7 +56,7 @@ fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
     let of_folder = path.join(Proposal::FILE);
     if !path.is_dir() {
         analysis::open_in(within, path)
-    } else if of_folder.exists() {
+    } else if within.standing(&of_folder) != Standing::Free {
         analysis::open_in(within, &of_folder)
     } else {
         analysis::parse(within, &of_folder, String::new())
@@ -65,7 +65,7 @@ fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
 
 /// The campaign; one proposed for what lies in its folder where it has no file.
 fn proposed(campaign: Campaign, kept: &Kept, json: bool) -> Result<Campaign> {
-    if campaign.path().exists() {
+    if campaign.is_file() {
         return Ok(campaign);
     }
     let (folder, within) = (campaign.folder(), campaign.within());
@@ -142,8 +142,14 @@ impl Run {
         let mut output = print::output(results, Owner::Run)?;
         let campaign = proposed(campaign, &kept, json)?;
         let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);
-        let Ran { answer, answered, again } = print::busy(json, "campaign", run)?;
-        output.commit()?;
+        let free = print::free(&folder);
+        let place = match &self.out {
+            Some(_) => format!("--out {}", print::typed(&free)),
+            None => format!("out = {:?}", free.file_name().map_or_else(String::new, shown)),
+        };
+        let elsewhere = |error| print::elsewhere(error, &place);
+        let Ran { answer, answered, again } = print::busy(json, "campaign", run).map_err(elsewhere)?;
+        output.commit().map_err(elsewhere)?;
         if again > 0 {
             let kept = counted(again, "answer");
             complain::line(&format!(

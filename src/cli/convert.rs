@@ -99,13 +99,14 @@ impl Run for Convert {
 /// # Errors
 /// If it cannot; if its folder does not exist.
 pub fn free(folder: &Folder, read: &Path, written: &Path, owner: Owner) -> Result<()> {
-    let true_path = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    if true_path(read) == true_path(written) {
+    if folder.same(read, written) {
         let found = format!("{} and {} are the same file", shown(read), shown(written));
         return Err(Error::usage(found, "two files").hint("name another file to write"));
     }
     let (output, name) = beside(folder, written, owner)?;
-    output.expect(|known| known == name).map_err(|e| elsewhere(e, written))
+    output
+        .expect(|known| known == name)
+        .map_err(|e| print::elsewhere(e, &print::typed(&print::free(written))))
 }
 
 /// Writes a file whole.
@@ -114,7 +115,7 @@ pub fn free(folder: &Folder, read: &Path, written: &Path, owner: Owner) -> Resul
 /// As [`free`].
 pub fn write_file(folder: &Folder, path: &Path, owner: Owner, bytes: impl AsRef<[u8]>) -> Result<()> {
     let (mut output, name) = beside(folder, path, owner)?;
-    output.write(&name, bytes).map_err(|e| elsewhere(e, path))?;
+    output.write(&name, bytes).map_err(|e| print::elsewhere(e, &print::typed(&print::free(path))))?;
     output.commit().map(drop)
 }
 
@@ -135,17 +136,6 @@ fn beside(folder: &Folder, path: &Path, owner: Owner) -> Result<(Output, String)
 /// The folder in which a file lies.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// The error, with a name beside this one that is free where something stands in the way.
-fn elsewhere(error: Error, path: &Path) -> Error {
-    if !error.settings().any(|key| key == "replace") {
-        return error;
-    }
-    let [stem, ending] = [path.file_stem(), path.extension()].map(|part| part.map(shown).unwrap_or_default());
-    let mut names = (2..).map(|n| path.with_file_name(format!("{stem}_{n}.{ending}")));
-    let free = names.find(|path| !path.exists()).map(shown).unwrap_or_default();
-    error.hint(format!("{free}, or replace it on purpose")).setting("replace")
 }
 
 /// What is done to time traces on the way.

@@ -13,7 +13,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -60,6 +60,24 @@ pub fn output(folder: Folder, owner: Owner) -> Result<Output> {
     Ok(output)
 }
 
+/// The error, with another place to write to where something stands in the way.
+pub fn elsewhere(error: Error, place: &str) -> Error {
+    let concerns = |key: &str| error.settings().any(|setting| setting == key);
+    match (concerns("out"), concerns("replace")) {
+        (true, true) => error.hint(format!("{place}, or --replace to replace it on purpose")),
+        (true, false) => error.hint(place),
+        _ => error,
+    }
+}
+
+/// A path like this one that is free.
+pub fn free(path: &Path) -> PathBuf {
+    let stem = path.file_stem().map_or_else(|| "results".to_owned(), shown);
+    let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", shown(ending)));
+    let mut names = (2..).map(|n| path.with_file_name(format!("{stem}_{n}{ending}")));
+    names.find(|path| !path.exists()).unwrap_or_default()
+}
+
 /// The folder for the results of a command, if one is named: nothing of a person's may stand there under the names of its files.
 ///
 /// # Errors
@@ -67,7 +85,8 @@ pub fn output(folder: Folder, owner: Owner) -> Result<Output> {
 pub fn results(folder: &Folder, out: Option<&Path>, names: Names) -> Result<Option<Output>> {
     let Some(out) = out else { return Ok(None) };
     let output = output(folder.at(out), Owner::Results)?;
-    output.expect(|name| names.has(name))?;
+    let elsewhere = |error| elsewhere(error, &format!("--out {}", typed(&free(out))));
+    output.expect(|name| names.has(name)).map_err(elsewhere)?;
     Ok(Some(output))
 }
 

@@ -83,9 +83,14 @@ pub struct Restitution {
 }
 
 impl Record {
-    /// Where files lie, and the folder for results.
-    fn results(&self, names: Names) -> Result<(Folder, Option<Output>)> {
+    /// Where files lie, of which these are read, and the folder for results.
+    fn results<'a>(
+        &self,
+        files: impl IntoIterator<Item = &'a PathBuf>,
+        names: Names,
+    ) -> Result<(Folder, Option<Output>)> {
         let folder = Folder::default().allow_outside(true);
+        files.into_iter().for_each(|file| folder.reads(file));
         let output = print::results(&folder, self.out.as_deref(), names)?;
         Ok((folder, output))
     }
@@ -130,7 +135,7 @@ impl<K: Args> Measured<K> {
 impl<K: Args + OfFile + Analysis> Run for Measured<K> {
     /// Prints what is found in one record.
     fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.record.results(K::FILES)?;
+        let (folder, output) = self.record.results([&self.file], K::FILES)?;
         print::answer(self.by(&folder, json, K::measure)?, output, json)
     }
 }
@@ -138,7 +143,7 @@ impl<K: Args + OfFile + Analysis> Run for Measured<K> {
 impl Run for Impacts {
     /// Prints the impacts.
     fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.of.record.results(impacts::Keys::FILES)?;
+        let (folder, output) = self.of.record.results([&self.of.file], impacts::Keys::FILES)?;
         let answer = self.of.by(&folder, json, |keys, source| {
             if self.legacy {
                 return of_timeav(&source.trace(&source.recording()?)?);
@@ -200,7 +205,7 @@ impl Measured<frf::Keys> {
 impl Run for Measured<frf::Keys> {
     /// Prints the modes.
     fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.record.results(frf::Keys::FILES)?;
+        let (folder, output) = self.record.results([&self.file], frf::Keys::FILES)?;
         let mut answers = match self.sweep(&folder)? {
             Some(function) => vec![self.keys.modes(&function.meta.name, &function)?],
             None => self.by(&folder, json, frf::Keys::measure)?,
@@ -221,7 +226,7 @@ impl Run for Pulse {
     /// Prints damping ratio and frequency of a contact.
     fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(self.file.is_some())?;
-        let (folder, output) = self.record.results(pulse::Keys::FILES)?;
+        let (folder, output) = self.record.results(&self.file, pulse::Keys::FILES)?;
         let answer = match &self.file {
             Some(file) => self.record.measured(&folder, file, json, |source| self.keys.measure(source))?,
             None => self.keys.times("")?,
@@ -234,7 +239,7 @@ impl Run for Restitution {
     /// Prints the restitution by every method that the data allow.
     fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(!self.files.is_empty())?;
-        let (folder, output) = self.record.results(drop::Keys::FILES)?;
+        let (folder, output) = self.record.results(&self.files, drop::Keys::FILES)?;
         let mut series = drop::Series::new(&self.keys);
         series.add_numbers(&self.keys);
         for file in &self.files {
@@ -247,7 +252,7 @@ impl Run for Restitution {
 impl Run for Drill {
     /// Prints speed, impacts and the average turn.
     fn run(&self, json: bool) -> Result<u8> {
-        let (folder, output) = self.of.record.results(drill::Keys::FILES)?;
+        let (folder, output) = self.of.record.results([&self.of.file], drill::Keys::FILES)?;
         if let Some(path) = &self.each_cycle {
             free(&folder, &self.of.file, path, Owner::Results)?;
         }

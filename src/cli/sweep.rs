@@ -315,6 +315,9 @@ impl Excitation {
             return Err(Error::usage(found, "a list file with them").setting("write_lists"));
         }
         let path = Path::new(Place::of(&self.sweep.paths[0]).path);
+        // The spectra are known by now.
+        free(within, force, response, Owner::Recordings)?;
+        free(within, response, force, Owner::Recordings)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut written = Vec::new();
         for (path, names) in [(force, &list.force), (response, &list.response)] {

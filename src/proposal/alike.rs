@@ -136,13 +136,13 @@ fn tried<T: Send + Sync>(
         differ = more(&mut known, spread(n, MOST));
         rows = differ.len() * IN_A_ROW <= known.len();
     }
-    while rows {
-        let apart = differ.iter().filter(|(a, b)| b - a > 1);
-        let next: Vec<usize> = apart.map(|(a, b)| usize::midpoint(*a, *b)).collect();
-        if next.is_empty() {
-            break;
-        }
-        differ = more(&mut known, next);
+    let middles = |differ: &[(usize, usize)]| -> Vec<usize> {
+        let apart = differ.iter().filter(|(a, b)| rows && b - a > 1);
+        apart.map(|(a, b)| usize::midpoint(*a, *b)).collect()
+    };
+    let mut next = middles(&differ);
+    while !next.is_empty() {
+        next = middles(&more(&mut known, next));
     }
     (known, rows)
 }

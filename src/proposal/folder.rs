@@ -60,7 +60,7 @@ impl Inventory {
             let inside = path.strip_prefix(root).unwrap_or(path);
             inside.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
         };
-        let left = left.iter().map(|(path, why)| (shown(within(path)), why.clone())).collect();
+        let left = left.iter().map(|(path, why)| (shown(within(path)), why.to_string())).collect();
         let mut found = Inventory { left, ..Inventory::default() };
         progress.start("reading files", paths.len());
         let lists: Vec<(PathBuf, SweepList)> = paths

@@ -5,7 +5,7 @@ use crate::error::{Error, Place, Result};
 use crate::read::{Digest, Folder, Lock, Manifest, Owner, Staged, Standing};
 use crate::record::shown;
 use sha2::{Digest as _, Sha256};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 
 /// Folder into which files are written.
 ///
@@ -25,6 +25,8 @@ pub struct Output {
     /// From the first file on.
     claim: Option<Claim>,
     written: Vec<String>,
+    /// What a file held that is extended.
+    extended: Option<String>,
     /// The content of each name; nothing to place where the name holds it already.
     staged: Vec<(Digest, Option<Staged>)>,
 }
@@ -35,6 +37,8 @@ type Claim = (Manifest, Option<Lock>);
 impl Output {
     /// The file that marks a folder in which old and new results stand side by side.
     pub const INCOMPLETE: &str = "INCOMPLETE.txt";
+    /// The file in which answers are kept for the next run.
+    pub const KEPT: &str = ".vibro.kept";
 
     /// A folder, made with its parents when the first file is written, so that a job that fails before leaves nothing.
     ///
@@ -48,7 +52,7 @@ impl Output {
                 .hint("name another folder"));
         }
         let (medium, written, staged) = (Medium::default(), Vec::new(), Vec::new());
-        Ok(Output { medium, folder, owner, replace: false, claim: None, written, staged })
+        Ok(Output { medium, folder, owner, replace: false, claim: None, written, extended: None, staged })
     }
 
     /// States whether files that are not vibro's are replaced, too. Default: they are not.
@@ -93,21 +97,30 @@ impl Output {
         Ok(())
     }
 
-    /// Adds text at the end of a file that a person keeps and that held `before` when it was read.
+    /// Adds text at the end of a file that a person keeps and that held `before` when it was read; nothing else is written with it.
     ///
     /// # Errors
-    /// If it was changed meanwhile, or the system refuses.
+    /// If it was changed meanwhile, is protected, or the system refuses.
     pub fn extend(&mut self, name: &str, before: &str, addition: &str) -> Result<()> {
         let path = self.folder.root().join(checked(name)?);
         self.claim = Some(self.claimed()?);
-        if self.folder.read(&path)? != before.as_bytes() {
-            let error =
-                Error::input(Place::file(&path), "the file changed meanwhile", "nobody else to write it");
-            return Err(error.hint("run the same command again"));
-        }
+        self.still_holds(name, before)?;
         let text = before.to_owned() + addition;
         let staged = self.folder.stage(&path, text.as_bytes())?;
         self.take(name, Sha256::digest(text).into(), Some(staged));
+        self.extended = Some(before.to_owned());
+        Ok(())
+    }
+
+    fn still_holds(&self, name: &str, before: &str) -> Result<()> {
+        let path = self.folder.root().join(name);
+        let error = |found| Error::input(Place::file(&path), found, "a file that vibro may add to");
+        if self.folder.is_protected(&path) {
+            return Err(error("the file is protected").hint(format!("chmod u+w {}", shown(&path))));
+        }
+        if self.folder.read(&path)? != before.as_bytes() {
+            return Err(error("the file changed meanwhile").hint("run the same command again"));
+        }
         Ok(())
     }
 
@@ -139,44 +152,38 @@ impl Output {
     /// If what has the name must not be replaced.
     fn holds(&self, manifest: &Manifest, name: &str, new: Option<&Digest>) -> Result<bool> {
         let path = self.folder.root().join(name);
+        let in_the_way = |what: &str| {
+            let found = format!("{} {what}, so vibro does not replace it", shown(&path));
+            Error::usage(found, "").hint("another place").setting("out")
+        };
         let standing = self.folder.standing(&path);
         if standing == Standing::Folder {
             return Err(unusable(name, "names a folder").hint("remove that folder or choose another name"));
         }
-        let opened = self.folder.opened(&path);
-        if standing == Standing::Free || !opened && self.replace {
+        if self.folder.opened(&path) {
+            return Err(in_the_way("is what this command reads"));
+        }
+        if standing == Standing::Free || self.replace {
             return Ok(false);
         }
-        let found = if opened {
-            "is what this command reads"
-        } else if standing == Standing::Special {
-            "is a link or a device, and not vibro's"
-        } else {
-            let digest = self.folder.digest(&path)?;
-            if new == Some(&digest) {
-                return Ok(true);
-            }
-            let of = |text: &&str| digest == Digest::from(Sha256::digest(text));
-            let mark = || name == Output::INCOMPLETE && MARKS.iter().any(of);
-            if manifest.knows(self.owner, name, &digest) || mark() || name.starts_with(OWN_NAMES) {
-                return Ok(false);
-            }
-            "is not vibro's: vibro did not write it, or it was changed since"
+        if standing == Standing::Special {
+            return Err(in_the_way("is a link or a device").setting("replace"));
+        }
+        let digest = self.folder.digest(&path)?;
+        if new == Some(&digest) {
+            return Ok(true);
+        }
+        let marked = |text: &&str| digest == Digest::from(Sha256::digest(text));
+        let own = match name {
+            Output::INCOMPLETE => MARKS.iter().any(marked),
+            Manifest::FILE => Manifest::is_of(&self.folder),
+            Output::KEPT => true,
+            _ => false,
         };
-        let error =
-            Error::usage(format!("{} {found}", shown(&path)), "a place where nothing of yours is replaced");
-        Err(error
-            .hint("another place, or replace it on purpose")
-            .set("out", shown(self.another()))
-            .setting("replace"))
-    }
-
-    /// A folder of which nothing is there yet.
-    fn another(&self) -> PathBuf {
-        let root = self.folder.root();
-        let name = root.file_name().map_or_else(|| "results".into(), |name| name.to_string_lossy());
-        let mut names = (2..).map(|n| root.with_file_name(format!("{name}_{n}")));
-        names.find(|path| !self.folder.exists(path)).unwrap_or_default()
+        if own || manifest.knows(self.owner, name, &digest) {
+            return Ok(false);
+        }
+        Err(in_the_way("was made by somebody else, or changed since vibro wrote it").setting("replace"))
     }
 
     /// Gives the files their names, which it returns in the order in which they were written. Of a campaign, what the last run wrote and this
@@ -186,6 +193,13 @@ impl Output {
     /// If the system refuses; the folder is then marked as incomplete.
     pub fn commit(mut self) -> Result<Vec<String>> {
         let Some((mut manifest, lock)) = self.claim.take() else { return Ok(self.written) };
+        // Somebody may have made or changed a file since it was looked at.
+        for (name, (digest, _)) in self.written.iter().zip(&self.staged) {
+            match &self.extended {
+                Some(before) => self.still_holds(name, before)?,
+                None => drop(self.holds(&manifest, name, Some(digest))?),
+            }
+        }
         let stale = if self.owner == Owner::Run { self.stale(&manifest) } else { Vec::new() };
         let mut after = manifest.clone();
         let mut files = Vec::new();
@@ -247,9 +261,6 @@ impl Output {
     }
 }
 
-/// With what names of files begin that vibro keeps for itself.
-const OWN_NAMES: &str = ".vibro.";
-
 /// Files by which a folder of results is kept in order.
 const OWN: [&str; 2] = [Output::INCOMPLETE, Manifest::FILE];
 
@@ -265,6 +276,9 @@ fn checked(name: &str) -> Result<&Path> {
     let parts: Vec<Component<'_>> = path.components().collect();
     if !matches!(parts[..], [Component::Normal(_)]) || name.contains(['/', '\\', ':', '\0']) {
         return Err(unusable(name, "is no plain name"));
+    }
+    if name.starts_with(".vibro.") && name != Output::KEPT {
+        return Err(unusable(name, "is kept for vibro itself"));
     }
     Ok(path)
 }

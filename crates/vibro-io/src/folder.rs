@@ -8,7 +8,7 @@ mod walk;
 pub use lock::Lock;
 pub use manifest::{Manifest, Owner, listed};
 pub use staged::Staged;
-pub use walk::Walk;
+pub use walk::{Left, Walk};
 
 use super::Source;
 use sha2::{Digest as _, Sha256};
@@ -39,7 +39,7 @@ pub struct Folder {
     root: PathBuf,
     outside: bool,
     side: Side,
-    /// Files that were opened as measurements, by their one true path.
+    /// Files that were opened as measurements, by what tells them apart whatever their names are.
     opened: Arc<Mutex<BTreeSet<PathBuf>>>,
 }
 
@@ -231,22 +231,46 @@ impl Folder {
     /// # Errors
     /// As [`Source::file`].
     pub(crate) fn source(&self, path: &Path) -> Result<Source> {
-        if let Some(path) = self.true_path(path) {
-            locked(&self.opened).insert(path);
-        }
+        self.reads(path);
         match &self.side {
             Side::Disk => Source::file(path),
             Side::Memory(_) => Source::memory(path, self.read(path)?),
         }
     }
 
-    fn true_path(&self, path: &Path) -> Option<PathBuf> {
-        if matches!(self.side, Side::Disk) { real(path) } else { Some(plain(path)) }
+    /// States that a run reads a file, be it that it knows the content from an earlier run.
+    pub fn reads(&self, path: &Path) {
+        locked(&self.opened).extend(self.identity(path));
     }
 
-    /// Whether this run has opened a file as a measurement, under this name or another.
+    /// Whether a run reads a file, under this name or another.
     pub fn opened(&self, path: &Path) -> bool {
-        self.true_path(path).is_some_and(|path| locked(&self.opened).contains(&path))
+        self.identity(path).is_some_and(|file| locked(&self.opened).contains(&file))
+    }
+
+    /// Whether two names mean one file; `-` is the file that standard input comes from.
+    pub fn same(&self, a: &Path, b: &Path) -> bool {
+        a == b || self.identity(a).is_some_and(|file| Some(file) == self.identity(b))
+    }
+
+    /// What tells a file apart whatever its names are; nothing where there is none.
+    fn identity(&self, path: &Path) -> Option<PathBuf> {
+        if matches!(self.side, Side::Memory(_)) {
+            return Some(plain(path));
+        }
+        let path = if path == Path::new("-") { Path::new("/dev/stdin") } else { path };
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt;
+            fs::metadata(path).ok().map(|meta| format!("{} {}", meta.dev(), meta.ino()).into())
+        }
+        #[cfg(not(unix))]
+        real(path)
+    }
+
+    /// Whether a file is protected against writing.
+    pub fn is_protected(&self, path: &Path) -> bool {
+        matches!(self.side, Side::Disk) && fs::metadata(path).is_ok_and(|meta| meta.permissions().readonly())
     }
 
     /// Length and time of a file.

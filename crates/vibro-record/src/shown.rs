@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-/// Whether a character steers a terminal or a page instead of being shown: a control character, or one that turns the direction of writing
-/// (Unicode Standard Annex 9, section 2).
+/// Whether a character steers a terminal or a page instead of being shown: a control character, one that turns the direction of writing
+/// (Unicode Standard Annex 9, section 2), or one that parts lines.
 pub fn steers(c: char) -> bool {
-    let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns
 }
 

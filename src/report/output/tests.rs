@@ -217,3 +217,31 @@ fn links_are_not_written_through() {
         assert_eq!(names(&folder), Vec::from_iter((name != Manifest::FILE).then(|| name.to_owned())));
     }
 }
+
+#[test]
+fn a_file_that_comes_or_changes_meanwhile_stays() {
+    each_side(|folder| {
+        let out = |owner| Output::new(folder.clone(), owner).unwrap();
+        written(out(Owner::Results), &[("old.csv", "1")]).unwrap();
+        for name in ["new.csv", "old.csv"] {
+            let mut slow = out(Owner::Results);
+            slow.write(name, "2").unwrap();
+            let path = folder.root().join(name);
+            folder.place(folder.stage(&path, b"mine").unwrap(), &path).unwrap();
+            assert!(slow.commit().unwrap_err().to_string().contains(name));
+            assert_eq!(folder.read(&path).unwrap(), b"mine");
+        }
+    });
+}
+
+#[test]
+fn names_of_vibros_own_files_are_not_written_and_not_taken_for_its_own() {
+    let dir = tempfile::tempdir().unwrap();
+    assert!(results(dir.path()).write(".vibro.mine.csv", "1").is_err());
+    for name in [Manifest::FILE, Lock::FILE] {
+        fs::write(dir.path().join(name), "a person's").unwrap();
+        assert!(written(results(dir.path()), &[("a.csv", "1")]).unwrap_err().to_string().contains(name));
+        assert_eq!(fs::read_to_string(dir.path().join(name)).unwrap(), "a person's");
+        fs::remove_file(dir.path().join(name)).unwrap();
+    }
+}

@@ -200,7 +200,7 @@ fn an_example_is_written_with_its_recordings_and_runs() {
     }
     json(&["demo", "bench", "--out", text(&folder)]);
     fs::write(folder.join("DECAY.CSV"), "mine").unwrap();
-    assert!(complaint(&["demo", "bench", "--out", text(&folder)], 2).contains("not vibro's"));
+    assert!(complaint(&["demo", "bench", "--out", text(&folder)], 2).contains("does not replace"));
     assert_eq!(fs::read_to_string(folder.join("DECAY.CSV")).unwrap(), "mine");
     assert!(complaint(&["demo", "bensh"], 2).contains("try: vibro demo bench"));
     assert!(complaint(&["open", text(root.path())], 2).contains("vibro run"));

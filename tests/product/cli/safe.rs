@@ -108,7 +108,7 @@ fn no_command_replaces_what_a_person_has() {
             fs::write(&path, "a person's").unwrap();
             let said =
                 complaint(&line(command, file.is_some().then_some(&*empty), &["--out", text(&out)]), 2);
-            assert!(said.contains(&name) && said.contains("not vibro's"), "{command:?}: {said}");
+            assert!(said.contains(&name) && said.contains("does not replace"), "{command:?}: {said}");
             assert_eq!(fs::read(&path).unwrap(), b"a person's", "{command:?} {name}");
             fs::remove_file(&path).unwrap();
             assert_eq!(written(&out), [""; 0]);
@@ -174,7 +174,7 @@ fn no_campaign_replaces_what_a_person_has() {
         assert!(!mine.exists(), "{name}");
         fs::write(&mine, "a person's").unwrap();
         let said = complaint(&["run", text(&path)], 2);
-        assert!(said.contains(name.as_str()) && said.contains("not vibro's"), "{said}");
+        assert!(said.contains(name.as_str()) && said.contains("does not replace"), "{said}");
         assert_eq!(fs::read(&mine).unwrap(), b"a person's", "{name}");
         fs::remove_file(&mine).unwrap();
     }
@@ -245,6 +245,22 @@ fn one_bad_file_loses_only_itself() {
     assert!(complaint(&["run", text(&path)], 2).contains("PULSE.CSV"));
 }
 
+/// A result that a campaign reads is an input, though what it says is known from an earlier run.
+#[test]
+fn a_result_that_is_read_stays() {
+    let (root, path) = bench();
+    fs::copy(example("bench/BENCH.CSV"), root.path().join("BENCH.CSV")).unwrap();
+    fs::write(&path, "[[frf]]\nfile = \"BENCH.CSV\"\nreference = \"force\"\nsegment = 1024\n").unwrap();
+    json(&["run", text(&path)]);
+    let file = root.path().join("results/frf_1.uff");
+    let before = fs::read(&file).unwrap();
+    fs::write(&path, "[[frf]]\nfile = \"results/frf_1.uff\"\n").unwrap();
+    for more in [&[][..], &[], &["--replace"], &["--again", "--replace"]] {
+        vibro(&[&["run", text(&path)], more].concat());
+        assert_eq!(fs::read(&file).unwrap(), before, "{more:?}");
+    }
+}
+
 /// Starts a command, waits until it has said a line so many times or for a while, and gives how often it did in the end.
 fn watched(folder: &Path, wait: Duration) -> usize {
     let said = tempfile::tempdir().unwrap();
@@ -308,6 +324,35 @@ mod on_unix {
         fs::remove_file(root.path().join("campaign.toml")).unwrap();
         json(&["init", text(root.path()), "--allow-outside"]);
         assert!(fs::read_to_string(root.path().join("campaign.toml")).unwrap().contains("outside.csv"));
+    }
+
+    #[test]
+    fn what_comes_from_a_pipe_or_has_another_name_is_not_replaced() {
+        let (root, _) = bench();
+        let [file, link] = ["d.csv", "l.csv"].map(|name| root.path().join(name));
+        json(&["convert", text(&root.path().join("DECAY.CSV")), text(&file)]);
+        fs::hard_link(&file, &link).unwrap();
+        let before = fs::read(&file).unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_vibro"));
+        command.args(["convert", "-", text(&file), "--integrate", "1", "--fmin", "5"]);
+        let output = command.stdin(fs::File::open(&file).unwrap()).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        complaint(&["convert", text(&file), text(&link), "--single", "--replace"], 2);
+        assert_eq!(fs::read(&file).unwrap(), before);
+    }
+
+    /// A file without permission, a pipe and a folder in the place of a record lose only themselves.
+    #[test]
+    fn records_that_cannot_be_read_lose_only_themselves() {
+        let (root, path) = bench();
+        fs::remove_file(root.path().join("PULSE.CSV")).unwrap();
+        for make in ["mkfifo", "mkdir"] {
+            assert!(Command::new(make).arg(root.path().join("PULSE.CSV")).status().unwrap().success());
+            let answer = json(&["run", text(&path)]);
+            assert_eq!(answer["results"]["decays"].as_array().unwrap().len(), 1);
+            assert!(answer["warnings"].to_string().contains("PULSE.CSV"));
+            Command::new("rm").arg("-rf").arg(root.path().join("PULSE.CSV")).status().unwrap();
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::or_here;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Write};
+use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -31,22 +31,38 @@ impl Lock {
         let (path, began) = (or_here(folder).join(Lock::FILE), Instant::now());
         let refused = |e| Error::io("write", or_here(folder), e);
         loop {
+            let strange = || {
+                Error::input(
+                    Place::file(&path),
+                    "not the file of vibro that has this name",
+                    "none of this name",
+                )
+                .hint("move it to another place")
+            };
             if std::fs::symlink_metadata(&path).is_ok_and(|meta| !meta.is_file()) {
-                return Err(Error::input(Place::file(&path), "not a regular file", "none of this name")
-                    .hint(format!("rm {}", path.display())));
+                return Err(strange());
             }
             let mut open = OpenOptions::new();
-            let mut file =
-                open.read(true).write(true).create(true).truncate(false).open(&path).map_err(refused)?;
+            let file = open.read(true).write(true).create(true).truncate(false).open(&path);
+            // That of another person, which a lock needs no right to change.
+            let mut file = file.or_else(|e| File::open(&path).map_err(|_| e)).map_err(refused)?;
+            let mut process = String::new();
+            // Some systems let nobody read what is locked.
+            let read = file.read_to_string(&mut process);
             match file.try_lock() {
                 Err(TryLockError::WouldBlock) if began.elapsed() < PATIENCE => sleep(PAUSE),
                 Err(TryLockError::WouldBlock) => {
-                    let mut process = String::new();
-                    // Some systems let nobody read what is locked.
-                    let _ = file.read_to_string(&mut process);
-                    let found = format!("process {} is writing into this folder", process.trim());
+                    let who = if process.is_empty() {
+                        "another vibro".to_owned()
+                    } else {
+                        format!("process {process}")
+                    };
+                    let found = format!("{who} is writing into this folder");
                     return Err(Error::input(Place::file(folder), found, "one writer at a time")
                         .hint("end that process or wait for it, then run the same command again"));
+                }
+                Ok(()) if read.is_err() || !process.bytes().all(|c| c.is_ascii_digit()) => {
+                    return Err(strange());
                 }
                 // Where there are no locks, as on some network drives, there is nobody to wait for.
                 Ok(()) | Err(TryLockError::Error(_)) => {
@@ -56,7 +72,9 @@ impl Lock {
                     {
                         continue;
                     }
-                    file.set_len(0).and_then(|()| write!(file, "{}", std::process::id())).map_err(refused)?;
+                    // The number is for people alone.
+                    let _ = file.set_len(0).and_then(|()| file.rewind());
+                    let _ = write!(file, "{}", std::process::id());
                     return Ok(Lock { path, _file: file });
                 }
             }

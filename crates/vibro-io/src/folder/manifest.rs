@@ -50,6 +50,11 @@ impl Manifest {
         Manifest::parse(text.as_deref().unwrap_or_default())
     }
 
+    /// Whether the file of a folder that has its name is one.
+    pub fn is_of(folder: &Folder) -> bool {
+        folder.read(&folder.root().join(Manifest::FILE)).is_ok_and(|bytes| bytes.starts_with(HEAD.as_bytes()))
+    }
+
     fn parse(text: &str) -> Manifest {
         let (mut manifest, mut owner) = (Manifest::default(), None);
         for line in text.strip_prefix(HEAD).unwrap_or_default().lines() {

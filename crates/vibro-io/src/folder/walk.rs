@@ -2,8 +2,9 @@
 
 use super::{Folder, Manifest, Side, locked, or_here, plain, real};
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use std::path::{Path, PathBuf};
-use vibro_record::{Error, Result, steers};
+use vibro_record::{Error, Result, shown, steers};
 use walkdir::{DirEntry, WalkDir};
 
 /// Regular files that may be recordings, each once, and what was passed over.
@@ -12,7 +13,34 @@ pub struct Walk {
     /// Files, in the order of their names.
     pub files: Vec<PathBuf>,
     /// What could not be looked at or must not be, and why.
-    pub left: Vec<(PathBuf, String)>,
+    pub left: Vec<(PathBuf, Left)>,
+}
+
+/// Why something in a folder is left out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Left {
+    /// A folder that cannot be listed.
+    Unlisted(String),
+    /// A link that leads outside, to this place.
+    Outside(PathBuf),
+    /// A link to nothing.
+    Dangling,
+    /// A pipe, a socket or a device, or a link to one.
+    Special,
+    /// A name that no campaign can hold, and what is wrong with it.
+    Name(&'static str),
+}
+
+impl fmt::Display for Left {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Left::Unlisted(why) => write!(f, "cannot be listed: {why}"),
+            Left::Outside(place) => write!(f, "a link that leads outside the folder, to {}", shown(place)),
+            Left::Dangling => f.write_str("a link to nothing"),
+            Left::Special => f.write_str("a pipe, a socket or a device"),
+            Left::Name(what) => write!(f, "its name {what}: rename it"),
+        }
+    }
 }
 
 impl Folder {
@@ -65,7 +93,7 @@ impl Folder {
                     if depth == 0 {
                         return Err(Error::io("list", path, why));
                     }
-                    walk.left.push((path, format!("cannot be listed: {}", why.kind())));
+                    walk.left.push((path, Left::Unlisted(why.kind().to_string())));
                     continue;
                 }
             };
@@ -75,28 +103,27 @@ impl Folder {
             } else if kind.is_file() {
                 walk.take(path);
             } else if !kind.is_dir() {
-                walk.left.push((path, "a pipe, a socket or a device".to_owned()));
+                walk.left.push((path, Left::Special));
             }
         }
         for (path, depth) in links {
             let Some(target) = real(&path) else {
-                walk.left.push((path, "a link to nothing".to_owned()));
+                walk.left.push((path, Left::Dangling));
                 continue;
             };
             // A file whose folder was looked through is known by its own name.
             let shown = |folder: &Path| seen.contains(folder) && !is_hidden(&target);
             if self.leads_outside(&path).is_some() {
-                let why = format!("a link that leads outside the folder, to {}", target.display());
-                walk.left.push((path, why));
+                walk.left.push((path, Left::Outside(target)));
             } else if target.is_file() && !target.parent().is_some_and(shown) {
                 walk.take(path);
             } else if target.is_dir() && depth <= levels && !seen.contains(&target) {
                 // What cannot be listed is left out as below.
                 if let Err(error) = self.visit(&path, levels - depth, seen, walk) {
-                    walk.left.push((path, error.to_string()));
+                    walk.left.push((path, Left::Unlisted(error.why())));
                 }
             } else if !target.is_file() && !target.is_dir() {
-                walk.left.push((path, "a link to a pipe, a socket or a device".to_owned()));
+                walk.left.push((path, Left::Special));
             }
         }
         Ok(())
@@ -107,13 +134,15 @@ impl Walk {
     /// Takes a file whose name can be written into a campaign.
     fn take(&mut self, path: PathBuf) {
         let why = match path.to_str() {
-            None => "its name is not UTF-8: rename it",
-            Some(name) if name.contains(steers) => {
-                "its name has a line break or a control character: rename it"
+            None => "is not UTF-8",
+            Some(name) if name.contains(steers) => "has a line break or a control character",
+            // Lists of DOS machines have it between folders.
+            Some(_) if path.file_name().is_some_and(|name| name.as_encoded_bytes().contains(&b'\\')) => {
+                "has a backslash"
             }
             Some(_) => return self.files.push(path),
         };
-        self.left.push((path, why.to_owned()));
+        self.left.push((path, Left::Name(why)));
     }
 }
 

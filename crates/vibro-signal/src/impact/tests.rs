@@ -441,7 +441,9 @@ fn double_hits(draws: u64) -> (usize, usize) {
                 .collect();
             let mut force = filter.sampled(&dense);
             let top = force.iter().copied().fold(0.0, f64::max);
-            force.iter_mut().for_each(|v| *v += 2e-4 * top * noise.normal());
+            for v in &mut force {
+                *v += 2e-4 * top * noise.normal();
+            }
             let how = Blows { length: 360, before: 40, force_window: None, left_at_end: None };
             let response = trace("m", (0..440).map(|i| f64::from(i % 7)).collect());
             let rejected = find(&trace("N", force), &response, &how, RATE)[0].rejected;
