@@ -138,13 +138,6 @@ impl Kind {
     }
 }
 
-impl Kind {
-    /// Whether a campaign may write a file of this name for its records of this kind.
-    fn writes(&self, campaign: &Campaign, name: &str) -> bool {
-        self.names.has(name) && campaign.written(self.section).is_ok_and(|tables| !tables.is_empty())
-    }
-}
-
 /// All kinds of records, in the order in which they are measured and shown.
 pub(crate) const KINDS: &[Kind] = &[
     Kind::of::<sweep::Keys>(),
@@ -160,6 +153,20 @@ pub(crate) const KINDS: &[Kind] = &[
 /// Names of the sections of a campaign, in the order in which they are measured and shown.
 pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
+}
+
+/// The kinds of which a campaign has records.
+///
+/// # Errors
+/// If it is no TOML.
+fn kinds_of(campaign: &Campaign) -> Result<Vec<&'static Kind>> {
+    let mut found = Vec::new();
+    for kind in KINDS {
+        if !campaign.written(kind.section)?.is_empty() {
+            found.push(kind);
+        }
+    }
+    Ok(found)
 }
 
 /// Reads a campaign and checks all its records.

@@ -1,21 +1,16 @@
 //! What a campaign is computed from, by content.
 
+use super::file_name;
 use super::kept::Kept;
-use super::{file_name, files};
 use crate::campaign::Campaign;
-use crate::error::Result;
 use crate::read::listed;
 use crate::record::shown;
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// A line for the program, the campaign and each of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
-///
-/// # Errors
-/// As [`files`].
-pub fn inputs(campaign: &Campaign, kept: &Kept) -> Result<String> {
-    let mut all = files(campaign)?;
+/// A line for the program, the campaign and `all` of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
+pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &Kept) -> String {
     all.sort();
     all.dedup();
     // The reader says what is wrong with a folder or a pipe.
@@ -31,5 +26,5 @@ pub fn inputs(campaign: &Campaign, kept: &Kept) -> Result<String> {
         kept.file(path).map_or_else(unread, |digest| listed(&digest, &name.to_string_lossy()))
     };
     let lines: Vec<String> = all.par_iter().map(|path| of_file(path)).collect();
-    Ok(format!("# {program}{own}{}", lines.concat()))
+    format!("# {program}{own}{}", lines.concat())
 }

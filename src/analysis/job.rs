@@ -5,7 +5,7 @@ use super::inputs::inputs;
 use super::kept::{Kept, digest, packed};
 use super::recordings::beside;
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, Answer, KINDS, Kind, files as files_of, page};
+use super::{Analysis, Answer, KINDS, Kind, files as files_of, kinds_of, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;
@@ -330,12 +330,15 @@ pub struct Ran {
 /// the way.
 pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn Progress) -> Result<Ran> {
     // What an earlier run has read and kept is an input, too.
-    files_of(campaign)?.iter().for_each(|path| campaign.within().reads(path));
-    let own = [RESULTS, REPORT, INPUTS, Kept::FILE];
-    output.expect(|name| own.contains(&name) || KINDS.iter().any(|kind| kind.writes(campaign, name)))?;
+    let files = files_of(campaign)?;
+    for path in &files {
+        campaign.within().reads(path);
+    }
+    let (own, kinds) = ([RESULTS, REPORT, INPUTS, Kept::FILE], kinds_of(campaign)?);
+    output.expect(|name| own.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
     let mut job = Job::new(campaign, kept, progress);
     // Before anything is read: what changes meanwhile is for the next run.
-    let inputs = inputs(campaign, kept)?;
+    let inputs = inputs(campaign, files, kept);
     let version = env!("CARGO_PKG_VERSION");
     job.put("campaign", &job.title.clone())?;
     job.put("version", &version)?;

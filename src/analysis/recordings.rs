@@ -3,7 +3,7 @@
 use super::{REPORT, RESULTS, file_name, files};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
-use crate::read::{Folder, Left, Manifest, Walk};
+use crate::read::{Folder, Left, Manifest, Walk, plain};
 use crate::record::{Finding, shown};
 use glob::{MatchOptions, Pattern};
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,18 +32,17 @@ pub struct Recordings {
 /// # Errors
 /// If the folder cannot be listed.
 pub fn recordings(folder: &Folder) -> Result<Recordings> {
-    let Walk { files, left } = folder.walk(folder.root(), LEVELS)?;
+    let Walk { mut files, left } = folder.walk(folder.root(), LEVELS)?;
     let top = plain(folder.root());
     // Results of versions that kept no manifest are all that lies in their folder.
     let has = |path: &Path, name: &str| folder.is_file(&path.join(name));
     let results =
         |path: &Path| path != top && has(path, RESULTS) && has(path, REPORT) && !has(path, Manifest::FILE);
     let mut known: BTreeMap<PathBuf, bool> = BTreeMap::new();
-    let is_result = |path: &PathBuf| {
+    files.retain(|path| {
         let parent = path.parent().unwrap_or(Path::new("")).to_owned();
-        *known.entry(parent).or_insert_with_key(|parent| results(parent))
-    };
-    let (_, files): (Vec<_>, Vec<PathBuf>) = files.into_iter().partition(is_result);
+        !*known.entry(parent).or_insert_with_key(|parent| results(parent))
+    });
     let ending =
         |path: &Path| path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
     let is_none = |path: &PathBuf| NO_RECORDINGS.split(' ').any(|known| known == ending(path));
@@ -135,11 +134,6 @@ const WHOLE_NAMES: MatchOptions = MatchOptions {
 
 /// Levels into which `**` reaches.
 const DEEPEST: usize = 16;
-
-/// A path without `.` in it.
-fn plain(path: &Path) -> PathBuf {
-    path.components().filter(|part| *part != Component::CurDir).collect()
-}
 
 /// Those of the files that the campaign names in no table and in no comment.
 ///

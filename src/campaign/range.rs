@@ -1,6 +1,5 @@
 //! Ranges of the numbers that options of the command line and keys of a campaign take: the one table that both are checked with.
-//! A model checks the
-//! values of a rig, its excitation and what is asked of them itself: [`crate::model::Parameter`].
+//! A model checks the values of a rig, its excitation and what is asked of them itself: [`crate::model::Parameter`].
 
 use crate::error::{Error, Result};
 use toml::de::DeValue;

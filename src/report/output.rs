@@ -230,7 +230,7 @@ impl Output {
             self.folder.remove(&self.folder.root().join(&name))?;
             after.forget(&name);
         }
-        if after != Manifest::of(&self.folder) {
+        if after != manifest {
             self.remember(&after)?;
         }
         // What another kind of command left half stays marked.

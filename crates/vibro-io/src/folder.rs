@@ -306,7 +306,7 @@ impl Folder {
 }
 
 /// A path without `.` in it.
-pub(crate) fn plain(path: &Path) -> PathBuf {
+pub fn plain(path: &Path) -> PathBuf {
     path.components().filter(|part| *part != Component::CurDir).collect()
 }
 
