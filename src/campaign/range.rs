@@ -35,7 +35,7 @@ const ROWS: &[Row] = &[
     (Above, LONGEST, SHORTEST, "s", &["smoothing", "interval", "intervals", "force_window"]),
     (Above, LONGEST, SHORTEST, "s", &["time_to_peak", "duration"]),
     (Zero, LONGEST, SHORTEST, "s", &["refractory", "interval_std", "contact_time", "longest_dropout", "std"]),
-    (Any, LONGEST, SHORTEST, "s", &["delay"]),
+    (Any, LONGEST, SHORTEST, "s", &["delay", "span"]),
     // A drill compares them with its turn.
     (Above, f64::MAX, SHORTEST, "s", &["contact", "fit_duration"]),
     (Above, LARGEST, LEAST, "kg", &["mass", "struck_mass", "masses"]),

@@ -34,6 +34,9 @@ pub struct Reading {
     pub wrapped: bool,
     /// Each column is a channel, however much the rows look like one series
     pub columns: bool,
+    /// Only this part of a time trace, from and to in s
+    #[cfg_attr(feature = "cli", arg(value_name = "FROM:TO", allow_hyphen_values = true, value_parser = crate::campaign::two::<':'>))]
+    pub span: Option<(f64, f64)>,
 }
 
 /// Which record of a file is meant, and its calibration.
@@ -73,8 +76,18 @@ pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
 
 impl Reading {
     /// Its keys.
-    pub const KEYS: [&str; 9] =
-        ["format", "allow_missing", "rate", "base_band", "unit", "decimal", "complex", "wrapped", "columns"];
+    pub const KEYS: [&str; 10] = [
+        "format",
+        "allow_missing",
+        "rate",
+        "base_band",
+        "unit",
+        "decimal",
+        "complex",
+        "wrapped",
+        "columns",
+        "span",
+    ];
 
     /// Keys that are stated, with their values.
     pub fn stated(&self) -> Vec<(&'static str, Value)> {
@@ -85,7 +98,7 @@ impl Reading {
 
     /// The same of files that say their sampling rate or frequencies themselves.
     pub fn untimed(&self) -> Reading {
-        Reading { rate: None, base_band: None, ..self.clone() }
+        Reading { rate: None, base_band: None, span: None, ..self.clone() }
     }
 
     /// A reader that knows what is stated.
@@ -111,7 +124,8 @@ impl Reading {
             .unit(self.unit.as_ref().map(unit).transpose()?)
             .decimal_comma(self.decimal.map(|d| d == Decimal::Comma))
             .complex(self.complex)
-            .wrapped((self.wrapped || self.columns).then_some(self.wrapped)))
+            .wrapped((self.wrapped || self.columns).then_some(self.wrapped))
+            .span(self.span))
     }
 }
 

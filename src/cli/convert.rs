@@ -210,7 +210,7 @@ impl Change {
             let filter = Filter::smoothing(corner, rate)?;
             if let Some(i) = trace.values.iter().position(|v| !v.is_finite()) {
                 let found = format!("sample {i} is missing: smoothing would lose all behind it");
-                return Err(Error::refused(found).hint("cut the record before the gap"));
+                return Err(Error::refused(found).hint("read the part before the gap").setting("span"));
             }
             if let Some(first) = trace.values.first().copied() {
                 filter.causal(&mut trace.values, first);

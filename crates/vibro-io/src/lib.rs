@@ -55,6 +55,7 @@ mod missing;
 mod number;
 mod reader;
 mod source;
+mod span;
 mod steps;
 mod sweep;
 mod sweep_list;

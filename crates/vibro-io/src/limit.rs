@@ -3,7 +3,7 @@
 use crate::Options;
 use std::sync::OnceLock;
 use vibro_record::units::notation::significant;
-use vibro_record::{Error, Result};
+use vibro_record::{Axis, Error, Result};
 
 /// Bytes in a GB.
 const GB: f64 = 1e9;
@@ -55,6 +55,11 @@ impl Limit {
     /// # Errors
     /// If they may not: with what they are, and the limit that they fit in where the machine has that memory.
     pub(crate) fn hold(self, bytes: f64) -> Result<()> {
+        self.hold_or(bytes, |error| error.hint("of several channels, name one").setting("channel"))
+    }
+
+    /// As [`Limit::hold`], with what else to try where the machine has too little memory.
+    fn hold_or(self, bytes: f64, advice: impl FnOnce(Error) -> Error) -> Result<()> {
         if bytes <= self.0 {
             return Ok(());
         }
@@ -70,7 +75,7 @@ impl Limit {
         Err(if enough * GB <= MOST_OF_MACHINE * machine() {
             error.set("max_memory", format!("{}GB", (enough * 10.0).ceil() / 10.0))
         } else {
-            error.hint("give a shorter record; of several channels, name one").setting("channel")
+            advice(error)
         })
     }
 }
@@ -82,6 +87,19 @@ impl Options {
     /// As [`Limit::hold`].
     pub(crate) fn hold(&self, values: f64) -> Result<()> {
         self.limit.hold(VALUE * values * (1.0 + self.beside))
+    }
+
+    /// As [`Options::hold`], of so many channels over `time`: a part of them fits.
+    ///
+    /// # Errors
+    /// As [`Limit::hold`].
+    pub(crate) fn hold_traces(&self, channels: usize, time: &Axis) -> Result<()> {
+        let sample = VALUE * channels as f64 * (1.0 + self.beside);
+        self.limit.hold_or(sample * time.len() as f64, |error| {
+            let seconds = (self.limit.0 / sample).floor() * time.step().unwrap_or(1.0);
+            let (start, decimals) = (time.start(), 10f64.powf(1.0 - seconds.log10().floor()));
+            error.set("span", format!("[{start}, {}]", start + (seconds * decimals).floor() / decimals))
+        })
     }
 }
 
@@ -127,6 +145,18 @@ mod tests {
             read(&reader(1e9)).unwrap().trace(Some("2"), None).unwrap()
         );
         assert!(read(&reader(23_999.0).only(["2".to_owned()])).is_err());
+    }
+
+    #[test]
+    fn the_part_of_a_hint_is_read() {
+        // 3.2e8 bytes a sample of two channels, more than any machine has: 3125 of 48 kHz are within the limit.
+        let bytes = wave(4800);
+        let reader = || Reader::new().max_memory(Limit(1e12)).beside(2e7 - 1.0);
+        let said = reader().from_reader("x.wav", bytes.as_slice()).unwrap_err();
+        let typed = said.spoken(|key, value| format!("{key} = {value}"));
+        assert!(typed.ends_with("\n  try: span = [0, 0.065]"), "{typed}");
+        let part = reader().span(Some((0.0, 0.065))).from_reader("x.wav", bytes.as_slice()).unwrap();
+        assert_eq!(part.records[0].len(), 3120);
     }
 
     #[test]

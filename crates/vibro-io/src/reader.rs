@@ -3,7 +3,7 @@
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
-use super::{Folder, Limit, Source, SweepList, foreign};
+use super::{Folder, Limit, Source, SweepList, foreign, span};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -32,6 +32,8 @@ pub(crate) struct Options {
     pub complex: bool,
     /// Whether rows continue each other as one series; `None` to find out.
     pub wrapped: Option<bool>,
+    /// Part of the time traces in s, from its first value on and before its second.
+    pub span: Option<(f64, f64)>,
     /// Memory that may be filled.
     pub limit: Limit,
     /// What is held beside the values by what is made of them, in their size.
@@ -147,6 +149,12 @@ impl Reader {
         self
     }
 
+    /// States the part of time traces that is read, in s: from the first value on and before the second. Default: all.
+    pub fn span(mut self, span: Option<(f64, f64)>) -> Reader {
+        self.options.span = span;
+        self
+    }
+
     /// Bounds the memory that values may fill. Default: see [`Limit`].
     pub fn max_memory(mut self, limit: Limit) -> Reader {
         self.options.limit = limit;
@@ -235,12 +243,21 @@ impl Reader {
         // These hold their bytes beside the values, which take no less.
         let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
         let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
-        let contents = room.and_then(|()| (entry.read)(source, &self.options, survey));
+        // A wave file is read from there on.
+        let span = self.options.span.filter(|_| entry.format != Format::Wav);
+        let contents = room.and_then(|()| (entry.read)(source, &self.options, survey && span.is_none()));
+        let contents = contents.and_then(|all| span::cut(all, span));
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
     }
 
     /// The format of a source.
     pub(super) fn entry(&self, source: &Source) -> Result<&'static Entry> {
+        if let Some((from, to)) =
+            self.options.span.filter(|(from, to)| from.is_nan() || from >= to || to.is_nan())
+        {
+            let found = format!("a part from {from} to {to} s was stated");
+            return Err(Error::usage(found, "a time, and a later one").setting("span"));
+        }
         for (what, value) in [("sampling rate", self.options.rate), ("base band", self.options.base_band)] {
             if let Some(value) = value.filter(|v| !POSSIBLE.contains(v)) {
                 let found = format!("a {what} of {value} Hz was stated");

@@ -15,10 +15,10 @@ mod scales;
 
 pub(crate) use scales::{Scale, Scales};
 
-use super::Source;
 use super::missing::Missing;
 use super::reader::Options;
 use super::source::ReadSeek;
+use super::{Source, span};
 use crate::binary::Kind;
 use crate::choose::named;
 use crate::held::Contents;
@@ -45,7 +45,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let n = wave.channels.len();
     let named = named(source.path(), &options.only, wave.channels.iter().map(|t| &t.meta))?;
     if !survey {
-        options.hold(wave.frames() as f64 * named.len() as f64)?;
+        options.hold_traces(named.len(), &wave.axis)?;
         wave.keep(&named);
     }
     let room = if survey { 0 } else { wave.frames() };
@@ -73,7 +73,11 @@ pub(crate) struct Wave {
     reader: Box<dyn ReadSeek>,
     path: PathBuf,
     bytes: Vec<u8>,
+    /// Frame of the file at which the part that is read begins.
+    first: u64,
     left: u64,
+    /// Times of the part that is read.
+    axis: Axis,
     /// Every channel of the file without its values.
     pub channels: Vec<Trace>,
     factors: Vec<f64>,
@@ -97,13 +101,20 @@ impl Wave {
         }
         let mut reader = source.open()?;
         let layout = layout::read(source, &mut *reader)?;
-        reader.seek(SeekFrom::Start(layout.data_at)).map_err(|e| Error::io("read", source.path(), e))?;
         let n = layout.channels;
+        let start = layout.scales.as_ref().map_or(0.0, |s| s.start);
+        let whole = Axis::time(start, 1.0 / options.rate.unwrap_or(layout.rate), layout.frames as usize);
+        let part = options.span.map_or(Ok(0..whole.len()), |span| span::within(&whole, span));
+        let part = part.map_err(|e| e.in_file(source.path()))?;
+        let at = layout.data_at + (part.start * n) as u64 * layout.sample.size();
+        reader.seek(SeekFrom::Start(at)).map_err(|e| Error::io("read", source.path(), e))?;
         let mut wave = Wave {
             reader,
             path: source.path().to_owned(),
             bytes: Vec::new(),
-            left: layout.frames,
+            left: part.len() as u64,
+            first: part.start as u64,
+            axis: whole.part(part),
             channels: Vec::with_capacity(n),
             factors: Vec::with_capacity(n),
             kept: (0..n).collect(),
@@ -132,15 +143,14 @@ impl Wave {
         let samples = format!("{}-bit {kind}", 8 * layout.sample.size());
         meta.step("read", &[("file", &source.name()), ("format", &"wav"), ("samples", &samples)]);
         meta.notes.clone_from(&layout.notes);
-        meta.declared_n = layout.declared_frames.map(|n| n as usize);
         meta.found(Finding::caution(Trace::UNCALIBRATED));
         if let Some(stated) = options.rate.filter(|stated| *stated != layout.rate) {
             let differs = Finding::caution("statement-overrides-file").name("what", "sampling rate");
             meta.found(differs.number("file", layout.rate).number("used", stated));
         }
-        let start = layout.scales.as_ref().map_or(0.0, |s| s.start);
-        let axis = Axis::time(start, 1.0 / options.rate.unwrap_or(layout.rate), self.frames());
-        let mut trace = Trace { meta, axis, values: Vec::new() };
+        let declared = layout.declared_frames.map(|n| n as usize);
+        span::note(&mut meta, options.span, declared);
+        let mut trace = Trace { meta, axis: self.axis.clone(), values: Vec::new() };
         let (full_scale, unit, said) = match (&options.unit, scale) {
             (Some(unit), _) => (1.0, unit.clone(), Finding::note("full-scale-stated")),
             (None, Some(scale)) => {
@@ -157,9 +167,9 @@ impl Wave {
         Ok((trace, full_scale * unit.factor()))
     }
 
-    /// Number of frames (samples a channel) that the file holds, whatever it declares.
+    /// Number of frames (samples a channel) of the part that is read, whatever the file declares.
     pub fn frames(&self) -> usize {
-        self.layout.frames as usize
+        self.axis.len()
     }
 }
 
@@ -180,7 +190,7 @@ impl Stream for Wave {
         let (size, (zero, full)) = (sample.size() as usize, full_scale(sample));
         let frame = size * self.layout.channels;
         let frames = ((BLOCK / frame).max(1) as u64).min(self.left);
-        let first = self.layout.frames - self.left;
+        let first = self.first + self.frames() as u64 - self.left;
         self.bytes.clear();
         (&mut self.reader)
             .take(frames * frame as u64)

@@ -108,7 +108,8 @@ impl Sines {
                     self.n as f64 / self.rate
                 );
                 return Err(Error::refused(why)
-                    .hint("cut the record to what follows the release or the blow, or choose the band of the mode")
+                    .hint("read what follows the release or the blow, or choose the band of the mode")
+                    .setting("span")
                     .setting("band"));
             } else if mode.amplitude.value > SEEN * size && group.sines[m].periods > 3.0 {
                 let steady = Finding::note("decay-steady-line").number("frequency", mode.frequency.value);

@@ -127,7 +127,9 @@ impl Step {
             return Err(together());
         }
         if force.values.iter().chain(&response.values).any(|v| !v.is_finite()) {
-            return Err(Error::refused("samples are missing").hint("cut the file before them"));
+            return Err(Error::refused("samples are missing")
+                .hint("read the part before them")
+                .setting("span"));
         }
         let found = sine(force, None).map_err(|error| error.hint(SHAKER))?;
         let Some(tone) = found.tones.into_iter().next() else {

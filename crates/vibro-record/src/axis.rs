@@ -1,5 +1,7 @@
 //! The abscissa of a record.
 
+use std::ops::Range;
+
 /// What the abscissa counts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AxisKind {
@@ -122,6 +124,39 @@ impl Axis {
             Grid::Uneven(values) => {
                 Grid::Uneven(values.iter().skip(first).step_by(step.max(1)).copied().collect())
             }
+        };
+        Axis { kind: self.kind.clone(), grid }
+    }
+
+    /// Indices of the values from `from` on and before `to`; a value within a billionth of a step of a bound lies on it.
+    ///
+    /// ```
+    /// use vibro_record::Axis;
+    /// let axis = Axis::time(0.0, 0.1, 100);
+    /// assert_eq!(axis.between(0.3, 0.6), 3..6);
+    /// assert_eq!(axis.between(9.0, 99.0), 90..100);
+    /// assert!(axis.between(10.0, 99.0).is_empty());
+    /// ```
+    pub fn between(&self, from: f64, to: f64) -> Range<usize> {
+        let before = |bound: f64| match &self.grid {
+            Grid::Even { start, step, n } => {
+                (((bound - start) / step - 1e-9).ceil().max(0.0) as usize).min(*n)
+            }
+            Grid::Uneven(values) => values.partition_point(|value| *value < bound),
+        };
+        before(from)..before(to)
+    }
+
+    /// The values with these indices.
+    ///
+    /// # Panics
+    /// If they do not lie below [`Axis::len`].
+    pub fn part(&self, indices: Range<usize>) -> Axis {
+        let grid = match &self.grid {
+            Grid::Even { step, .. } => {
+                Grid::Even { start: self.at(indices.start), step: *step, n: indices.len() }
+            }
+            Grid::Uneven(values) => Grid::Uneven(values[indices].to_vec()),
         };
         Axis { kind: self.kind.clone(), grid }
     }

@@ -9,7 +9,7 @@ pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()
     let at = before + place;
     let why =
         format!("sample {at} of channel {channel:?} is missing: it would spread over all of the result");
-    Err(Error::refused(why).hint("cut the record before the gap, or bridge it"))
+    Err(Error::refused(why).hint("read the part before the gap, or bridge it").setting("span"))
 }
 
 /// A channel of one value has no spectrum.

@@ -241,5 +241,5 @@ fn no_gaps(trace: &Trace, values: &[f64], name: &str) -> Result<()> {
     let [first, last] = [first, last].map(|i| shortest(trace.axis.at(*i)));
     let n = missing.len();
     let why = format!("{n} values of {name} are missing or infinite, from {first} s to {last} s");
-    Err(Error::refused(why).hint("cut the file before or behind them"))
+    Err(Error::refused(why).hint("read the part before or behind them").setting("span"))
 }

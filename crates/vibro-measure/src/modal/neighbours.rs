@@ -29,7 +29,7 @@ fn pair(seed: u64) -> (Measured, [Pole; 2]) {
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn modes_beside_higher_ones_are_found_and_covered() {
     let (mut held, mut known, mut all, mut matched) = (0, 0, 0.0, 0.0);
-    for seed in 0..300 {
+    for seed in 0..150 {
         let (measured, modes) = pair(seed);
         // Two modes within a bandwidth whose form is not that of one may be refused: they are not found.
         let found = modal(&measured, &ModalOptions::default()).map_or_else(|_| Vec::new(), |m| m.modes);
@@ -47,7 +47,7 @@ fn modes_beside_higher_ones_are_found_and_covered() {
         }
     }
     println!("{held} of {known}, {matched} of {all}");
-    // Three standard deviations of 1100 at 91 % are 2.6 %, of 600 at 94 % 2.9 %.
-    assert!(f64::from(held) > 0.88 * f64::from(known), "{held} of {known}");
-    assert!(matched > 0.91 * all, "{matched} of {all}");
+    // Three standard deviations of 550 at 91 % are 3.7 %, of 300 at 94 % 4.1 %.
+    assert!(f64::from(held) > 0.873 * f64::from(known), "{held} of {known}");
+    assert!(matched > 0.899 * all, "{matched} of {all}");
 }
