@@ -53,10 +53,10 @@ impl Voice {
         let voice = if OPTIONS.contains(&key) { Voice::Command } else { self };
         match (voice, value) {
             (Voice::Command, "") => format!("--{}", key.replace('_', "-")),
-            (Voice::Command, value) if value.contains(' ') => format!("{} {value}", voice.setting(key)),
             (Voice::Command, value) if value.starts_with('[') => {
                 format!("{} {}", voice.setting(key), value.trim_matches(['[', ']']).replace(", ", ":"))
             }
+            (Voice::Command, value) if value.contains(' ') => format!("{} {value}", voice.setting(key)),
             (Voice::Command, value) => format!("{} {}", voice.setting(key), value.trim_matches('"')),
             (Voice::Campaign, "") => format!("`{key}`"),
             (Voice::Campaign, value) => format!("`{key} = {value}`"),

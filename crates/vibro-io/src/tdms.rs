@@ -50,6 +50,9 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     }
     let mut file = BufReader::with_capacity(BLOCK, source.open()?);
     let (objects, layouts, mut findings) = segment::all(&mut file, source.len())?;
+    if !survey {
+        options.hold(layouts.iter().map(Layout::values).sum())?;
+    }
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
     let raw = objects.iter().map(|object| {

@@ -15,6 +15,17 @@ pub struct Layout {
     pub parts: Arc<[Part]>,
 }
 
+impl Layout {
+    /// Numbers that the raw data hold.
+    pub fn values(&self) -> f64 {
+        let in_chunk =
+            |of: fn(&Part) -> u64| self.parts.iter().map(move |part| part.rows as f64 * of(part) as f64);
+        let numbers: f64 = in_chunk(|part| part.fields.len() as u64).sum();
+        let bytes: f64 = in_chunk(|part| part.width).sum();
+        if bytes > 0.0 { self.len as f64 * numbers / bytes } else { 0.0 }
+    }
+}
+
 /// Rows of equal width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {

@@ -638,3 +638,18 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn values_beyond_the_limit_are_refused_before_they_are_read() {
+    let mut writer = Writer::new(false);
+    let raw = writer.doubles(&[0.0; 100]);
+    // Five chunks of two channels of ten values.
+    let channel = |name| (name, Raw::Of(10, 10), [].as_slice());
+    writer.segment(ALL, &[channel("/'g'/'a'"), channel("/'g'/'b'")], &raw);
+    let read = |bytes: f64| {
+        let reader = crate::Reader::new().max_memory(crate::Limit(bytes));
+        reader.from_reader("x.tdms", writer.bytes.as_slice())
+    };
+    assert_eq!(read(800.0).unwrap().records[0].len(), 50);
+    assert!(read(799.0).unwrap_err().to_string().contains("it needs 0.80 kB"), "100 values of 8 bytes");
+}
