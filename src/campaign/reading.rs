@@ -113,8 +113,8 @@ impl Reading {
             Format::from_name(name).ok_or_else(|| unknown("format", name, &Format::names().join(", ")))
         };
         let unit = |text: &String| {
-            let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N";
-            Unit::parse(text).ok_or_else(|| unknown("unit", text, expected))
+            let expected = "a unit such as m, mm/s, g, m/s², V, (m/s²)/N, dB re 1 g";
+            Unit::parse_or_level(text).ok_or_else(|| unknown("unit", text, expected))
         };
         Ok(Reader::new()
             .format(self.format.as_ref().map(format).transpose()?)

@@ -149,6 +149,9 @@ pub struct Abscissa {
     pub resolution: f64,
 }
 
+/// How far the end of lines may be from a stated base band, as a part of it: three digits are stated.
+const BAND: f64 = 5e-3;
+
 impl Abscissa {
     /// Values at equal distances.
     pub fn even(kind: AxisKind, even: Option<(f64, f64)>) -> Abscissa {
@@ -171,7 +174,14 @@ impl Abscissa {
         if let (Some(band), true) = (options.base_band, silent && options.rate.is_none()) {
             return Axis::frequency(0.0, band / n.saturating_sub(1).max(1) as f64, n);
         }
-        if options.base_band.is_some() && kind == AxisKind::Frequency {
+        if let Some(band) = options.base_band {
+            let ends_at = |end: f64| (end - band).abs() <= BAND * band;
+            // LabVIEW calls the axis of a spectrum a time. Lines may end one step before the base band.
+            if let (AxisKind::Time, Some((0.0, step))) = (&kind, even)
+                && (ends_at(step * n as f64) || ends_at(step * n.saturating_sub(1) as f64))
+            {
+                return Axis::frequency(0.0, step, n);
+            }
             meta.found(Finding::caution("band-unused"));
         }
         let (start, step) = match (options.rate.filter(|_| kind == AxisKind::Time), even) {

@@ -48,6 +48,7 @@ mod format;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod held;
+mod level;
 mod limit;
 mod lvm;
 mod mat;

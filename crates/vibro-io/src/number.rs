@@ -14,8 +14,7 @@ const POWERS: [f64; 23] = [
 ];
 
 /// What instruments print in place of a value that is missing or over-range, in lower case.
-const MISSING: &str =
-    "novalue|nan|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout|fffffff";
+const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout|fffffff";
 
 /// What instruments print for infinity and for no number (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];

@@ -3,7 +3,7 @@
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
-use super::{Folder, Limit, Source, SweepList, foreign, span};
+use super::{Folder, Limit, Source, SweepList, foreign, level, span};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -22,6 +22,8 @@ pub(crate) struct Options {
     pub allow_missing: bool,
     /// Sampling rate in Hz: the values are a time trace.
     pub rate: Option<f64>,
+    /// Whether that rate follows from a base band.
+    pub rate_of_band: bool,
     /// Base band in Hz: the values are a spectrum from 0 to it.
     pub base_band: Option<f64>,
     /// Unit of the values.
@@ -120,6 +122,7 @@ impl Reader {
 
     /// Takes a stated base band for that of a time trace, which analysers sample at 2.56 times their base band. Default: it is that of a spectrum.
     pub fn rate_of_base_band(mut self) -> Reader {
+        self.options.rate_of_band = self.options.rate.is_none();
         self.options.rate = self.options.rate.or(self.options.base_band.take().map(|band| 2.56 * band));
         self
     }
@@ -245,8 +248,11 @@ impl Reader {
         let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
         // A wave file is read from there on.
         let span = self.options.span.filter(|_| entry.format != Format::Wav);
-        let contents = room.and_then(|()| (entry.read)(source, &self.options, survey && span.is_none()));
-        let contents = contents.and_then(|all| span::cut(all, span));
+        let read = |survey| (entry.read)(source, &self.options, survey);
+        let contents = room.and_then(|()| read(survey && span.is_none())).and_then(|all| {
+            let all = if level::needs_values(&all) { read(false)? } else { all };
+            level::settle(span::cut(all, span)?, &self.options)
+        });
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
     }
 

@@ -1,7 +1,7 @@
 //! The spectra of a sweep, read together.
 
-use super::{Folder, Format, Reader, Recording, SweepList};
-use vibro_record::units::{Quantity, Unit, is_level};
+use super::{Folder, Format, Reader, Recording, SweepList, level};
+use vibro_record::units::{Quantity, Unit};
 use vibro_record::{
     Axis, Direction, Error, Finding, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint,
     Values, Window,
@@ -110,7 +110,7 @@ impl SweepReader {
                 findings.push(finding);
             }
         };
-        if let Some(words) = decibels(&spectrum.meta) {
+        if let Some(words) = level::decibels(&spectrum.meta) {
             let Some(unit) = self.unit.as_ref().filter(|unit| !force && unit.is_known()) else {
                 let words = format!("the file says that its values are decibels: {words:?}");
                 return Err(Error::usage(words, "linear amplitudes").hint(LINEAR));
@@ -205,34 +205,6 @@ const SPECTRA: &str = "list the spectra of the analyser; time records and freque
 /// What to try where values are levels.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
-/// The words by which a file says that its values are levels: their unit, or a header line that states unit, scale or level.
-fn decibels(meta: &Meta) -> Option<String> {
-    if meta.unit.is_level() {
-        return Some(meta.unit.symbol().to_owned());
-    }
-    // The line right above the values names their column.
-    let above = meta.notes.last().filter(|(key, _)| key.is_empty()).map(|(_, line)| line);
-    let bracketed = |name: &&String| name.split(['[', '(']).skip(1).any(is_level);
-    if let Some(name) = [Some(&meta.name), above].into_iter().flatten().find(bracketed) {
-        return Some(name.clone());
-    }
-    // A number before the word makes it a setting, as in `level: -20 dB`.
-    let states = |value: &str| {
-        let words: Vec<&str> = value.split_whitespace().collect();
-        let at = words.iter().position(|word| is_level(word));
-        at.is_some_and(|at| at == 0 || words[at - 1].parse::<f64>().is_err())
-    };
-    let about = |key: &str| {
-        let key = key.to_lowercase();
-        !key.contains(['[', '('])
-            && ["unit", "scal", "level", "axis", "amplitude", "magnitude"]
-                .iter()
-                .any(|word| key.contains(word))
-    };
-    let note = meta.notes.iter().find(|(key, value)| about(key) && states(value));
-    note.map(|(key, value)| format!("{key}: {value}"))
-}
-
 /// The factor by which the reader took stored numbers to SI.
 fn taken(meta: &Meta) -> f64 {
     let steps = meta.history.iter().filter(|step| step.name == "to_si").flat_map(|step| &step.arguments);
@@ -278,51 +250,6 @@ fn gather(recording: &Recording, findings: &mut Vec<Finding>) {
     for found in recording.all_findings() {
         if !SETTLED.contains(&found.code.as_ref()) && findings.len() < 50 && !findings.contains(&found) {
             findings.push(found);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn of(unit: &str, name: &str, key: &str, value: &str) -> Option<String> {
-        let mut meta = Meta::new(name, Unit::parse_or_opaque(unit));
-        meta.notes.push((key.to_owned(), value.to_owned()));
-        decibels(&meta)
-    }
-
-    #[test]
-    fn units_and_statements_of_levels() {
-        for (unit, name, key, value) in [
-            ("dB", "", "", ""),
-            ("dBV", "", "", ""),
-            ("", "amplitude [dB re 1 m/s]", "", ""),
-            ("m/s", "v (dB)", "", ""),
-            ("", "", "", "Level (dB)"),
-            ("", "", "Y axis", "dB"),
-            ("", "", "scale", "log dB"),
-            ("", "", "Y_unit", "dB re 1e-9 m/s"),
-            ("", "", "LEVEL", "Decibels"),
-        ] {
-            let said = of(unit, name, key, value);
-            assert!(said.is_some(), "{unit} {name} {key} {value}: {said:?}");
-        }
-    }
-
-    #[test]
-    fn settings_in_decibels_and_paths_are_no_levels() {
-        for (key, value) in [
-            ("gain", "20 dB"),
-            ("gain [dB]", "20"),
-            ("Level", "-20 dB"),
-            ("Window", "flat top (-93 dB)"),
-            ("File", "/data/db/run1.dat"),
-            ("Filter slope", "dB/octave, 12"),
-            ("", "adb"),
-            ("", "range dB = 10"),
-        ] {
-            assert_eq!(of("m/s", "v", key, value), None, "{key}: {value}");
         }
     }
 }

@@ -19,6 +19,7 @@ mod preamble;
 mod records;
 mod rows;
 mod table;
+mod tables;
 mod tail;
 pub(crate) mod unit_words;
 mod word_columns;
@@ -26,7 +27,7 @@ mod wrapped;
 
 use crate::held::Contents;
 use crate::reader::Options;
-use crate::{Format, Limit, Source, missing};
+use crate::{Format, Limit, Source, missing, number};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
@@ -102,21 +103,35 @@ pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<
         .setting("format")
     };
     with_text(source, options.limit, |text| match table::detect(text, options) {
-        Some(dialect) => table::grouped(text, &dialect).and_then(|()| read(text, &dialect, options)),
+        Some(dialect) => table::grouped(text, &dialect)
+            .and_then(|()| read(text, &dialect, options))
+            .or_else(|why| one_table(text, options, why)),
         None => without_words(text, options, without_names()),
     })
 }
 
 pub(crate) fn read_numbers(source: &Source, options: &Options, _: bool) -> Result<Contents> {
     with_text(source, options.limit, |text| match numbers::detect(text, options) {
-        Ok(dialect) => read(text, &dialect, options),
+        Ok(dialect) => read(text, &dialect, options).or_else(|why| one_table(text, options, why)),
         Err(why) => without_words(text, options, why),
     })
 }
 
 /// What is left without its columns of words; where it has none, the complaint `why` it cannot be read.
 fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
-    let Some((source, found)) = word_columns::left_out(text)? else { return Err(why) };
+    let Some(left) = word_columns::left_out(text)? else { return Err(why) };
+    without(left, options)
+}
+
+/// The longest of several tables; where none is, the complaint `why` they cannot be read as one.
+fn one_table(text: &Text, options: &Options, why: Error) -> Result<Contents> {
+    let Some(line) = why.line().filter(|_| why.advice() == rows::TABLES) else { return Err(why) };
+    let Some(left) = tables::longest(text, line)? else { return Err(why) };
+    without(left, options).map_err(|_| why)
+}
+
+/// The contents of what is left of a text, and what was left out of it.
+fn without((source, found): (Source, Finding), options: &Options) -> Result<Contents> {
     let read = if is_table(source.head(), &source) { read_table } else { read_numbers };
     let mut contents = read(&source, options, false)?;
     contents.findings.push(found);
@@ -176,11 +191,25 @@ fn records_of(
     let mut findings: Vec<Finding> =
         tail::cut_off(tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
+    let counted = |code, n: usize| (n > 0).then(|| Finding::caution(code).count("n", n));
+    findings.extend(counted("rows-empty", rows.empty));
+    findings.extend(counted("rows-in-head", rows_in(&dialect.header)));
     if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
     let records = records::build(text, tail, dialect, rows, options, &mut findings)?;
     Ok(Contents::of(records, findings))
+}
+
+/// How many lines of a head are rows of another table: numbers alone, as many as in the line above or below.
+fn rows_in(head: &[String]) -> usize {
+    let numbers = |line: &String| {
+        let cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.is_empty());
+        let all = cells.clone().all(|cell| number::either(cell.as_bytes()).is_some());
+        cells.count() * usize::from(all)
+    };
+    let widths: Vec<usize> = head.iter().map(numbers).collect();
+    widths.chunk_by(|a, b| a == b).filter(|rows| rows[0] > 1 && rows.len() > 1).map(<[usize]>::len).sum()
 }
 
 /// Row by row, each complaint with its place.

@@ -167,6 +167,11 @@ impl Error {
         self
     }
 
+    /// Line of the file that it is about.
+    pub fn line(&self) -> Option<u64> {
+        self.0.place.line
+    }
+
     /// What to try; empty where nothing would help.
     pub fn advice(&self) -> &str {
         &self.0.hint

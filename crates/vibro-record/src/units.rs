@@ -97,6 +97,25 @@ impl Unit {
         Unit::parse(text).unwrap_or_else(|| Unit::opaque(text))
     }
 
+    /// Reads a unit, or one of levels over a reference that is a unit, such as `dB re 1 g`.
+    pub fn parse_or_level(text: &str) -> Option<Unit> {
+        Unit::parse(text).or_else(|| Some(Unit::opaque(text)).filter(|unit| unit.reference().is_some()))
+    }
+
+    /// What 0 dB stand for, where it is a unit of levels that says so.
+    ///
+    /// ```
+    /// use vibro_record::units::Unit;
+    /// let reference = |text| Unit::parse_or_opaque(text).reference().map(|unit| unit.factor());
+    /// assert_eq!(reference("dB re 1e-6 m/s²"), Some(1e-6));
+    /// assert_eq!(reference("dB re g"), Some(9.80665));
+    /// assert_eq!(reference("dB"), None);
+    /// ```
+    pub fn reference(&self) -> Option<Unit> {
+        let (_, reference) = self.symbol.split_once(" re ").filter(|_| self.is_level())?;
+        Unit::parse(reference).or_else(|| Unit::parse(&format!("1 {reference}")))
+    }
+
     /// Spelling.
     pub fn symbol(&self) -> &str {
         &self.symbol

@@ -137,8 +137,8 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
     }
 }
 
-/// Whether a line that is no row is meant as one: as many cells, the first begins with a digit, one is a number, another is none, and they
-/// are no units.
+/// Whether a line that is no row is meant as one: as many cells, all of them missing values; or the first begins with a digit, one is a
+/// number, another is none, and they are no units.
 pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
     let cells = fields(line, separator).unwrap_or_default();
     let cells: Vec<&str> = cells.iter().map(|(_, cell)| cell.as_ref()).collect();
@@ -146,6 +146,11 @@ pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
     let word = |c: &&str| !number(c) && !number::is_missing(c.as_bytes()) && !clock::is_clock(c);
     let digit =
         |cell: &&str| cell.trim_start_matches(['-', '+', '<', '>']).starts_with(|c: char| c.is_ascii_digit());
+    let missing = |cell: &&str| number::is_missing(cell.as_bytes());
+    if cells.len() == columns && cells.iter().all(|c| c.is_empty() || missing(c)) && cells.iter().any(missing)
+    {
+        return true;
+    }
     let torn = cells.len() == columns && cells.first().is_some_and(digit);
     torn && cells.iter().any(number) && cells.iter().any(word) && !is_unit_row(cells.into_iter())
 }

@@ -21,6 +21,8 @@ pub struct Rows {
     pub sparse: Vec<Option<(usize, usize)>>,
     /// Number of missing values.
     pub missing: usize,
+    /// Number of rows in which the abscissa and all values are missing: they are left out.
+    pub empty: usize,
     /// Remarks between and behind the rows.
     pub remarks: Vec<String>,
 }
@@ -57,6 +59,11 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         }
         if fields.len() != n {
             return Err(reader.ragged(&line, &fields));
+        }
+        if abscissa.is_some() && fields.iter().all(|(_, field)| field.is_empty() || reader.is_missing(field))
+        {
+            rows.empty += 1;
+            continue;
         }
         if let Some(since) = blank_since.take().filter(|_| dialect.format == Format::Ascii) {
             if n > 1 {
@@ -117,6 +124,10 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
 
 /// What to try where columns are of different length.
 const END_EARLY: &str = "write the columns that end early to a file of their own, with their axis; or keep what is missing as such";
+
+/// What to try where rows of another table stand behind a line of words.
+pub const TABLES: &str =
+    "write each table of the file to a file of its own, the lines above its rows with it";
 
 /// What stands behind the last row.
 const ENDS: [&str; 3] = ["end", "endcurve", "eof"];
@@ -212,7 +223,7 @@ impl Reader<'_> {
     fn hint(&self, line: &Line, hint: &'static str) -> &'static str {
         if self.dialect.cut(line).is_ok_and(|fields| self.begins_with_word(&fields)) && self.rows_behind(line)
         {
-            "write each table of the file to a file of its own, the lines above its rows with it"
+            TABLES
         } else if line.at + line.text.len() == self.text.len() {
             CUT_OFF
         } else {

@@ -855,3 +855,52 @@ fn words_below_the_rows_are_put_behind_a_mark() {
     );
     assert_eq!(of("Time (s),a\n0,1\n1,2\n#Max,2\n\n").records[0].axis().len(), 2);
 }
+
+#[test]
+fn missing_values_are_no_names() {
+    for missing in ["NaN,NaN", "NaT,inf", ",NaN", "-nan,nan"] {
+        let head = format!("time [s],strain\n{missing}\n{missing}\n");
+        let rows = "0.0,1\n0.1,2\n0.2,4\n0.3,3\n";
+        let found =
+            Reader::new().from_reader("x.csv", format!("{head}{rows}{missing}\n").as_bytes()).unwrap();
+        let Record::Trace(trace) = &found.records[0] else { panic!("{found:?}") };
+        assert_eq!(
+            (trace.meta.name.as_str(), trace.values.as_slice()),
+            ("strain", &[1.0, 2.0, 4.0, 3.0][..])
+        );
+        assert_eq!(trace.axis, Axis::time(0.0, trace.axis.step().unwrap(), 4));
+        assert!(has_finding(&found.findings, "rows-empty", &["n=3"]), "{:?}", found.findings);
+    }
+}
+
+/// ImageJ saves a summary of its tracks above their rows; a logger may write a summary below them.
+#[test]
+fn of_two_tables_the_longer_is_read_and_the_other_counted() {
+    let rows: String = (0..30).map(|i| format!("{i}\t{}\t50.5\n", 2 * i + i % 3)).collect();
+    let summary = "\tTrack\tLength\tFrames\n1\t1\t33.5\t275\n2\t2\t44.5\t275\n";
+    let names = "Frame\tX1\tY1\n";
+    for text in [
+        format!("{summary}Tracks 1 to 1\n{rows}"),
+        format!("{summary}Tracks 1 to 1\n{names}{rows}"),
+        format!("{names}{rows}\n{summary}"),
+    ] {
+        for name in ["x.txt", "x.csv"] {
+            let found = Reader::new().from_reader(name, text.as_bytes()).unwrap();
+            assert_eq!(found.records.last().unwrap().len(), 30, "{name}: {text}");
+            assert!(has_finding(&found.findings, "table-left-out", &["n=2"]), "{:?}", found.findings);
+        }
+    }
+    // Tables that compare are for a person to choose from.
+    let two = format!("{names}{rows}Track 2\n{names}{rows}");
+    let said = Reader::new().from_reader("x.csv", two.as_bytes()).unwrap_err().to_string();
+    assert!(said.contains("line 32") && said.contains("to a file of its own"), "{said}");
+}
+
+#[test]
+fn rows_of_numbers_in_a_head_are_counted() {
+    let rows: String = (0..30).map(|i| format!("{i},{},50.5\n", 2 * i + i % 3)).collect();
+    let text = format!("1 1 33.5 5.2\n2 2 44.5 9.2\nFrame,X1,Y1\n{rows}");
+    let found = of(text);
+    assert_eq!(found.records[0].len(), 30);
+    assert!(has_finding(&found.findings, "rows-in-head", &["n=2"]), "{:?}", found.findings);
+}

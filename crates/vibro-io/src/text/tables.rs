@@ -1,0 +1,30 @@
+//! Several tables in one text: the longest is read where the others are short beside it.
+
+use super::{Text, encoding};
+use crate::{Source, number};
+use vibro_record::{Finding, Result};
+
+/// How many times as many rows the longer of two tables has: a summary of some rows is short beside what it sums up.
+const LONGER: usize = 10;
+
+/// The text with the longer of two tables, of which the second begins at `line`; `None` where they compare. Lines keep their numbers.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn longest(text: &Text, line: u64) -> Result<Option<(Source, Finding)>> {
+    let bytes = text.source.all()?;
+    let whole = encoding::decode(&bytes);
+    let above = line as usize - 1;
+    let (upper, lower) = whole.split_at(whole.split_inclusive('\n').take(above).map(str::len).sum());
+    let is_row = |line: &&str| number::prefix(line.trim_start().as_bytes(), b'.').is_some();
+    let [first, second] = [upper, lower].map(|part| part.lines().filter(is_row).count());
+    let (kept, left) = if first >= LONGER * second {
+        (upper.to_owned(), second)
+    } else if second >= LONGER * first {
+        ("\n".repeat(above) + lower, first)
+    } else {
+        return Ok(None);
+    };
+    let found = Finding::caution("table-left-out").count("n", left);
+    Ok(Some((Source::memory(text.source.path(), kept.into_bytes())?, found)))
+}
