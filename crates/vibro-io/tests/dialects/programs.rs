@@ -298,4 +298,47 @@ pub const ALL: &[Dialect] = &[
             },
         }),
     },
+    Dialect {
+        of: "ImageJ, TrackMate and MTrack2",
+        oddity: "a summary of two tracks, a line of words, then the rows",
+        file: "Tracks.txt",
+        text: || {
+            let head = "\tTrack\tLength\tFrames\n1\t1\t33.5\t275\n2\t2\t44.5\t275\nTracks 1 to 1\nTime [s]\tX1 [mm]\n";
+            table(head, |i| format!("{}\t{}", fixed(at(0.0, i), 6), fixed(value(0, i), 6)))
+        },
+        outcome: read(&[ch("X1", "m", 0, 1e-3, 5e-7)], X::Even(0.0), &["table-left-out"]),
+    },
+    Dialect {
+        of: "pandas, joined tables",
+        oddity: "rows of `NaN` below the names, before the first value",
+        file: "joined.csv",
+        text: || {
+            table("time [s],strain\nNaN,NaN\nNaN,NaN\n", |i| {
+                format!("{},{}", fixed(at(0.0, i), 6), fixed(value(0, i), 6))
+            })
+        },
+        outcome: read(&[ch("strain", "", 0, 1.0, 5e-7)], X::Even(0.0), &["rows-empty", "unit-unsaid"]),
+    },
+    Dialect {
+        of: "LabVIEW, spectrum as LVM",
+        oddity: "`FFT` in the name, over an axis that is called a time",
+        file: "spectrum.lvm",
+        text: || {
+            let head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\nChannels\t1\n\
+                        Y_Unit_Label\tm/s^2\nX_Dimension\tTime\nX0\t0\nDelta_X\t0.5\n***End_of_Header***\n\
+                        X_Value\tAcceleration (FFT)\tComment\n";
+            table(head, |i| format!("\t{}", sci(value(0, i), 6, 2)))
+        },
+        outcome: Outcome::Refused(Refusal {
+            words: &["calls itself a spectrum", "base_band"],
+            option: "`--base-band 64`",
+            state: |reader| reader.base_band(Some(64.0)),
+            edit: |text| text,
+            right: Right {
+                channels: &[ch("Acceleration (FFT)", "m/s²", 0, 1.0, 5e-7)],
+                x: X::Lines(0.5),
+                findings: &["scaling-unsaid"],
+            },
+        }),
+    },
 ];
