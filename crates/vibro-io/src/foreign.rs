@@ -18,6 +18,9 @@ const UNFINISHED: &str = "finish it in the program that wrote it, and export CSV
 const TEXT: &str = "choose the export as CSV or text";
 const SHEET: &str = "choose File > Save As > CSV, one sheet a file";
 const OCTAVE: &[u8] = b"# Created by Octave";
+const SEISMIC: &str = "write it as SLIST, TSPAIR or CSV, e.g. with ObsPy";
+/// `C 1` in EBCDIC: the first of its forty lines of text.
+const EBCDIC: &[u8] = b"\xc3\x40\xf1";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
 
 /// Name of a format, what tells it, and the export to choose.
@@ -45,6 +48,20 @@ const TABLE: &[(&str, By, &str)] = &[
     ("a FLAC recording", Bytes(0, b"fLaC"), "turn it into WAV, e.g. with `flac -d`"),
     ("an Ogg recording", Bytes(0, b"OggS"), AUDIO),
     ("an MP3 recording", Bytes(0, b"ID3"), AUDIO),
+    (
+        "an enDAQ or Slam Stick recording",
+        Bytes(0, b"\x1a\x45\xdf\xa3"),
+        "export it as CSV in enDAQ Lab, or with `ide2csv`",
+    ),
+    // Number 5012, with which each file of catman begins.
+    ("a catman recording", Bytes(0, b"\x94\x13"), "choose the export as ASCII or MAT in catman"),
+    ("a SEG-Y file", Ending(&["sgy", "segy"]), SEISMIC),
+    ("a SEG-Y file", Bytes(0, EBCDIC), SEISMIC),
+    ("a SAC file", Ending(&["sac"]), SEISMIC),
+    ("a miniSEED file", Ending(&["mseed", "miniseed", "msd"]), SEISMIC),
+    ("a miniSEED file", Bytes(0, b"000001D "), SEISMIC),
+    ("a miniSEED file", Bytes(0, b"MS\x03"), SEISMIC),
+    ("a C3D file", Ending(&["c3d"]), "export its analogue channels as CSV in the program that wrote it"),
     ("a packed file", Bytes(0, b"\x1f\x8b"), "unpack it first"),
 ];
 
@@ -76,6 +93,12 @@ mod tests {
             ("x.trc", b"#9000000346WAVEDESC\0\0\0", ["LeCroy", "CSV"]),
             ("x.mf4", b"MDF     4.10\0\0", ["MDF 4", "asammdf"]),
             ("x.xlsx", b"PK\x03\x04\x14\0", ["Excel", "Save As"]),
+            ("x.ide", b"\x1a\x45\xdf\xa3\x01\0", ["enDAQ", "CSV"]),
+            ("x.bin", b"\x94\x13\x02\0\0", ["catman", "ASCII"]),
+            ("x.segy", b"\xc3\x40\xf1\x40\xc3", ["SEG-Y", "ObsPy"]),
+            ("x.sac", b"\0\0\x80\x3f\0", ["SAC", "ObsPy"]),
+            ("x.mseed", b"000001D \0\x01", ["miniSEED", "SLIST"]),
+            ("x.c3d", b"\x02\x50\0\x01", ["C3D", "CSV"]),
             #[cfg(not(feature = "hdf5"))]
             ("x.h5", b"\x89HDF\r\n\x1a\n\0", ["HDF5", "MAT"]),
             ("x.dat", b"|CF,2,1,1;|CK,1,3,1,1;", ["FAMOS", "ASCII"]),
