@@ -34,6 +34,11 @@ pub struct Reading {
     pub wrapped: bool,
     /// Each column is a channel, however much the rows look like one series
     pub columns: bool,
+    /// Stretch between lost samples that is used, by its number from 1
+    #[cfg_attr(feature = "cli", arg(value_name = "N"))]
+    pub stretch: Option<usize>,
+    /// Rate in Hz at which samples of uneven times are interpolated
+    pub resample: Option<f64>,
 }
 
 /// Which record of a file is meant, and its calibration.
@@ -73,8 +78,19 @@ pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
 
 impl Reading {
     /// Its keys.
-    pub const KEYS: [&str; 9] =
-        ["format", "allow_missing", "rate", "base_band", "unit", "decimal", "complex", "wrapped", "columns"];
+    pub const KEYS: [&str; 11] = [
+        "format",
+        "allow_missing",
+        "rate",
+        "base_band",
+        "unit",
+        "decimal",
+        "complex",
+        "wrapped",
+        "columns",
+        "stretch",
+        "resample",
+    ];
 
     /// Keys that are stated, with their values.
     pub fn stated(&self) -> Vec<(&'static str, Value)> {
@@ -111,6 +127,8 @@ impl Reading {
             .unit(self.unit.as_ref().map(unit).transpose()?)
             .decimal_comma(self.decimal.map(|d| d == Decimal::Comma))
             .complex(self.complex)
+            .stretch(self.stretch)
+            .resample(self.resample)
             .wrapped((self.wrapped || self.columns).then_some(self.wrapped)))
     }
 }

@@ -1,5 +1,6 @@
 //! The reader: options, then a path or bytes, then records.
 
+use super::assemble::domain;
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
@@ -32,6 +33,10 @@ pub(crate) struct Options {
     pub complex: bool,
     /// Whether rows continue each other as one series; `None` to find out.
     pub wrapped: Option<bool>,
+    /// Which stretch between lost samples is used, from 1.
+    pub stretch: Option<usize>,
+    /// Rate in Hz at which samples of uneven times are interpolated.
+    pub resample: Option<f64>,
     /// Memory that may be filled.
     pub limit: Limit,
     /// What is held beside the values by what is made of them, in their size.
@@ -147,6 +152,18 @@ impl Reader {
         self
     }
 
+    /// Takes, of traces whose samples have gaps, the stretch of this number from 1. Default: all samples, which have no rate then.
+    pub fn stretch(mut self, stretch: Option<usize>) -> Reader {
+        self.options.stretch = stretch;
+        self
+    }
+
+    /// Interpolates traces at this rate in Hz. Default: the samples at their own times.
+    pub fn resample(mut self, rate: Option<f64>) -> Reader {
+        self.options.resample = rate;
+        self
+    }
+
     /// Bounds the memory that values may fill. Default: see [`Limit`].
     pub fn max_memory(mut self, limit: Limit) -> Reader {
         self.options.limit = limit;
@@ -236,6 +253,7 @@ impl Reader {
         let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
         let room = self.options.limit.hold(if whole { 2.0 * source.len() as f64 } else { 0.0 });
         let contents = room.and_then(|()| (entry.read)(source, &self.options, survey));
+        let contents = contents.and_then(|contents| contents.evened(&self.options));
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
     }
 
@@ -288,8 +306,10 @@ pub struct Header {
     pub n: usize,
     /// Number of values that the file declares.
     pub declared_n: Option<usize>,
-    /// First abscissa value, in s or Hz.
+    /// First abscissa value, in `x_unit`.
     pub x0: f64,
+    /// `s` or `Hz`; empty where the file does not say what the abscissa is.
+    pub x_unit: &'static str,
     /// Distance of abscissa values; `None` if uneven.
     pub dx: Option<f64>,
     /// Sampling rate in Hz and duration in s of an even trace.
@@ -335,6 +355,7 @@ impl Header {
             n: record.len(),
             declared_n: meta.declared_n,
             x0: axis.start(),
+            x_unit: domain(&axis.kind).1,
             dx: axis.step(),
             complex: record.is_complex(),
             max_abs: largest.map(|(_, m)| m),
