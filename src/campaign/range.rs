@@ -28,7 +28,13 @@ use Sign::{Above, Any, Zero};
 type Row = (Sign, f64, f64, &'static str, &'static [&'static str]);
 
 const ROWS: &[Row] = &[
-    (Above, LARGEST, LEAST, "Hz", &["rate", "base_band", "shape_rate", "excitation", "instrument"]),
+    (
+        Above,
+        LARGEST,
+        LEAST,
+        "Hz",
+        &["rate", "resample", "base_band", "shape_rate", "excitation", "instrument"],
+    ),
     (Above, LARGEST, LEAST, "Hz", &["low_pass", "high_pass", "fmin", "fmax"]),
     (Zero, LARGEST, LEAST, "Hz", &["band"]),
     (Above, LARGEST, LEAST, "Hz/s", &["sweep_rate"]),
@@ -51,6 +57,7 @@ const ROWS: &[Row] = &[
     (Zero, 1e3, 1.0, "", &["modes", "tones", "order", "peak_lines", "starts", "analyser_integrated"]),
     (Zero, 1e9, 1.0, "", &["segment", "points", "pulses_per_turn", "impacts", "cycles"]),
     (Zero, 1e9, 1.0, "", &["settle", "measure", "steps", "lines"]),
+    (Above, 1e9, 1.0, "", &["stretch"]),
     (Any, 1e3, 1.0, "", &["integrate"]),
 ];
 

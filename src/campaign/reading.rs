@@ -37,6 +37,11 @@ pub struct Reading {
     /// Only this part of a time trace, from and to in s
     #[cfg_attr(feature = "cli", arg(value_name = "FROM:TO", allow_hyphen_values = true, value_parser = crate::campaign::two::<':'>))]
     pub span: Option<(f64, f64)>,
+    /// Stretch between lost samples that is used, by its number from 1
+    #[cfg_attr(feature = "cli", arg(value_name = "N"))]
+    pub stretch: Option<usize>,
+    /// Rate in Hz at which samples of uneven times are interpolated
+    pub resample: Option<f64>,
 }
 
 /// Which record of a file is meant, and its calibration.
@@ -76,7 +81,7 @@ pub fn above_zero(key: &'static str, value: Option<f64>) -> Result<()> {
 
 impl Reading {
     /// Its keys.
-    pub const KEYS: [&str; 10] = [
+    pub const KEYS: [&str; 12] = [
         "format",
         "allow_missing",
         "rate",
@@ -87,6 +92,8 @@ impl Reading {
         "wrapped",
         "columns",
         "span",
+        "stretch",
+        "resample",
     ];
 
     /// Keys that are stated, with their values.
@@ -124,8 +131,10 @@ impl Reading {
             .unit(self.unit.as_ref().map(unit).transpose()?)
             .decimal_comma(self.decimal.map(|d| d == Decimal::Comma))
             .complex(self.complex)
-            .wrapped((self.wrapped || self.columns).then_some(self.wrapped))
-            .span(self.span))
+            .span(self.span)
+            .stretch(self.stretch)
+            .resample(self.resample)
+            .wrapped((self.wrapped || self.columns).then_some(self.wrapped)))
     }
 }
 

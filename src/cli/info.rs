@@ -44,14 +44,13 @@ impl Run for Info {
             let of_records: Vec<_> =
                 records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
             findings.extend(Finding::gathered(&of_records));
-            let numbered = findings.iter().any(|f| f.code == "abscissa-unsaid");
             let shown_path = shown(path);
             let path = path.display().to_string();
             let file = if self.files.len() > 1 { path.as_str() } else { "" };
             about.extend(findings.into_iter().map(|finding| (file.to_owned(), finding)));
             let _ = writeln!(text, "{shown_path} ({})", format.name());
             for record in &records {
-                line(&mut text, record, numbered);
+                line(&mut text, record);
             }
             notes(&mut text, records.first().map_or(&[], |r| &r.notes));
             files.push(json!({ "path": path, "format": format.name(), "records": records }));
@@ -68,18 +67,12 @@ impl Run for Info {
     }
 }
 
-fn line(text: &mut String, r: &Header, numbered: bool) {
+fn line(text: &mut String, r: &Header) {
     let n = match r.declared_n {
         Some(declared) if declared != r.n => format!("{} of {declared}", r.n),
         _ => r.n.to_string(),
     };
-    let axis = match r.kind {
-        // The file may number one channel and time another.
-        "trace" if r.dx.is_some() && r.rate.is_none() => "",
-        "trace" => "s",
-        _ if numbered => "",
-        _ => "Hz",
-    };
+    let axis = r.x_unit;
     let step = match r.dx {
         Some(dx) if axis == "s" => {
             format!("{}, {}", known(1.0 / dx, "Hz"), known(dx * r.n as f64, "s"))

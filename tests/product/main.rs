@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod cli;
+mod clocks;
 mod drill;
 mod drill_limits;
 mod example_campaign;

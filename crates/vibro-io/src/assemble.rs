@@ -3,7 +3,8 @@
 use crate::Options;
 use vibro_record::units::{self, Quantity, Unit};
 use vibro_record::{
-    Axis, AxisKind, Error, Finding, Frf, Grid, Meta, Record, Result, Scaling, Spectrum, Trace, Values, Window,
+    Axis, AxisKind, Clock, Error, Finding, Frf, Grid, Meta, Record, Result, Scaling, Spectrum, Stretch,
+    Trace, Values, Window, stretches,
 };
 
 /// What a file states of a spectrum.
@@ -112,11 +113,21 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     // Seconds printed ten times each: the record may begin and end within one, so the step is that between their changes.
     let between = turns.filter(|_| smallest == 0.0 && 2 * long < steps.len());
     let between = between.map(|(first, last)| (values[last + 1] - values[first + 1]) / (last - first) as f64);
-    let mut axis = if doubled && turns.is_none() {
+    let rounded = if doubled && turns.is_none() {
         Axis { kind, grid: Grid::Uneven(values) }
     } else {
         Axis::from_values(kind, values, resolution)
     };
+    let (mut axis, clock) = match rounded {
+        Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) } => match Clock::of(&values, resolution) {
+            Some(clock) => (Axis::time(clock.start, clock.step, values.len()), Some(clock)),
+            None => (Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) }, None),
+        },
+        even => (even, None),
+    };
+    if let Some(clock) = clock {
+        return (axis, Some(clock.finding(what)));
+    }
     if let (Grid::Even { step, .. }, Some(between)) = (&mut axis.grid, between) {
         *step = between;
     }
@@ -127,8 +138,10 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
             Some(Finding::note("axis-rounded").number("step", step))
         }
         Some(_) => None,
-        None if smallest > 0.0 => Some(Finding::caution("axis-uneven")),
-        None => Some(Finding::caution("axis-backwards")),
+        None if smallest > 0.0 => {
+            Some(between_gaps(&axis, "samples-lost").unwrap_or(Finding::caution("axis-uneven")))
+        }
+        None => Some(between_gaps(&axis, "axis-backwards").unwrap_or(Finding::caution("axis-backwards"))),
     };
     let steps = steps.len();
     let finding = finding.map(|found| {
@@ -137,6 +150,25 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     });
     (axis, finding)
 }
+
+/// What is said, under this code, of times with even stretches between lost samples, pauses or restarts.
+fn between_gaps(axis: &Axis, code: &'static str) -> Option<Finding> {
+    let Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) } = axis else { return None };
+    let all = stretches(values);
+    let (i, longest) = all.iter().enumerate().max_by(|a, b| a.1.duration().total_cmp(&b.1.duration()))?;
+    let (rate, std) = longest.clock.rate();
+    let found = Finding::caution(code).count("stretches", all.len()).count("longest", i + 1);
+    let found = found.number("duration", longest.duration()).number("start", longest.clock.start);
+    let found = found.number("rate", rate).number("std", std);
+    let durations: Vec<f64> = all.iter().map(Stretch::duration).collect();
+    Some(if all.len() <= LISTED { found.numbers("durations", durations) } else { found })
+}
+
+/// Relative difference between the rate that a logger or a telephone was set to and that of its clock.
+pub const NOMINAL: f64 = 1e-2;
+
+/// Stretches that are listed one by one.
+const LISTED: usize = 12;
 
 /// What a file says of an abscissa.
 pub struct Abscissa {
@@ -308,7 +340,7 @@ mod tests {
                 (0..100).filter(|i| !lost.contains(i)).map(|i| f64::from(i) / 1e3).collect();
             let (axis, doubt) = from_values(AxisKind::Time, times.clone(), 0.5e-3, "column \"t\"");
             assert_eq!(axis.values(), times, "{lost:?}");
-            assert!(doubt.unwrap().code == "axis-uneven", "{lost:?}");
+            assert_eq!(doubt.unwrap().code, "samples-lost", "{lost:?}");
         }
     }
 }

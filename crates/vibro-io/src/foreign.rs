@@ -8,15 +8,18 @@ use vibro_record::{Error, Place};
 enum By {
     Bytes(usize, &'static [u8]),
     Ending(&'static [&'static str]),
+    /// Endings, and the first bytes.
+    Named(&'static str, &'static [u8]),
 }
 
-use By::{Bytes, Ending};
+use By::{Bytes, Ending, Named};
 
 const UFF: &str = "choose File > Export > Universal File (UFF-58)";
 const DEWESOFT: &str = "choose Export > UNV/UFF, MAT or CSV in Dewesoft";
 const UNFINISHED: &str = "finish it in the program that wrote it, and export CSV or MAT";
 const TEXT: &str = "choose the export as CSV or text";
 const SHEET: &str = "choose File > Save As > CSV, one sheet a file";
+const SHEETS: &str = "choose File > Save As > CSV, one sheet a file; in phyphox choose Export Data > CSV (Comma, decimal point)";
 const OCTAVE: &[u8] = b"# Created by Octave";
 const SEISMIC: &str = "write it as SLIST, TSPAIR or CSV, e.g. with ObsPy";
 /// `C 1` in EBCDIC: the first of its forty lines of text.
@@ -43,8 +46,13 @@ const TABLE: &[(&str, By, &str)] = &[
     ("a NumPy array", Bytes(0, b"\x93NUMPY"), "write it as CSV or MAT, with its rate"),
     #[cfg(not(feature = "hdf5"))]
     ("an HDF5 file", Bytes(0, b"\x89HDF\r\n\x1a\n"), crate::variables::EXPORT),
-    ("an Excel sheet", Bytes(0, b"PK\x03\x04"), SHEET),
-    ("an Excel sheet, or another Office file", Bytes(0, b"\xd0\xcf\x11\xe0"), SHEET),
+    ("an Excel sheet", Named("xlsx xlsm ods", b"PK\x03\x04"), SHEET),
+    (
+        "a packed folder (zip)",
+        Bytes(0, b"PK\x03\x04"),
+        "unpack it and name the file with the samples: of phyphox Raw Data.csv",
+    ),
+    ("an Excel sheet, or another Office file", Bytes(0, b"\xd0\xcf\x11\xe0"), SHEETS),
     ("a FLAC recording", Bytes(0, b"fLaC"), "turn it into WAV, e.g. with `flac -d`"),
     ("an Ogg recording", Bytes(0, b"OggS"), AUDIO),
     ("an MP3 recording", Bytes(0, b"ID3"), AUDIO),
@@ -70,6 +78,7 @@ pub fn complaint(source: &Source) -> Option<Error> {
     let (head, ending) = (source.head(), source.extension());
     let is = |(_, by, _): &&(&str, By, &str)| match by {
         Ending(endings) => endings.contains(&ending.as_str()) && !encoding::is_text(head),
+        Named(endings, begins) => head.starts_with(begins) && endings.split(' ').any(|e| e == ending),
         Bytes(at, begins) => head.get(*at..).is_some_and(|head| head.starts_with(begins)),
     };
     // MAT-files of version 7.3 are HDF5 and have a complaint of their own; one matrix of Octave reads as text.
@@ -101,6 +110,8 @@ mod tests {
             ("x.c3d", b"\x02\x50\0\x01", ["C3D", "CSV"]),
             #[cfg(not(feature = "hdf5"))]
             ("x.h5", b"\x89HDF\r\n\x1a\n\0", ["HDF5", "MAT"]),
+            ("phyphox 2024-01-24.zip", b"PK\x03\x04\x14\0", ["zip", "Raw Data.csv"]),
+            ("phyphox 2024-01-24.xls", b"\xd0\xcf\x11\xe0\xa1\xb1", ["Excel", "phyphox"]),
             ("x.dat", b"|CF,2,1,1;|CK,1,3,1,1;", ["FAMOS", "ASCII"]),
             (
                 "x.mat",

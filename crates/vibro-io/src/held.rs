@@ -1,8 +1,9 @@
 //! What a reader holds of values: all of them, or, where a survey asks for no more, their ends.
 
-use crate::assemble::{self, Spectral};
+use crate::Options;
+use crate::assemble::{self, NOMINAL, Spectral};
 use vibro_record::lanes::Extremes;
-use vibro_record::{Axis, Finding, Meta, Record, Result, Values, units};
+use vibro_record::{Axis, Clock, Error, Finding, Meta, Record, Result, Values, units};
 
 /// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing is to be said of any of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,5 +83,31 @@ impl Contents {
     /// Of a file of which all values were kept.
     pub fn of(records: impl IntoIterator<Item = Record>, findings: Vec<Finding>) -> Contents {
         Contents { records: records.into_iter().map(|record| (record, None)).collect(), findings }
+    }
+
+    /// The same with traces made even as a person states: one stretch of each, or interpolated.
+    ///
+    /// # Errors
+    /// If there is no such stretch, or a trace cannot be interpolated.
+    pub fn evened(mut self, options: &Options) -> Result<Contents> {
+        let of_clock = |found: &&Finding| found.code == Clock::JITTERS;
+        let of_file = self.findings.iter().find(of_clock).cloned();
+        let held = self.records.iter_mut().filter(|(_, ends)| ends.is_none());
+        for trace in
+            held.filter_map(|(record, _)| if let Record::Trace(trace) = record { Some(trace) } else { None })
+        {
+            let clock = trace.meta.findings.iter().find(of_clock).or(of_file.as_ref());
+            trace.meta.clock = clock.and_then(|found| found.get("relative")).unwrap_or_default();
+            options.stretch.map_or(Ok(()), |number| trace.keep_stretch(number))?;
+            options.resample.map_or(Ok(()), |rate| trace.resample(rate))?;
+            let one = options.stretch.is_some() && options.resample.is_none();
+            let own = trace.rate().zip(options.rate).filter(|_| one);
+            if let Some((own, stated)) = own.filter(|(own, stated)| (own / stated - 1.0).abs() > NOMINAL) {
+                let found =
+                    format!("a sampling rate of {stated} Hz was stated, and the samples come at {own:.6} Hz");
+                return Err(Error::usage(found, "").hint("leave the rate out").setting("rate"));
+            }
+        }
+        Ok(self)
     }
 }

@@ -1,5 +1,6 @@
 //! The reader: options, then a path or bytes, then records.
 
+use super::assemble::domain;
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
@@ -36,6 +37,10 @@ pub(crate) struct Options {
     pub wrapped: Option<bool>,
     /// Part of the time traces in s, from its first value on and before its second.
     pub span: Option<(f64, f64)>,
+    /// Which stretch between lost samples is used, from 1.
+    pub stretch: Option<usize>,
+    /// Rate in Hz at which samples of uneven times are interpolated.
+    pub resample: Option<f64>,
     /// Memory that may be filled.
     pub limit: Limit,
     /// What is held beside the values by what is made of them, in their size.
@@ -158,6 +163,18 @@ impl Reader {
         self
     }
 
+    /// Takes, of traces whose samples have gaps, the stretch of this number from 1. Default: all samples, which have no rate then.
+    pub fn stretch(mut self, stretch: Option<usize>) -> Reader {
+        self.options.stretch = stretch;
+        self
+    }
+
+    /// Interpolates traces at this rate in Hz. Default: the samples at their own times.
+    pub fn resample(mut self, rate: Option<f64>) -> Reader {
+        self.options.resample = rate;
+        self
+    }
+
     /// Bounds the memory that values may fill. Default: see [`Limit`].
     pub fn max_memory(mut self, limit: Limit) -> Reader {
         self.options.limit = limit;
@@ -251,7 +268,7 @@ impl Reader {
         let read = |survey| (entry.read)(source, &self.options, survey);
         let contents = room.and_then(|()| read(survey && span.is_none())).and_then(|all| {
             let all = if level::needs_values(&all) { read(false)? } else { all };
-            level::settle(span::cut(all, span)?, &self.options)
+            level::settle(span::cut(all.evened(&self.options)?, span)?, &self.options)
         });
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
     }
@@ -311,8 +328,10 @@ pub struct Header {
     pub n: usize,
     /// Number of values that the file declares.
     pub declared_n: Option<usize>,
-    /// First abscissa value, in s or Hz.
+    /// First abscissa value, in `x_unit`.
     pub x0: f64,
+    /// `s` or `Hz`; empty where the file does not say what the abscissa is.
+    pub x_unit: &'static str,
     /// Distance of abscissa values; `None` if uneven.
     pub dx: Option<f64>,
     /// Sampling rate in Hz and duration in s of an even trace.
@@ -358,6 +377,7 @@ impl Header {
             n: record.len(),
             declared_n: meta.declared_n,
             x0: axis.start(),
+            x_unit: domain(&axis.kind).1,
             dx: axis.step(),
             complex: record.is_complex(),
             max_abs: largest.map(|(_, m)| m),

@@ -167,7 +167,8 @@ fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Contents> {
         Some(columns) => Rows { columns, ..Rows::default() },
         None => carefully(text, dialect, options).map_err(|why| {
             // The last line of one series is shorter.
-            if one_step && dialect.columns > 2 { wrapped::question(dialect.columns) } else { why }
+            let short = plain && options.wrapped.is_none() && wrapped::ends_short(text, dialect);
+            if one_step && dialect.columns > 2 || short { wrapped::question(dialect.columns) } else { why }
         })?,
     };
     let n = rows.columns.first().map_or(0, Values::len);

@@ -83,7 +83,8 @@ impl Sines {
             |group, m| strongest.is_some_and(|(other, k)| std::ptr::eq(other, group) && k == m);
         let size = strongest.map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
         for (group, m) in self.asked() {
-            let mode = mode(group, m, self.n, self.rate, unit);
+            let mut mode = mode(group, m, self.n, self.rate, unit);
+            mode.frequency = mode.frequency.by_clock(trace.meta.clock);
             if decays(group, m) {
                 let doubted = self
                     .odd

@@ -125,8 +125,9 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let median_interval = median(&steps);
     let mut answer = Impacts {
         n: times.len(),
-        interval: of(fitted.mean, std, "s"),
-        frequency: of(1.0 / fitted.mean, std.map(|s| s / fitted.mean.powi(2)), "Hz"),
+        interval: of(fitted.mean, std, "s").by_clock(trace.meta.clock),
+        frequency: of(1.0 / fitted.mean, std.map(|s| s / fitted.mean.powi(2)), "Hz")
+            .by_clock(trace.meta.clock),
         median_interval,
         spread: spread(&kept, &counted),
         serial_correlation: Some(fitted.correlation).filter(|r| r.is_finite()),

@@ -392,6 +392,7 @@ impl Fit {
                 findings.extend((widening > COLOURED).then(|| coloured.number("factor", widening)));
                 findings.extend(tone.widened(lines, other));
             }
+            tone.frequency = tone.frequency.by_clock(trace.meta.clock);
             tone
         };
         let tones = self.omega.iter().zip(self.linear.chunks_exact(2)).enumerate().map(tone).collect();

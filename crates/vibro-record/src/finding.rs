@@ -193,4 +193,10 @@ impl Estimate {
     ) -> Estimate {
         Estimate { value, std: std.filter(|s| s.is_finite()), unit, n, method: method.into() }
     }
+
+    /// The same of a value that is proportional to the sampling rate or to its inverse, whose relative standard uncertainty is `clock`.
+    pub fn by_clock(mut self, clock: f64) -> Estimate {
+        self.std = self.std.map(|std| std.hypot(clock * self.value));
+        self
+    }
 }

@@ -5,11 +5,13 @@
 //! made it, and the doubts that a person must hear before trusting it.
 
 mod axis;
+mod clock;
 mod error;
 mod finding;
 pub mod lanes;
 mod meta;
 mod near;
+mod resample;
 mod shown;
 mod spectrum;
 mod sweep;
@@ -22,10 +24,12 @@ use lanes::Extremes;
 use num_complex::Complex64;
 
 pub use axis::{Axis, AxisKind, Grid};
+pub use clock::{Clock, Stretch, stretches};
 pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
 pub use near::{nearest, pattern};
+pub use resample::evened;
 pub use shown::{shown, steers};
 pub use spectrum::{Frf, Scaling, Spectrum, Values};
 pub use sweep::{Direction, StepTraces, Sweep, SweepPoint};

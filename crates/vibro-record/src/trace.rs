@@ -1,6 +1,7 @@
 //! Samples over time.
 
 use super::{Axis, Grid, Meta};
+use crate::resample::evened;
 use crate::units::{self, Unit};
 use crate::{Error, Result};
 
@@ -29,11 +30,9 @@ impl Trace {
         self.rate().filter(|r| r.is_finite() && *r > 0.0).ok_or_else(|| {
             let name = &self.meta.name;
             let of = if name.is_empty() { String::new() } else { format!(" of channel {name:?}") };
-            if matches!(self.axis.grid, Grid::Uneven(_)) {
-                return Error::refused(format!(
-                    "the samples{of} are unevenly spaced: they have no sampling rate"
-                ))
-                .hint("cut the file where samples are lost, or fill in the lost samples");
+            if let Grid::Uneven(instants) = &self.axis.grid {
+                let found = format!("the samples{of} are unevenly spaced: they have no sampling rate");
+                return evened(Error::refused(found), instants);
             }
             Error::usage(format!("the sampling rate{of} is not known"), "")
                 .hint("state the samples per second, or the base band of an analyser")

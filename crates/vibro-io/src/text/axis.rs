@@ -2,8 +2,8 @@
 
 use super::header::Stated;
 use crate::Options;
-use crate::assemble::{domain, short};
-use vibro_record::{Axis, AxisKind, Error, Finding, Result};
+use crate::assemble::{NOMINAL, domain, short};
+use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
 
 /// Relative difference that no statement means: six digits are the least that a person states.
 const SURE: f64 = 1e-6;
@@ -75,7 +75,10 @@ pub fn choose(
     options: &Options,
     findings: &mut Vec<Finding>,
 ) -> Result<Axis> {
-    let Some(statement) = Statement::of(options, header, printed.as_ref(), n) else {
+    // Times that are made even afterwards keep theirs until then.
+    let evened = options.stretch.is_some() || options.resample.is_some();
+    let own = evened && printed.as_ref().is_some_and(|p| p.axis.step().is_none());
+    let Some(statement) = Statement::of(options, header, printed.as_ref(), n).filter(|_| !own) else {
         return Ok(match printed {
             Some(printed) => trusted(printed, header, findings),
             None => headed(n, header, findings),
@@ -98,8 +101,9 @@ pub fn choose(
         } else if given.kind == AxisKind::Frequency {
             return Ok(printed.axis);
         }
-    } else if axis.step().is_some() && printed.goes_with(&statement, ROUNDED) {
+    } else if axis.step().is_some() && printed.goes_with(&statement, printed.rounded()) {
         findings.push(printed.refines(&statement));
+        findings.extend(printed.findings.into_iter().filter(|found| found.code == Clock::JITTERS));
         return Ok(printed.axis);
     } else if printed.assumed && axis.step() == Some(1.0) && matches!(axis.start(), 0.0 | 1.0) {
         findings.push(about("column-counts").number("step", step));
@@ -129,6 +133,11 @@ impl Printed {
         let span = close(self.last() - axis.start(), given.at(axis.len() - 1), tolerance);
         let ends = || close(self.last(), statement.hertz, self.resolution) && axis.step().is_some();
         if given.kind == AxisKind::Time { span } else { ends() || (span && self.begins_at_zero()) }
+    }
+
+    /// Relative difference of a statement that means this column.
+    fn rounded(&self) -> f64 {
+        if self.findings.iter().any(|found| found.code == Clock::JITTERS) { NOMINAL } else { ROUNDED }
     }
 
     /// Refuses a column that runs backwards: its values are in no order, whatever the rate.
@@ -176,7 +185,13 @@ impl Printed {
             format!("{what} from {from} to {to} {unit} in {steps}")
         };
         let found = format!("the {} holds a {}", self.label, runs(&self.axis));
-        Error::usage(found, format!("a {}, since a {what} of {hertz} Hz was stated", runs(axis)))
+        let error = Error::usage(found, format!("a {}, since a {what} of {hertz} Hz was stated", runs(axis)));
+        if let Grid::Uneven(instants) = &self.axis.grid
+            && axis.kind == AxisKind::Time
+        {
+            return evened(error, instants);
+        }
+        error
             .hint(
                 "correct the stated number, or leave it out to believe the column; if the column has another unit, name it \
                  in its header, e.g. [ms] or [kHz]",
@@ -211,6 +226,8 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             if spacing.is_some() {
                 findings.push(Finding::caution("rate-and-spectrum-in-header").number("rate", rate));
             }
+            let assumed = header.assumed.map(|key| Finding::caution("head-step-assumed").name("key", key));
+            findings.extend(assumed.map(|found| found.number("step", 1.0 / rate)));
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {

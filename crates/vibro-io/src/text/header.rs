@@ -22,6 +22,8 @@ pub struct Stated {
     pub of_one_series: bool,
     /// That step, in s or Hz.
     step: Option<f64>,
+    /// Key that states that step without a unit, which is taken for s.
+    pub assumed: Option<&'static str>,
     /// First instant in s.
     pub start: Option<f64>,
     /// Whether values are said to be complex.
@@ -41,7 +43,7 @@ pub struct Stated {
 }
 
 /// Keys of a sampling rate, and of the step of time.
-const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|data rate|fs|rate|abtastrate|\
+const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|sampling freq|data rate|fs|rate|abtastrate|\
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
                     messfrequenz";
 const STEP: &str = "dt|delta t|sampling interval|sampling interval s|sample interval|sampling period|time step|delta time|increment|clock|\
@@ -65,8 +67,11 @@ impl Stated {
             // `NPTS= 6000, DT= .01 SEC` are two statements.
             let several = line.split(',').all(|part| part.contains('='));
             for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
-                let (key, value) = split(line.trim().trim_matches('"').trim_start_matches([';', ' ']));
+                let line = line.trim().trim_matches('"').trim_start_matches([';', ' ']);
+                let line = line.strip_prefix("//").map_or(line, str::trim_start);
+                let (key, value) = split(line);
                 stated.notes.push((key.to_owned(), value.to_owned()));
+                let (key, value) = if key.is_empty() { behind_unit(line) } else { (key, value) };
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
                 let said = value.to_lowercase();
                 stated.complex |= said == "complex" || said.contains("real and imaginary");
@@ -115,6 +120,14 @@ pub fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
+/// `Sampling Freq(Hz) 100Hz`: a key that ends with its unit in brackets, and a value that begins with a digit; else an empty key.
+fn behind_unit(line: &str) -> (&str, &str) {
+    let found = line.split_once(')').filter(|(key, value)| {
+        key.contains('(') && value.trim_start().starts_with(|c: char| c.is_ascii_digit())
+    });
+    found.map_or(("", line), |(key, value)| (key, value.trim()))
+}
+
 /// Takes what stands under a key that is understood, where it is a possible value.
 fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let (key, unit_in_key) = match key.find(['[', '(']) {
@@ -132,6 +145,13 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
     match key.trim() {
         // Without a unit these may be anything, but for an increment beside a start.
+        // SAC and its kin: a step in s, which is none above 1.
+        "delta" if bare && quantity(value, "", &[("", 1.0)]).is_some_and(|step| step < 1.0) => {
+            let step = quantity(value, "", &[("", 1.0)]);
+            stated.rate = stated.rate.or(step.and_then(|step| checked(1.0 / step)));
+            stated.assumed = Some("DELTA");
+            (stated.step, stated.of_one_series) = (step, true);
+        }
         "rate" | "data rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval"
         | "time interval"
             if bare => {}

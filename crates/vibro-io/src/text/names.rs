@@ -147,6 +147,13 @@ impl Name {
         word.filter(|word| !known || by_unit.as_ref() == Some(word)).or(by_unit.filter(|_| first))
     }
 
+    /// What stands in brackets behind the name as a unit does, and is none that is known: up to three letters.
+    pub fn unknown_unit(&self) -> Option<&str> {
+        let (name, unit) = bracketed(&self.name, '(', ')')?;
+        let short = (1..=3).contains(&unit.chars().count()) && unit.chars().all(char::is_alphabetic);
+        (self.unit.is_none() && short && name.ends_with(' ')).then_some(unit)
+    }
+
     /// Whether the name is one of a column that only counts.
     pub fn counts(&self) -> bool {
         let key = self.name.to_lowercase();
@@ -230,8 +237,14 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
 const ABSCISSAE: [&str; 3] = ["x", "x-axis", "x axis"];
 
 /// Names of a time that are its unit.
-const WHOLE: [(&str, &str); 5] =
-    [("in s", "s"), ("millis", "ms"), ("millis()", "ms"), ("micros", "µs"), ("micros()", "µs")];
+const WHOLE: [(&str, &str); 6] = [
+    ("in s", "s"),
+    ("seconds_elapsed", "s"),
+    ("millis", "ms"),
+    ("millis()", "ms"),
+    ("micros", "µs"),
+    ("micros()", "µs"),
+];
 
 /// Names of a column that only counts, none among them.
 const COUNTS: &str =

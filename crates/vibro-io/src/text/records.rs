@@ -8,13 +8,15 @@ use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
-use crate::assemble::{self, Spectral, domain, from_values, kind_of, short, to_si};
+use crate::assemble::{self, NOMINAL, Spectral, domain, from_values, kind_of, short, to_si};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::units::Unit;
 use vibro_record::units::notation::counted;
-use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
+use vibro_record::{
+    Axis, AxisKind, Clock, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window,
+};
 
 /// Records of all columns but the abscissa; findings about the file as a whole are added.
 ///
@@ -52,6 +54,7 @@ pub fn build(
     let plain = dialect.names.is_none();
     let plain = plain && printed.as_ref().is_some_and(|axis| table.iter().any(|c| !again(c, axis)));
     table.retain(|column| !printed.as_ref().is_some_and(|axis| (is_table || plain) && again(column, axis)));
+    table.retain(|column| !printed.as_ref().is_some_and(|axis| is_table && column.is_clock_of(axis)));
     let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
     table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     let has_axis = printed.is_some();
@@ -144,11 +147,30 @@ impl Column {
         // Ends with the first step that is another: long records hold it soon.
         let even = |(low, high): (f64, f64), step: f64| {
             let (low, high) = (low.min(step), high.max(step));
-            (low > 0.0 && high - low <= 1e-3 * high).then_some((low, high))
+            (low > 0.0 && high <= 2.0 * low).then_some((low, high))
         };
+        let steps =
+            |values: &[f64]| values.windows(2).map(|w| w[1] - w[0]).try_fold((f64::INFINITY, 0.0), even);
         values.is_some_and(|values| {
-            values.windows(2).map(|w| w[1] - w[0]).try_fold((f64::INFINITY, 0.0), even).is_some()
+            steps(values)
+                .is_some_and(|(low, high)| high - low <= 1e-3 * high || Clock::of(values, 0.0).is_some())
         })
+    }
+
+    /// Whether it is the seconds of a clock whose date stands in `axis`: the same instants, from another start and in other units.
+    fn is_clock_of(&self, axis: &Column) -> bool {
+        let seconds = self.name.name == "time" && self.name.unit.as_deref() == Some("s");
+        let (own, other) = (self.reals(), axis.reals());
+        let time = seconds && axis.name.unit.is_none() && axis.name.axis(true) == Some(AxisKind::Time);
+        let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
+        let factor = (last - first) / (other[other.len() - 1] - other[0]);
+        let seconds = [1.0, 1e-3, 1e-6, 1e-9].iter().any(|unit| (factor / unit - 1.0).abs() < 1e-3);
+        // Nanoseconds since 1970 are whole in steps of 256.
+        let most = 1e-2 * (last - first) / own.len() as f64;
+        let off = |(v, t): (&f64, &f64)| ((v - first) - factor * (t - other[0])).abs();
+        time && seconds
+            && own.len() == other.len()
+            && own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
     }
 
     fn counts(&self) -> bool {
@@ -221,8 +243,8 @@ impl Made<'_> {
                 (kind.clone(), factor, assumed)
             }
             (None, Some(kind)) => {
-                let unit = domain(&kind).1;
-                (kind, 1.0, Some(Finding::caution("axis-unit-assumed").name("unit", unit)))
+                let (unit, factor) = self.unit_by_rate(&values).unwrap_or((domain(&kind).1, 1.0));
+                (kind, factor, Some(Finding::caution("axis-unit-assumed").name("unit", unit)))
             }
             (None, None) => {
                 (AxisKind::Other(name.to_owned()), 1.0, Some(Finding::caution("axis-kind-unsaid")))
@@ -250,6 +272,19 @@ impl Made<'_> {
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
         let findings = assumed.into_iter().chain(finding).collect();
         Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), findings })
+    }
+
+    /// Unit of a column without a name, and its factor to s, by which it agrees with the stated rate.
+    fn unit_by_rate(&self, values: &[f64]) -> Option<(&'static str, f64)> {
+        let step = (values.last()? - values[0]) / values.len().saturating_sub(1).max(1) as f64;
+        // A count of the values, which has no unit.
+        if step == 1.0 && matches!(values[0], 0.0 | 1.0) {
+            return None;
+        }
+        let agrees = |(_, factor): &(&str, f64)| {
+            self.options.rate.is_some_and(|rate| (step * factor * rate - 1.0).abs() <= NOMINAL)
+        };
+        [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)].into_iter().find(agrees)
     }
 
     /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
@@ -349,6 +384,7 @@ impl Made<'_> {
 
     /// The record of one column.
     fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Record> {
+        let unknown = column.name.unknown_unit().map(str::to_owned);
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
@@ -376,7 +412,8 @@ impl Made<'_> {
         }
         meta.step("read", &how);
         let unit = unit.as_deref().or(self.stated.unit.as_deref()).map(amplitude);
-        let factor = self.options.adopt(&mut meta, unit.map(|(unit, _)| unit));
+        let said = unit.map(|(unit, _)| unit).or(unknown.as_deref());
+        let factor = self.options.adopt(&mut meta, said);
         to_si(&mut values, factor)?;
         let spectral = self.spectral(&meta.name, unit);
         assemble::record(meta, axis.clone(), values, spectral)

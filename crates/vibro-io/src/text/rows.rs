@@ -9,6 +9,7 @@ use super::{in_line, shorten};
 use crate::missing::Missing;
 use crate::{Format, number};
 use num_complex::Complex64;
+use std::ops::Range;
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Result, Values};
 
@@ -38,7 +39,9 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     let reader = Reader { text, dialect };
     let mut rows = Rows::default();
     let mut columns: Vec<Vec<Complex64>> = vec![Vec::new(); n];
-    let (mut missing, mut blank_since) = (Missing::default(), None);
+    let (mut missing, mut blank_since, mut blanks) = (Missing::default(), None, Vec::new());
+    // The same with blank lines, of which the last one tells whether they are missing values.
+    let mut with_blanks = Missing::default();
     let (mut clock, clock_at) = (Clock::default(), dialect.clock_at());
     for line in dialect.rows(text) {
         if line.is_blank() {
@@ -71,10 +74,8 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
                 return Err(Error::input(in_line(since), "a blank line between rows", expected)
                     .hint("remove it, or write NaN for the values that are missing there"));
             }
-            for blank in since..line.number {
-                missing.take(&in_line(blank), blank.to_string());
-                columns[0].push(MISSING);
-            }
+            (since..line.number).for_each(|blank| with_blanks.take(&in_line(blank), blank.to_string()));
+            blanks.push((columns[0].len(), since..line.number));
         }
         for (i, ((at, field), values)) in fields.iter().zip(&mut columns).enumerate() {
             let timed = clock_at == Some(i);
@@ -94,9 +95,15 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
             }
             let name = dialect.names.as_ref().map_or("", |names| &names[i].name);
             let listed = if name.is_empty() { String::new() } else { format!(" ({name:?})") };
-            missing.take(&in_line(line.number), format!("{}{listed}", line.number));
+            for missing in [&mut missing, &mut with_blanks] {
+                missing.take(&in_line(line.number), format!("{}{listed}", line.number));
+            }
             values.push(MISSING);
         }
+    }
+    if !separate(&blanks) {
+        columns[0] = with_missing(&columns[0], blanks);
+        missing = with_blanks;
     }
     let named = dialect.names.is_some() && !dialect.complex;
     rows.sparse = columns.iter().map(|values| sparse(values).filter(|_| named)).collect();
@@ -140,6 +147,32 @@ fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
     let every = second - first;
     let regular = (0..values.len()).all(|i| has(&i) == (i >= first && (i - first).is_multiple_of(every)));
     (every > 1 && regular && values.len() > 3 * every).then_some((first, every))
+}
+
+/// Blank lines between rows: the number of rows before them, and their own numbers.
+type Blank = (usize, Range<u64>);
+
+/// Whether blank lines separate blocks of rows of one length: then they are no rows without a value.
+fn separate(blanks: &[Blank]) -> bool {
+    let alike = |w: &[Blank]| {
+        w[1].0 - w[0].0 == blanks[0].0 && (w[0].1.end - w[0].1.start) == (w[1].1.end - w[1].1.start)
+    };
+    blanks.len() >= FEWEST_BLANKS && blanks.windows(2).all(alike)
+}
+
+/// Fewest blank lines that are seen to come evenly.
+const FEWEST_BLANKS: usize = 3;
+
+/// Values with a missing one for each blank line.
+fn with_missing(values: &[Complex64], blanks: Vec<Blank>) -> Vec<Complex64> {
+    let (mut all, mut taken) = (Vec::with_capacity(values.len()), 0);
+    for (before, lines) in blanks {
+        all.extend(&values[taken..before]);
+        all.extend(lines.map(|_| MISSING));
+        taken = before;
+    }
+    all.extend(&values[taken..]);
+    all
 }
 
 const MISSING: Complex64 = Complex64::new(f64::NAN, 0.0);

@@ -904,3 +904,41 @@ fn rows_of_numbers_in_a_head_are_counted() {
     assert_eq!(found.records[0].len(), 30);
     assert!(has_finding(&found.findings, "rows-in-head", &["n=2"]), "{:?}", found.findings);
 }
+
+#[test]
+fn blank_lines_at_even_distances_separate_and_others_are_missing_values() {
+    let blocks = |every: usize| -> String {
+        (0..60).map(|i| if i % every == every - 1 { "0.5\n\n" } else { "1.5\n" }).collect()
+    };
+    for every in [1, 2, 10] {
+        let found = read_with(&Reader::new(), blocks(every)).unwrap();
+        assert_eq!((found.records[0].len(), found.records[0].axis().len()), (60, 60), "{every}");
+    }
+    let odd = "1.5\n2.5\n\n3.5\n\n4.5\n5.5\n6.5\n\n7.5\n";
+    let why = read_with(&Reader::new(), odd).unwrap_err().to_string();
+    assert!(why.contains("3 missing values"), "{why}");
+    let kept = read_with(&Reader::new().allow_missing(true), odd).unwrap();
+    let (values, _) = kept.records[0].numbers();
+    let places: Vec<usize> = (0..values.len()).filter(|i| values[*i].is_nan()).collect();
+    assert_eq!((values.len(), places), (10, vec![2, 4, 8]));
+}
+
+#[test]
+fn an_unknown_unit_in_brackets_is_named_and_plain_ones_are_known() {
+    let found = of("Time (s),B (µT),C (G),D (hPa),E (left)\n0,1,2,3,4\n0.1,2,3,4,5\n0.2,1,2,3,4\n");
+    let unit = |i: usize| found.records[i].meta().unit.symbol().to_owned();
+    assert_eq!((unit(0), unit(2)), ("T".to_owned(), "Pa".to_owned()));
+    let (values, _) = found.records[2].numbers();
+    assert_eq!(values, [300.0, 400.0, 300.0]);
+    assert!(has_finding(&found.records[1].meta().findings, "unit-unknown", &["unit=G"]));
+    assert!(has_finding(&found.records[3].meta().findings, "unit-unsaid", &[]));
+}
+
+#[test]
+fn an_uneven_first_column_without_a_name_has_no_unit() {
+    let row = |i: usize| format!("{} {}\n", i * i + i, i % 7);
+    let rows = (0..30).map(row).collect::<Vec<String>>().concat();
+    let source = Source::memory("x.txt", rows.into_bytes()).unwrap();
+    let (_, headers, _) = Reader::new().headers(&source).unwrap();
+    assert_eq!((headers[0].x_unit, headers[0].dx), ("", None));
+}

@@ -3,7 +3,7 @@
 use super::Text;
 use super::dialect::Dialect;
 use super::encoding;
-use super::lines::fields;
+use super::lines::{Line, fields};
 use crate::number;
 use vibro_record::{Error, Result, Values};
 
@@ -30,6 +30,31 @@ pub fn flat(text: &Text, dialect: &Dialect) -> Result<Option<Vec<f64>>> {
         }
     }
     Ok(Some(values))
+}
+
+/// Whether all rows but the last are full, the last is shorter and ends as the others do, and the first column is no abscissa.
+pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
+    let Ok(bytes) = text.source.all() else { return false };
+    let whole = encoding::decode(&bytes);
+    let count = |line: &Line| {
+        let cells = fields(line.text, dialect.separator).unwrap_or_default();
+        let first = number::parse_with(cells.first()?.1.as_bytes(), dialect.decimal)?;
+        let all = cells.iter().filter(|(_, cell)| !cell.is_empty());
+        let numbers = all.clone().all(|(_, c)| number::parse_with(c.as_bytes(), dialect.decimal).is_some());
+        numbers.then_some((all.count(), first))
+    };
+    let rows = dialect.rows(whole.trim_end_matches('\u{1a}')).filter(|l| l.remark.is_none() && !l.is_blank());
+    let Some(rows) = rows.map(|line| count(&line)).collect::<Option<Vec<(usize, f64)>>>() else {
+        return false;
+    };
+    let Some(((last, _), full)) = rows.split_last() else { return false };
+    let ended = whole.ends_with(['\n', '\r', '\u{1a}']);
+    let falls = full.windows(2).any(|w| w[1].1 <= w[0].1);
+    dialect.columns > 2
+        && ended
+        && falls
+        && *last < dialect.columns
+        && full.iter().all(|row| row.0 == dialect.columns)
 }
 
 /// Whether columns look like one series, row after row: from one value to the next, also to the first of the next row, it goes less far than

@@ -42,8 +42,8 @@ pub const ALL: &[Dialect] = &[
             edit: |text| text,
             right: Right {
                 channels: &[ch("", "", 0, 1e3, 0.5e-3)],
-                x: X::Numbered,
-                findings: &["abscissa-unsaid", "unit-unsaid"],
+                x: X::Even(0.0),
+                findings: &["unit-unsaid"],
             },
         }),
     },

@@ -1,5 +1,7 @@
 //! The signals, and how instruments print numbers.
 
+use vibro_math::Noise;
+
 /// Values of a channel.
 pub const N: usize = 128;
 /// Sampling interval in s.
@@ -18,6 +20,11 @@ pub fn value(channel: usize, i: usize) -> f64 {
 /// Instant `i` in s of an axis that begins at `start`.
 pub fn at(start: f64, i: usize) -> f64 {
     start + DX * i as f64
+}
+
+/// Instant `i` in s as a telephone or a logger stamps it: up to 2 µs off.
+pub fn stamped(start: f64, i: usize) -> f64 {
+    at(start, i) + Noise::new(i as u64 + 1).between(-2e-6, 2e-6)
 }
 
 /// `%.{digits}f`.

@@ -1,11 +1,16 @@
 //! Vibrometers, analysers, accelerometers and telephones.
 
-use super::signal::{at, clock, comma, fixed, sci, table, value, with_end};
+use super::signal::{at, clock, comma, fixed, sci, stamped, table, value, with_end};
 use super::{Dialect, X, ch, read};
 
 /// Three axes as `fixed` or `sci` print them.
 fn xyz(print: impl Fn(f64) -> String, i: usize, between: &str) -> String {
     (0..3).map(|c| print(value(c, i))).collect::<Vec<_>>().join(between)
+}
+
+/// `1.234567890E-2`, as Java prints it: without a plus sign.
+fn short_sci(value: f64) -> String {
+    sci(value, 9, 1).replace("E+", "E")
 }
 
 pub const ALL: &[Dialect] = &[
@@ -16,7 +21,7 @@ pub const ALL: &[Dialect] = &[
         text: || {
             let names = ["x", "y", "z"].map(|axis| format!("\"Linear Acceleration {axis} (m/s^2)\""));
             table(&format!("\"Time (s)\",{}\n", names.join(",")), |i| {
-                format!("{},{}", sci(at(0.0, i), 9, 1), xyz(|v| sci(v, 9, 1), i, ","))
+                format!("{},{}", short_sci(stamped(0.0, i)), xyz(short_sci, i, ","))
             })
         },
         outcome: read(
@@ -26,7 +31,22 @@ pub const ALL: &[Dialect] = &[
                 ch("Linear Acceleration z", "m/s²", 2, 1.0, 5e-10),
             ],
             X::Even(0.0),
-            &[],
+            &["axis-jitter"],
+        ),
+    },
+    Dialect {
+        of: "phyphox, CSV with tabs",
+        oddity: "the same between tabs; a magnetometer in µT",
+        file: "Raw Data.csv",
+        text: || {
+            table("\"Time (s)\"\t\"Magnetic field x (µT)\"\t\"Magnetic field y (µT)\"\n", |i| {
+                [stamped(0.0, i), value(0, i), value(1, i)].map(short_sci).join("\t")
+            })
+        },
+        outcome: read(
+            &[ch("Magnetic field x", "T", 0, 1e-6, 5e-10), ch("Magnetic field y", "T", 1, 1e-6, 5e-10)],
+            X::Even(0.0),
+            &["axis-jitter"],
         ),
     },
     Dialect {
@@ -35,13 +55,49 @@ pub const ALL: &[Dialect] = &[
         file: "Rohdaten.csv",
         text: || {
             table("\"Time (s)\";\"Acceleration x (m/s^2)\";\"Acceleration y (m/s^2)\"\n", |i| {
-                comma(&[sci(at(0.0, i), 9, 1), sci(value(0, i), 9, 1), sci(value(1, i), 9, 1)].join(";"))
+                comma(&[stamped(0.0, i), value(0, i), value(1, i)].map(short_sci).join(";"))
             })
         },
         outcome: read(
             &[ch("Acceleration x", "m/s²", 0, 1.0, 5e-10), ch("Acceleration y", "m/s²", 1, 1.0, 5e-10)],
             X::Even(0.0),
-            &[],
+            &["axis-jitter"],
+        ),
+    },
+    Dialect {
+        of: "Sensor Logger",
+        oddity: "`time` counts nanoseconds since 1970, `seconds_elapsed` the same from the start; axes in reverse",
+        file: "Accelerometer.csv",
+        text: || {
+            table("time,seconds_elapsed,z,y,x\n", |i| {
+                let stamp = stamped(0.0, i);
+                let since = 1_700_000_000_123_456_789 + (1e9 * stamp).round() as i64;
+                format!("{since},{:.9},{},{},{}", stamp + 0.034, value(2, i), value(1, i), value(0, i))
+            })
+        },
+        outcome: read(
+            &[ch("z", "", 2, 1.0, 1e-15), ch("y", "", 1, 1.0, 1e-15), ch("x", "", 0, 1.0, 1e-15)],
+            X::Even(0.0),
+            &["axis-epoch", "axis-jitter", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "x-IMU3",
+        oddity: "whole microseconds of a clock that was on before",
+        file: "Inertial.csv",
+        text: || {
+            table("Timestamp (us),Gyroscope X (deg/s),Accelerometer X (g)\n", |i| {
+                let stamp = (1e6 * stamped(12.5, i)).round();
+                format!("{stamp},{},{}", fixed(value(0, i), 6), fixed(value(1, i), 6))
+            })
+        },
+        outcome: read(
+            &[
+                ch("Gyroscope X", "rad/s", 0, std::f64::consts::PI / 180.0, 5e-7),
+                ch("Accelerometer X", "m/s²", 1, 9.80665, 5e-7),
+            ],
+            X::Even(12.5),
+            &["axis-jitter"],
         ),
     },
     Dialect {

@@ -25,6 +25,8 @@ pub enum Quantity {
     Voltage,
     /// Pa
     Pressure,
+    /// T
+    FluxDensity,
     /// s
     Time,
     /// Hz
@@ -61,6 +63,7 @@ const TABLE: &[Entry] = &[
     (Quantity::Stiffness, "stiffness", "N/m", [0, 1, -2, 0, 0, 0]),
     (Quantity::Voltage, "voltage", "V", [2, 1, -3, -1, 0, 0]),
     (Quantity::Pressure, "pressure", "Pa", [-1, 1, -2, 0, 0, 0]),
+    (Quantity::FluxDensity, "magnetic flux density", "T", [0, 1, -2, -1, 0, 0]),
     (Quantity::Time, "time", "s", [0, 0, 1, 0, 0, 0]),
     (Quantity::Frequency, "frequency", "Hz", [0, 0, -1, 0, 0, 0]),
     (Quantity::Ratio, "ratio", "1", [0, 0, 0, 0, 0, 0]),

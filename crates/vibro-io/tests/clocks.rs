@@ -1,0 +1,392 @@
+//! Time columns as telephones and loggers write them, drawn with seeds: they jitter, wander, lose samples, or are uneven. Each is read with the rate that
+//! it was drawn with, or refused with what reads it; values and instants are compared one by one.
+
+use vibro_io::{Reader, Recording};
+use vibro_math::Noise;
+use vibro_record::{Error, Grid, Record, Trace};
+
+/// How an export stamps its samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Clock {
+    /// Each instant is off on its own.
+    Jitters,
+    /// Each step is off, and all that follow with it.
+    Wanders,
+}
+
+/// A layout: what stands above the rows, and how a row is printed.
+struct Layout {
+    file: &'static str,
+    head: &'static str,
+    row: fn(f64, [f64; 2]) -> String,
+    /// Name of the first channel, and its factor to SI.
+    channel: (&'static str, f64),
+    /// Half a unit in the last digit of an instant, in s, and of a value.
+    digits: (f64, f64),
+    /// First instant that the column holds for 0.
+    start: f64,
+}
+
+fn sci(value: f64) -> String {
+    format!("{value:.9E}")
+}
+
+const LAYOUTS: [Layout; 7] = [
+    Layout {
+        file: "Raw Data.csv",
+        head: "\"Time (s)\",\"Linear Acceleration x (m/s^2)\",\"Linear Acceleration y (m/s^2)\"\n",
+        row: |t, [a, b]| format!("{},{},{}", sci(t), sci(a), sci(b)),
+        channel: ("Linear Acceleration x", 1.0),
+        digits: (5e-9, 5e-9),
+        start: 0.0,
+    },
+    Layout {
+        file: "Raw Data.csv",
+        head: "\"Time (s)\"\t\"Linear Acceleration x (m/s^2)\"\t\"Linear Acceleration y (m/s^2)\"\n",
+        row: |t, [a, b]| format!("{}\t{}\t{}", sci(t), sci(a), sci(b)),
+        channel: ("Linear Acceleration x", 1.0),
+        digits: (5e-9, 5e-9),
+        start: 0.0,
+    },
+    Layout {
+        file: "Rohdaten.csv",
+        head: "\"Time (s)\";\"Linear Acceleration x (m/s^2)\";\"Linear Acceleration y (m/s^2)\"\n",
+        row: |t, [a, b]| format!("{};{};{}", sci(t), sci(a), sci(b)).replace('.', ","),
+        channel: ("Linear Acceleration x", 1.0),
+        digits: (5e-9, 5e-9),
+        start: 0.0,
+    },
+    Layout {
+        file: "Rohdaten.csv",
+        head: "\"Time (s)\"\t\"Linear Acceleration x (m/s^2)\"\t\"Linear Acceleration y (m/s^2)\"\n",
+        row: |t, [a, b]| format!("{}\t{}\t{}", sci(t), sci(a), sci(b)).replace('.', ","),
+        channel: ("Linear Acceleration x", 1.0),
+        digits: (5e-9, 5e-9),
+        start: 0.0,
+    },
+    Layout {
+        file: "Accelerometer.csv",
+        head: "time,seconds_elapsed,z,y\n",
+        row: |t, [a, b]| {
+            let since = 1_700_000_000_123_456_789 + (1e9 * t).round() as i64;
+            format!("{since},{:.9},{a:.9},{b:.9}", t + 0.034)
+        },
+        channel: ("z", 1.0),
+        // Nanoseconds since 1970 are printed whole, and a double holds them to 128.
+        digits: (2e-7, 5e-10),
+        start: f64::NAN,
+    },
+    Layout {
+        file: "Inertial.csv",
+        head: "Timestamp (us),Accelerometer X (g),Accelerometer Y (g)\n",
+        row: |t, [a, b]| format!("{:.0},{a:.6},{b:.6}", 1e6 * (t + 12.5)),
+        channel: ("Accelerometer X", 9.80665),
+        digits: (5e-7, 5e-7),
+        start: 12.5,
+    },
+    Layout {
+        file: "serial.csv",
+        head: "millis,a,b\n",
+        // The clock of an Arduino drops the rest of a millisecond.
+        row: |t, [a, b]| format!("{},{a:.2},{b:.2}", (1e3 * (t + 1.0)).floor()),
+        channel: ("a", 1.0),
+        digits: (5e-4, 5e-3),
+        start: 0.9995,
+    },
+];
+
+/// A drawn export: instants of all samples, also of those that are lost, and which of them are printed.
+struct Drawn {
+    layout: &'static Layout,
+    step: f64,
+    instants: Vec<f64>,
+    kept: Vec<usize>,
+}
+
+impl Drawn {
+    fn new(seed: u64, clock: Clock) -> Drawn {
+        let mut noise = Noise::new(seed);
+        let layout = &LAYOUTS[(seed % LAYOUTS.len() as u64) as usize];
+        let n = noise.between(150.0, 900.0) as usize;
+        let coarse = layout.digits.0 > 1e-4;
+        let step = if coarse { noise.between(3.1e-3, 2e-2) } else { noise.between(2e-3, 2e-2) };
+        // Up to a tenth of a step in all, five standard deviations apart.
+        let size = match clock {
+            Clock::Jitters => noise.uniform() * 0.02 * step,
+            Clock::Wanders => noise.uniform() * 0.02 * step / (n as f64).sqrt(),
+        };
+        let mut last = 0.0;
+        let mut next = |i: usize| match clock {
+            Clock::Jitters => step * i as f64 + size * noise.normal(),
+            Clock::Wanders => {
+                last += step + size * noise.normal();
+                last
+            }
+        };
+        let instants = (0..n).map(&mut next).collect();
+        Drawn { layout, step, instants, kept: (0..n).collect() }
+    }
+
+    /// Takes out whole samples.
+    fn lose(mut self, seed: u64) -> Drawn {
+        let mut noise = Noise::new(seed ^ 0x5EED);
+        for _ in 0..noise.between(1.0, 4.0) as usize {
+            let at = noise.between(1.0, (self.kept.len() - 1) as f64) as usize;
+            self.kept.remove(at);
+        }
+        self
+    }
+
+    fn values(i: usize) -> [f64; 2] {
+        [2.0 * (0.4 * i as f64).sin(), 1.5 * (0.27 * i as f64).cos()]
+    }
+
+    fn text(&self) -> String {
+        let row = |i: &usize| (self.layout.row)(self.instants[*i], Drawn::values(*i)) + "\n";
+        self.layout.head.to_owned() + &self.kept.iter().map(row).collect::<String>()
+    }
+
+    fn read(&self, reader: &Reader) -> vibro_record::Result<Recording> {
+        reader.from_reader(self.layout.file, self.text().as_bytes())
+    }
+
+    /// What is wrong with a trace that should hold the samples `kept`, in an even grid.
+    fn faults(&self, trace: &Trace, kept: &[usize]) -> Vec<String> {
+        let mut faults = Vec::new();
+        let (name, factor) = self.layout.channel;
+        if trace.meta.name != name || trace.values.len() != kept.len() {
+            return vec![format!("{} values of {:?}", trace.values.len(), trace.meta.name)];
+        }
+        let off = |k: &usize| {
+            let right = factor * Drawn::values(kept[*k])[0];
+            (trace.values[*k] - right).abs() > factor * self.layout.digits.1 * (1.0 + 1e-9)
+        };
+        faults.extend((0..kept.len()).find(off).map(|k| format!("value {k}")));
+        // Instants lie within jitter and rounding of the grid.
+        let start = if self.layout.start.is_nan() { -self.instants[0] } else { self.layout.start };
+        let most = 0.15 * self.step + 2.0 * self.layout.digits.0;
+        let late = |k: &usize| (trace.axis.at(*k) - start - self.instants[kept[*k]]).abs() > most;
+        faults.extend((0..kept.len()).find(late).map(|k| format!("instant {k}: {}", trace.axis.at(k))));
+        faults
+    }
+}
+
+fn concat(rows: impl Iterator<Item = String>) -> String {
+    rows.collect::<Vec<String>>().concat()
+}
+
+fn first(recording: &Recording) -> &Trace {
+    let Record::Trace(trace) = &recording.records[0] else { panic!("no trace") };
+    trace
+}
+
+fn refused(recording: &Recording) -> Error {
+    first(recording).sampling_rate().expect_err("uneven")
+}
+
+const SEEDS: u64 = 240;
+
+#[test]
+fn a_jittering_or_wandering_clock_is_even_and_its_rate_lies_within_its_uncertainty() {
+    let (mut said, mut held, mut wrong) = (0, 0, Vec::new());
+    for seed in 1..=SEEDS {
+        let clock = if seed % 4 < 2 { Clock::Jitters } else { Clock::Wanders };
+        let drawn = Drawn::new(seed, clock);
+        let recording = drawn.read(&Reader::new()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let (trace, all) = (first(&recording), recording.all_findings());
+        wrong.extend(drawn.faults(trace, &drawn.kept).into_iter().map(|fault| format!("{seed}: {fault}")));
+        let Some(rate) = trace.rate() else {
+            wrong.push(format!("{seed}: uneven, {all:?}"));
+            continue;
+        };
+        if recording.records.len() != 2 {
+            wrong.push(format!("{seed}: {} channels", recording.records.len()));
+        }
+        if let Some(found) = all.iter().find(|found| found.code == "axis-jitter") {
+            said += 1;
+            let std = found.get("std").expect("an uncertainty");
+            held += u64::from((rate * drawn.step - 1.0).abs() / drawn.step <= 2.0 * std);
+            // Six standard uncertainties of seven degrees of freedom: one in two thousand.
+            if (rate - 1.0 / drawn.step).abs() > 8.0 * std {
+                wrong.push(format!("{seed}: {rate} ± {std}, not {}", 1.0 / drawn.step));
+            }
+        } else if (rate * drawn.step - 1.0).abs() * drawn.kept.len() as f64 > 0.5 {
+            // What is said to be rounded only has its rate within half a step a record.
+            wrong.push(format!("{seed}: {rate}, not {}", 1.0 / drawn.step));
+        }
+    }
+    assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
+    // Student with seven degrees of freedom: 91 %; independent jitter has more.
+    assert!(said > SEEDS / 2 && held as f64 > 0.9 * said as f64, "{held} of {said}");
+}
+
+#[test]
+fn a_nominal_rate_beside_such_a_column_works() {
+    for seed in 1..=60 {
+        let drawn = Drawn::new(seed, Clock::Wanders);
+        let nominal =
+            (1.0 / drawn.step * (1.0 + 0.004 * Noise::new(seed).between(-1.0, 1.0)) * 100.0).round() / 100.0;
+        let recording = drawn.read(&Reader::new().rate(Some(nominal)));
+        let recording = match recording {
+            Ok(recording) => recording,
+            // A column that is only rounded is held to the digits that were stated.
+            Err(why) => {
+                let plain = drawn.read(&Reader::new()).expect("read without");
+                assert!(
+                    plain.all_findings().iter().all(|found| found.code != "axis-jitter"),
+                    "{seed}: {why}"
+                );
+                continue;
+            }
+        };
+        assert_eq!(drawn.faults(first(&recording), &drawn.kept), [""; 0], "{seed}");
+        // Twice the rate is another clock.
+        let why = drawn.read(&Reader::new().rate(Some(2.0 * nominal))).expect_err("another rate").to_string();
+        assert!(why.contains("holds a time"), "{why}");
+    }
+}
+
+#[test]
+fn no_lost_sample_passes_in_silence_and_each_stretch_reads() {
+    let mut wrong = Vec::new();
+    for seed in 1..=SEEDS {
+        let drawn = Drawn::new(seed, if seed % 2 == 0 { Clock::Jitters } else { Clock::Wanders }).lose(seed);
+        let recording = drawn.read(&Reader::new()).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let all = recording.all_findings();
+        let Grid::Uneven(instants) = &first(&recording).axis.grid else {
+            wrong.push(format!("{seed}: even in spite of lost samples"));
+            continue;
+        };
+        assert_eq!(instants.len(), drawn.kept.len());
+        let Some(found) = all.iter().find(|found| found.code == "samples-lost") else {
+            wrong.push(format!("{seed}: {:?}", all.iter().map(|f| &f.code).collect::<Vec<_>>()));
+            continue;
+        };
+        let number = found.get("longest").expect("a number") as usize;
+        let why = refused(&recording).to_string();
+        assert!(why.contains(&format!("stretch = {number}")), "{seed}: {why}");
+        // Runs of samples that follow each other, of which short ones are not offered.
+        let runs: Vec<&[usize]> =
+            drawn.kept.chunk_by(|a, b| b - a == 1).filter(|run| run.len() >= 16).collect();
+        for (i, run) in runs.iter().enumerate() {
+            let stretch = drawn.read(&Reader::new().stretch(Some(i + 1)));
+            let stretch = stretch.unwrap_or_else(|why| panic!("{seed}, stretch {}: {why}", i + 1));
+            let trace = first(&stretch);
+            wrong.extend(drawn.faults(trace, run).into_iter().map(|fault| format!("{seed}, {i}: {fault}")));
+            assert!(trace.sampling_rate().is_ok(), "{seed}");
+        }
+        let many = drawn.read(&Reader::new().stretch(Some(runs.len() + 1)));
+        assert!(many.expect_err("one too many").to_string().contains("stretch"), "{seed}");
+    }
+    assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn uneven_times_are_refused_and_interpolated_within_the_stated_error() {
+    for seed in 1..=60 {
+        let mut noise = Noise::new(seed);
+        let mut t = 0.0;
+        let mut next = || {
+            t += noise.between(4e-3, 1.2e-2);
+            t
+        };
+        let instants: Vec<f64> = (0..800).map(|_| next()).collect();
+        let frequency = Noise::new(seed + 99).between(2.0, 12.0);
+        let signal = |t: f64| 3.0 * (std::f64::consts::TAU * frequency * t).sin();
+        let rows = concat(instants.iter().map(|t| format!("{t:.9},{:.12}\n", signal(*t))));
+        let text = format!("time (s),a (m/s^2)\n{rows}");
+        let read = |reader: Reader| reader.from_reader("a.csv", text.as_bytes());
+        let plain = read(Reader::new()).expect("read");
+        let why = refused(&plain).to_string();
+        let typed = why.rsplit("resample = ").next().and_then(|rest| rest.split(')').next());
+        let rate: f64 = typed.and_then(|rate| rate.parse().ok()).unwrap_or_else(|| panic!("{why}"));
+        let made = read(Reader::new().resample(Some(rate))).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let trace = first(&made);
+        assert!((trace.rate().expect("even") / rate - 1.0).abs() < 1e-12);
+        let stated = trace.meta.findings.iter().find(|found| found.code == "resampled").expect("an error");
+        let stated = stated.get("error").expect("a number");
+        let off = |(i, v): (usize, &f64)| (v - signal(trace.axis.at(i))).powi(2);
+        let actual = trace.values.iter().enumerate().map(off).sum::<f64>() / trace.values.len() as f64;
+        assert!(actual.sqrt() <= stated, "{seed}: {} of {stated}", actual.sqrt());
+        // Less than the samples have, or far more, is refused with a rate that works.
+        for far in [0.5 * rate, 20.0 * rate] {
+            let why = read(Reader::new().resample(Some(far))).expect_err("folds or invents").to_string();
+            assert!(why.contains("resample = "), "{why}");
+        }
+    }
+}
+
+#[test]
+fn noise_and_repeated_instants_are_not_interpolated() {
+    let mut noise = Noise::new(3);
+    let mut t = 0.0;
+    let mut next = || {
+        t += noise.between(4e-3, 1.2e-2);
+        (t, noise.normal())
+    };
+    let drawn: Vec<(f64, f64)> = (0..500).map(|_| next()).collect();
+    let rows = concat(drawn.iter().map(|(t, noise)| format!("{t:.6},{noise:.6}\n")));
+    let back = |i: usize| if i == 250 { 0.02 } else { 0.0 };
+    let twice = concat(
+        drawn.iter().enumerate().map(|(i, (t, _))| format!("{:.6},{:.6}\n", t - back(i), (20.0 * t).sin())),
+    );
+    for (rows, words) in [(rows, "too far apart"), (twice, "do not rise")] {
+        let text = format!("time (s),a (m/s^2)\n{rows}");
+        let why = Reader::new().resample(Some(150.0)).from_reader("a.csv", text.as_bytes());
+        let why = why.expect_err("no interpolation").to_string();
+        assert!(why.contains(words), "{why}");
+    }
+}
+
+/// What an Arduino sends without a head: the unit of the times is that which the stated rate has.
+#[test]
+fn times_without_a_name_have_the_unit_that_the_rate_needs() {
+    let row = |i| format!("{},{:.2}\n", 1023 + (f64::from(i) / 0.3) as u64, (0.3 * f64::from(i)).sin());
+    let rows = concat((0..600).map(row));
+    let recording = Reader::new().rate(Some(300.0)).from_reader("log.txt", rows.as_bytes()).expect("read");
+    let trace = first(&recording);
+    // The last of 599 steps is off by a millisecond at most.
+    assert!((trace.rate().expect("even") / 300.0 - 1.0).abs() < 1e-3 / 2.0, "{:?}", trace.axis);
+}
+
+/// Heads that state a rate in ways of their own, above a column of values.
+#[test]
+fn rates_in_heads_are_used() {
+    let row = |i| format!("{:.5},{:.5}\n", (0.1 * f64::from(i)).sin(), (0.3 * f64::from(i)).cos());
+    let rows = concat((0..300).map(row));
+    for (head, rate) in [
+        ("Sampling Freq(Hz) 100Hz", 100.0),
+        ("# data_rate = 2000.0 Hz", 2000.0),
+        ("// Sample rate: 50.0Hz", 50.0),
+        ("#DELTA: 0.0133", 1.0 / 0.0133),
+        ("DELTA: 0.0133", 1.0 / 0.0133),
+    ] {
+        for (file, names) in [("a.csv", "A (V),B (V)\n"), ("a.txt", "")] {
+            let text = format!("{head}\n{names}{rows}");
+            let found = Reader::new().from_reader(file, text.as_bytes()).expect("read");
+            let own = first(&found).rate().unwrap_or_else(|| panic!("{head} in {file}"));
+            assert!((own / rate - 1.0).abs() < 1e-12, "{head} in {file}: {own}");
+        }
+    }
+}
+
+/// K-NET, SLIST and Q-files end with a short row: nothing is to be removed.
+#[test]
+fn a_short_last_row_of_a_series_loses_no_value() {
+    let values: Vec<f64> = (0..590).map(|i| (1e4 * (0.05 * f64::from(i)).sin()).round()).collect();
+    for columns in [5, 6, 7, 8] {
+        let rows = values.chunks(columns).map(|row| concat(row.iter().map(|v| format!("{v:10.0}"))) + "\n");
+        let text =
+            "Station Code      BENCH\nSampling Freq(Hz) 100Hz\n".to_owned() + &rows.collect::<String>();
+        let why = Reader::new().from_reader("a.EW", text.as_bytes());
+        if let Err(why) = why {
+            assert!(why.to_string().contains("wrapped"), "{columns}: {why}");
+        } else {
+            // Rows of five are all full.
+            assert_eq!(values.len() % columns, 0);
+        }
+        let found = Reader::new().wrapped(Some(true)).from_reader("a.EW", text.as_bytes()).expect("read");
+        let trace = first(&found);
+        assert_eq!((&trace.values, trace.rate()), (&values, Some(100.0)), "{columns}");
+    }
+}

@@ -1,0 +1,147 @@
+//! Samples at uneven instants, interpolated on an even grid.
+
+use crate::clock::{Stretch, median, stretches};
+use crate::{Axis, AxisKind, Error, Finding, Grid, Result, Trace};
+
+/// Least rate, as a part of the mean rate of the samples: below it parts of the signal would fold back.
+const SLOWEST: f64 = 0.95;
+/// Largest multiple of the mean rate: beyond, values are added that nothing is known of.
+const FASTEST: f64 = 10.0;
+/// Longest step, in median steps, that is bridged: the error is that of leaving out one sample, which leaves two steps.
+const LONGEST: f64 = 2.5;
+/// Largest error of a sample that is predicted from its neighbours, as a part of the standard deviation: noise has 1.4, a sine four samples a
+/// period long 0.4.
+const LARGEST_ERROR: f64 = 0.5;
+
+impl Trace {
+    /// Interpolates at `rate` in Hz from the first instant on, by cubics through four samples. What that is wrong by at most is a finding: each sample
+    /// predicted from its four neighbours, RMS.
+    ///
+    /// # Errors
+    /// If instants do not rise, or a gap is too long to bridge; if values are missing; if the rate is below that of the samples or far beyond; if the
+    /// samples are too far apart for their signal.
+    pub fn resample(&mut self, rate: f64) -> Result<()> {
+        let (t, v) = (self.axis.values(), &self.values);
+        let n = t.len();
+        if self.axis.kind != AxisKind::Time || n < 5 || v.iter().any(|v| !v.is_finite()) {
+            return Err(Error::refused(
+                "only five samples over time and more, without missing values, can be resampled",
+            ));
+        }
+        let steps: Vec<f64> = t.windows(2).map(|w| w[1] - w[0]).collect();
+        let typical = median(&steps).filter(|_| steps.iter().all(|step| *step > 0.0));
+        let typical =
+            typical.ok_or_else(|| Error::refused("instants that do not rise cannot be resampled"))?;
+        if let Some(i) = steps.iter().position(|step| *step > LONGEST * typical) {
+            let found =
+                format!("a gap of {:.4} s behind {:.6} s is too long to be interpolated", steps[i], t[i]);
+            return Err(evened(Error::refused(found), &t));
+        }
+        let mean = (n - 1) as f64 / (t[n - 1] - t[0]);
+        if !(SLOWEST * mean..=FASTEST * mean).contains(&rate) {
+            let found = format!("a rate of {rate} Hz to resample {mean:.5} samples a second");
+            let expected = format!("{:.5} to {:.5} Hz", SLOWEST * mean, FASTEST * mean);
+            return Err(Error::usage(found, expected).set("resample", proposed(mean)));
+        }
+        let at = |four: [usize; 4], x: f64| cubic(four.map(|i| (t[i], v[i])), x);
+        let own = (2..n - 2).map(|i| at([i - 2, i - 1, i + 1, i + 2], t[i]) - v[i]);
+        let error = (own.map(|e| e * e).sum::<f64>() / (n - 4) as f64).sqrt();
+        let level = v.iter().sum::<f64>() / n as f64;
+        let spread = (v.iter().map(|v| (v - level).powi(2)).sum::<f64>() / n as f64).sqrt();
+        if error > LARGEST_ERROR * spread {
+            let share = 100.0 * error / spread;
+            return Err(Error::refused(format!(
+                "the samples are too far apart to interpolate: each differs by {share:.3} % from what its neighbours predict"
+            ))
+            .hint("record at a higher rate, or with even steps"));
+        }
+        let many = ((t[n - 1] - t[0]) * rate * (1.0 + f64::EPSILON)).floor() as usize + 1;
+        let mut behind = 1;
+        let values = (0..many).map(|i| {
+            let x = t[0] + i as f64 / rate;
+            while behind < n - 1 && t[behind] < x {
+                behind += 1;
+            }
+            let first = behind.saturating_sub(2).min(n - 4);
+            at([first, first + 1, first + 2, first + 3], x)
+        });
+        let values = values.collect();
+        let found = Finding::caution("resampled").number("rate", rate).number("error", error);
+        let found = found
+            .name("unit", self.meta.unit.symbol())
+            .number("share", if error == 0.0 { 0.0 } else { error / spread });
+        self.axis = Axis::time(t[0], 1.0 / rate, many);
+        self.values = values;
+        self.meta.found(found);
+        self.meta.step("resample", &[("rate", &rate), ("method", &"cubics through four samples")]);
+        Ok(())
+    }
+
+    /// Keeps the samples of one stretch between lost samples, by its number from 1, on their even grid.
+    ///
+    /// # Errors
+    /// If there is no such stretch.
+    pub fn keep_stretch(&mut self, number: usize) -> Result<()> {
+        let all = match &self.axis.grid {
+            Grid::Uneven(t) if self.axis.kind == AxisKind::Time => stretches(t),
+            // An even record is one stretch.
+            _ if number == 1 => return Ok(()),
+            _ => Vec::new(),
+        };
+        let Some(Stretch { samples, clock }) = number.checked_sub(1).and_then(|i| all.get(i)) else {
+            let found = match all.len() {
+                0 => format!("stretch {number} of samples without a gap, or without an even stretch"),
+                n => format!("stretch {number} of {n}"),
+            };
+            let error = Error::usage(found, "the number of an even stretch, from 1");
+            return Err(if all.is_empty() {
+                error.hint("leave it out").setting("stretch")
+            } else {
+                error.set("stretch", "1")
+            });
+        };
+        let (rate, std) = clock.rate();
+        let found = Finding::note("stretch-used").count("stretch", number).count("of", all.len());
+        let found = found.count("n", samples.len()).number("start", clock.start).number("rate", rate);
+        self.meta.found(found.number("std", std));
+        self.meta.clock = std / rate;
+        self.meta.step("stretch", &[("first", &samples.start), ("n", &samples.len())]);
+        self.axis = Axis::time(clock.start, clock.step, samples.len());
+        self.values = self.values[samples.clone()].to_vec();
+        Ok(())
+    }
+}
+
+/// A refusal of uneven instants, with what makes them even: one of their stretches, or interpolation.
+pub fn evened(error: Error, instants: &[f64]) -> Error {
+    let all = stretches(instants);
+    let longest = all.iter().enumerate().max_by(|a, b| a.1.duration().total_cmp(&b.1.duration()));
+    if let Some((i, longest)) = longest {
+        let (n, number, duration) = (all.len(), i + 1, longest.duration());
+        let hint = format!(
+            "use one of {n} stretches without a gap; number {number} is the longest, {duration:.4} s"
+        );
+        return error.hint(hint).set("stretch", number.to_string());
+    }
+    if instants.windows(2).any(|w| w[1] <= w[0]) {
+        return error.hint("sort the rows, or cut the file where it begins anew");
+    }
+    let mean = instants.len().saturating_sub(1) as f64 / (instants[instants.len() - 1] - instants[0]);
+    error.hint("interpolate on an even grid").set("resample", proposed(mean))
+}
+
+/// A mean rate in Hz, rounded up to three digits.
+fn proposed(mean: f64) -> String {
+    let unit = 10f64.powf(mean.log10().floor() - 2.0);
+    let text = format!("{:.3e}", (mean / unit * (1.0 - 1e-9)).ceil() * unit);
+    text.parse::<f64>().map_or(text, |rate| rate.to_string())
+}
+
+/// The cubic through four points, at `x`.
+fn cubic(points: [(f64, f64); 4], x: f64) -> f64 {
+    let weight = |i: usize| {
+        let others = (0..4).filter(|j| *j != i).map(|j| (x - points[j].0) / (points[i].0 - points[j].0));
+        others.product::<f64>()
+    };
+    (0..4).map(|i| weight(i) * points[i].1).sum()
+}
