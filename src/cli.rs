@@ -15,7 +15,7 @@ mod shell;
 mod sweep;
 
 use crate::analysis::{decay, frf, spectrum};
-use crate::campaign::{LowPass, in_range};
+use crate::campaign::in_range;
 use crate::error::{Error, Result};
 use crate::read::Limit;
 use crate::report::Medium;
@@ -261,24 +261,14 @@ pub fn main() -> u8 {
     (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
 }
 
-/// Checks all numbers that were typed behind a command.
+/// Checks all numbers that were typed behind a command, alone, as a range or in a list.
 fn numbers(typed: &ArgMatches) -> Result<()> {
-    fn all<T: Clone + Send + Sync + 'static>(
-        typed: &ArgMatches,
-        key: &str,
-        of: impl Fn(&T) -> Vec<f64>,
-    ) -> Vec<f64> {
-        typed.try_get_many(key).ok().flatten().into_iter().flatten().flat_map(of).collect()
-    }
     for key in typed.ids().map(clap::Id::as_str) {
-        let found = [
-            all(typed, key, |v: &f64| vec![*v]),
-            all(typed, key, |(low, high): &(f64, f64)| vec![*low, *high]),
-            all(typed, key, |low_pass: &LowPass| low_pass.corner().into_iter().collect()),
-            all(typed, key, |n: &usize| vec![*n as f64]),
-            all(typed, key, |n: &u32| vec![f64::from(*n)]),
-        ];
-        found.concat().into_iter().try_for_each(|value| in_range(key, value))?;
+        for words in typed.try_get_raw(key).ok().flatten().into_iter().flatten() {
+            let words = words.to_string_lossy();
+            let numbers = words.split([':', ',']).filter_map(|word| word.trim().parse().ok());
+            numbers.map(|number| in_range(key, number)).collect::<Result<()>>()?;
+        }
     }
     Ok(())
 }
@@ -342,6 +332,7 @@ fn kind(arg: &Arg) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::LowPass;
     use crate::model::Parameter;
 
     #[test]
