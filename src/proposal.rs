@@ -228,7 +228,7 @@ impl Proposal {
             let table = table.open("window", "", "\"hann\", \"flat-top\", ... as the analyser was set");
             proposal.tables.push(table.open("scaling", "", "\"peak\" or \"rms\""));
         }
-        for series in alike::all(&found.series, (within, reading), kept, progress) {
+        for series in alike::all(&found.series, within, kept, progress) {
             proposal.tables.extend(series.tables);
             proposal.left.extend(series.left);
         }
@@ -340,11 +340,12 @@ pub fn of_steps(within: &Folder, files: &[PathBuf], reading: &Reading) -> Result
     let (_, headers, _) = reading.reader()?.within(within).survey(first)?;
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-    let series = Series { name: folder::name(&names), files: names, headers, pattern: None, timed: true };
+    let (name, reading) = (folder::name(&names), reading.clone());
+    let series = Series { name, files: names, headers, pattern: None, reading };
     let table = series.sweep().ok_or_else(|| {
         let found = format!("the channels {}", channels.join(", "));
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")
             .hint("name them in a campaign: [[sweep]] with traces, force and response; docs/campaign.md shows one")
     })?;
-    Ok(Proposal { folder: within.at("."), tables: vec![table.stated(reading)], left: Vec::new() })
+    Ok(Proposal { folder: within.at("."), tables: vec![table.stated(&series.reading)], left: Vec::new() })
 }
