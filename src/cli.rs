@@ -266,8 +266,8 @@ fn numbers(typed: &ArgMatches) -> Result<()> {
     for key in typed.ids().map(clap::Id::as_str) {
         for words in typed.try_get_raw(key).ok().flatten().into_iter().flatten() {
             let words = words.to_string_lossy();
-            let numbers = words.split([':', ',']).filter_map(|word| word.trim().parse().ok());
-            numbers.map(|number| in_range(key, number)).collect::<Result<()>>()?;
+            let mut numbers = words.split([':', ',']).filter_map(|word| word.trim().parse().ok());
+            numbers.try_for_each(|number| in_range(key, number))?;
         }
     }
     Ok(())
@@ -293,18 +293,12 @@ fn options(command: Typed) -> Typed {
     };
     let command = command.mut_args(option).mut_subcommands(options);
     let has = |name: &str| command.get_arguments().any(|arg| arg.get_id() == name);
-    let (draws, writes) = (has("out"), WRITES.iter().any(|name| has(name)));
-    let command = if writes {
-        let replace = Arg::new("replace").long("replace").action(ArgAction::SetTrue).help(REPLACE);
-        command.arg(replace.display_order(order + 2))
-    } else {
-        command
-    };
-    if !draws {
-        return command;
-    }
     let style = Arg::new("style").long("style").value_name("STYLE").help(STYLES).hide_possible_values(true);
-    command.arg(style.value_parser(["report", "paper", "slide"]).display_order(order + 1))
+    let style = style.value_parser(["report", "paper", "slide"]).display_order(order + 1);
+    let replace = Arg::new("replace").long("replace").action(ArgAction::SetTrue).help(REPLACE);
+    let replace = replace.display_order(order + 2);
+    let more = [(has("out"), style), (WRITES.iter().any(|name| has(name)), replace)];
+    command.args(more.into_iter().filter(|(wanted, _)| *wanted).map(|(_, arg)| arg))
 }
 
 /// Options of commands that write files.

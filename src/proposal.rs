@@ -209,13 +209,11 @@ impl Proposal {
     ) -> Result<Proposal> {
         let folder = within.root();
         if !within.is_folder(folder) {
-            let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
-            let absent =
-                || Error::absent(format!("there is no folder {}", shown(folder)), Path::new(""), folder);
             return Err(if within.exists(folder) {
-                error.hint("name the folder that holds it")
+                Error::input(Place::file(folder), "this is a file", "a folder of recordings")
+                    .hint("name the folder that holds it")
             } else {
-                absent()
+                Error::absent(format!("there is no folder {}", shown(folder)), Path::new(""), folder)
             });
         }
         let found = Inventory::of(within, reading, known, progress)?;
@@ -233,23 +231,13 @@ impl Proposal {
             proposal.left.extend(series.left);
         }
         if proposal.tables.is_empty() && known.is_none() {
-            if proposal.left.is_empty() {
-                let error = Error::input(
-                    Place::file(folder),
-                    "no recording in this folder",
-                    "files of an instrument",
-                );
-                return Err(error.hint("another folder, or vibro demo"));
-            }
-            let mut error = Error::input(
-                Place::file(folder),
-                "no recording that can be measured",
-                "files of an instrument",
-            );
-            if let Some((file, why)) = proposal.left.first() {
-                error = error.aside(format!("{file}: {why}"));
-            }
-            return Err(error.hint(format!("`vibro info {}/FILE` tells what is in a file", shown(folder))));
+            let nothing = |found: &str| Error::input(Place::file(folder), found, "files of an instrument");
+            return Err(match proposal.left.first() {
+                None => nothing("no recording in this folder").hint("another folder, or vibro demo"),
+                Some((file, why)) => nothing("no recording that can be measured")
+                    .aside(format!("{file}: {why}"))
+                    .hint(format!("`vibro info {}/FILE` tells what is in a file", shown(folder))),
+            });
         }
         if let Some(known) = known {
             proposal.join(known)?;

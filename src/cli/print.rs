@@ -4,7 +4,7 @@ use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
-use crate::record::{shown, steers};
+use crate::record::{is_unprintable, shown};
 use crate::report::Picture;
 use crate::report::files::Names;
 use crate::report::words::{Voice, graded, put};
@@ -163,7 +163,7 @@ pub fn text(text: &str) -> Result<()> {
 /// Text without control characters but line breaks and tabs: a name from a file must not steer a terminal.
 pub(crate) fn printable(text: &str) -> String {
     let breaks = |c: char| c == '\n' || c == '\t';
-    text.chars().map(|c| if steers(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
+    text.chars().map(|c| if is_unprintable(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// A path as a shell takes it.

@@ -68,7 +68,9 @@ pub(super) fn all<'a>(
     };
     let kin: Vec<_> = kin.into_values().collect();
     let tried: Vec<_> = kin.par_iter().with_min_len(share).flat_map_iter(each).collect();
-    tried.into_iter().for_each(|(i, one)| found[i] = Some(one));
+    for (i, one) in tried {
+        found[i] = Some(one);
+    }
     let stated = |(mut found, one): (Found, &Series)| {
         found.tables.iter_mut().for_each(|table| *table = table.stated(&one.reading));
         found
@@ -120,7 +122,7 @@ impl Series {
     }
 
     /// The name of a file for tables.
-    fn label<'a>(&'a self, file: &'a String) -> &'a str {
+    fn label<'a>(&'a self, file: &'a str) -> &'a str {
         if self.files.len() > 1 { file } else { &self.name }
     }
 

@@ -221,7 +221,9 @@ impl Output {
         let stale = self.stale(&before);
         // A program that is killed leaves some of the old files and some of the new: all are vibro's.
         let (mut meanwhile, mut after, mut changed) = (before.clone(), before.clone(), Vec::new());
-        stale.iter().for_each(|name| after.forget(name));
+        for name in &stale {
+            after.forget(name);
+        }
         for Written { name, digest, staged } in std::mem::take(&mut self.files) {
             if self.present(&before, &name, Some(&digest))? == Present::Replaceable {
                 meanwhile.add(self.owner, &name, digest);
@@ -242,7 +244,7 @@ impl Output {
         stale.iter().try_for_each(|name| self.folder.remove(&self.at(name)))?;
         self.remember(&meanwhile, &after)?;
         // What another kind of command left half stays marked.
-        if self.folder.is_file(&path) && self.folder.read(&path)? == mark.as_bytes() {
+        if self.folder.own_file(Output::INCOMPLETE).is_some_and(|held| held == mark.as_bytes()) {
             self.folder.remove(&path)?;
         }
         Ok(names)

@@ -241,6 +241,12 @@ impl Folder {
         Ok(bytes)
     }
 
+    /// The bytes of a file of this name in the folder itself; nothing where that is a link or cannot be read.
+    pub fn own_file(&self, name: &str) -> Option<Vec<u8>> {
+        let path = self.root.join(name);
+        if self.occupant(&path) == Occupant::File { self.read(&path).ok() } else { None }
+    }
+
     /// The SHA-256 of a regular file, of which only a part is held at a time.
     ///
     /// # Errors

@@ -32,9 +32,8 @@ impl Lock {
             Error::input(Place::file(&path), "not the file of vibro that has this name", "none of this name")
                 .hint("move it to another place")
         };
-        let refused = |e| match path.exists() {
-            true => Error::io("open", &path, e),
-            false => Error::io("write", folder, e),
+        let refused = |e| {
+            if path.exists() { Error::io("open", &path, e) } else { Error::io("write", folder, e) }
         };
         loop {
             if std::fs::symlink_metadata(&path).is_ok_and(|meta| !meta.is_file()) {

@@ -1,6 +1,6 @@
 //! What vibro wrote into a folder.
 
-use super::{Digest, Folder, Occupant};
+use super::{Digest, Folder};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -44,19 +44,13 @@ impl Manifest {
 
     /// That of a folder; empty where it has none, or none of ours.
     pub fn of(folder: &Folder) -> Manifest {
-        Manifest::parse(&Manifest::held(folder).unwrap_or_default())
+        let bytes = folder.own_file(Manifest::FILE).unwrap_or_default();
+        Manifest::parse(&String::from_utf8(bytes).unwrap_or_default())
     }
 
     /// Whether the file of a folder that has its name is one.
     pub fn is_of(folder: &Folder) -> bool {
-        Manifest::held(folder).is_some_and(|text| text.starts_with(HEAD))
-    }
-
-    /// The text of the file that has its name.
-    fn held(folder: &Folder) -> Option<String> {
-        let path = folder.root().join(Manifest::FILE);
-        let file = folder.occupant(&path) == Occupant::File;
-        String::from_utf8(file.then(|| folder.read(&path).ok())??).ok()
+        folder.own_file(Manifest::FILE).is_some_and(|bytes| bytes.starts_with(HEAD.as_bytes()))
     }
 
     fn parse(text: &str) -> Manifest {

@@ -66,7 +66,10 @@ impl Folder {
     pub fn remove(&self, path: &Path) -> Result<()> {
         let removed = match &self.side {
             Side::Disk => fs::remove_file(path),
-            Side::Memory(files) => Ok(drop(locked(files).remove(&plain(path)))),
+            Side::Memory(files) => {
+                locked(files).remove(&plain(path));
+                Ok(())
+            }
         };
         removed.or_else(|e| {
             if e.kind() == ErrorKind::NotFound { Ok(()) } else { Err(Error::io("remove", path, e)) }

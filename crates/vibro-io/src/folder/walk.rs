@@ -4,7 +4,7 @@ use super::{Folder, Manifest, Side, locked, or_here, plain, real};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use vibro_record::{Error, Result, shown, steers};
+use vibro_record::{Error, Result, is_unprintable, shown};
 use walkdir::{DirEntry, WalkDir};
 
 /// Regular files that may be recordings, each once, and what was passed over.
@@ -64,7 +64,7 @@ impl Folder {
         for entry in entries.filter_entry(new) {
             match entry {
                 Ok(entry) if entry.file_type().is_symlink() => {
-                    links.push((plain(entry.path()), entry.depth()))
+                    links.push((plain(entry.path()), entry.depth()));
                 }
                 Ok(entry) if entry.file_type().is_file() => walk.take(plain(entry.path())),
                 Ok(entry) if entry.file_type().is_dir() => {}
@@ -112,7 +112,7 @@ impl Walk {
         let name = path.file_name().map_or(&[][..], |name| name.as_encoded_bytes());
         let why = match path.to_str() {
             None => "its name is not UTF-8: rename it",
-            Some(path) if path.contains(steers) => {
+            Some(path) if path.contains(is_unprintable) => {
                 "its name has a line break or a control character: rename it"
             }
             // Lists of DOS machines have it between folders.
