@@ -49,7 +49,8 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     Ok(0)
 }
 
-/// A folder to write into, with figures in the style that was asked for, and what to type where something stands in the way.
+/// A folder to write into, with figures in the style that was asked for, and what to type where something is in
+/// the way.
 ///
 /// # Errors
 /// As [`Output::new`].

@@ -83,8 +83,9 @@ fn spread(n: usize, few: usize) -> Vec<usize> {
     if n <= few { (0..n).collect() } else { (0..few).map(|k| k * (n - 1) / (few - 1)).collect() }
 }
 
-/// Tries a few of `n` files; where they do not agree many, and where kinds stand in rows, their ends by halving: those between two that agree are
-/// then like them, else nothing is known of them. Gives the number of tries, too. What it tries does not depend on the number of cores.
+/// Tries a few of `n` files. Where they do not agree it tries many, and where kinds stand in rows, their ends by
+/// halving. Files between two that agree are like them; in a mixture nothing is known of them. Gives the number of
+/// tries, too. What it tries does not depend on the number of cores.
 fn tried<T: Clone + Send + Sync>(
     (n, share): (usize, usize),
     agree: impl Fn(&T, &T) -> bool,

@@ -99,8 +99,8 @@ pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>
     Ok((files, None))
 }
 
-/// Names of the figures and tables of one kind of record, without endings, and how files of several records are told apart behind them in a
-/// campaign.
+/// Names of the figures and tables of one kind of record, without endings. Behind them a campaign marks the files
+/// of each record.
 #[derive(Debug, Clone, Copy)]
 pub enum Names {
     /// By the numbers of the records, from 1.

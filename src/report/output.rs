@@ -125,7 +125,8 @@ impl Output {
     /// Writes a file, or writes it anew.
     ///
     /// # Errors
-    /// If `name` is no plain name of a file, or that of a folder; if another program writes there, or the system refuses.
+    /// If `name` is no plain name of a file, or that of a folder; if another program writes there, or the system
+    /// refuses.
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
         let (path, bytes) = (self.path(name)?, bytes.as_ref());
         self.occupant(name)?;
@@ -141,7 +142,8 @@ impl Output {
         Ok(())
     }
 
-    /// Adds text at the end of a file that a person keeps and that held `before` when it was read; nothing else is written with it.
+    /// Adds text at the end of a file that a person keeps and that held `before` when it was read. Nothing else is
+    /// written with it.
     ///
     /// # Errors
     /// As [`Output::write`]; if the file changed meanwhile.
@@ -210,7 +212,8 @@ impl Output {
     /// one did not goes.
     ///
     /// # Errors
-    /// If what has a name must not be replaced; nothing is changed then. If the system refuses; the folder is then marked as incomplete.
+    /// If what has a name must not be replaced; nothing is changed then. If the system refuses; the folder is then
+    /// marked as incomplete.
     pub fn commit(mut self) -> Result<Vec<String>> {
         let names: Vec<String> = self.written().map(str::to_owned).collect();
         if names.is_empty() {

@@ -200,7 +200,8 @@ impl Folder {
         names
     }
 
-    /// Makes the folder, with those above it, and gives the right to write into it until that is dropped; memory needs neither.
+    /// Makes the folder, with those above it, and gives the right to write into it until that is dropped.
+    /// Memory needs neither.
     ///
     /// # Errors
     /// If the folder or the file of the lock cannot be made, or another program is writing there.
@@ -283,7 +284,8 @@ impl Folder {
         self.identity(path).is_some_and(|file| locked(&self.opened).contains(&file))
     }
 
-    /// What tells a file apart whatever its names are, `-` being that of standard input; nothing where there is none.
+    /// What tells a file apart whatever its names are; nothing where there is none. `-` is the file that standard
+    /// input comes from.
     fn identity(&self, path: &Path) -> Option<PathBuf> {
         if matches!(self.side, Side::Memory(_)) {
             return Some(plain(path));

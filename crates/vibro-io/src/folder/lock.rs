@@ -58,8 +58,8 @@ impl Lock {
                 Ok(()) if read.is_err() || !process.bytes().all(|c| c.is_ascii_digit()) => {
                     return Err(strange());
                 }
-                // Where there are no locks, as on some network drives, there is nobody to wait for. The writer before may have removed the file
-                // between opening and locking it.
+                // Where there are no locks, as on some network drives, there is nobody to wait for. The writer
+                // before may have removed the file between opening and locking it.
                 Ok(()) | Err(TryLockError::Error(_)) if is_at(&path, &file) => {
                     let _ = file.set_len(0).and_then(|()| file.rewind());
                     let _ = write!(file, "{}", std::process::id());
