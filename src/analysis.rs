@@ -155,20 +155,6 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
 }
 
-/// The kinds of which a campaign has records.
-///
-/// # Errors
-/// If it is no TOML.
-fn kinds_of(campaign: &Campaign) -> Result<Vec<&'static Kind>> {
-    let mut found = Vec::new();
-    for kind in KINDS {
-        if !campaign.written(kind.section)?.is_empty() {
-            found.push(kind);
-        }
-    }
-    Ok(found)
-}
-
 /// Reads a campaign and checks all its records.
 ///
 /// # Errors

@@ -15,7 +15,7 @@ mod shell;
 mod sweep;
 
 use crate::analysis::{decay, frf, spectrum};
-use crate::campaign::{LowPass, in_range};
+use crate::campaign::in_range;
 use crate::error::{Error, Result};
 use crate::read::Limit;
 use crate::report::Medium;
@@ -261,24 +261,14 @@ pub fn main() -> u8 {
     (row.run)(typed, json).unwrap_or_else(|error| complain::error(&error, row.voice, json))
 }
 
-/// Checks all numbers that were typed behind a command.
+/// Checks all numbers that were typed behind a command, alone, as a range or in a list.
 fn numbers(typed: &ArgMatches) -> Result<()> {
-    fn all<T: Clone + Send + Sync + 'static>(
-        typed: &ArgMatches,
-        key: &str,
-        of: impl Fn(&T) -> Vec<f64>,
-    ) -> Vec<f64> {
-        typed.try_get_many(key).ok().flatten().into_iter().flatten().flat_map(of).collect()
-    }
     for key in typed.ids().map(clap::Id::as_str) {
-        let found = [
-            all(typed, key, |v: &f64| vec![*v]),
-            all(typed, key, |(low, high): &(f64, f64)| vec![*low, *high]),
-            all(typed, key, |low_pass: &LowPass| low_pass.corner().into_iter().collect()),
-            all(typed, key, |n: &usize| vec![*n as f64]),
-            all(typed, key, |n: &u32| vec![f64::from(*n)]),
-        ];
-        found.concat().into_iter().try_for_each(|value| in_range(key, value))?;
+        for words in typed.try_get_raw(key).ok().flatten().into_iter().flatten() {
+            let words = words.to_string_lossy();
+            let mut numbers = words.split([':', ',']).filter_map(|word| word.trim().parse().ok());
+            numbers.try_for_each(|number| in_range(key, number))?;
+        }
     }
     Ok(())
 }
@@ -303,18 +293,12 @@ fn options(command: Typed) -> Typed {
     };
     let command = command.mut_args(option).mut_subcommands(options);
     let has = |name: &str| command.get_arguments().any(|arg| arg.get_id() == name);
-    let (draws, writes) = (has("out"), WRITES.iter().any(|name| has(name)));
-    let command = if writes {
-        let replace = Arg::new("replace").long("replace").action(ArgAction::SetTrue).help(REPLACE);
-        command.arg(replace.display_order(order + 2))
-    } else {
-        command
-    };
-    if !draws {
-        return command;
-    }
     let style = Arg::new("style").long("style").value_name("STYLE").help(STYLES).hide_possible_values(true);
-    command.arg(style.value_parser(["report", "paper", "slide"]).display_order(order + 1))
+    let style = style.value_parser(["report", "paper", "slide"]).display_order(order + 1);
+    let replace = Arg::new("replace").long("replace").action(ArgAction::SetTrue).help(REPLACE);
+    let replace = replace.display_order(order + 2);
+    let more = [(has("out"), style), (WRITES.iter().any(|name| has(name)), replace)];
+    command.args(more.into_iter().filter(|(wanted, _)| *wanted).map(|(_, arg)| arg))
 }
 
 /// Options of commands that write files.
@@ -342,6 +326,7 @@ fn kind(arg: &Arg) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::LowPass;
     use crate::model::Parameter;
 
     #[test]

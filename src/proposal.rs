@@ -209,13 +209,11 @@ impl Proposal {
     ) -> Result<Proposal> {
         let folder = within.root();
         if !within.is_folder(folder) {
-            let error = Error::input(Place::file(folder), "this is a file", "a folder of recordings");
-            let absent =
-                || Error::absent(format!("there is no folder {}", shown(folder)), Path::new(""), folder);
             return Err(if within.exists(folder) {
-                error.hint("name the folder that holds it")
+                Error::input(Place::file(folder), "this is a file", "a folder of recordings")
+                    .hint("name the folder that holds it")
             } else {
-                absent()
+                Error::absent(format!("there is no folder {}", shown(folder)), Path::new(""), folder)
             });
         }
         let found = Inventory::of(within, reading, known, progress)?;
@@ -228,28 +226,18 @@ impl Proposal {
             let table = table.open("window", "", "\"hann\", \"flat-top\", ... as the analyser was set");
             proposal.tables.push(table.open("scaling", "", "\"peak\" or \"rms\""));
         }
-        for series in alike::all(&found.series, (within, reading), kept, progress) {
+        for series in alike::all(&found.series, within, kept, progress) {
             proposal.tables.extend(series.tables);
             proposal.left.extend(series.left);
         }
         if proposal.tables.is_empty() && known.is_none() {
-            if proposal.left.is_empty() {
-                let error = Error::input(
-                    Place::file(folder),
-                    "no recording in this folder",
-                    "files of an instrument",
-                );
-                return Err(error.hint("another folder, or vibro demo"));
-            }
-            let mut error = Error::input(
-                Place::file(folder),
-                "no recording that can be measured",
-                "files of an instrument",
-            );
-            if let Some((file, why)) = proposal.left.first() {
-                error = error.aside(format!("{file}: {why}"));
-            }
-            return Err(error.hint(format!("`vibro info {}/FILE` tells what is in a file", shown(folder))));
+            let nothing = |found: &str| Error::input(Place::file(folder), found, "files of an instrument");
+            return Err(match proposal.left.first() {
+                None => nothing("no recording in this folder").hint("another folder, or vibro demo"),
+                Some((file, why)) => nothing("no recording that can be measured")
+                    .aside(format!("{file}: {why}"))
+                    .hint(format!("`vibro info {}/FILE` tells what is in a file", shown(folder))),
+            });
         }
         if let Some(known) = known {
             proposal.join(known)?;
@@ -340,11 +328,12 @@ pub fn of_steps(within: &Folder, files: &[PathBuf], reading: &Reading) -> Result
     let (_, headers, _) = reading.reader()?.within(within).survey(first)?;
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-    let series = Series { name: folder::name(&names), files: names, headers, pattern: None, timed: true };
+    let (name, reading) = (folder::name(&names), reading.clone());
+    let series = Series { name, files: names, headers, pattern: None, reading };
     let table = series.sweep().ok_or_else(|| {
         let found = format!("the channels {}", channels.join(", "));
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")
             .hint("name them in a campaign: [[sweep]] with traces, force and response; docs/campaign.md shows one")
     })?;
-    Ok(Proposal { folder: within.at("."), tables: vec![table.stated(reading)], left: Vec::new() })
+    Ok(Proposal { folder: within.at("."), tables: vec![table.stated(&series.reading)], left: Vec::new() })
 }

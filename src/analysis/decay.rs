@@ -89,7 +89,7 @@ fn levels(name: &str, found: &DecayResult) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "decay";
     const TITLE: &'static str = "Free decays";
-    const FILES: Names = Names::numbered(&["modes", "levels", "decay"]);
+    const FILES: Names = Names::Numbered(&["modes", "levels", "decay"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file).map(drop)

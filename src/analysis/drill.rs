@@ -258,7 +258,7 @@ impl Analysis for Keys {
     const SECTION: &'static str = "drill";
     const TITLE: &'static str = "Hammer drills";
     const FILES: Names =
-        Names::named(&["average", "impacts", "drill_average", "drill_trace", "drill_speed", "drill_noise"]);
+        Names::Named(&["average", "impacts", "drill_average", "drill_trace", "drill_speed", "drill_noise"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

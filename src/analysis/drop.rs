@@ -265,7 +265,7 @@ fn by_method(name: &str, found: &Restitution) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "drop";
     const TITLE: &'static str = "Restitution";
-    const FILES: Names = Names::numbered(&["drop", "restitution"]);
+    const FILES: Names = Names::Numbered(&["drop", "restitution"]);
     const TOGETHER: bool = true;
 
     fn check(entry: &Entry<Keys>, earlier: &[Entry<Keys>]) -> Result<()> {

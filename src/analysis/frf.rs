@@ -216,7 +216,7 @@ impl Keys {
 impl Analysis for Keys {
     const SECTION: &'static str = "frf";
     const TITLE: &'static str = "Frequency response functions";
-    const FILES: Names = Names::numbered(&["modes", "methods", "frf"]);
+    const FILES: Names = Names::Numbered(&["modes", "methods", "frf"]);
     const RESTS_ON: &'static [&'static str] = &["sweep"];
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {

@@ -159,7 +159,7 @@ fn times(found: &Impacts) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "impacts";
     const TITLE: &'static str = "Impacts";
-    const FILES: Names = Names::numbered(&["impacts"]);
+    const FILES: Names = Names::Numbered(&["impacts"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.file.as_ref().ok_or_else(no_file)?;

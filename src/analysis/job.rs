@@ -5,13 +5,13 @@ use super::inputs::inputs;
 use super::kept::{Kept, digest, packed};
 use super::recordings::beside;
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, Answer, KINDS, Kind, files as files_of, kinds_of, page};
+use super::{Analysis, Answer, KINDS, Kind, files as files_of, page};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;
 use crate::record::{Fact, Finding};
 use crate::report::Picture;
-use crate::report::files::Marks;
+use crate::report::files::Names;
 use crate::report::words::{About, Voice, put};
 use crate::report::{Output, files};
 use rayon::prelude::*;
@@ -204,16 +204,13 @@ impl<'a> Job<'a> {
                     found => found.map(Ok),
                 }
             });
-            let found = match found {
-                Ok(Ok(found)) => found,
-                Ok(Err(left_out)) => {
+            let found = match self.found(&name, found) {
+                Some(Ok(found)) => found,
+                Some(Err(left_out)) => {
                     self.found.add(&name, [left_out]);
                     Vec::new()
                 }
-                Err(error) => {
-                    self.leave_out(&name, error);
-                    Vec::new()
-                }
+                None => Vec::new(),
             };
             if self.kept.is_old(&on) {
                 self.again += found.len();
@@ -223,9 +220,9 @@ impl<'a> Job<'a> {
                 records.push(Record { name: name.clone(), file, mark: String::new(), answer });
             }
         }
-        let marks = match K::FILES.marks {
-            Marks::Names => files::slugs(records.iter().map(|r| r.name.as_str())),
-            Marks::Numbers => (1..=records.len()).map(|n| n.to_string()).collect(),
+        let marks = match K::FILES {
+            Names::Named(_) => files::slugs(records.iter().map(|r| r.name.as_str())),
+            Names::Numbered(_) => (1..=records.len()).map(|n| n.to_string()).collect(),
         };
         for (record, mark) in records.iter_mut().zip(marks) {
             record.mark = mark;
@@ -334,7 +331,9 @@ pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn
     for path in &files {
         campaign.within().reads(path);
     }
-    let (own, kinds) = ([RESULTS, REPORT, INPUTS, Kept::FILE], kinds_of(campaign)?);
+    let asked = |kind: &&Kind| campaign.written(kind.section).is_ok_and(|tables| !tables.is_empty());
+    let (own, kinds) =
+        ([RESULTS, REPORT, INPUTS, Kept::FILE], KINDS.iter().filter(asked).collect::<Vec<_>>());
     output.expect(|name| own.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
     let mut job = Job::new(campaign, kept, progress);
     // Before anything is read: what changes meanwhile is for the next run.
@@ -373,7 +372,7 @@ pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn
     }
     put(&mut all.result, &all.findings, Voice::Campaign);
     output.write(INPUTS, &inputs)?;
-    let names = output.written().iter().map(String::as_str).chain([RESULTS, REPORT]);
+    let names = output.written().chain([RESULTS, REPORT]);
     all.result.insert("files".to_owned(), names.collect());
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
     output.write(RESULTS, json + "\n")?;

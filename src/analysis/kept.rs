@@ -1,7 +1,7 @@
 //! Answers and pictures that are kept for the next run: asked again is only what rests on other words, other files or another program.
 
 use crate::error::Result;
-use crate::read::{Digest, Folder, Standing};
+use crate::read::{Digest, Folder};
 use crate::report::Output;
 use rmp_serde::config::BytesMode;
 use serde::Serialize;
@@ -39,10 +39,8 @@ impl Kept {
 
     /// What the last run of this very program kept in a folder of results; nothing where that cannot be read.
     pub fn of(folder: &Folder) -> Kept {
-        let (kept, path) = (Kept::none(folder), folder.root().join(Kept::FILE));
-        let own = folder.standing(&path) == Standing::File;
-        let bytes = own.then(|| folder.read(&path).ok()).flatten();
-        let old = bytes.and_then(|bytes| {
+        let kept = Kept::none(folder);
+        let old = folder.own_file(Kept::FILE).and_then(|bytes| {
             let (sum, rest) = bytes.split_at_checked(size_of::<Digest>())?;
             let (program, old): (Digest, BTreeMap<Digest, Vec<u8>>) =
                 rmp_serde::from_slice(rest).ok().filter(|_| digest([rest]) == *sum)?;

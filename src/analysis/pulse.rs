@@ -155,7 +155,7 @@ fn models(title: &str, result: &PulseResult) -> Table {
 impl Analysis for Keys {
     const SECTION: &'static str = "pulse";
     const TITLE: &'static str = "Contact pulses";
-    const FILES: Names = Names::numbered(&["pulse", "pulse_fits"]);
+    const FILES: Names = Names::Numbered(&["pulse", "pulse_fits"]);
 
     fn check(entry: &Entry<Keys>, _: &[Entry<Keys>]) -> Result<()> {
         entry.keys.usable(entry.file.is_some())

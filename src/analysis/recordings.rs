@@ -3,7 +3,7 @@
 use super::{REPORT, RESULTS, file_name, files};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
-use crate::read::{Folder, Left, Manifest, Walk, plain};
+use crate::read::{Folder, Manifest, Walk, plain};
 use crate::record::{Finding, shown};
 use glob::{MatchOptions, Pattern};
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,7 +24,7 @@ pub struct Recordings {
     /// Files that are none, by their endings.
     pub others: Vec<PathBuf>,
     /// What could not be looked at, and why.
-    pub left: Vec<(PathBuf, Left)>,
+    pub skipped: Vec<(PathBuf, String)>,
 }
 
 /// The recordings of a folder. Hidden files and results are passed over.
@@ -32,7 +32,7 @@ pub struct Recordings {
 /// # Errors
 /// If the folder cannot be listed.
 pub fn recordings(folder: &Folder) -> Result<Recordings> {
-    let Walk { mut files, left } = folder.walk(folder.root(), LEVELS)?;
+    let Walk { mut files, skipped } = folder.walk(folder.root(), LEVELS)?;
     let top = plain(folder.root());
     // Results of versions that kept no manifest are all that lies in their folder.
     let has = |path: &Path, name: &str| folder.is_file(&path.join(name));
@@ -48,7 +48,7 @@ pub fn recordings(folder: &Folder) -> Result<Recordings> {
     let is_none = |path: &PathBuf| NO_RECORDINGS.split(' ').any(|known| known == ending(path));
     let (others, mut files): (Vec<_>, Vec<_>) = files.into_iter().partition(is_none);
     in_order(&mut files);
-    Ok(Recordings { files, others, left })
+    Ok(Recordings { files, others, skipped })
 }
 
 /// Puts files in the order of the numbers in their names: 2 before 10, and 11.15 before 11.2.
@@ -110,11 +110,8 @@ pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
     let own = plain(folder.root());
     let within = |path: &Path| path.strip_prefix(&own).map_or_else(|_| path.to_owned(), Path::to_owned);
     let meant = |path: &Path| pattern.matches_path_with(path, WHOLE_NAMES);
-    let outside = |(path, why): &&(PathBuf, Left)| matches!(why, Left::Outside(_)) && meant(&within(path));
-    if let Some((path, why)) = found.left.iter().find(outside) {
-        let found = format!("{}: {why}", shown(path));
-        return Err(Error::usage(found, "").hint("allow it if you trust it").setting("allow_outside"));
-    }
+    let mut skipped = found.skipped.iter().map(|(path, _)| within(path)).filter(|path| meant(path));
+    skipped.try_for_each(|path| folder.path(&path).map(drop))?;
     let mut files: Vec<PathBuf> =
         found.files.iter().map(|path| within(path)).filter(|path| meant(path)).collect();
     if files.is_empty() {
@@ -186,12 +183,11 @@ pub fn beside(campaign: &Campaign) -> Result<Vec<Finding>> {
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let found = Finding::note("files-not-named").count("n", new.len());
     let found = (!new.is_empty()).then(|| found.name("files", names.join(", ") + &more));
-    let left = seen.left.iter().map(|(path, why)| (shown(file_name(path)), why));
+    let skipped = seen.skipped.into_iter().map(|(path, why)| (file_name(&path), why));
     // One that the campaign names says itself why it is not used.
-    let left = left.filter(|(name, _)| !campaign.text().contains(name));
-    let left =
-        left.map(|(name, why)| Finding::note("file-not-used").about(name).name("why", why.to_string()));
-    Ok(found.into_iter().chain(left).collect())
+    let skipped = skipped.filter(|(name, _)| !campaign.text().contains(name));
+    let skipped = skipped.map(|(name, why)| Finding::note("file-not-used").about(name).name("why", why));
+    Ok(found.into_iter().chain(skipped).collect())
 }
 
 /// Name of the file of a folder's own campaign.

@@ -263,7 +263,7 @@ fn findings_of(responses: &[Response]) -> impl Iterator<Item = About> {
 impl Analysis for Keys {
     const SECTION: &'static str = "sweep";
     const TITLE: &'static str = "Sweeps";
-    const FILES: Names = Names::named(&[
+    const FILES: Names = Names::Named(&[
         "response",
         "receptance",
         "waterfall",

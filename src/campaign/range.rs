@@ -12,53 +12,41 @@ const LEAST: f64 = 1e-50;
 const LONGEST: f64 = 1e9;
 const SHORTEST: f64 = 1e-12;
 
-/// What a number may be beside its size.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Sign {
-    /// Above 0.
-    Above,
-    /// 0 or more.
-    Zero,
-    /// Any.
-    Any,
-}
-use Sign::{Above, Any, Zero};
+/// The lower end of a range, and what is expected where a number lies below it or is none.
+type Sign = (f64, &'static str);
+const ABOVE: Sign = (f64::MIN_POSITIVE, "a finite number above 0");
+const ZERO: Sign = (0.0, "a finite number of 0 or more");
+const ANY: Sign = (f64::NEG_INFINITY, "a finite number");
 
-/// Keys of one kind: sign, largest value, least size that is not 0, unit.
+/// Keys of one kind: sign, largest size, least size that is not 0, unit.
 type Row = (Sign, f64, f64, &'static str, &'static [&'static str]);
 
 const ROWS: &[Row] = &[
-    (
-        Above,
-        LARGEST,
-        LEAST,
-        "Hz",
-        &["rate", "resample", "base_band", "shape_rate", "excitation", "instrument"],
-    ),
-    (Above, LARGEST, LEAST, "Hz", &["low_pass", "high_pass", "fmin", "fmax"]),
-    (Zero, LARGEST, LEAST, "Hz", &["band"]),
-    (Above, LARGEST, LEAST, "Hz/s", &["sweep_rate"]),
-    (Above, LONGEST, SHORTEST, "s", &["smoothing", "interval", "intervals", "force_window"]),
-    (Above, LONGEST, SHORTEST, "s", &["time_to_peak", "duration"]),
-    (Zero, LONGEST, SHORTEST, "s", &["refractory", "interval_std", "contact_time", "longest_dropout", "std"]),
-    (Any, LONGEST, SHORTEST, "s", &["delay", "span"]),
+    (ABOVE, LARGEST, LEAST, "Hz", &["rate", "base_band", "shape_rate", "excitation", "instrument"]),
+    (ABOVE, LARGEST, LEAST, "Hz", &["low_pass", "high_pass", "fmin", "fmax", "resample"]),
+    (ZERO, LARGEST, LEAST, "Hz", &["band"]),
+    (ABOVE, LARGEST, LEAST, "Hz/s", &["sweep_rate"]),
+    (ABOVE, LONGEST, SHORTEST, "s", &["smoothing", "interval", "intervals", "force_window"]),
+    (ABOVE, LONGEST, SHORTEST, "s", &["time_to_peak", "duration"]),
+    (ZERO, LONGEST, SHORTEST, "s", &["refractory", "interval_std", "contact_time", "longest_dropout", "std"]),
+    (ANY, LONGEST, SHORTEST, "s", &["delay", "span"]),
     // A drill compares them with its turn.
-    (Above, f64::MAX, SHORTEST, "s", &["contact", "fit_duration"]),
-    (Above, LARGEST, LEAST, "kg", &["mass", "struck_mass", "masses"]),
-    (Above, LARGEST, LEAST, "", &["height", "gravity", "grazing", "decibel", "force_calibration"]),
-    (Zero, LARGEST, LEAST, "", &["height_std", "gravity_std", "velocity_std"]),
-    (Any, LARGEST, LEAST, "", &["calibration", "sensitivity", "handle_sensitivity", "level"]),
-    (Any, LARGEST, LEAST, "", &["before", "after", "after2", "initial", "phase"]),
-    (Any, 360.0, LEAST, "°", &["beam_angle"]),
-    (Any, 1e3, LEAST, "dB", &["margin"]),
-    (Zero, 24.0, LEAST, "h", &["exposure"]),
-    (Above, 1e3, 1e-9, "", &["threshold"]),
-    (Zero, 1.0, 1e-9, "", &["overlap", "least_coherence", "left_at_end", "scatter"]),
-    (Zero, 1e3, 1.0, "", &["modes", "tones", "order", "peak_lines", "starts", "analyser_integrated"]),
-    (Zero, 1e9, 1.0, "", &["segment", "points", "pulses_per_turn", "impacts", "cycles"]),
-    (Zero, 1e9, 1.0, "", &["settle", "measure", "steps", "lines"]),
-    (Above, 1e9, 1.0, "", &["stretch"]),
-    (Any, 1e3, 1.0, "", &["integrate"]),
+    (ABOVE, f64::MAX, SHORTEST, "s", &["contact", "fit_duration"]),
+    (ABOVE, LARGEST, LEAST, "kg", &["mass", "struck_mass", "masses"]),
+    (ABOVE, LARGEST, LEAST, "", &["height", "gravity", "grazing", "decibel", "force_calibration"]),
+    (ZERO, LARGEST, LEAST, "", &["height_std", "gravity_std", "velocity_std"]),
+    (ANY, LARGEST, LEAST, "", &["calibration", "sensitivity", "handle_sensitivity", "level"]),
+    (ANY, LARGEST, LEAST, "", &["before", "after", "after2", "initial", "phase"]),
+    (ANY, 360.0, LEAST, "°", &["beam_angle"]),
+    (ANY, 1e3, LEAST, "dB", &["margin"]),
+    (ZERO, 24.0, LEAST, "h", &["exposure"]),
+    (ABOVE, 1e3, 1e-9, "", &["threshold"]),
+    (ZERO, 1.0, 1e-9, "", &["overlap", "least_coherence", "left_at_end", "scatter"]),
+    (ZERO, 1e3, 1.0, "", &["modes", "tones", "order", "peak_lines", "starts", "analyser_integrated"]),
+    (ZERO, 1e9, 1.0, "", &["segment", "points", "pulses_per_turn", "impacts", "cycles"]),
+    (ZERO, 1e9, 1.0, "", &["settle", "measure", "steps", "lines"]),
+    (ABOVE, 1e9, 1.0, "", &["stretch"]),
+    (ANY, 1e3, 1.0, "", &["integrate"]),
 ];
 
 /// Checks the value of an option or a key; what has no row is checked where its table is.
@@ -67,24 +55,13 @@ const ROWS: &[Row] = &[
 /// With the key and its range, if the value lies outside.
 pub fn in_range(key: &str, value: f64) -> Result<()> {
     let row = ROWS.iter().find_map(|row| Some((row, row.4.iter().find(|known| **known == key)?)));
-    let Some(((sign, most, least, unit, _), key)) = row else { return Ok(()) };
-    let signed = match sign {
-        Above => value > 0.0,
-        Zero => value >= 0.0,
-        Any => !value.is_nan(),
-    };
-    let sized = value == 0.0 || (*least..=*most).contains(&value.abs());
-    let expected = match sign {
-        _ if signed && value.is_finite() => format!("{least:e} to {most:e} {unit}"),
-        Above => "a finite number above 0".to_owned(),
-        Zero => "a finite number of 0 or more".to_owned(),
-        Any => "a finite number".to_owned(),
-    };
-    if signed && sized {
-        Ok(())
-    } else {
-        Err(Error::usage(format!("{key} is {value:?}"), expected.trim_end()).setting(key))
+    let Some((((low, sign), most, least, unit, _), key)) = row else { return Ok(()) };
+    if value >= *low && (value == 0.0 || (*least..=*most).contains(&value.abs())) {
+        return Ok(());
     }
+    let of_sign = value >= *low && value.is_finite();
+    let expected = if of_sign { format!("{least:e} to {most:e} {unit}") } else { (*sign).to_owned() };
+    Err(Error::usage(format!("{key} is {value:?}"), expected.trim_end()).setting(key))
 }
 
 /// Checks every number of a key's value in a campaign.

@@ -1,13 +1,13 @@
 //! `vibro run` and `vibro compare`: what a campaign asks for.
 
-use super::convert::folder_of;
+use super::print::folder_of;
 use super::{complain, init, print};
 use crate::analysis::sweep::modelled;
 use crate::analysis::{self, Kept, REPORT, Ran};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
-use crate::read::{Folder, Owner, Standing};
+use crate::read::{Folder, Occupant, Owner};
 use crate::record::shown;
 use crate::report::Table;
 use crate::report::files::Names;
@@ -56,7 +56,7 @@ fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
     let of_folder = path.join(Proposal::FILE);
     if !path.is_dir() {
         analysis::open_in(within, path)
-    } else if within.standing(&of_folder) != Standing::Free {
+    } else if within.occupant(&of_folder) != Occupant::Nothing {
         analysis::open_in(within, &of_folder)
     } else {
         analysis::parse(within, &of_folder, String::new())
@@ -139,17 +139,16 @@ impl Run {
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let results = campaign.within().at(&folder);
         let kept = if self.again { Kept::none(&results) } else { Kept::of(&results) };
-        let mut output = print::output(results, Owner::Run)?;
+        let unused = print::unused(&folder);
+        let elsewhere = match &self.out {
+            Some(_) => format!("--out {}", print::typed(&unused)),
+            None => format!("out = {:?}", unused.file_name().map_or_else(String::new, shown)),
+        };
+        let mut output = print::output(results, Owner::Run, elsewhere)?;
         let campaign = proposed(campaign, &kept, json)?;
         let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);
-        let free = print::free(&folder);
-        let place = match &self.out {
-            Some(_) => format!("--out {}", print::typed(&free)),
-            None => format!("out = {:?}", free.file_name().map_or_else(String::new, shown)),
-        };
-        let elsewhere = |error| print::elsewhere(error, &place);
-        let Ran { answer, answered, again } = print::busy(json, "campaign", run).map_err(elsewhere)?;
-        output.commit().map_err(elsewhere)?;
+        let Ran { answer, answered, again } = print::busy(json, "campaign", run)?;
+        output.commit()?;
         if again > 0 {
             let kept = counted(again, "answer");
             complain::line(&format!(
@@ -194,4 +193,4 @@ impl super::Run for Compare {
 }
 
 /// Names of what `vibro compare` writes.
-const COMPARISON: Names = Names::numbered(&["overlay", "pairs", "peaks", "fit", "fit_points"]);
+const COMPARISON: Names = Names::Numbered(&["overlay", "pairs", "peaks", "fit", "fit_points"]);

@@ -5,8 +5,7 @@ use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
-use crate::record::{Finding, Record, Trace, shown};
-use crate::report::Output;
+use crate::record::{Finding, Record, Trace};
 use crate::report::layout::headed;
 use crate::report::words::{Voice, graded};
 use crate::signal::filter::Filter;
@@ -56,9 +55,8 @@ impl Run for Convert {
             return Err(Error::usage(found, "UFF-58, NAME.uff").setting("binary"));
         }
         let folder = Folder::default();
-        if !piped {
-            free(&folder, &self.input, &self.output, Owner::Recordings)?;
-        }
+        folder.reads(&self.input);
+        let file = (!piped).then(|| print::File::of(&folder, &self.output, Owner::Recordings)).transpose()?;
         let one = self.channel.channel.is_some() || self.channel.calibration.is_some();
         let reader = self.reading.reader()?.within(&folder);
         let reader = if one || self.change.wanted() { reader.rate_of_base_band() } else { reader };
@@ -73,15 +71,14 @@ impl Run for Convert {
         let mut bytes = Vec::new();
         let precision = if self.single { Precision::Single } else { Precision::Double };
         target.write(&recording.records, Storage { binary: self.binary, precision }, &mut bytes)?;
-        if piped {
+        let Some(file) = file else {
             let about = recording.all_findings().into_iter().chain(changes).map(|f| (String::new(), f));
             complain::warn(&graded(&about.collect::<Vec<_>>(), Voice::Command));
             print::text(&String::from_utf8_lossy(&bytes))?;
             return Ok(0);
-        }
+        };
         let existed = self.output.exists();
-        write_file(&folder, &self.output, Owner::Recordings, &bytes)?;
-        let written = self.output.display().to_string();
+        let written = file.write(&bytes)?;
         let (format, records) = (target.name(), recording.records.len());
         let mut answer = Answer::of(&json!({ "written": written, "format": format, "records": records }))?;
         answer.add("", recording.all_findings());
@@ -92,50 +89,6 @@ impl Run for Convert {
         answer.tables.push(done.row([written.into(), records.into(), format.into()]));
         print::answer(answer, None, json)
     }
-}
-
-/// Looks before anything is computed whether a file can be written: it is not the one that is read, and nothing of a person's is lost.
-///
-/// # Errors
-/// If it cannot; if its folder does not exist.
-pub fn free(folder: &Folder, read: &Path, written: &Path, owner: Owner) -> Result<()> {
-    if folder.same(read, written) {
-        let found = format!("{} and {} are the same file", shown(read), shown(written));
-        return Err(Error::usage(found, "two files").hint("name another file to write"));
-    }
-    let (output, name) = beside(folder, written, owner)?;
-    output
-        .expect(|known| known == name)
-        .map_err(|e| print::elsewhere(e, &print::typed(&print::free(written))))
-}
-
-/// Writes a file whole.
-///
-/// # Errors
-/// As [`free`].
-pub fn write_file(folder: &Folder, path: &Path, owner: Owner, bytes: impl AsRef<[u8]>) -> Result<()> {
-    let (mut output, name) = beside(folder, path, owner)?;
-    output.write(&name, bytes).map_err(|e| print::elsewhere(e, &print::typed(&print::free(path))))?;
-    output.commit().map(drop)
-}
-
-/// The folder of a file to write, which must exist, and its name there.
-fn beside(folder: &Folder, path: &Path, owner: Owner) -> Result<(Output, String)> {
-    let name = path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
-    let name = name.ok_or_else(|| Error::usage(format!("{} is no file name", shown(path)), "a file"))?;
-    let parent = folder_of(path);
-    if !parent.is_dir() {
-        return Err(Error::usage(
-            format!("the folder {} does not exist", shown(parent)),
-            "an existing folder",
-        ));
-    }
-    Ok((print::output(folder.at(parent), owner)?, name))
-}
-
-/// The folder in which a file lies.
-pub fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// What is done to time traces on the way.

@@ -1,7 +1,7 @@
 //! `vibro demo` and `vibro open`: an example with its recordings, and the page of a report.
 
 use super::campaign::Run;
-use super::convert::folder_of;
+use super::print::folder_of;
 use super::{complain, print};
 use crate::analysis;
 use crate::error::{Error, Place, Result};
@@ -10,7 +10,7 @@ use crate::read::Owner;
 use crate::record::{nearest, shown};
 use crate::report::Output;
 use serde_json::json;
-use std::collections::BTreeMap;
+use std::collections::btree_map::{BTreeMap, Entry};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use vibro_demo::{DEMOS, Demo as Example};
@@ -74,14 +74,19 @@ impl super::Run for Demo {
 /// Writes the files of an example, all or none. One that is there with another content is left, and named.
 fn write(demo: &Example, folder: &Path) -> Result<()> {
     let mut outputs: BTreeMap<PathBuf, Output> = BTreeMap::new();
+    let elsewhere = format!("--out {}", print::typed(&print::unused(folder)));
     demo.make(&mut |name, bytes| {
         let path = folder.join(name);
         let parent = folder_of(&path);
-        if !outputs.contains_key(parent) {
-            outputs.insert(parent.to_owned(), print::output(parent.into(), Owner::Recordings)?);
-        }
-        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        outputs.get_mut(parent).map_or(Ok(()), |output| output.write(&name, bytes))
+        let output = match outputs.entry(parent.to_owned()) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                new.insert(print::output(parent.into(), Owner::Recordings, elsewhere.clone())?)
+            }
+        };
+        let name = path.file_name().map_or_else(String::new, shown);
+        output.expect_bytes(&name, bytes)?;
+        output.write(&name, bytes)
     })?;
     outputs.into_values().try_for_each(|output| output.commit().map(drop))
 }

@@ -1,13 +1,13 @@
 //! `vibro init` and `vibro check`: a campaign for a folder, and whether it can run.
 
-use super::convert::folder_of;
+use super::print::folder_of;
 use super::{complain, print};
 use crate::analysis;
 use crate::analysis::Kept;
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
 use crate::proposal::{Known, Proposal, Row, Table};
-use crate::read::{Folder, Owner, Standing};
+use crate::read::{Folder, Occupant, Owner};
 use crate::record::shown;
 use crate::report::words::{Voice, graded, put};
 use crate::units::notation::counted;
@@ -40,7 +40,7 @@ impl super::Run for Init {
         let within = Folder::from(self.folder.as_path()).allow_outside(self.allow_outside);
         let path = within.path(Path::new(Proposal::FILE))?;
         // A link within the folder stays one.
-        let linked = within.standing(&path) == Standing::Special;
+        let linked = within.occupant(&path) == Occupant::Special;
         let path = if linked { path.canonicalize().unwrap_or(path) } else { path };
         let name = path.file_name().map_or_else(String::new, shown);
         let known = if path.exists() { Some(analysis::open_in(&within, &path)?) } else { None };
@@ -58,7 +58,8 @@ impl super::Run for Init {
             None => proposal.toml(),
         };
         let nothing = text.trim().is_empty();
-        let mut output = print::output(within.at(folder_of(&path)), Owner::Person)?;
+        let again = "run the same command again".to_owned();
+        let mut output = print::output(within.at(folder_of(&path)), Owner::Person, again)?;
         match &known {
             Some(_) if nothing => {}
             Some(known) => output.extend(&name, known.text(), &text)?,

@@ -1,10 +1,12 @@
 //! `vibro model`: what the motion of a rig should be.
 
 use super::{Run, print};
+use crate::analysis::Answer;
 use crate::analysis::model::{branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
 use crate::read::Folder;
 use clap::{Args, Subcommand};
+use indicatif::ProgressBar;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -44,25 +46,18 @@ pub struct Asked<K: Args> {
 impl Run for Model {
     /// Computes and prints the answer.
     fn run(&self, json: bool) -> Result<u8> {
-        let (out, names) = match &self.question {
-            Question::Orbit(typed) => (&typed.out, orbit::Keys::FILES),
-            Question::Simulate(typed) => (&typed.out, simulate::Keys::FILES),
-            Question::Response(typed) => (&typed.out, response::Keys::FILES),
-            Question::Continue(typed) => (&typed.out, branch::Keys::FILES),
-            Question::Sweep(typed) => (&typed.out, sweep::Keys::FILES),
-            Question::Choose(typed) => (&typed.out, choose::Keys::FILES),
-            Question::Map(typed) => (&typed.out, map::Keys::FILES),
+        type Ask<'a> = Box<dyn FnOnce(&ProgressBar) -> Result<Answer> + 'a>;
+        let (out, names, ask): (_, _, Ask<'_>) = match &self.question {
+            Question::Orbit(of) => (&of.out, orbit::Keys::FILES, Box::new(|_| of.keys.answer())),
+            Question::Simulate(of) => (&of.out, simulate::Keys::FILES, Box::new(|_| of.keys.answer())),
+            Question::Response(of) => (&of.out, response::Keys::FILES, Box::new(|_| of.keys.answer())),
+            Question::Continue(of) => (&of.out, branch::Keys::FILES, Box::new(|_| of.keys.answer())),
+            Question::Sweep(of) => (&of.out, sweep::Keys::FILES, Box::new(|_| of.keys.answer())),
+            Question::Choose(of) => (&of.out, choose::Keys::FILES, Box::new(|_| of.keys.answer())),
+            Question::Map(of) => (&of.out, map::Keys::FILES, Box::new(|bar| of.keys.answer(bar))),
         };
         let output = print::results(&Folder::default(), out.as_deref(), names)?;
-        let answer = print::busy(json, "computing", |bar| match &self.question {
-            Question::Orbit(typed) => typed.keys.answer(),
-            Question::Simulate(typed) => typed.keys.answer(),
-            Question::Response(typed) => typed.keys.answer(),
-            Question::Continue(typed) => typed.keys.answer(),
-            Question::Sweep(typed) => typed.keys.answer(),
-            Question::Choose(typed) => typed.keys.answer(),
-            Question::Map(typed) => typed.keys.answer(bar),
-        })?;
+        let answer = print::busy(json, "computing", ask)?;
         print::answer(answer, output, json)
     }
 }

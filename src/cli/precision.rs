@@ -39,7 +39,7 @@ pub struct Precision {
 }
 
 /// Names of what is written: one chart a scene, one map a method.
-const NAMES: Names = Names::named(&["precision", "failures"]);
+const NAMES: Names = Names::Named(&["precision", "failures"]);
 
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 

@@ -4,7 +4,7 @@ use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
-use crate::record::{shown, steers};
+use crate::record::{is_unprintable, shown};
 use crate::report::Picture;
 use crate::report::files::Names;
 use crate::report::words::{Voice, graded, put};
@@ -49,29 +49,20 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     Ok(0)
 }
 
-/// A folder to write into, with figures in the style that was asked for.
+/// A folder to write into, with figures in the style that was asked for, and what to type where something is in
+/// the way.
 ///
 /// # Errors
 /// As [`Output::new`].
-pub fn output(folder: Folder, owner: Owner) -> Result<Output> {
+pub fn output(folder: Folder, owner: Owner, elsewhere: String) -> Result<Output> {
     let Written { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
     let mut output = Output::new(folder, owner)?.replace(replace);
-    output.medium = medium;
+    (output.medium, output.elsewhere) = (medium, elsewhere);
     Ok(output)
 }
 
-/// The error, with another place to write to where something stands in the way.
-pub fn elsewhere(error: Error, place: &str) -> Error {
-    let concerns = |key: &str| error.settings().any(|setting| setting == key);
-    match (concerns("out"), concerns("replace")) {
-        (true, true) => error.hint(format!("{place}, or --replace to replace it on purpose")),
-        (true, false) => error.hint(place),
-        _ => error,
-    }
-}
-
-/// A path like this one that is free.
-pub fn free(path: &Path) -> PathBuf {
+/// A path like this one, of which there is nothing.
+pub fn unused(path: &Path) -> PathBuf {
     let stem = path.file_stem().map_or_else(|| "results".to_owned(), shown);
     let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", shown(ending)));
     let mut names = (2..).map(|n| path.with_file_name(format!("{stem}_{n}{ending}")));
@@ -84,10 +75,58 @@ pub fn free(path: &Path) -> PathBuf {
 /// As [`Output::new`] and [`Output::expect`].
 pub fn results(folder: &Folder, out: Option<&Path>, names: Names) -> Result<Option<Output>> {
     let Some(out) = out else { return Ok(None) };
-    let output = output(folder.at(out), Owner::Results)?;
-    let elsewhere = |error| elsewhere(error, &format!("--out {}", typed(&free(out))));
-    output.expect(|name| names.has(name)).map_err(elsewhere)?;
+    let output = output(folder.at(out), Owner::Results, format!("--out {}", typed(&unused(out))))?;
+    output.expect(|name| names.has(name))?;
     Ok(Some(output))
+}
+
+/// One file that a command writes.
+pub struct File {
+    output: Output,
+    name: String,
+}
+
+impl File {
+    /// Looks, before anything is computed, whether the file can be written.
+    ///
+    /// # Errors
+    /// If its folder does not exist, its name cannot be one, or it must not be replaced.
+    pub fn of(folder: &Folder, path: &Path, owner: Owner) -> Result<File> {
+        let name = path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
+        let name = name.ok_or_else(|| Error::usage(format!("{} is no file name", shown(path)), "a file"))?;
+        let parent = folder_of(path);
+        if !parent.is_dir() {
+            let found = format!("the folder {} does not exist", shown(parent));
+            return Err(Error::usage(found, "an existing folder"));
+        }
+        let file = File { output: output(folder.at(parent), owner, typed(&unused(path)))?, name };
+        file.expect().map(|()| file)
+    }
+
+    /// Looks again, once more is known of what is read.
+    ///
+    /// # Errors
+    /// If it must not be replaced.
+    pub fn expect(&self) -> Result<()> {
+        self.output.path(&self.name)?;
+        self.output.expect(|known| known == self.name)
+    }
+
+    /// Writes it whole; gives its path.
+    ///
+    /// # Errors
+    /// As [`Output::write`] and [`Output::commit`].
+    pub fn write(mut self, bytes: impl AsRef<[u8]>) -> Result<String> {
+        self.output.write(&self.name, bytes)?;
+        let path = self.output.path(&self.name)?;
+        self.output.commit()?;
+        Ok(path.display().to_string())
+    }
+}
+
+/// The folder in which a file lies.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// How this program writes files.
@@ -125,7 +164,7 @@ pub fn text(text: &str) -> Result<()> {
 /// Text without control characters but line breaks and tabs: a name from a file must not steer a terminal.
 pub(crate) fn printable(text: &str) -> String {
     let breaks = |c: char| c == '\n' || c == '\t';
-    text.chars().map(|c| if steers(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
+    text.chars().map(|c| if is_unprintable(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// A path as a shell takes it.

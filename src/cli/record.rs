@@ -1,6 +1,5 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
-use super::convert::{free, write_file};
 use super::sweep::{Place, of_script};
 use super::{Run, complain, print};
 use crate::analysis::drill::cycles;
@@ -253,12 +252,11 @@ impl Run for Drill {
     /// Prints speed, impacts and the average turn.
     fn run(&self, json: bool) -> Result<u8> {
         let (folder, output) = self.of.record.results([&self.of.file], drill::Keys::FILES)?;
-        if let Some(path) = &self.each_cycle {
-            free(&folder, &self.of.file, path, Owner::Results)?;
-        }
+        let of_cycles = |path: &PathBuf| print::File::of(&folder, path, Owner::Results);
+        let file = self.each_cycle.as_ref().map(of_cycles).transpose()?;
         let mut turns = String::new();
         let mut each = |cycle: &Cycle<'_>| -> Result<()> {
-            if self.each_cycle.is_some() {
+            if file.is_some() {
                 if turns.is_empty() {
                     turns = cycles::head(cycle.velocity.len());
                 }
@@ -267,9 +265,8 @@ impl Run for Drill {
             Ok(())
         };
         let mut answer = self.of.by(&folder, json, |keys, source| keys.measure(source, &mut each))?;
-        if let Some(path) = &self.each_cycle {
-            write_file(&folder, path, Owner::Results, turns)?;
-            let written = path.display().to_string();
+        if let Some(file) = file {
+            let written = file.write(turns)?;
             complain::line(&format!("wrote {written}"));
             answer.result.insert("each_cycle".to_owned(), written.into());
         }

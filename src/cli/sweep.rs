@@ -1,6 +1,5 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
 
-use super::convert::{free, write_file};
 use super::{Run, init, print};
 use crate::analysis::Kept;
 use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
@@ -11,8 +10,8 @@ use crate::measure::response::{ResponseOptions, ResponsePoint};
 use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::proposal::{Proposal, of_steps};
-use crate::read::{Folder, Owner, SweepList, SweepReader};
-use crate::record::{Finding, Sweep, SweepPoint};
+use crate::read::{Folder, Owner, SweepList, SweepReader, plain};
+use crate::record::{Finding, Sweep, SweepPoint, shown};
 use crate::report::files::Names;
 use crate::report::layout::{headed, pair, table};
 use crate::report::{Table, files};
@@ -170,8 +169,8 @@ impl Run for Taken {
 }
 
 /// Names of what `vibro response` and `vibro waterfall` write.
-const RESPONSE: Names = Names::numbered(&["response", "receptance"]);
-const WATERFALL: Names = Names::numbered(&["waterfall", "map"]);
+const RESPONSE: Names = Names::Numbered(&["response", "receptance"]);
+const WATERFALL: Names = Names::Numbered(&["waterfall", "map"]);
 
 impl Taken {
     fn options(&self) -> ResponseOptions {
@@ -256,12 +255,8 @@ impl Run for Excitation {
     /// Prints the excitation of each point.
     fn run(&self, json: bool) -> Result<u8> {
         let folder = self.sweep.folder();
-        let path = Path::new(Place::of(&self.sweep.paths[0]).path);
-        if let Some([force, response]) = self.write_lists.as_deref() {
-            free(&folder, force, response, Owner::Recordings)?;
-            free(&folder, path, force, Owner::Recordings)?;
-            free(&folder, path, response, Owner::Recordings)?;
-        }
+        folder.reads(Path::new(Place::of(&self.sweep.paths[0]).path));
+        let lists = self.lists(&folder)?;
         let listed = self.sweep.listed(&folder)?;
         let (points, findings) = if self.sweep.legacy {
             let (_, sweep) = listed.spectra()?;
@@ -289,7 +284,7 @@ impl Run for Excitation {
             (found.points.iter().zip(&sweep.points).map(point).collect(), found.findings)
         };
         let frequencies: Vec<f64> = points.iter().map(|p| p.frequency).collect();
-        let written = self.lists(&folder, &listed, &frequencies)?;
+        let written = self.hand_over(lists, &listed, &frequencies)?;
         let mut answer = Answer::of(&json!({ "points": points, "written": written }))?;
         answer.add("", findings);
         answer.tables.push(table(
@@ -306,26 +301,33 @@ impl Run for Excitation {
 }
 
 impl Excitation {
-    /// Writes the hand-over files; gives their paths.
-    fn lists(&self, within: &Folder, listed: &Listed, frequencies: &[f64]) -> Result<Vec<String>> {
+    /// The hand-over files, of which none is written yet.
+    fn lists(&self, folder: &Folder) -> Result<Vec<print::File>> {
         let Some([force, response]) = self.write_lists.as_deref() else { return Ok(Vec::new()) };
+        if plain(force) == plain(response) {
+            let found = format!("the two lists are the same file, {}", shown(force));
+            return Err(Error::usage(found, "two files").setting("write_lists"));
+        }
+        [force, response].map(|path| print::File::of(folder, path, Owner::Recordings)).into_iter().collect()
+    }
+
+    /// Writes the hand-over files; gives their paths.
+    fn hand_over(&self, files: Vec<print::File>, listed: &Listed, excitation: &[f64]) -> Result<Vec<String>> {
+        if files.is_empty() {
+            return Ok(Vec::new());
+        }
         let (list, _) = listed.spectra()?;
         if list.force.is_empty() {
             let found = "hand-over files of a sweep without force names";
             return Err(Error::usage(found, "a list file with them").setting("write_lists"));
         }
-        let path = Path::new(Place::of(&self.sweep.paths[0]).path);
         // The spectra are known by now.
-        free(within, force, response, Owner::Recordings)?;
-        free(within, response, force, Owner::Recordings)?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let mut written = Vec::new();
-        for (path, names) in [(force, &list.force), (response, &list.response)] {
+        files.iter().try_for_each(print::File::expect)?;
+        let folder = Path::new(Place::of(&self.sweep.paths[0]).path).parent().unwrap_or(Path::new(""));
+        let write = |(file, names): (print::File, &Vec<PathBuf>)| {
             let names: Vec<_> = names.iter().map(|n| n.strip_prefix(folder).unwrap_or(n)).collect();
-            let text = legacy::hand_over(list.lines, list.base_band, frequencies, &names);
-            write_file(within, path, Owner::Recordings, &text)?;
-            written.push(path.display().to_string());
-        }
-        Ok(written)
+            file.write(legacy::hand_over(list.lines, list.base_band, excitation, &names))
+        };
+        files.into_iter().zip([&list.force, &list.response]).map(write).collect()
     }
 }

@@ -32,8 +32,8 @@ pub struct Series {
     pub headers: Vec<Header>,
     /// Pattern that means all of them and no other file.
     pub pattern: Option<String>,
-    /// Whether the files say their sampling rate or frequencies.
-    pub timed: bool,
+    /// What is stated of the files.
+    pub reading: Reading,
 }
 
 /// A file and its channels.
@@ -50,9 +50,10 @@ impl Inventory {
         known: Option<&Campaign>,
         progress: &dyn Progress,
     ) -> Result<Inventory> {
+        let untimed_reading = reading.untimed();
         let (reader, with_rate) =
-            (reading.untimed().reader()?.within(folder), reading.reader()?.within(folder));
-        let Recordings { files: all, others, left } = analysis::recordings(folder)?;
+            (untimed_reading.reader()?.within(folder), reading.reader()?.within(folder));
+        let Recordings { files: all, others, skipped } = analysis::recordings(folder)?;
         let root = folder.root();
         let new = known.map(|campaign| analysis::unnamed(campaign, &all)).transpose()?;
         let mut paths = new.unwrap_or_else(|| all.clone());
@@ -60,7 +61,7 @@ impl Inventory {
             let inside = path.strip_prefix(root).unwrap_or(path);
             inside.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
         };
-        let left = left.iter().map(|(path, why)| (shown(within(path)), why.to_string())).collect();
+        let left = skipped.into_iter().map(|(path, why)| (shown(within(&path)), why)).collect();
         let mut found = Inventory { left, ..Inventory::default() };
         progress.start("reading files", paths.len());
         let lists: Vec<(PathBuf, SweepList)> = paths
@@ -129,7 +130,8 @@ impl Inventory {
                     header.name.clear();
                 }
             }
-            found.series.push(Series { name, files, headers, pattern, timed: key.2 });
+            let reading = if key.2 { &untimed_reading } else { reading }.clone();
+            found.series.push(Series { name, files, headers, pattern, reading });
         }
         if let ([first, more @ ..], None) = (others.as_slice(), known) {
             let names = match more.len() {

@@ -99,44 +99,27 @@ pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>
     Ok((files, None))
 }
 
-/// What is written of one kind of record: names without endings, and what stands behind them in a campaign.
+/// Names of the figures and tables of one kind of record, without endings. Behind them a campaign marks the files
+/// of each record.
 #[derive(Debug, Clone, Copy)]
-pub struct Names {
-    /// Names of figures and tables.
-    pub stems: &'static [&'static str],
-    /// How files of several records are told apart.
-    pub marks: Marks,
-}
-
-/// How files of several records of a kind are told apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marks {
-    /// By their numbers, from 1.
-    Numbers,
-    /// By their names.
-    Names,
+pub enum Names {
+    /// By the numbers of the records, from 1.
+    Numbered(&'static [&'static str]),
+    /// By the names of the records.
+    Named(&'static [&'static str]),
 }
 
 impl Names {
-    /// Those of records that are told apart by their numbers.
-    pub const fn numbered(stems: &'static [&'static str]) -> Names {
-        Names { stems, marks: Marks::Numbers }
-    }
-
-    /// Those of records that are told apart by their names.
-    pub const fn named(stems: &'static [&'static str]) -> Names {
-        Names { stems, marks: Marks::Names }
-    }
-
     /// Whether a file may be one of them.
     pub fn has(&self, file: &str) -> bool {
         let Some((name, ending)) = file.rsplit_once('.') else { return false };
-        let marked = |mark: &str| self.marks == Marks::Names || mark.bytes().all(|c| c.is_ascii_digit());
+        let (Names::Numbered(stems) | Names::Named(stems)) = self;
+        let marks = |mark: &str| matches!(self, Names::Named(_)) || mark.bytes().all(|c| c.is_ascii_digit());
         let is_of = |stem: &&str| match name.strip_prefix(*stem) {
-            Some(rest) => rest.is_empty() || rest.strip_prefix('_').is_some_and(marked),
+            Some(rest) => rest.is_empty() || rest.strip_prefix('_').is_some_and(marks),
             None => false,
         };
-        ENDINGS.contains(&ending) && self.stems.iter().any(is_of)
+        ENDINGS.contains(&ending) && stems.iter().any(is_of)
     }
 }
 

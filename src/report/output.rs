@@ -2,10 +2,10 @@
 
 use super::Medium;
 use crate::error::{Error, Place, Result};
-use crate::read::{Digest, Folder, Lock, Manifest, Owner, Staged, Standing};
+use crate::read::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged};
 use crate::record::shown;
 use sha2::{Digest as _, Sha256};
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 /// Folder into which files are written.
 ///
@@ -19,20 +19,34 @@ use std::path::{Component, Path};
 pub struct Output {
     /// What its figures are drawn for.
     pub medium: Medium,
+    /// What to try where something stands in the way.
+    pub elsewhere: String,
     folder: Folder,
     owner: Owner,
     replace: bool,
-    /// From the first file on.
-    claim: Option<Claim>,
-    written: Vec<String>,
+    files: Vec<Written>,
     /// What a file held that is extended.
-    extended: Option<String>,
-    /// The content of each name; nothing to place where the name holds it already.
-    staged: Vec<(Digest, Option<Staged>)>,
+    extended: Option<Digest>,
+    /// The right to write into the folder, from the first file on.
+    lock: Option<Lock>,
 }
 
-/// What a folder held before, and the right to write into it, which memory does not need.
-type Claim = (Manifest, Option<Lock>);
+/// A file that has no name yet.
+#[derive(Debug)]
+struct Written {
+    name: String,
+    digest: Digest,
+    staged: Staged,
+}
+
+/// What has the name of a file that is to be written.
+#[derive(Debug, PartialEq, Eq)]
+enum Present {
+    /// The same bytes.
+    Same,
+    /// Nothing, or what may be replaced.
+    Replaceable,
+}
 
 impl Output {
     /// The file that marks a folder in which old and new results stand side by side.
@@ -51,8 +65,8 @@ impl Output {
             return Err(Error::input(Place::file(root), "this is a file", "a folder for results")
                 .hint("name another folder"));
         }
-        let (medium, written, staged) = (Medium::default(), Vec::new(), Vec::new());
-        Ok(Output { medium, folder, owner, replace: false, claim: None, written, extended: None, staged })
+        let (medium, elsewhere, files) = (Medium::default(), "another place".to_owned(), Vec::new());
+        Ok(Output { medium, elsewhere, folder, owner, replace: false, files, extended: None, lock: None })
     }
 
     /// States whether files that are not vibro's are replaced, too. Default: they are not.
@@ -65,199 +79,198 @@ impl Output {
         self.folder.root()
     }
 
+    /// The path of a file of this name.
+    ///
+    /// # Errors
+    /// If it is no plain name of a file, or one that vibro keeps for itself.
+    pub fn path(&self, name: &str) -> Result<PathBuf> {
+        let parts: Vec<Component<'_>> = Path::new(name).components().collect();
+        // A backslash or a colon would mean something else on another system.
+        if !matches!(parts[..], [Component::Normal(_)]) || name.contains(['/', '\\', ':', '\0']) {
+            return Err(unusable(name, "is no plain name"));
+        }
+        if name.starts_with(".vibro.") && name != Output::KEPT {
+            return Err(unusable(name, "is kept for vibro itself"));
+        }
+        Ok(self.at(name))
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.folder.root().join(name)
+    }
+
     /// Names of the files written, in order and each once.
-    pub fn written(&self) -> &[String] {
-        &self.written
+    pub fn written(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|file| file.name.as_str())
     }
 
     /// Looks, before anything is computed, whether a file stands in the way that has a name which may be written.
     ///
     /// # Errors
-    /// As [`Output::write`] of that name.
+    /// If one must not be replaced.
     pub fn expect(&self, may: impl Fn(&str) -> bool) -> Result<()> {
         let manifest = Manifest::of(&self.folder);
-        let mut names =
-            self.folder.names().into_iter().filter(|name| OWN.contains(&name.as_str()) || may(name));
-        names.try_for_each(|name| self.holds(&manifest, &name, None).map(drop))
+        let mut names = self.folder.names().into_iter().filter(|name| OWN.contains(&&**name) || may(name));
+        names.try_for_each(|name| self.present(&manifest, &name, None).map(drop))
+    }
+
+    /// As [`Output::expect`], of one file whose bytes are known: the same bytes are in nobody's way.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn expect_bytes(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        self.present(&Manifest::of(&self.folder), name, Some(&Sha256::digest(bytes).into())).map(drop)
     }
 
     /// Writes a file, or writes it anew.
     ///
     /// # Errors
-    /// If `name` is no plain name of a file, has something that is not vibro's, or the system refuses.
+    /// If `name` is no plain name of a file, or that of a folder; if another program writes there, or the system
+    /// refuses.
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
-        let (path, bytes) = (self.folder.root().join(checked(name)?), bytes.as_ref());
-        let digest: Digest = Sha256::digest(bytes).into();
-        let claim = self.claimed()?;
-        let there = self.holds(&claim.0, name, Some(&digest));
-        self.claim = Some(claim);
-        let there = there?;
-        let staged = if there { None } else { Some(self.folder.stage(&path, bytes)?) };
-        self.take(name, digest, staged);
+        let (path, bytes) = (self.path(name)?, bytes.as_ref());
+        self.occupant(name)?;
+        if self.lock.is_none() {
+            self.lock = self.folder.lock()?;
+        }
+        let (digest, staged) = (Sha256::digest(bytes).into(), self.folder.stage(&path, bytes)?);
+        let file = Written { name: name.to_owned(), digest, staged };
+        match self.files.iter_mut().find(|file| file.name == name) {
+            Some(before) => *before = file,
+            None => self.files.push(file),
+        }
         Ok(())
     }
 
-    /// Adds text at the end of a file that a person keeps and that held `before` when it was read; nothing else is written with it.
+    /// Adds text at the end of a file that a person keeps and that held `before` when it was read. Nothing else is
+    /// written with it.
     ///
     /// # Errors
-    /// If it was changed meanwhile, is protected, or the system refuses.
+    /// As [`Output::write`]; if the file changed meanwhile.
     pub fn extend(&mut self, name: &str, before: &str, addition: &str) -> Result<()> {
-        let path = self.folder.root().join(checked(name)?);
-        self.claim = Some(self.claimed()?);
-        self.still_holds(name, before)?;
-        let text = before.to_owned() + addition;
-        let staged = self.folder.stage(&path, text.as_bytes())?;
-        self.take(name, Sha256::digest(text).into(), Some(staged));
-        self.extended = Some(before.to_owned());
-        Ok(())
+        self.extended = Some(Sha256::digest(before).into());
+        self.present(&Manifest::default(), name, None)?;
+        self.write(name, before.to_owned() + addition)
     }
 
-    fn still_holds(&self, name: &str, before: &str) -> Result<()> {
-        let path = self.folder.root().join(name);
-        let error = |found| Error::input(Place::file(&path), found, "a file that vibro may add to");
-        if self.folder.is_protected(&path) {
-            return Err(error("the file is protected").hint(format!("chmod u+w {}", shown(&path))));
-        }
-        if self.folder.read(&path)? != before.as_bytes() {
-            return Err(error("the file changed meanwhile").hint("run the same command again"));
-        }
-        Ok(())
-    }
-
-    fn take(&mut self, name: &str, digest: Digest, staged: Option<Staged>) {
-        if let Some(i) = self.written.iter().position(|written| written == name) {
-            self.staged[i] = (digest, staged);
-        } else {
-            self.written.push(name.to_owned());
-            self.staged.push((digest, staged));
+    /// What has a name; a folder must not.
+    fn occupant(&self, name: &str) -> Result<Occupant> {
+        match self.folder.occupant(&self.at(name)) {
+            Occupant::Folder => {
+                Err(unusable(name, "names a folder").hint("remove that folder or choose another name"))
+            }
+            other => Ok(other),
         }
     }
 
-    /// What is held of the folder; for the first time it is made, and this becomes its only writer.
-    fn claimed(&mut self) -> Result<Claim> {
-        if let Some(claim) = self.claim.take() {
-            return Ok(claim);
-        }
-        self.folder.make(self.folder.root())?;
-        let lock = self.folder.lock()?;
-        self.folder.remove_leftovers();
-        let manifest = Manifest::of(&self.folder);
-        OWN.iter().try_for_each(|name| self.holds(&manifest, name, None).map(drop))?;
-        Ok((manifest, lock))
-    }
-
-    /// Whether a name holds these bytes already; it may be written anew where not.
+    /// Whether what has a name may be replaced.
     ///
     /// # Errors
-    /// If what has the name must not be replaced.
-    fn holds(&self, manifest: &Manifest, name: &str, new: Option<&Digest>) -> Result<bool> {
-        let path = self.folder.root().join(name);
+    /// If it must not be replaced by a file of the digest `new`, or by any.
+    fn present(&self, manifest: &Manifest, name: &str, new: Option<&Digest>) -> Result<Present> {
+        let path = self.at(name);
         let in_the_way = |what: &str| {
             let found = format!("{} {what}, so vibro does not replace it", shown(&path));
-            Error::usage(found, "").hint("another place").setting("out")
+            Error::usage(found, "").hint(&*self.elsewhere)
         };
-        let standing = self.folder.standing(&path);
-        if standing == Standing::Folder {
-            return Err(unusable(name, "names a folder").hint("remove that folder or choose another name"));
-        }
+        let foreign = |what: &str| match self.owner {
+            Owner::Person => in_the_way(what),
+            _ => in_the_way(what)
+                .hint(format!("{}, or replace it on purpose", self.elsewhere))
+                .setting("replace"),
+        };
+        let occupant = self.occupant(name)?;
         if self.folder.opened(&path) {
-            return Err(in_the_way("is what this command reads"));
+            return Err(in_the_way("is the same file as one that this command reads"));
         }
-        if standing == Standing::Free || self.replace {
-            return Ok(false);
+        if occupant == Occupant::Nothing || self.replace {
+            return Ok(Present::Replaceable);
         }
-        if standing == Standing::Special {
-            return Err(in_the_way("is a link or a device").setting("replace"));
+        if occupant == Occupant::Special {
+            return Err(foreign("is a link or a device"));
         }
         let digest = self.folder.digest(&path)?;
         if new == Some(&digest) {
-            return Ok(true);
+            return Ok(Present::Same);
         }
-        let marked = |text: &&str| digest == Digest::from(Sha256::digest(text));
         let own = match name {
-            Output::INCOMPLETE => MARKS.iter().any(marked),
-            Manifest::FILE => Manifest::is_of(&self.folder),
             Output::KEPT => true,
-            _ => false,
+            Manifest::FILE => Manifest::is_of(&self.folder),
+            Output::INCOMPLETE => MARKS.iter().any(|text| digest == Digest::from(Sha256::digest(text))),
+            _ => self.extended == Some(digest) || manifest.knows(self.owner, name, &digest),
         };
-        if own || manifest.knows(self.owner, name, &digest) {
-            return Ok(false);
+        if !own {
+            return Err(foreign("was made by somebody else, or changed since vibro wrote it"));
         }
-        Err(in_the_way("was made by somebody else, or changed since vibro wrote it").setting("replace"))
+        if self.folder.is_protected(&path) {
+            return Err(in_the_way("is protected").hint(format!("chmod u+w {}", shown(&path))));
+        }
+        Ok(Present::Replaceable)
     }
 
     /// Gives the files their names, which it returns in the order in which they were written. Of a campaign, what the last run wrote and this
     /// one did not goes.
     ///
     /// # Errors
-    /// If the system refuses; the folder is then marked as incomplete.
+    /// If what has a name must not be replaced; nothing is changed then. If the system refuses; the folder is then
+    /// marked as incomplete.
     pub fn commit(mut self) -> Result<Vec<String>> {
-        let Some((mut manifest, lock)) = self.claim.take() else { return Ok(self.written) };
-        // Somebody may have made or changed a file since it was looked at.
-        for (name, (digest, _)) in self.written.iter().zip(&self.staged) {
-            match &self.extended {
-                Some(before) => self.still_holds(name, before)?,
-                None => drop(self.holds(&manifest, name, Some(digest))?),
+        let names: Vec<String> = self.written().map(str::to_owned).collect();
+        if names.is_empty() {
+            return Ok(names);
+        }
+        self.expect(|_| false)?;
+        let before = Manifest::of(&self.folder);
+        let stale = self.stale(&before);
+        // A program that is killed leaves some of the old files and some of the new: all are vibro's.
+        let (mut meanwhile, mut after, mut changed) = (before.clone(), before.clone(), Vec::new());
+        for name in &stale {
+            after.forget(name);
+        }
+        for Written { name, digest, staged } in std::mem::take(&mut self.files) {
+            if self.present(&before, &name, Some(&digest))? == Present::Replaceable {
+                meanwhile.add(self.owner, &name, digest);
+                changed.push(staged);
+            } else if !before.knows(self.owner, &name, &digest) {
+                // The same bytes, but a person's.
+                continue;
             }
-        }
-        let stale = if self.owner == Owner::Run { self.stale(&manifest) } else { Vec::new() };
-        let mut after = manifest.clone();
-        let mut files = Vec::new();
-        for (name, (digest, staged)) in self.written.iter().zip(std::mem::take(&mut self.staged)) {
-            // What holds these bytes, but is not known, stays a person's.
-            if staged.is_some() || manifest.knows(self.owner, name, &digest) {
-                after.forget(name);
-                after.add(self.owner, name, digest);
-            }
-            if let Some(staged) = staged {
-                // A program that is killed leaves some of the old files and some of the new: all are vibro's.
-                manifest.add(self.owner, name, digest);
-                files.push((name, staged));
-            }
-        }
-        let mark = self.folder.root().join(Self::INCOMPLETE);
-        let (marks, marked) = (MARKS[usize::from(self.owner == Owner::Run)], self.folder.is_file(&mark));
-        if files.len() + stale.len() > 0 {
-            self.remember(&manifest)?;
-        }
-        if files.len() + stale.len() > 1 && !marked {
-            self.folder.place(self.folder.stage(&mark, marks.as_bytes())?, &mark)?;
-        }
-        for (name, staged) in files {
-            self.folder.place(staged, &self.folder.root().join(name))?;
-        }
-        for name in stale {
-            self.folder.remove(&self.folder.root().join(&name))?;
             after.forget(&name);
+            after.add(self.owner, name, digest);
         }
-        if after != manifest {
-            self.remember(&after)?;
+        self.remember(&before, &meanwhile)?;
+        let (mark, path) = (MARKS[usize::from(self.owner == Owner::Run)], self.at(Output::INCOMPLETE));
+        if changed.len() + stale.len() > 1 && !self.folder.is_file(&path) {
+            self.folder.stage(&path, mark.as_bytes())?.place()?;
         }
+        changed.into_iter().try_for_each(Staged::place)?;
+        stale.iter().try_for_each(|name| self.folder.remove(&self.at(name)))?;
+        self.remember(&meanwhile, &after)?;
         // What another kind of command left half stays marked.
-        if self.folder.is_file(&mark) && self.folder.read(&mark)? == marks.as_bytes() {
-            self.folder.remove(&mark)?;
+        if self.folder.own_file(Output::INCOMPLETE).is_some_and(|held| held == mark.as_bytes()) {
+            self.folder.remove(&path)?;
         }
-        drop(lock);
-        Ok(self.written)
+        Ok(names)
     }
 
     /// What an earlier run of a campaign wrote and this one does not, as it was left.
     fn stale(&self, manifest: &Manifest) -> Vec<String> {
-        let gone = |(name, known): &(&str, &[Digest])| {
-            let path = self.folder.root().join(name);
-            let left = self.folder.standing(&path) == Standing::File && !self.folder.opened(&path);
-            left && !self.written.iter().any(|written| written == name)
-                && self.folder.digest(&path).is_ok_and(|digest| known.contains(&digest))
+        let as_left = |(name, known): &(&str, &Digest)| {
+            let path = self.at(name);
+            self.owner == Owner::Run
+                && !self.written().any(|written| written == *name)
+                && self.folder.occupant(&path) == Occupant::File
+                && !self.folder.opened(&path)
+                && self.folder.digest(&path).is_ok_and(|digest| digest == **known)
         };
-        manifest.owned(Owner::Run).filter(gone).map(|(name, _)| name.to_owned()).collect()
+        manifest.owned(Owner::Run).filter(as_left).map(|(name, _)| name.to_owned()).collect()
     }
 
-    fn remember(&self, manifest: &Manifest) -> Result<()> {
-        if manifest.is_empty() || self.owner == Owner::Person {
+    fn remember(&self, before: &Manifest, after: &Manifest) -> Result<()> {
+        if before == after {
             return Ok(());
         }
-        let path = self.folder.root().join(Manifest::FILE);
-        self.folder.place(self.folder.stage(&path, manifest.text().as_bytes())?, &path)
+        self.folder.stage(&self.at(Manifest::FILE), after.text().as_bytes())?.place()
     }
 }
 
@@ -269,19 +282,6 @@ const MARKS: [&str; 2] = [
     "Old and new results stand side by side here: run the same command again.\n",
     "Old and new results of a campaign stand side by side here: run it again.\n",
 ];
-
-/// The name as one plain part of a path. A backslash or a colon would mean something else on another system, so both are refused.
-fn checked(name: &str) -> Result<&Path> {
-    let path = Path::new(name);
-    let parts: Vec<Component<'_>> = path.components().collect();
-    if !matches!(parts[..], [Component::Normal(_)]) || name.contains(['/', '\\', ':', '\0']) {
-        return Err(unusable(name, "is no plain name"));
-    }
-    if name.starts_with(".vibro.") && name != Output::KEPT {
-        return Err(unusable(name, "is kept for vibro itself"));
-    }
-    Ok(path)
-}
 
 fn unusable(name: &str, why: &str) -> Error {
     Error::usage(format!("the output name \"{name}\" {why}"), "a name such as response.svg")

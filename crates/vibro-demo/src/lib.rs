@@ -62,12 +62,12 @@ pub const DEMOS: [Demo; 4] = [
 ];
 
 impl Demo {
-    /// Makes its files, the campaign last.
+    /// Makes its files, the campaign first: what stands in its way is seen before anything is computed.
     ///
     /// # Errors
     /// Those of `sink`.
     pub fn make(&self, sink: &mut Sink<'_>) -> Result<()> {
-        (self.recordings)(sink)?;
-        sink("campaign.toml", self.campaign.as_bytes())
+        sink("campaign.toml", self.campaign.as_bytes())?;
+        (self.recordings)(sink)
     }
 }

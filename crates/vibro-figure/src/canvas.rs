@@ -8,7 +8,7 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use ndarray::Array2;
 use resvg::tiny_skia::{ColorU8, Pixmap};
 use std::fmt::Write;
-use vibro_record::steers;
+use vibro_record::is_unprintable;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -205,7 +205,7 @@ pub fn escaped(text: &str) -> String {
             '\'' => out.push_str("&#39;"),
             '\t' | '\n' | '\r' => out.push(' '),
             '\u{FFFE}' | '\u{FFFF}' => out.push('\u{FFFD}'),
-            c if steers(c) => out.push('\u{FFFD}'),
+            c if is_unprintable(c) => out.push('\u{FFFD}'),
             c => out.push(c),
         }
     }

@@ -128,13 +128,7 @@ impl Recording {
     /// If there is no such trace, or several and none was named; if a calibration is not a number other than 0, or is given
     /// for fractions of full scale without a unit.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
-        let chosen = self.chosen(channel)?;
-        let found = if let Record::Trace(trace) = &self.records[chosen] {
-            Ok(trace.clone())
-        } else {
-            Err(self.no_trace())
-        };
-        calibrated(found?, calibration)
+        calibrated(self.chosen(channel)?.1.clone(), calibration)
     }
 
     /// As [`Recording::trace`], with the values taken out of the recording instead of held twice.
@@ -142,19 +136,17 @@ impl Recording {
     /// # Errors
     /// As there.
     pub fn take_trace(&mut self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
-        let (chosen, nothing) = (self.chosen(channel)?, self.no_trace());
+        let (chosen, nothing) = (self.chosen(channel)?.0, self.no_trace());
         let Record::Trace(trace) = &mut self.records[chosen] else { return Err(nothing) };
         let values = std::mem::take(&mut trace.values);
         calibrated(Trace { values, ..trace.clone() }, calibration)
     }
 
-    /// Index among the records of the trace that is meant.
-    fn chosen<'a>(&'a self, channel: Option<&str>) -> Result<usize> {
-        let all = self.records.iter().enumerate();
-        let trace = |(i, record): (usize, &'a Record)| {
-            if let Record::Trace(trace) = record { Some((i, trace)) } else { None }
-        };
-        let traces: Vec<(usize, &Trace)> = all.filter_map(trace).collect();
+    /// The trace that is meant, and its place among the records.
+    fn chosen(&self, channel: Option<&str>) -> Result<(usize, &Trace)> {
+        let trace =
+            |i: usize| if let Record::Trace(trace) = &self.records[i] { Some((i, trace)) } else { None };
+        let traces: Vec<(usize, &Trace)> = (0..self.records.len()).filter_map(trace).collect();
         let chosen = match (channel, traces.len()) {
             (_, 0) => return Err(self.no_trace()),
             (None, 1) => Ok(0),
@@ -164,7 +156,7 @@ impl Recording {
             }
             (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|(_, t)| t.meta.called())),
         };
-        Ok(traces[chosen.map_err(|e| e.setting("channel"))?].0)
+        Ok(traces[chosen.map_err(|e| e.setting("channel"))?])
     }
 
     fn no_trace(&self) -> Error {

@@ -8,13 +8,13 @@ mod walk;
 pub use lock::Lock;
 pub use manifest::{Manifest, Owner, listed};
 pub use staged::Staged;
-pub use walk::{Left, Walk};
+pub use walk::Walk;
 
 use super::Source;
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
@@ -53,11 +53,11 @@ enum Side {
     Memory(Arc<Mutex<Files>>),
 }
 
-/// What has a name in a folder.
+/// What has a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Standing {
+pub enum Occupant {
     /// Nothing.
-    Free,
+    Nothing,
     /// A regular file.
     File,
     /// A folder.
@@ -143,43 +143,43 @@ impl Folder {
         (!target.starts_with(root)).then_some(target)
     }
 
-    /// Whether there is anything of this path.
-    pub fn exists(&self, path: &Path) -> bool {
-        self.is_file(path) || self.is_folder(path) || matches!(self.side, Side::Disk) && path.exists()
+    /// What has this path; links are not followed.
+    pub fn occupant(&self, path: &Path) -> Occupant {
+        self.occupant_by(path, |path| fs::symlink_metadata(path))
     }
 
-    /// Whether it is a regular file, or a link to one.
-    pub fn is_file(&self, path: &Path) -> bool {
+    fn occupant_by(&self, path: &Path, look: fn(&Path) -> io::Result<fs::Metadata>) -> Occupant {
         match &self.side {
-            Side::Disk => path.is_file(),
-            Side::Memory(files) => locked(files).contains_key(&plain(path)),
-        }
-    }
-
-    /// Whether it is a folder, or a link to one.
-    pub fn is_folder(&self, path: &Path) -> bool {
-        match &self.side {
-            Side::Disk => path.is_dir(),
+            Side::Disk => match look(path) {
+                Ok(meta) if meta.is_file() => Occupant::File,
+                Ok(meta) if meta.is_dir() => Occupant::Folder,
+                Ok(_) => Occupant::Special,
+                Err(_) => Occupant::Nothing,
+            },
             Side::Memory(files) => {
-                let path = plain(path);
-                locked(files).keys().any(|file| *file != path && file.starts_with(&path))
+                let (files, path) = (locked(files), plain(path));
+                match files.keys().find(|file| file.starts_with(&path)) {
+                    Some(file) if *file == path => Occupant::File,
+                    Some(_) => Occupant::Folder,
+                    None => Occupant::Nothing,
+                }
             }
         }
     }
 
-    /// What has this path; links are not followed.
-    pub fn standing(&self, path: &Path) -> Standing {
-        match &self.side {
-            Side::Disk => match fs::symlink_metadata(path) {
-                Ok(meta) if meta.is_file() => Standing::File,
-                Ok(meta) if meta.is_dir() => Standing::Folder,
-                Ok(_) => Standing::Special,
-                Err(_) => Standing::Free,
-            },
-            Side::Memory(_) if self.is_file(path) => Standing::File,
-            Side::Memory(_) if self.is_folder(path) => Standing::Folder,
-            Side::Memory(_) => Standing::Free,
-        }
+    /// Whether there is anything of this path, at the end of links.
+    pub fn exists(&self, path: &Path) -> bool {
+        self.occupant_by(path, |path| fs::metadata(path)) != Occupant::Nothing
+    }
+
+    /// Whether it is a regular file, or a link to one.
+    pub fn is_file(&self, path: &Path) -> bool {
+        self.occupant_by(path, |path| fs::metadata(path)) == Occupant::File
+    }
+
+    /// Whether it is a folder, or a link to one.
+    pub fn is_folder(&self, path: &Path) -> bool {
+        self.occupant_by(path, |path| fs::metadata(path)) == Occupant::Folder
     }
 
     /// The names of all that lies in the folder itself, hidden files too, in order; none where it cannot be listed.
@@ -200,12 +200,36 @@ impl Folder {
         names
     }
 
-    /// The right to write into the folder, until it is dropped; memory needs none.
+    /// Makes the folder, with those above it, and gives the right to write into it until that is dropped.
+    /// Memory needs neither.
     ///
     /// # Errors
-    /// As [`Lock::of`].
+    /// If the folder or the file of the lock cannot be made, or another program is writing there.
     pub fn lock(&self) -> Result<Option<Lock>> {
-        if matches!(self.side, Side::Disk) { Lock::of(&self.root).map(Some) } else { Ok(None) }
+        if matches!(self.side, Side::Memory(_)) {
+            return Ok(None);
+        }
+        let root = or_here(&self.root);
+        fs::create_dir_all(root).map_err(|e| Error::io("make the folder", root, e))?;
+        let lock = Lock::of(root)?;
+        self.remove_leftovers();
+        Ok(Some(lock))
+    }
+
+    /// The bytes of a file, one after the other.
+    fn open(&self, path: &Path) -> Result<Box<dyn Read>> {
+        // A pipe of that name would wait for ever.
+        if self.exists(path) && !self.is_file(path) {
+            return Err(Error::input(Place::file(path), "not a regular file", "a file"));
+        }
+        let opened: io::Result<Box<dyn Read>> = match &self.side {
+            Side::Disk => fs::File::open(path).map(|file| Box::new(file) as _),
+            Side::Memory(files) => match locked(files).get(&plain(path)) {
+                Some(bytes) => Ok(Box::new(io::Cursor::new(bytes.clone()))),
+                None => Err(io::ErrorKind::NotFound.into()),
+            },
+        };
+        opened.map_err(|e| Error::io("open", path, e))
     }
 
     /// All bytes of a file.
@@ -213,15 +237,27 @@ impl Folder {
     /// # Errors
     /// If it is no regular file, or cannot be read.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
-        match &self.side {
-            // A pipe of that name would wait for ever.
-            Side::Disk if path.exists() && !path.is_file() => {
-                Err(Error::input(Place::file(path), "not a regular file", "a file"))
-            }
-            Side::Disk => fs::read(path).map_err(|e| Error::io("open", path, e)),
-            Side::Memory(files) => {
-                let bytes = locked(files).get(&plain(path)).map(|bytes| bytes.to_vec());
-                bytes.ok_or_else(|| Error::io("open", path, std::io::ErrorKind::NotFound.into()))
+        let mut bytes = Vec::new();
+        self.open(path)?.read_to_end(&mut bytes).map_err(|e| Error::io("read", path, e))?;
+        Ok(bytes)
+    }
+
+    /// The bytes of a file of this name in the folder itself; nothing where that is a link or cannot be read.
+    pub fn own_file(&self, name: &str) -> Option<Vec<u8>> {
+        let path = self.root.join(name);
+        if self.occupant(&path) == Occupant::File { self.read(&path).ok() } else { None }
+    }
+
+    /// The SHA-256 of a regular file, of which only a part is held at a time.
+    ///
+    /// # Errors
+    /// As [`Folder::read`].
+    pub fn digest(&self, path: &Path) -> Result<Digest> {
+        let (mut file, mut hash, mut part) = (self.open(path)?, Sha256::new(), vec![0; 1 << 16]);
+        loop {
+            match file.read(&mut part).map_err(|e| Error::io("read", path, e))? {
+                0 => return Ok(hash.finalize().into()),
+                n => hash.update(&part[..n]),
             }
         }
     }
@@ -248,12 +284,8 @@ impl Folder {
         self.identity(path).is_some_and(|file| locked(&self.opened).contains(&file))
     }
 
-    /// Whether two names mean one file; `-` is the file that standard input comes from.
-    pub fn same(&self, a: &Path, b: &Path) -> bool {
-        a == b || self.identity(a).is_some_and(|file| Some(file) == self.identity(b))
-    }
-
-    /// What tells a file apart whatever its names are; nothing where there is none.
+    /// What tells a file apart whatever its names are; nothing where there is none. `-` is the file that standard
+    /// input comes from.
     fn identity(&self, path: &Path) -> Option<PathBuf> {
         if matches!(self.side, Side::Memory(_)) {
             return Some(plain(path));
@@ -282,26 +314,6 @@ impl Folder {
                 bytes.map(|n| (n, SystemTime::UNIX_EPOCH))
             }
         }
-    }
-
-    /// The SHA-256 of a regular file, of which only a part is held at a time.
-    ///
-    /// # Errors
-    /// As [`Folder::read`].
-    pub fn digest(&self, path: &Path) -> Result<Digest> {
-        if matches!(self.side, Side::Memory(_)) || !path.is_file() {
-            return Ok(Sha256::digest(self.read(path)?).into());
-        }
-        let content = || {
-            let (mut file, mut hash, mut part) = (fs::File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
-            loop {
-                match file.read(&mut part)? {
-                    0 => return Ok(hash.finalize().into()),
-                    n => hash.update(&part[..n]),
-                }
-            }
-        };
-        content().map_err(|e| Error::io("read", path, e))
     }
 }
 

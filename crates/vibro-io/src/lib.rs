@@ -69,7 +69,7 @@ mod wav;
 
 pub mod write;
 
-pub use folder::{Digest, Folder, Left, Lock, Manifest, Owner, Staged, Standing, Walk, listed, plain};
+pub use folder::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged, Walk, listed, plain};
 pub use format::Format;
 pub use limit::Limit;
 pub use reader::{Header, Reader, Recording};

@@ -30,7 +30,7 @@ pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
 pub use near::{nearest, pattern};
 pub use resample::evened;
-pub use shown::{shown, steers};
+pub use shown::{is_unprintable, shown};
 pub use spectrum::{Frf, Scaling, Spectrum, Values};
 pub use sweep::{Direction, StepTraces, Sweep, SweepPoint};
 pub use trace::Trace;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// Whether a character steers a terminal or a page instead of being shown: a control character, one that turns the direction of writing
 /// (Unicode Standard Annex 9, section 2), or one that parts lines.
-pub fn steers(c: char) -> bool {
+pub fn is_unprintable(c: char) -> bool {
     let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns
 }
@@ -12,7 +12,7 @@ pub fn steers(c: char) -> bool {
 /// A path for people, on one line: a character that steers is shown as �.
 pub fn shown(path: impl AsRef<Path>) -> String {
     let text = path.as_ref().to_string_lossy();
-    text.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
+    text.chars().map(|c| if is_unprintable(c) { '\u{fffd}' } else { c }).collect()
 }
 
 #[cfg(test)]

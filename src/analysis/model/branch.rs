@@ -67,7 +67,7 @@ impl From<Over> for Parameter {
 
 impl Keys {
     /// Names of the files that its answer has.
-    pub const FILES: Names = Names::numbered(&["branches", "marks", "points"]);
+    pub const FILES: Names = Names::Numbered(&["branches", "marks", "points"]);
 
     /// The branches, with their marks and ends.
     ///

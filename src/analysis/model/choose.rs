@@ -56,7 +56,7 @@ pub struct Keys {
 
 impl Keys {
     /// Names of the files that its answer has.
-    pub const FILES: Names = Names::numbered(&["rungs", "sensitivity", "stretches", "points", "ladder"]);
+    pub const FILES: Names = Names::Numbered(&["rungs", "sensitivity", "stretches", "points", "ladder"]);
 
     /// The rung that is chosen, at one frequency or along an axis, and why.
     ///

@@ -31,7 +31,7 @@ pub struct Keys {
 
 impl Keys {
     /// Names of the files that its answer has.
-    pub const FILES: Names = Names::numbered(&["map"]);
+    pub const FILES: Names = Names::Numbered(&["map"]);
 
     /// The map.
     ///

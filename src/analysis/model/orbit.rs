@@ -32,7 +32,7 @@ pub struct Keys {
 
 impl Keys {
     /// Names of the files that its answer has.
-    pub const FILES: Names = Names::numbered(&["orbits", "verdicts", "impacts", "orbit"]);
+    pub const FILES: Names = Names::Numbered(&["orbits", "verdicts", "impacts", "orbit"]);
 
     /// The motions, each with its verdicts and figure.
     ///

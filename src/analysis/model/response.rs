@@ -35,7 +35,7 @@ pub struct Keys {
 
 impl Keys {
     /// Names of the files that its answer has.
-    pub const FILES: Names = Names::numbered(&["response", "changes"]);
+    pub const FILES: Names = Names::Numbered(&["response", "changes"]);
 
     /// The motions at each frequency, with the places where they appear, vanish and change.
     ///

@@ -62,7 +62,7 @@ struct Seen {
 
 impl Keys {
     /// Names of the files that its answer has.
-    pub const FILES: Names = Names::numbered(&["traces", "phase_plane", "poincare", "reaction", "impacts"]);
+    pub const FILES: Names = Names::Numbered(&["traces", "phase_plane", "poincare", "reaction", "impacts"]);
 
     /// The motion with its impacts and its regime.
     ///

@@ -81,7 +81,7 @@ pub enum Way {
 
 impl Keys {
     /// Names of the files that its answer has.
-    pub const FILES: Names = Names::numbered(&["sweep", "reaction"]);
+    pub const FILES: Names = Names::Numbered(&["sweep", "reaction"]);
 
     /// The sweep with its resonances and jumps.
     ///

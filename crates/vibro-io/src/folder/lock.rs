@@ -1,6 +1,5 @@
 //! One writer at a time in a folder.
 
-use super::or_here;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -20,43 +19,38 @@ const PAUSE: Duration = Duration::from_millis(20);
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Lock {
-    /// Name of its file, which holds the number of the process.
+    /// Name of its file, which holds the number of the process, for people alone.
     pub const FILE: &str = ".vibro.lock";
 
     /// The lock of a folder on disk; waits a moment for another writer.
     ///
     /// # Errors
-    /// If another program is still writing there, or the file cannot be made.
-    pub fn of(folder: &Path) -> Result<Lock> {
-        let (path, began) = (or_here(folder).join(Lock::FILE), Instant::now());
-        let refused = |e| Error::io("write", or_here(folder), e);
-        loop {
-            let strange = || {
-                Error::input(
-                    Place::file(&path),
-                    "not the file of vibro that has this name",
-                    "none of this name",
-                )
+    /// If another program is still writing there, or the file cannot be made or is not vibro's.
+    pub(super) fn of(folder: &Path) -> Result<Lock> {
+        let (path, began) = (folder.join(Lock::FILE), Instant::now());
+        let strange = || {
+            Error::input(Place::file(&path), "not the file of vibro that has this name", "none of this name")
                 .hint("move it to another place")
-            };
+        };
+        let refused = |e| {
+            if path.exists() { Error::io("open", &path, e) } else { Error::io("write", folder, e) }
+        };
+        loop {
             if std::fs::symlink_metadata(&path).is_ok_and(|meta| !meta.is_file()) {
                 return Err(strange());
             }
-            let mut open = OpenOptions::new();
-            let file = open.read(true).write(true).create(true).truncate(false).open(&path);
+            let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             // That of another person, which a lock needs no right to change.
-            let mut file = file.or_else(|e| File::open(&path).map_err(|_| e)).map_err(refused)?;
+            let file = open.or_else(|e| File::open(&path).map_err(|_| e));
+            let mut file = file.map_err(refused)?;
             let mut process = String::new();
             // Some systems let nobody read what is locked.
             let read = file.read_to_string(&mut process);
             match file.try_lock() {
                 Err(TryLockError::WouldBlock) if began.elapsed() < PATIENCE => sleep(PAUSE),
                 Err(TryLockError::WouldBlock) => {
-                    let who = if process.is_empty() {
-                        "another vibro".to_owned()
-                    } else {
-                        format!("process {process}")
-                    };
+                    let who =
+                        if process.is_empty() { "another vibro" } else { &*format!("process {process}") };
                     let found = format!("{who} is writing into this folder");
                     return Err(Error::input(Place::file(folder), found, "one writer at a time")
                         .hint("end that process or wait for it, then run the same command again"));
@@ -64,22 +58,23 @@ impl Lock {
                 Ok(()) if read.is_err() || !process.bytes().all(|c| c.is_ascii_digit()) => {
                     return Err(strange());
                 }
-                // Where there are no locks, as on some network drives, there is nobody to wait for.
-                Ok(()) | Err(TryLockError::Error(_)) => {
-                    // The writer before may have removed the file between opening and locking it.
-                    if same_file::Handle::from_path(&path).ok()
-                        != file.try_clone().and_then(same_file::Handle::from_file).ok()
-                    {
-                        continue;
-                    }
-                    // The number is for people alone.
+                // Where there are no locks, as on some network drives, there is nobody to wait for. The writer
+                // before may have removed the file between opening and locking it.
+                Ok(()) | Err(TryLockError::Error(_)) if is_at(&path, &file) => {
                     let _ = file.set_len(0).and_then(|()| file.rewind());
                     let _ = write!(file, "{}", std::process::id());
                     return Ok(Lock { path, _file: file });
                 }
+                _ => {}
             }
         }
     }
+}
+
+/// Whether a path still leads to a file that was opened.
+fn is_at(path: &Path, file: &File) -> bool {
+    let opened = file.try_clone().and_then(same_file::Handle::from_file);
+    same_file::Handle::from_path(path).ok() == opened.ok()
 }
 
 impl Drop for Lock {

@@ -1,7 +1,7 @@
 //! What vibro wrote into a folder.
 
-use super::{Digest, Folder, Standing};
-use std::collections::BTreeMap;
+use super::{Digest, Folder};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// Files that vibro wrote into a folder, with what they held then. It lies in the folder as [`Manifest::FILE`], in lines that `sha256sum -c`
@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 /// 9f86d081884c7d65…  spectrum.csv
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Manifest(BTreeMap<(Owner, String), Vec<Digest>>);
+pub struct Manifest(BTreeSet<(Owner, String, Digest)>);
 
 /// What files were written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,15 +44,13 @@ impl Manifest {
 
     /// That of a folder; empty where it has none, or none of ours.
     pub fn of(folder: &Folder) -> Manifest {
-        let path = folder.root().join(Manifest::FILE);
-        let bytes = Some(&path).filter(|path| folder.standing(path) == Standing::File);
-        let text = bytes.and_then(|path| String::from_utf8(folder.read(path).ok()?).ok());
-        Manifest::parse(text.as_deref().unwrap_or_default())
+        let bytes = folder.own_file(Manifest::FILE).unwrap_or_default();
+        Manifest::parse(&String::from_utf8(bytes).unwrap_or_default())
     }
 
     /// Whether the file of a folder that has its name is one.
     pub fn is_of(folder: &Folder) -> bool {
-        folder.read(&folder.root().join(Manifest::FILE)).is_ok_and(|bytes| bytes.starts_with(HEAD.as_bytes()))
+        folder.own_file(Manifest::FILE).is_some_and(|bytes| bytes.starts_with(HEAD.as_bytes()))
     }
 
     fn parse(text: &str) -> Manifest {
@@ -69,55 +67,52 @@ impl Manifest {
 
     /// As its file has it.
     pub fn text(&self) -> String {
-        let mut text = HEAD.to_owned();
-        for (owner, heading) in Owner::ALL {
-            let mut own = self.0.iter().filter(|((known, _), _)| *known == owner).peekable();
-            if own.peek().is_some() {
+        let (mut text, mut owner) = (HEAD.to_owned(), None);
+        for (of, name, digest) in &self.0 {
+            if owner.replace(of) != Some(of) {
+                let heading =
+                    Owner::ALL.iter().find(|(owner, _)| owner == of).map_or("", |(_, heading)| heading);
                 let _ = writeln!(text, "# {heading}");
             }
-            for ((_, name), digests) in own {
-                text.extend(digests.iter().map(|digest| listed(digest, name)));
-            }
+            text += &listed(digest, name);
         }
         text
     }
 
-    /// Whether nothing is known.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+    /// What files of this name held that were written as a recording, or else as a result.
+    fn held_by(&self, recording: bool, name: &str) -> impl Iterator<Item = &Digest> {
+        let owners: &[Owner] = if recording { &[Owner::Recordings] } else { &[Owner::Run, Owner::Results] };
+        let of = |owner: &Owner| {
+            (*owner, name.to_owned(), Digest::default())..=(*owner, name.to_owned(), [255; 32])
+        };
+        owners.iter().flat_map(move |owner| self.0.range(of(owner))).map(|(.., digest)| digest)
     }
 
     /// Whether a file of this name was written as a result.
     pub fn is_result(&self, name: &str) -> bool {
-        [Owner::Run, Owner::Results].iter().any(|owner| self.0.contains_key(&(*owner, name.to_owned())))
+        self.held_by(false, name).next().is_some()
     }
 
     /// Whether vibro wrote a file of this name and content: a result, or, for recordings, a recording.
     pub fn knows(&self, owner: Owner, name: &str, digest: &Digest) -> bool {
-        let results: &[Owner] =
-            if owner == Owner::Recordings { &[Owner::Recordings] } else { &[Owner::Run, Owner::Results] };
-        let of = |owner: &Owner| self.0.get(&(*owner, name.to_owned()));
-        results.iter().filter_map(of).any(|known| known.contains(digest))
+        self.held_by(owner == Owner::Recordings, name).any(|known| known == digest)
     }
 
     /// Adds a file, beside what is known of its name.
     pub fn add(&mut self, owner: Owner, name: impl Into<String>, digest: Digest) {
-        let known = self.0.entry((owner, name.into())).or_default();
-        if owner != Owner::Person && !known.contains(&digest) {
-            known.push(digest);
+        if owner != Owner::Person {
+            self.0.insert((owner, name.into(), digest));
         }
-        self.0.retain(|_, digests| !digests.is_empty());
     }
 
     /// Forgets a name.
     pub fn forget(&mut self, name: &str) {
-        self.0.retain(|(_, known), _| known != name);
+        self.0.retain(|(_, known, _)| known != name);
     }
 
-    /// Names of one owner, each with what it may hold.
-    pub fn owned(&self, owner: Owner) -> impl Iterator<Item = (&str, &[Digest])> {
-        let own = self.0.iter().filter(move |((known, _), _)| *known == owner);
-        own.map(|((_, name), digests)| (name.as_str(), digests.as_slice()))
+    /// Files of one owner, each with what it may hold.
+    pub fn owned(&self, owner: Owner) -> impl Iterator<Item = (&str, &Digest)> {
+        self.0.iter().filter(move |(of, ..)| *of == owner).map(|(_, name, digest)| (name.as_str(), digest))
     }
 }
 

@@ -1,20 +1,42 @@
-//! Files that are written but have no name yet.
+//! Files that get their names whole.
 
-use super::{Folder, Side, locked, or_here, plain};
+use super::{Files, Folder, Side, locked, or_here, plain};
 use std::fs;
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 use tempfile::{NamedTempFile, TempPath};
 use vibro_record::{Error, Result};
 
-/// A file without its name. It is removed unless it gets one.
+/// A file without its name: beside its place, or in memory. It is removed unless it gets its name.
 #[derive(Debug)]
-pub struct Staged(Content);
+pub enum Staged {
+    /// On a disk.
+    Disk(TempPath, PathBuf),
+    /// Among the files of a memory.
+    Memory(Arc<Mutex<Files>>, PathBuf, Vec<u8>),
+}
 
-#[derive(Debug)]
-enum Content {
-    Disk(TempPath),
-    Memory(Vec<u8>),
+impl Staged {
+    /// Gives the file its name, at once and whole; what had the name is gone.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn place(self) -> Result<()> {
+        match self {
+            Staged::Disk(file, path) => {
+                // Who may read or write the file that it replaces may go on so.
+                if let Ok(known) = fs::metadata(&path) {
+                    let _ = fs::set_permissions(&file, known.permissions());
+                }
+                file.persist(&path).map_err(|e| Error::io("write", &path, e.error))
+            }
+            Staged::Memory(files, path, bytes) => {
+                locked(&files).insert(path, bytes.into());
+                Ok(())
+            }
+        }
+    }
 }
 
 /// End of the names of temporary files.
@@ -26,50 +48,15 @@ impl Folder {
     /// # Errors
     /// If the system refuses.
     pub fn stage(&self, path: &Path, bytes: &[u8]) -> Result<Staged> {
-        if matches!(self.side, Side::Memory(_)) {
-            return Ok(Staged(Content::Memory(bytes.to_vec())));
+        if let Side::Memory(files) = &self.side {
+            return Ok(Staged::Memory(files.clone(), plain(path), bytes.to_vec()));
         }
-        let folder = or_here(path.parent().unwrap_or(Path::new("")));
         let write = || {
-            let mut file = temporary(folder)?;
+            let mut file = temporary(or_here(path.parent().unwrap_or(Path::new(""))))?;
             file.write_all(bytes)?;
-            Ok(file.into_temp_path())
+            Ok(Staged::Disk(file.into_temp_path(), path.to_owned()))
         };
-        write().map(|file| Staged(Content::Disk(file))).map_err(|e| Error::io("write", path, e))
-    }
-
-    /// Gives a staged file its name, at once and whole; what had the name is gone.
-    ///
-    /// # Errors
-    /// If the system refuses.
-    pub fn place(&self, staged: Staged, path: &Path) -> Result<()> {
-        match (staged.0, &self.side) {
-            (Content::Disk(file), _) => {
-                // Who may read or write the file that it replaces may go on so.
-                if let Ok(known) = fs::metadata(path) {
-                    let _ = fs::set_permissions(&file, known.permissions());
-                }
-                file.persist(path).map_err(|e| Error::io("write", path, e.error))
-            }
-            (Content::Memory(bytes), Side::Memory(files)) => {
-                locked(files).insert(plain(path), bytes.into());
-                Ok(())
-            }
-            (Content::Memory(_), Side::Disk) => Ok(()),
-        }
-    }
-
-    /// Makes a folder with those above it.
-    ///
-    /// # Errors
-    /// If the system refuses.
-    pub fn make(&self, path: &Path) -> Result<()> {
-        match self.side {
-            Side::Disk => {
-                fs::create_dir_all(or_here(path)).map_err(|e| Error::io("make the folder", path, e))
-            }
-            Side::Memory(_) => Ok(()),
-        }
+        write().map_err(|e| Error::io("write", path, e))
     }
 
     /// Removes a file, if it is there.
@@ -77,20 +64,20 @@ impl Folder {
     /// # Errors
     /// If the system refuses.
     pub fn remove(&self, path: &Path) -> Result<()> {
-        match &self.side {
-            Side::Disk => match fs::remove_file(path) {
-                Err(e) if e.kind() != ErrorKind::NotFound => Err(Error::io("remove", path, e)),
-                _ => Ok(()),
-            },
+        let removed = match &self.side {
+            Side::Disk => fs::remove_file(path),
             Side::Memory(files) => {
                 locked(files).remove(&plain(path));
                 Ok(())
             }
-        }
+        };
+        removed.or_else(|e| {
+            if e.kind() == ErrorKind::NotFound { Ok(()) } else { Err(Error::io("remove", path, e)) }
+        })
     }
 
     /// Removes temporary files of programs that were killed in this folder. Only who holds its lock may ask for it.
-    pub fn remove_leftovers(&self) {
+    pub(super) fn remove_leftovers(&self) {
         for name in self.names().iter().filter(|name| name.starts_with('.') && name.ends_with(PART)) {
             // It is in nobody's way: a leftover that cannot be removed is no failure.
             let _ = self.remove(&self.root().join(name));

@@ -9,7 +9,7 @@ mod header;
 use super::{failed, label, parts};
 use crate::number;
 use crate::uff58::Layout;
-use std::io::Write;
+use std::io::{self, Write};
 use vibro_record::{Error, Grid, Record, Result};
 
 /// Precision of the values. An uneven abscissa has single precision, or six digits, in either.
@@ -61,68 +61,55 @@ pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -
         return Err(Error::refused("there are no records to write, and a file without any cannot be read"));
     }
     let forms = records.iter().map(|r| form(r, storage.binary)).collect::<Result<Vec<_>>>()?;
+    let mut out = io::BufWriter::new(out);
     for (record, form) in records.iter().zip(&forms) {
         let even = matches!(record.axis().grid, Grid::Even { .. });
         let double = storage.precision == Precision::Double;
         let layout = Layout { complex: record.is_complex(), double, even };
         let size = storage.binary.then_some(layout.point_size(false) * record.len());
-        let mut bytes = header::text(record, layout, size, form).into_bytes();
-        if storage.binary {
-            binary(record, layout, &mut bytes, out)?;
-        } else {
-            text(record, layout, &mut bytes, out)?;
-        }
-        bytes.extend(format!("{:80}\n", "    -1").bytes());
-        out.write_all(&bytes).map_err(failed)?;
+        let head = header::text(record, layout, size, form);
+        let mut block = || {
+            out.write_all(head.as_bytes())?;
+            if storage.binary {
+                binary(record, layout, &mut out)?;
+            } else {
+                text(record, layout, &mut out)?;
+            }
+            writeln!(out, "{:80}", "    -1")
+        };
+        block().map_err(failed)?;
     }
-    Ok(())
+    out.flush().map_err(failed)
 }
 
-/// Bytes that are written at once.
-const BLOCK: usize = 64 * 1024;
-
-/// Writes what was gathered, once it is a block.
-fn written(bytes: &mut Vec<u8>, out: &mut impl Write) -> Result<()> {
-    if bytes.len() > BLOCK {
-        out.write_all(bytes).map_err(failed)?;
-        bytes.clear();
-    }
-    Ok(())
-}
-
-fn binary(record: &Record, layout: Layout, bytes: &mut Vec<u8>, out: &mut impl Write) -> Result<()> {
+fn binary(record: &Record, layout: Layout, out: &mut impl Write) -> io::Result<()> {
     for i in 0..record.len() {
-        written(bytes, out)?;
         if !layout.even {
-            bytes.extend((record.axis().at(i) as f32).to_le_bytes());
+            out.write_all(&(record.axis().at(i) as f32).to_le_bytes())?;
         }
         for part in parts(record, i) {
             if layout.double {
-                bytes.extend(part.to_le_bytes());
+                out.write_all(&part.to_le_bytes())?;
             } else {
-                bytes.extend((part as f32).to_le_bytes());
+                out.write_all(&(part as f32).to_le_bytes())?;
             }
         }
     }
     Ok(())
 }
 
-fn text(record: &Record, layout: Layout, bytes: &mut Vec<u8>, out: &mut impl Write) -> Result<()> {
+fn text(record: &Record, layout: Layout, out: &mut impl Write) -> io::Result<()> {
     let abscissa = |i: usize| (!layout.even).then(|| record.axis().at(i));
     let numbers = (0..record.len()).flat_map(|i| abscissa(i).into_iter().chain(parts(record, i)));
     let widths = layout.widths();
     for (column, value) in numbers.enumerate() {
         if column > 0 && column % widths.len() == 0 {
-            bytes.push(b'\n');
-            written(bytes, out)?;
+            out.write_all(b"\n")?;
         }
         let width = widths[column % widths.len()];
-        bytes.extend(field(value, width, width - 8).bytes());
+        out.write_all(field(value, width, width - 8).as_bytes())?;
     }
-    if !record.is_empty() {
-        bytes.push(b'\n');
-    }
-    Ok(())
+    if record.is_empty() { Ok(()) } else { out.write_all(b"\n") }
 }
 
 /// Fortran's `1PEw.d`: the letter makes room for a third digit of the exponent.

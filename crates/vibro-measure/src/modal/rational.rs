@@ -42,12 +42,9 @@ struct Scaled<'a> {
     /// Of the segments that the function was averaged over.
     leakage: Option<Leakage>,
     magnitude_only: bool,
-    /// Each mode at all lines, for the last shape that it had.
-    known: RefCell<Vec<Option<Known>>>,
+    /// Frequency and damping that each mode had last, bit by bit, and what it was then at all lines.
+    known: RefCell<Vec<([u64; 2], Vec<Complex64>)>>,
 }
-
-/// Frequency and damping of a mode, bit by bit, and what it is at all lines.
-type Known = ([u64; 2], Vec<Complex64>);
 
 /// How much of the lines modes `starts` leave at the least, unweighted: to choose among first guesses.
 pub(super) fn left_by(
@@ -86,7 +83,7 @@ impl<'a> Scaled<'a> {
             power,
             leakage: measured.window.map(|window| Leakage::of(window, TAU * unit / measured.spacing())),
             magnitude_only: measured.magnitude_only,
-            known: RefCell::new(vec![None; starts.len()]),
+            known: RefCell::new(vec![Default::default(); starts.len()]),
         }
     }
 }
@@ -106,11 +103,10 @@ impl Scaled<'_> {
         let shape = self.shape(p, m);
         let bits = [shape.0.to_bits(), shape.1.to_bits()];
         let mut known = self.known.borrow_mut();
-        let (_, lines) = match known[m].take().filter(|(of, _)| *of == bits) {
-            Some(same) => known[m].insert(same),
-            None => known[m].insert((bits, (0..self.x.len()).map(|i| self.shaped(i, shape)).collect())),
-        };
-        lines[i]
+        if known[m].0 != bits || known[m].1.is_empty() {
+            known[m] = (bits, (0..self.x.len()).map(|i| self.shaped(i, shape)).collect());
+        }
+        known[m].1[i]
     }
 
     fn shaped(&self, i: usize, (own, zeta): (f64, f64)) -> Complex64 {
@@ -257,7 +253,7 @@ impl Scaled<'_> {
         let first = self.x[0] - MARGIN as f64 * step;
         let x: Vec<f64> = (0..=last).map(|k| (first + k as f64 * step).abs().max(step)).collect();
         let factor = x.iter().map(|x| Complex64::new(0.0, *x).powi(self.power)).collect();
-        let known = RefCell::new(vec![None; self.starts.len()]);
+        let known = RefCell::new(vec![Default::default(); self.starts.len()]);
         let plain = Scaled { x, factor, values: Vec::new(), leakage: None, known, ..*self };
         let h: Vec<Complex64> = (0..=last).map(|k| plain.at(p, k)).collect();
         of_segments(window, &h, &at, total)
