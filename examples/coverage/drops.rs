@@ -2,10 +2,11 @@
 
 use super::disturbance::{Mix, convert, peak};
 use super::record::{Answer, Kind, Record};
+use super::room::{RATE, Room};
 use super::trace;
 use std::f64::consts::{PI, TAU};
 use vibroimpact::measure::impacts::ImpactsOptions;
-use vibroimpact::measure::restitution::{Drop, Measured, Train, restitution};
+use vibroimpact::measure::restitution::{Drop, Measured, Restitution, Train, restitution};
 
 pub const KINDS: &[Kind] = &[
     Kind { name: "drops, times", ranges: TIMES, every: 1, draw: |mix| draw(mix, times, true) },
@@ -22,7 +23,18 @@ pub const KINDS: &[Kind] = &[
         every: 2,
         draw: |mix| draw(mix, sounds, true),
     },
+    Kind { name: "drops, room", ranges: ROOMS, every: 5, draw: |mix| heard(mix, Room::Ordinary) },
+    Kind {
+        name: "drops, hard room",
+        ranges: "as before; echoes to 50 %, a voice in four of ten drops, up to as loud as the first impact",
+        every: 5,
+        draw: |mix| heard(mix, Room::Hard),
+    },
 ];
+
+const ROOMS: &str = "R 0.4 to 0.93, up to 1 % of scatter in half of the series, 1 to 8 drops from 0.1 to 1 m, each up to 3 to 9 impacts; contact 0.05 \
+    to 1 ms, stated in half; contact noise of 0.3 to 4 ms, a plate that rings at 0.3 to 5 kHz in half, up to 4 echoes of 1 to 25 % after 1 to 40 ms, \
+    reverberation to 3 %, hum to 2 %, noise to 1 %; a voice to 10 % in one drop of ten, a hand before the fall in one of seven";
 
 const TIMES: &str = "R 0.5 to 0.95, 0.05 to 2 % of scatter from bounce to bounce in half of the records of four drops or more, 1 to 8 drops \
     from 0.05 to 1 m (stated with an error of 0.1 to 2 mm) with 2 to 12 impacts; contact 0.01 to 1 ms, stated; detection 1 to 200 µs off, \
@@ -77,15 +89,34 @@ fn draw(mix: &mut Mix, timed: Timed, stated: bool) -> Record {
     let trains = trains.into_iter().filter(|t| t.intervals.len() > 1).collect();
     let measured =
         Measured { drop: Some(drop), trains, velocities: None, contact_time: stated.then_some(contact) };
-    let found = restitution(&measured).ok();
-    let by = |method: &str| {
-        found.as_ref()?.by.iter().find(|way| way.method.contains(method)).map(|way| &way.restitution)
-    };
+    answers(r, restitution(&measured).ok().as_ref())
+}
+
+/// R by every method.
+fn answers(r: f64, found: Option<&Restitution>) -> Record {
+    let by =
+        |method: &str| found?.by.iter().find(|way| way.method.contains(method)).map(|way| &way.restitution);
     let mut record = Record::default();
-    record.answers.push(Answer::new("R", r, found.as_ref().map(|f| &f.restitution)));
+    record.answers.push(Answer::new("R", r, found.map(|f| &f.restitution)));
     record.answers.push(Answer::new("R by drop", r, by("drop")));
     record.answers.push(Answer::new("R by flights", r, by("flight")));
     record
+}
+
+/// Drops that a microphone hears in a room.
+fn heard(mix: &mut Mix, room: Room) -> Record {
+    let drops = room.drops((mix.random.uniform() * 2f64.powi(50)) as u64);
+    mix.note("R", drops.restitution);
+    mix.note("drops", drops.records.len() as f64);
+    let (height, height_std) = drops.height;
+    let drop = Drop { height, height_std: Some(height_std), ..Drop::default() };
+    let options = ImpactsOptions { threshold: Some(Train::THRESHOLD), ..ImpactsOptions::default() };
+    let records = drops.records.into_iter();
+    let train = |values| Train::of(&trace("V", RATE, values), &options, drop.full_flight()).ok();
+    let trains: Vec<Train> = records.filter_map(train).map(|(train, _)| train).collect();
+    let drop = Some(drop.beginning(&trains)).filter(|_| !trains.is_empty());
+    let measured = Measured { drop, trains, velocities: None, contact_time: drops.contact };
+    answers(drops.restitution, restitution(&measured).ok().as_ref())
 }
 
 // A type with those of records, where there may be none.
@@ -142,5 +173,5 @@ fn found(
             .for_each(|(i, v)| *v += hum * top * (TAU * 50.02 * i as f64 / rate).cos());
     }
     convert(&mut values, 1.5 * top, 12);
-    Train::of(&trace("V", rate, values), options).ok().map(|(train, _)| train)
+    Train::of(&trace("V", rate, values), options, None).ok().map(|(train, _)| train)
 }

@@ -12,6 +12,8 @@ mod drops;
 mod modes;
 mod pulses;
 mod record;
+#[path = "../../crates/vibro-measure/src/restitution/room.rs"]
+mod room;
 mod sweeps;
 mod tally;
 mod tones;

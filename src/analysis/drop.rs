@@ -7,13 +7,14 @@ use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
-use crate::record::{Trace, shown};
+use crate::record::{Finding, Trace, shown};
 use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
 use crate::report::words::About;
 use crate::report::{Cell, Plot, Table};
 use crate::units::notation::significant;
 use serde::Deserialize;
+use std::path::Path;
 
 /// What is known of drops of one series beside their records.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -151,6 +152,8 @@ pub struct Series {
     /// File and trace of each drop with a record.
     records: Vec<(String, Plot)>,
     findings: Vec<About>,
+    /// Why the first record that is left out allows no answer.
+    refused: Option<Error>,
 }
 
 impl Series {
@@ -165,7 +168,15 @@ impl Series {
             ..Drop::default()
         };
         let (trains, records, findings) = (Vec::new(), Vec::new(), Vec::new());
-        Series { drop, trains, velocities: None, contact_time: keys.contact_time, records, findings }
+        Series {
+            drop,
+            trains,
+            velocities: None,
+            contact_time: keys.contact_time,
+            records,
+            findings,
+            refused: None,
+        }
     }
 
     /// Adds what the keys say of a drop without a record.
@@ -192,7 +203,7 @@ impl Series {
             keep_hum: keys.keep_hum,
             ..ImpactsOptions::default()
         };
-        let (train, found) = Train::of(&trace, &how)?;
+        let (train, found) = Train::of(&trace, &how, self.drop.full_flight())?;
         self.trains.push(train);
         // Times alone matter here.
         let of_trace = trace.meta.findings.iter().filter(|found| found.code != Trace::UNCALIBRATED);
@@ -200,6 +211,20 @@ impl Series {
         self.findings.extend(findings.map(|found| (file.clone(), found.clone())));
         let plot = impacts::figures::drop(&file, &trace, &found.times);
         self.records.push((file, plot));
+        Ok(())
+    }
+
+    /// Leaves out a record that allows no answer, where others may.
+    ///
+    /// # Errors
+    /// The error of the record, where it is none of its data.
+    pub(crate) fn leave_out(&mut self, file: &Path, error: Error) -> Result<()> {
+        if error.exit_code() != 1 {
+            return Err(error);
+        }
+        let left = Finding::caution("drop-left-out").name("why", error.to_string());
+        self.findings.push((file_name(file), left));
+        self.refused.get_or_insert(error);
         Ok(())
     }
 
@@ -212,6 +237,11 @@ impl Series {
     /// # Errors
     /// If they allow none.
     pub fn answer(self, name: &str) -> Result<Answer> {
+        if self.is_empty()
+            && let Some(error) = self.refused
+        {
+            return Err(error);
+        }
         let drop = self.drop.beginning(&self.trains);
         let fell = drop.height.is_finite() && !drop.intervals.is_empty();
         let drop = fell.then_some(drop);

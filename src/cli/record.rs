@@ -242,7 +242,9 @@ impl Run for Restitution {
         let mut series = drop::Series::new(&self.keys);
         series.add_numbers(&self.keys);
         for file in &self.files {
-            self.record.measured(&folder, file, json, |source| series.add_record(&self.keys, source))?;
+            let added =
+                self.record.measured(&folder, file, json, |source| series.add_record(&self.keys, source));
+            added.or_else(|error| series.leave_out(file, error))?;
         }
         print::answer(series.answer("")?, output, json)
     }

@@ -76,6 +76,26 @@ fn blows_of_a_few_samples_have_a_mode() {
     }
 }
 
+/// Echoes of a room, 5 % after 4.1 ms and 3 % after 9.7 ms, are no bounces: R of four drops, of the usual three, and of one.
+#[test]
+fn drops_with_echoes_have_their_restitution() {
+    let Some((_root, path)) = unpacked("drops_echo") else { return };
+    let files: Vec<PathBuf> = (0..4).map(|k| path.join(format!("d{k}.wav"))).collect();
+    for drops in [4, 3, 1] {
+        let mut arguments = vec!["restitution", "--height", "0.5", "--height-std", "0.001"];
+        arguments.extend(files[..drops].iter().map(|file| text(file)));
+        let (code, answer, _) = vibro(&arguments);
+        assert_eq!((code, &answer["agree"]), (0, &true.into()), "{answer}");
+        for way in answer["by"].as_array().unwrap() {
+            let u = way["restitution"]["std"].as_f64().unwrap();
+            assert!(off(&way["restitution"], 0.78) < 4.0 && u < 0.002, "{way}");
+        }
+    }
+    let (code, _, _) = vibro(&["init", text(&path)]);
+    let proposed = std::fs::read_to_string(path.join("campaign.toml")).unwrap();
+    assert!(code == 0 && proposed.contains("[[drop]]") && proposed.matches("[[").count() == 1, "{proposed}");
+}
+
 #[test]
 fn bursts_that_ring_for_a_quarter_of_their_period_are_all_found() {
     let Some((_root, path)) = unpacked("bursts_ring_quarter.csv") else { return };

@@ -6,12 +6,15 @@
 
 mod background;
 mod detect;
+mod echoes;
 mod excitation;
 mod hum;
 mod interval;
 mod onset;
+mod rises;
 
 pub use detect::{Detected, ImpactsOptions, detect};
+pub(crate) use detect::{Sound, detect_among};
 pub use excitation::{PerCycle, Phase};
 pub use hum::Hum;
 pub use interval::{Interval, interval};
@@ -19,6 +22,7 @@ pub use interval::{Interval, interval};
 use super::Estimate;
 use super::mean::scatter;
 pub use background::median;
+use echoes::echoes;
 use interval::{Counted, count, evened, pattern};
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace};
@@ -80,8 +84,21 @@ pub struct Impacts {
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the reference channel has fewer than two
 /// edges; on impossible options.
 pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
-    let Detected { times, heights, onset_std, hum, mut findings, method, resolution } =
+    let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution } =
         detect(trace, options)?;
+    let stated = options.complete || options.refractory.is_some();
+    if let Some(echoes) = echoes(&times, &heights).filter(|_| !stated) {
+        let n = echoes.places.len();
+        if echoes.sure {
+            let keep = |i: usize| echoes.places.binary_search(&i).is_err();
+            times = (0..times.len()).filter(|i| keep(*i)).map(|i| times[i]).collect();
+            heights = (0..heights.len()).filter(|i| keep(*i)).map(|i| heights[i]).collect();
+            findings.push(Finding::note("echoes-ignored").count("n", n));
+        } else {
+            let found = Finding::doubt("impacts-or-echoes").count("n", n).number("delay", echoes.delay);
+            findings.push(found.number("pause", PAUSE * echoes.delay));
+        }
+    }
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let pattern = pattern(&steps);
     let counted = count(&times, &steps, options.complete || pattern.is_some());
@@ -90,11 +107,19 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let known = options.complete || options.excitation.is_some() || options.reference.is_some();
     if !known && pattern.is_none() && irregular(&steps) {
         let why = format!("{} bursts whose intervals are irregular: no period is in them", times.len());
-        return Err(Error::refused(why)
-            .hint("choose the band in which the impacts ring, and the envelope; or say that none is missed, for their mean interval")
-            .setting("band")
-            .setting("envelope")
-            .setting("none_missed"));
+        let refused = Error::refused(why);
+        // What was done already is no advice.
+        return Err(match (options.band, options.envelope) {
+            (Some(_), true) => refused
+                .hint("another band, where a spectrum shows the impacts ringing; or say that none is missed, for their mean interval")
+                .setting("band")
+                .setting("none_missed"),
+            _ => refused
+                .hint("choose the band in which the impacts ring, and the envelope; or say that none is missed, for their mean interval")
+                .setting("band")
+                .setting("envelope")
+                .setting("none_missed"),
+        });
     }
     let fitted = interval(&even, &counted.index).ok_or_else(|| {
         Error::refused("one impact alone counts: an interval needs two")
@@ -151,6 +176,9 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     answer.findings.extend(of_train);
     Ok(answer)
 }
+
+/// A pause that counts echoes with their impact, over the longest delay.
+const PAUSE: f64 = 1.2;
 
 /// Fewest intervals that show that they are irregular.
 const TELLING: usize = 12;

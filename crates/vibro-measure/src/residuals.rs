@@ -80,6 +80,12 @@ pub fn student(free: usize) -> Option<f64> {
     (free > 2).then(|| (free as f64 / (free as f64 - 2.0)).sqrt())
 }
 
+/// Factor on a standard uncertainty with `free` degrees of freedom: the standard deviation of Student's distribution where it has one, otherwise its
+/// quantile of 97.5 % over that of the normal one.
+pub fn widened(free: usize) -> f64 {
+    student(free).unwrap_or(if free == 2 { 4.303 / 1.960 } else { 12.706 / 1.960 })
+}
+
 /// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values, corrected for their
 /// number (Hurvich & Tsai 1989); NaN where there are too few values.
 pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {

@@ -4,6 +4,7 @@
 //! nothing is averaged.
 
 mod drop;
+mod plausible;
 mod train;
 mod velocities;
 
@@ -13,7 +14,7 @@ pub use velocities::Velocities;
 
 use super::Estimate;
 use crate::mean::{average, scatter};
-use crate::residuals::student;
+use crate::residuals::widened;
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result};
 
@@ -185,13 +186,14 @@ fn agreement(by: &[Way], findings: &mut Vec<Finding>) -> Option<bool> {
     agree
 }
 
-/// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student's, from four values on) and of what is `stated` of
-/// one value. Two or three have one only where what is stated explains how they scatter (95 %).
+/// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student's, from three values on) and of what is `stated` of
+/// one value. Two have one only where what is stated explains how they scatter (95 %).
 fn repeated(values: &[f64], stated: Option<f64>) -> (f64, Option<f64>) {
     let (n, mean, scatter) = (values.len() as f64, average(values), scatter(values));
-    let one = match student(values.len().saturating_sub(1)) {
-        Some(factor) => Some((factor * scatter).max(stated.unwrap_or(0.0))),
-        None => stated.filter(|u| n < 2.0 || scatter <= 1.96 * u),
+    let one = if values.len() > 2 {
+        Some((widened(values.len() - 1) * scatter).max(stated.unwrap_or(0.0)))
+    } else {
+        stated.filter(|u| n < 2.0 || scatter <= 1.96 * u)
     };
     (mean, one.map(|u| u / n.sqrt()))
 }
@@ -218,5 +220,9 @@ fn not_negative(name: &str, value: Option<f64>) -> Result<()> {
     }
 }
 
+#[cfg(test)]
+mod room;
+#[cfg(test)]
+mod rooms;
 #[cfg(test)]
 mod tests;

@@ -3,6 +3,7 @@
 use super::background::{background, bursts, median};
 use super::onset::Shape;
 use super::onset::{Onsets, onsets};
+use super::rises::rises;
 use super::{Hum, hum};
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -46,6 +47,27 @@ pub struct Detected {
 /// # Errors
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; on impossible options.
 pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
+    detect_among(trace, options, None)
+}
+
+/// Chooses impacts among sounds in the order of their times, given with the noise limit and the median height: their places, and findings.
+pub type Choose<'a> = &'a dyn Fn(&[Sound], f64, f64) -> Result<(Vec<usize>, Vec<Finding>)>;
+
+/// A sound that may be an impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sound {
+    /// When it begins, in s.
+    pub time: f64,
+    /// Its largest distance from the background.
+    pub height: f64,
+}
+
+/// As [`detect`]; with `choose`, whatever rises at once may be an impact, and that chooses those that are.
+pub(crate) fn detect_among(
+    trace: &Trace,
+    options: &ImpactsOptions,
+    choose: Option<Choose<'_>>,
+) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
     let mut values = banded(trace, options, rate)?;
@@ -61,20 +83,37 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
         zeroed(&mut values, quiet.level);
     }
     let pause = options.refractory.map(|s| ((s * rate) as usize).max(1));
-    let (mut bursts, stable) = bursts(&values, quiet.reach, pause);
+    let (mut bursts, stable) = match choose.filter(|_| pause.is_none()) {
+        Some(_) => (rises(&values, quiet.reach, rate), None),
+        None => bursts(&values, quiet.reach, pause),
+    };
     if median(&heights(&values, &bursts, -1.0)) > INVERTED * median(&heights(&values, &bursts, 1.0)) {
         findings.push(Finding::note("pulses-inverted"));
         for v in &mut values {
             *v = -*v;
         }
     }
-    let all = heights(&values, &bursts, 1.0);
+    let all = match choose {
+        Some(_) => {
+            bursts.iter().map(|b| values[b.clone()].iter().fold(0.0, |h: f64, v| h.max(v.abs()))).collect()
+        }
+        None => heights(&values, &bursts, 1.0),
+    };
     let least = (options.threshold.unwrap_or(THRESHOLD) * median(&all)).max(quiet.reach);
     let mut high = all.iter().map(|h| *h > least);
     bursts.retain(|_| high.next() == Some(true));
     let low = all.len() - bursts.len();
     let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
     findings.extend((low > 0).then(|| ignored.name("unit", unit)));
+    if let Some(choose) = choose {
+        let time = |b: &Range<usize>| trace.axis.start() + b.start as f64 / rate;
+        let high = all.iter().copied().filter(|h| *h > least);
+        let sounds: Vec<Sound> =
+            bursts.iter().zip(high).map(|(b, height)| Sound { time: time(b), height }).collect();
+        let (chosen, said) = choose(&sounds, quiet.reach, median(&all))?;
+        bursts = chosen.into_iter().map(|i| bursts[i].clone()).collect();
+        findings.extend(said);
+    }
     let ringing = stable.filter(|s| *s < STABLE && bursts.len() > 1);
     findings.extend(ringing.map(|s| Finding::caution("count-depends-on-ringing").number("factor", s)));
     let above = (median(&heights(&values, &bursts, 1.0)) - quiet.reach) / quiet.sigma;

@@ -27,7 +27,7 @@
 
 use super::background::median;
 use crate::mean::{Mean, average, mixture};
-use crate::residuals::student;
+use crate::residuals::widened;
 use std::f64::consts::FRAC_PI_2;
 
 /// Interval and what disturbs it.
@@ -112,12 +112,6 @@ fn nodes(d: &[f64], m: &[f64]) -> Vec<Gls> {
     all.push(node(0.0, below(least)));
     all.push(node(f64::INFINITY, 1.0 - below(LARGEST)));
     all
-}
-
-/// What a standard uncertainty of `free` degrees of freedom is multiplied by: the standard deviation of Student's distribution where it has
-/// one, otherwise its quantile of 97.5 % over that of the normal one.
-fn widened(free: usize) -> f64 {
-    student(free).unwrap_or(if free == 2 { 4.303 / 1.960 } else { 12.706 / 1.960 })
 }
 
 /// Correlation of intervals that follow each other, none of them over a missed impact: the mean product of neighbours over the variance. Without a gap

@@ -353,3 +353,48 @@ fn the_hints_of_a_refusal_find_the_impacts() {
     let why = impacts(&pulses(&[0.3], 1000, 1000.0, 0.005), &long).unwrap_err().to_string();
     assert!(!why.contains("pause"), "{why}");
 }
+
+/// Impacts of a machine of about 80 ms that jitter by a part of it, each with two echoes.
+fn echoing(seed: u64, jitter: f64, echo: f64) -> (Trace, Vec<f64>) {
+    let (rate, mut noise) = (20_000.0, Noise::new(seed));
+    let times: Vec<f64> = (0..40).map(|k| 0.05 + 0.08 * (f64::from(k) + jitter * noise.normal())).collect();
+    let mut values: Vec<f64> = (0..66_000).map(|_| 2e-3 * noise.normal()).collect();
+    for (delay, part) in [(0.0, 1.0), (4.1e-3, echo), (9.7e-3, 0.7 * echo)] {
+        for at in times.iter().map(|t| t + delay) {
+            for (i, v) in values.iter_mut().enumerate().skip((at * rate) as usize + 1).take(200) {
+                let t = i as f64 / rate - at;
+                *v += part * (-t / 6e-4).exp() * (std::f64::consts::TAU * 2000.0 * t).sin();
+            }
+        }
+    }
+    (trace(values, rate), times)
+}
+
+#[test]
+fn echoes_are_no_impacts() {
+    for echo in [0.05, 0.15, 0.3, 0.5] {
+        for seed in 0..4 {
+            let (record, times) = echoing(seed, 0.02, echo);
+            let found = impacts(&record, &ImpactsOptions::default()).unwrap();
+            assert_eq!((found.n, found.missed, found.doubled), (40, 0, 0), "{echo}: {:?}", found.findings);
+            let mean = (times[39] - times[0]) / 39.0;
+            // Half a swing of 2 kHz at either end.
+            assert!((found.interval.value - 0.08).abs() < 4.0 * found.interval.std.unwrap(), "{mean}");
+        }
+        // A machine that keeps its time may as well strike thrice: nothing is sure, and the pause that is named cures it.
+        let (record, _) = echoing(9, 0.0, echo);
+        let found = impacts(&record, &ImpactsOptions::default()).unwrap();
+        let doubt = found.findings.iter().find(|f| f.code == "impacts-or-echoes");
+        assert!(
+            found.n == 40 || doubt.is_some() && found.interval.std.is_none(),
+            "{echo}: {:?}",
+            found.findings
+        );
+        if let Some(pause) = doubt.and_then(|f| f.get("pause")) {
+            let options = ImpactsOptions { refractory: Some(pause), ..ImpactsOptions::default() };
+            let found = impacts(&record, &options).unwrap();
+            // One onset is known to half a swing of 2 kHz, 0.25 ms, and 39 intervals share two of them.
+            assert!(found.n == 40 && (found.interval.value - 0.08).abs() < 1e-5, "{:?}", found.interval);
+        }
+    }
+}

@@ -45,6 +45,12 @@ impl Drop {
         0.5 * interval * (self.gravity / (2.0 * self.height)).sqrt()
     }
 
+    /// The flight in s after the fall if R were 1; `None` without a height.
+    pub fn full_flight(&self) -> Option<f64> {
+        let flight = (8.0 * self.height / self.gravity).sqrt();
+        Some(flight).filter(|flight| flight.is_finite() && *flight > 0.0)
+    }
+
     /// With the first flights of trains that begin with the fall. One interval has two onsets; of several trains, the root mean square.
     pub fn beginning(mut self, trains: &[Train]) -> Drop {
         self.intervals.extend(trains.iter().filter_map(|t| t.intervals.first()));

@@ -11,12 +11,14 @@
 //! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it: they rule the last flights, and a
 //! scatter that few flights hardly show rules the first.
 
+use super::plausible::{Heard, plausible};
 use super::{Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
-use crate::impacts::{Detected, ImpactsOptions, detect};
+use crate::impacts::{Detected, ImpactsOptions, Sound, detect_among};
 use crate::mean::mixture;
 use crate::residuals::student;
 use nalgebra::{DMatrix, DVector};
+use vibro_record::units::notation::{counted, quantity};
 use vibro_record::{Error, Finding, Result, Trace};
 
 /// Flight times of one train of bounces.
@@ -32,29 +34,16 @@ impl Train {
     /// Lowest bounce as a part of the median one.
     pub const THRESHOLD: f64 = 0.02;
 
-    /// The bounces of a falling body, with its impacts; what precedes the first large one is handling, not an impact.
+    /// The bounces of a falling body, with its impacts: the most plausible train among what is heard. `full` is the flight in s that would follow the
+    /// fall if R were 1, where the height is known.
     ///
     /// # Errors
-    /// As [`detect`]; also where fewer than two impacts are left.
-    pub fn of(trace: &Trace, options: &ImpactsOptions) -> Result<(Train, Detected)> {
-        let mut found = detect(trace, options)?;
-        let largest = found.heights.iter().copied().fold(0.0, f64::max);
-        // A body strikes first as hard as it ever does; half of that leaves room for coarse samples.
-        let first = found.heights.iter().position(|h| *h >= 0.5 * largest).unwrap_or(0);
-        if first > 0 {
-            found.findings.push(Finding::note("handling-ignored").count("n", first));
-            found.times.drain(..first);
-            found.heights.drain(..first);
-        }
-        // Ringing may seem to begin as soon as what it follows.
-        let mut last = f64::NEG_INFINITY;
-        let later = |(time, _): &(f64, f64)| {
-            let before = last;
-            last = time.max(before);
-            *time > before
-        };
-        let impacts = found.times.into_iter().zip(found.heights).filter(later);
-        (found.times, found.heights) = impacts.unzip();
+    /// As [`detect_among`]; also where no train of two impacts is more plausible than all others.
+    pub fn of(trace: &Trace, options: &ImpactsOptions, full: Option<f64>) -> Result<(Train, Detected)> {
+        let ends = (trace.axis.start(), trace.axis.at(trace.values.len()));
+        let choose =
+            |sounds: &[Sound], reach: f64, median: f64| choose(sounds, Heard { reach, median, ends, full });
+        let found = detect_among(trace, options, Some(&choose))?;
         if found.times.len() < 2 {
             let few = Error::refused("one impact found: restitution from a drop needs two");
             let few = few.hint("a lower threshold, or a shorter pause between impacts");
@@ -63,6 +52,59 @@ impl Train {
         let intervals = found.times.windows(2).map(|w| w[1] - w[0]).collect();
         Ok((Train { intervals, onset_std: found.onset_std }, found))
     }
+}
+
+/// The impacts among sounds, and what the others are.
+fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> {
+    let n = sounds.len();
+    let Some(train) = plausible(sounds, heard) else {
+        let impacts = counted(n, "impact");
+        let why = format!("{impacts} found, a drop has two or more: each rises at once and decays");
+        let hint = "`vibro decay` measures a ringing, `vibro pulse` the force of one contact";
+        return Err(Error::refused(why).hint(hint));
+    };
+    if train.even {
+        let n = train.impacts.len();
+        let why = format!("{n} sounds follow each other evenly: the flights of bounces shrink");
+        let hint = "`vibro impacts` measures a machine, `vibro decay` a ringing";
+        return Err(Error::refused(why).hint(hint));
+    }
+    if let Some((i, j)) = train.rival {
+        let flight = |i: usize, j: usize| quantity(sounds[j].time - sounds[i].time, "s", 3);
+        let [first, other] = [flight(train.impacts[0], train.impacts[1]), flight(i, j)];
+        let why = format!(
+            "{n} sounds, and two trains of bounces among them are as likely: first flight {first} or {other}"
+        );
+        let refused = Error::refused(why);
+        return Err(match cure(sounds, heard) {
+            Some(threshold) => refused
+                .hint("a threshold that leaves one of them, if what is quieter is no bounce")
+                .set("threshold", format!("{threshold:.2}")),
+            None => refused.hint("cut the record to the bounces, or record again in quiet"),
+        });
+    }
+    let before = train.impacts[0];
+    let other = n - train.impacts.len() - before - train.echoes;
+    if train.impacts.len() == 2 && before + other > 0 {
+        let sounds = counted(before + other, "other sound");
+        let why = format!("one flight beside {sounds}: no second flight shows that it is that of a bounce");
+        return Err(Error::refused(why).hint("cut the record to the bounces, or record again in quiet"));
+    }
+    let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));
+    let findings =
+        [of("handling-ignored", before), of("echoes-ignored", train.echoes), of("sounds-ignored", other)];
+    Ok((train.impacts, findings.into_iter().flatten().collect()))
+}
+
+/// The lowest threshold in hundredths that leaves one train of three impacts or more.
+fn cure(sounds: &[Sound], heard: Heard) -> Option<f64> {
+    (1..100).map(|hundredths| 0.01 * f64::from(hundredths)).find(|threshold| {
+        let high: Vec<Sound> =
+            sounds.iter().copied().filter(|s| s.height > threshold * heard.median).collect();
+        high.len() < sounds.len()
+            && plausible(&high, heard)
+                .is_some_and(|train| !train.even && train.rival.is_none() && train.impacts.len() > 2)
+    })
 }
 
 /// A flight this much longer than the first is no bounce of the same fall.

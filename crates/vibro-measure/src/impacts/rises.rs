@@ -1,0 +1,68 @@
+//! Where a sound rises at once, as an impact makes it: candidates for impacts among echoes, ringing and other sounds.
+
+use std::collections::VecDeque;
+use std::ops::Range;
+
+/// A level rises at once where it grows by this factor from one span to the next.
+const RISE: f64 = 3.0;
+/// A sound exceeds the noise limit by this factor: what rings down through the limit rises above it again by chance.
+const CLEAR: f64 = 1.5;
+/// Span in s in which a level rises at once: longer than the contact of metals and hard plastics (below 1 ms), than half a swing of a plate of 170 Hz or
+/// more, and than the loudest part of their sound.
+const SPAN: f64 = 3e-3;
+
+/// Stretches of a span that begin where a sound has risen to half of its largest value, which exceeds `reach` by [`CLEAR`], and all of the span before by [`RISE`]
+/// where that is no noise.
+pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
+    let span = ((SPAN * rate) as usize).max(2);
+    let ahead = largest_ahead(values, span);
+    let mut found: Vec<Range<usize>> = Vec::new();
+    let mut i = 0;
+    while i < values.len() {
+        let before = if i < span { ahead[0].min(reach) } else { ahead[i - span] };
+        // What is below the noise limit is noise, and no sound that something rises from.
+        if ahead[i] <= CLEAR * reach || before > reach && ahead[i] <= RISE * before {
+            i += 1;
+            continue;
+        }
+        let half = (i..values.len()).find(|k| values[*k].abs() >= 0.5 * ahead[i]).unwrap_or(i);
+        found.push(half..(half + span).min(values.len()));
+        i = half + span;
+    }
+    found
+}
+
+/// Largest absolute value of the span that begins at each sample.
+fn largest_ahead(values: &[f64], span: usize) -> Vec<f64> {
+    let mut all = vec![0.0; values.len()];
+    // Places of values that are larger than all behind them within the span, the largest first.
+    let mut kept: VecDeque<usize> = VecDeque::new();
+    for i in (0..values.len()).rev() {
+        while kept.back().is_some_and(|k| values[*k].abs() <= values[i].abs()) {
+            kept.pop_back();
+        }
+        kept.push_back(i);
+        while kept.front().is_some_and(|k| *k >= i + span) {
+            kept.pop_front();
+        }
+        all[i] = kept.front().map_or(0.0, |k| values[*k].abs());
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vibro_math::Noise;
+
+    #[test]
+    fn the_largest_value_ahead_is_that_of_a_plain_search() {
+        let mut noise = Noise::new(3);
+        let values: Vec<f64> = (0..500).map(|_| noise.normal()).collect();
+        for span in [1, 2, 7, 600] {
+            let plain =
+                |i: usize| values[i..(i + span).min(500)].iter().fold(0.0, |h: f64, v| h.max(v.abs()));
+            assert_eq!(largest_ahead(&values, span), (0..500).map(plain).collect::<Vec<f64>>());
+        }
+    }
+}
