@@ -58,7 +58,9 @@ fn amplitudes(spectrum: &mut Spectrum) -> Result<()> {
     let meta = &mut spectrum.meta;
     if let Some(reference) = meta.unit.reference() {
         let tenfold = if reference.symbol().ends_with("/Hz") { POWER } else { AMPLITUDE };
-        values.iter_mut().for_each(|level| *level = 10f64.powf(*level / tenfold));
+        for level in values.iter_mut() {
+            *level = 10f64.powf(*level / tenfold);
+        }
         meta.findings.retain(|found| found.code != "levels-in-decibels");
         meta.step("from_levels", &[("unit", &meta.unit.symbol().to_owned())]);
         let factor = meta.adopt_unit(reference.symbol());
@@ -115,45 +117,45 @@ mod tests {
 
     /// A LabVIEW spectrum of 40 lines, 0.5 Hz apart, which its writer calls a time: levels of −60 to −21 dB.
     fn labview(name: &str) -> String {
-        let rows: String = (0..40).map(|i| format!("\t{}\n", i - 60)).collect();
+        let rows = (0..40).map(|i| format!("\t{}\n", i - 60)).collect::<Vec<_>>().concat();
         let head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\nChannels\t1\n";
         let axis = "Y_Unit_Label\tg\nX_Dimension\tTime\nX0\t0\nDelta_X\t0.5\n***End_of_Header***\n";
         format!("{head}{axis}X_Value\t{name}\tComment\n{rows}")
     }
 
-    fn read(reader: Reader, name: &str) -> Result<Recording> {
+    fn read(reader: &Reader, name: &str) -> Result<Recording> {
         reader.from_reader("x.lvm", labview(name).as_bytes())
     }
 
     #[test]
     fn a_spectrum_over_time_in_decibels_is_read_when_both_are_stated() {
         let name = "Acceleration (FFT - (RMS))";
-        let said = read(Reader::new(), name).unwrap_err();
+        let said = read(&Reader::new(), name).unwrap_err();
         assert!(said.settings().eq(["base_band", "rate"]), "{said}");
-        let said = read(Reader::new().base_band(Some(19.5)), name).unwrap_err();
+        let said = read(&Reader::new().base_band(Some(19.5)), name).unwrap_err();
         assert!(said.settings().eq(["unit"]), "{said}");
         let unit = Unit::parse_or_level("dB re 1 g");
         for band in [19.5, 20.0] {
-            let read = read(Reader::new().base_band(Some(band)).unit(unit.clone()), name).unwrap();
+            let read = read(&Reader::new().base_band(Some(band)).unit(unit.clone()), name).unwrap();
             let Record::Spectrum(spectrum) = &read.records[0] else { panic!("{read:?}") };
             let Values::Real(values) = &spectrum.values else { panic!("{spectrum:?}") };
             assert_eq!((spectrum.meta.unit.symbol(), spectrum.axis.step()), ("m/s²", Some(0.5)));
             // −40 dB re 1 g; a power and a product, each rounded.
-            assert!((values[20] / 0.0980665 - 1.0).abs() < 1e-14, "{}", values[20]);
+            assert!((values[20] / 0.098_066_5 - 1.0).abs() < 1e-14, "{}", values[20]);
             assert!(spectrum.meta.findings.iter().all(|found| found.code != "levels-in-decibels"));
         }
     }
 
     #[test]
     fn a_base_band_is_used_or_said_not_to_be() {
-        let read = read(Reader::new().base_band(Some(50.0)), "Acceleration").unwrap();
+        let read = read(&Reader::new().base_band(Some(50.0)), "Acceleration").unwrap();
         assert!(matches!(read.records[0], Record::Trace(_)));
         assert!(read.all_findings().iter().any(|found| found.code == "band-unused"));
     }
 
     #[test]
     fn a_stated_rate_makes_any_name_a_trace() {
-        let read = read(Reader::new().rate(Some(2.0)), "PSD sensor").unwrap();
+        let read = read(&Reader::new().rate(Some(2.0)), "PSD sensor").unwrap();
         assert!(matches!(read.records[0], Record::Trace(_)));
     }
 

@@ -72,8 +72,8 @@ mod tests {
         let values: Vec<f64> = (0..100).map(|i| f64::from(i) / 128.0).collect();
         let meta = Meta::new("v", Unit::parse("m/s").unwrap());
         let trace = Trace { meta, axis: Axis::time(2.0, 0.125, 100), values };
-        let rows: String =
-            trace.values.iter().enumerate().map(|(i, v)| format!("{},{v}\n", trace.axis.at(i))).collect();
+        let row = |(i, v): (usize, &f64)| format!("{},{v}\n", trace.axis.at(i));
+        let rows = trace.values.iter().enumerate().map(row).collect::<Vec<_>>().concat();
         let mut wave = Vec::new();
         Target::Wav.write(&[Record::Trace(trace.clone())], Storage::default(), &mut wave).unwrap();
         for (name, bytes) in [("x.csv", format!("time [s],v [m/s]\n{rows}").as_bytes()), ("x.wav", &wave)] {

@@ -873,10 +873,10 @@ fn missing_values_are_no_names() {
     }
 }
 
-/// ImageJ saves a summary of its tracks above their rows; a logger may write a summary below them.
+/// `ImageJ` saves a summary of its tracks above their rows; a logger may write a summary below them.
 #[test]
 fn of_two_tables_the_longer_is_read_and_the_other_counted() {
-    let rows: String = (0..30).map(|i| format!("{i}\t{}\t50.5\n", 2 * i + i % 3)).collect();
+    let rows = (0..30).map(|i| format!("{i}\t{}\t50.5\n", 2 * i + i % 3)).collect::<Vec<_>>().concat();
     let summary = "\tTrack\tLength\tFrames\n1\t1\t33.5\t275\n2\t2\t44.5\t275\n";
     let names = "Frame\tX1\tY1\n";
     for text in [
@@ -898,7 +898,7 @@ fn of_two_tables_the_longer_is_read_and_the_other_counted() {
 
 #[test]
 fn rows_of_numbers_in_a_head_are_counted() {
-    let rows: String = (0..30).map(|i| format!("{i},{},50.5\n", 2 * i + i % 3)).collect();
+    let rows = (0..30).map(|i| format!("{i},{},50.5\n", 2 * i + i % 3)).collect::<Vec<_>>().concat();
     let text = format!("1 1 33.5 5.2\n2 2 44.5 9.2\nFrame,X1,Y1\n{rows}");
     let found = of(text);
     assert_eq!(found.records[0].len(), 30);
