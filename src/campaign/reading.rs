@@ -105,7 +105,7 @@ impl Reading {
 
     /// The same of files that say their sampling rate or frequencies themselves.
     pub fn untimed(&self) -> Reading {
-        Reading { rate: None, base_band: None, span: None, ..self.clone() }
+        Reading { rate: None, base_band: None, span: None, stretch: None, resample: None, ..self.clone() }
     }
 
     /// A reader that knows what is stated.

@@ -22,7 +22,8 @@ impl Reader {
     pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
         let source = self.source(path)?;
         let path = source.path().to_owned();
-        if self.entry(&source)?.format == Format::Wav {
+        let as_it_is = self.options.stretch.is_none() && self.options.resample.is_none();
+        if as_it_is && self.entry(&source)?.format == Format::Wav {
             let mut wave = Wave::open(&source, &self.options)?;
             let chosen = named(&path, channels, wave.channels.iter().map(|t| &t.meta))?;
             let traces: Vec<Trace> = chosen.iter().map(|i| wave.channels[*i].clone()).collect();

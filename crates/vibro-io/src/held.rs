@@ -99,7 +99,11 @@ impl Contents {
             let clock = trace.meta.findings.iter().find(of_clock).or(of_file.as_ref());
             trace.meta.clock = clock.and_then(|found| found.get("relative")).unwrap_or_default();
             options.stretch.map_or(Ok(()), |number| trace.keep_stretch(number))?;
-            options.resample.map_or(Ok(()), |rate| trace.resample(rate))?;
+            if let Some(rate) = options.resample {
+                let end = trace.axis.len().saturating_sub(1);
+                options.hold((trace.axis.at(end) - trace.axis.start()) * rate)?;
+                trace.resample(rate)?;
+            }
             let one = options.stretch.is_some() && options.resample.is_none();
             let own = trace.rate().zip(options.rate).filter(|_| one);
             if let Some((own, stated)) = own.filter(|(own, stated)| (own / stated - 1.0).abs() > NOMINAL) {

@@ -1,8 +1,8 @@
 //! Spectra that pass for something else: levels in decibels that pass for amplitudes, lines that pass for samples over time.
 
-use crate::Options;
 use crate::assemble::{short, to_si};
 use crate::held::Contents;
+use crate::{Format, Options};
 use vibro_record::units::is_level;
 use vibro_record::{AxisKind, Error, Meta, Record, Result, Spectrum, Trace, Values};
 
@@ -20,12 +20,14 @@ const FEW: usize = 8;
 ///
 /// # Errors
 /// If a channel calls itself a spectrum over time, or levels have a linear unit.
-pub fn settle(mut contents: Contents, options: &Options) -> Result<Contents> {
+pub fn settle(mut contents: Contents, format: Format, options: &Options) -> Result<Contents> {
+    // A table has a column of times, or a person says its rate.
+    let table = matches!(format, Format::Csv | Format::Ascii);
     for (record, _) in &mut contents.records {
         match record {
-            Record::Trace(trace) => no_spectrum(trace, options)?,
+            Record::Trace(trace) if !table => no_spectrum(trace, options)?,
             Record::Spectrum(spectrum) => amplitudes(spectrum)?,
-            Record::Frf(_) => {}
+            Record::Trace(_) | Record::Frf(_) => {}
         }
     }
     Ok(contents)
@@ -40,9 +42,8 @@ pub fn needs_values(contents: &Contents) -> bool {
 /// Refuses a spectrum over "time", unless a person states its sampling rate.
 fn no_spectrum(trace: &Trace, options: &Options) -> Result<()> {
     let stated = options.rate.is_some() && !options.rate_of_band;
-    let name = trace.meta.name.to_lowercase();
-    let spectral = name.split(|c: char| !c.is_alphanumeric()).any(|word| SPECTRAL.contains(&word));
-    if stated || !spectral || trace.axis.kind != AxisKind::Time || trace.axis.is_empty() {
+    if stated || !is_spectral(&trace.meta.name) || trace.axis.kind != AxisKind::Time || trace.axis.is_empty()
+    {
         return Ok(());
     }
     let end = short(trace.axis.at(trace.axis.len() - 1));
@@ -51,6 +52,10 @@ fn no_spectrum(trace: &Trace, options: &Options) -> Result<()> {
         .hint(format!("if its lines end at {end} Hz, state that base band; of a time record, state the rate"))
         .setting("base_band")
         .setting("rate"))
+}
+
+fn is_spectral(name: &str) -> bool {
+    name.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| SPECTRAL.contains(&word))
 }
 
 fn amplitudes(spectrum: &mut Spectrum) -> Result<()> {
@@ -72,7 +77,7 @@ fn amplitudes(spectrum: &mut Spectrum) -> Result<()> {
     let words = decibels(meta).filter(|_| linear && meta.unit.is_known());
     let why = match words {
         Some(words) => format!("{:?} has levels ({words:?}) in the linear unit {}", meta.name, meta.unit),
-        None if below && linear => {
+        None if below && linear && is_spectral(&meta.name) => {
             format!("no value of {:?} is above 0: they may be levels in decibels", meta.name)
         }
         None => return Ok(()),

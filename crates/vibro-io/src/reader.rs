@@ -266,9 +266,10 @@ impl Reader {
         // A wave file is read from there on.
         let span = self.options.span.filter(|_| entry.format != Format::Wav);
         let read = |survey| (entry.read)(source, &self.options, survey);
-        let contents = room.and_then(|()| read(survey && span.is_none())).and_then(|all| {
+        let changes = span.is_some() || self.options.stretch.is_some() || self.options.resample.is_some();
+        let contents = room.and_then(|()| read(survey && !changes)).and_then(|all| {
             let all = if level::needs_values(&all) { read(false)? } else { all };
-            level::settle(span::cut(all.evened(&self.options)?, span)?, &self.options)
+            level::settle(span::cut(all.evened(&self.options)?, span)?, entry.format, &self.options)
         });
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
     }

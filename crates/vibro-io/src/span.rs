@@ -1,9 +1,9 @@
 //! A part of time traces, from one time to another.
 
-use crate::assemble::short;
+use crate::assemble::{drift, from_values, short};
 use crate::held::Contents;
 use std::ops::Range;
-use vibro_record::{Axis, AxisKind, Error, Meta, Record, Result};
+use vibro_record::{Axis, AxisKind, Error, Grid, Meta, Record, Result};
 
 /// Indices of the samples of `axis` that lie within a `span` in s: from its first value on and before its second.
 ///
@@ -39,9 +39,24 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if trace.axis.kind != AxisKind::Time || trace.axis.is_empty() {
             continue;
         }
+        // Only a record that rises has one part between two times; stretches are numbered in the whole.
+        let rises = |instants: &[f64]| instants.is_sorted_by(|a, b| a < b);
+        if matches!(&trace.axis.grid, Grid::Uneven(instants) if !rises(instants)) {
+            trace.sampling_rate()?;
+        }
         let part = within(&trace.axis, span)?;
         if part.len() < trace.values.len() {
-            trace.axis = trace.axis.part(part.clone());
+            let mut axis = trace.axis.part(part.clone());
+            if let Grid::Uneven(instants) = axis.grid {
+                let resolution = drift(&instants, false);
+                let (even, found) = from_values(AxisKind::Time, instants, resolution, "time");
+                if even.step().is_none() {
+                    trace.sampling_rate()?;
+                }
+                trace.meta.findings.extend(found);
+                axis = even;
+            }
+            trace.axis = axis;
             trace.values.truncate(part.end);
             trace.values.drain(..part.start);
         }

@@ -194,6 +194,7 @@ fn records_of(
     findings.extend(missing::kept(rows.missing));
     let counted = |code, n: usize| (n > 0).then(|| Finding::caution(code).count("n", n));
     findings.extend(counted("rows-empty", rows.empty));
+    findings.extend(counted("blank-lines-between-blocks", rows.separators));
     findings.extend(counted("rows-in-head", rows_in(&dialect.header)));
     if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));

@@ -93,7 +93,8 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
             let keep = |i: usize| echoes.places.binary_search(&i).is_err();
             times = (0..times.len()).filter(|i| keep(*i)).map(|i| times[i]).collect();
             heights = (0..heights.len()).filter(|i| keep(*i)).map(|i| heights[i]).collect();
-            findings.push(Finding::note("echoes-ignored").count("n", n));
+            let found = Finding::caution("echoes-ignored").count("n", n);
+            findings.push(found.number("delay", echoes.delay));
         } else {
             let found = Finding::doubt("impacts-or-echoes").count("n", n).number("delay", echoes.delay);
             findings.push(found.number("pause", PAUSE * echoes.delay));

@@ -102,18 +102,21 @@ impl Unit {
         Unit::parse(text).or_else(|| Some(Unit::opaque(text)).filter(|unit| unit.reference().is_some()))
     }
 
-    /// What 0 dB stand for, where it is a unit of levels that says so.
+    /// What 0 dB stand for, where it is a unit of levels that says so: an amplitude, or a density of power.
     ///
     /// ```
     /// use vibro_record::units::Unit;
     /// let reference = |text| Unit::parse_or_opaque(text).reference().map(|unit| unit.factor());
     /// assert_eq!(reference("dB re 1e-6 m/s²"), Some(1e-6));
     /// assert_eq!(reference("dB re g"), Some(9.80665));
+    /// assert_eq!(reference("dB re 1 pW"), None);
     /// assert_eq!(reference("dB"), None);
     /// ```
     pub fn reference(&self) -> Option<Unit> {
         let (_, reference) = self.symbol.split_once(" re ").filter(|_| self.is_level())?;
-        Unit::parse(reference).or_else(|| Unit::parse(&format!("1 {reference}")))
+        let unit = Unit::parse(reference).or_else(|| Unit::parse(&format!("1 {reference}")))?;
+        // Of a watt, a square or another product it is open whether 10 dB or 20 dB are a factor of ten.
+        (unit.quantity() != Quantity::Other || unit.symbol().ends_with("/Hz")).then_some(unit)
     }
 
     /// Spelling.

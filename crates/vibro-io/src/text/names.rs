@@ -151,7 +151,9 @@ impl Name {
     pub fn unknown_unit(&self) -> Option<&str> {
         let (name, unit) = bracketed(&self.name, '(', ')')?;
         let short = (1..=3).contains(&unit.chars().count()) && unit.chars().all(char::is_alphabetic);
-        (self.unit.is_none() && short && name.ends_with(' ')).then_some(unit)
+        let word =
+            ["x", "y", "z", "rms", "avg", "raw", "max", "min", "abs"].contains(&unit.to_lowercase().as_str());
+        (self.unit.is_none() && short && !word && name.ends_with(' ')).then_some(unit)
     }
 
     /// Whether the name is one of a column that only counts.

@@ -22,6 +22,8 @@ pub struct Rows {
     pub sparse: Vec<Option<(usize, usize)>>,
     /// Number of missing values.
     pub missing: usize,
+    /// Number of gaps of blank lines that separate blocks of rows.
+    pub separators: usize,
     /// Number of rows in which the abscissa and all values are missing: they are left out.
     pub empty: usize,
     /// Remarks between and behind the rows.
@@ -101,7 +103,9 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
             values.push(MISSING);
         }
     }
-    if !separate(&blanks) {
+    if separate(&blanks) {
+        rows.separators = blanks.len();
+    } else {
         columns[0] = with_missing(&columns[0], blanks);
         missing = with_blanks;
     }

@@ -3,8 +3,8 @@
 use super::background::median;
 use crate::mean::scatter;
 
-/// Longest delay of an echo of a room in s: a way of 20 m.
-const LONGEST: f64 = 0.06;
+/// Longest delay of an echo of a room in s: a way of 14 m.
+const LONGEST: f64 = 0.04;
 /// An echo is quieter than its impact by this factor or more.
 const QUIETER: f64 = 0.8;
 /// Delays that differ by less, in s, are one delay.

@@ -19,7 +19,9 @@ pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     let mut i = 0;
     while i < values.len() {
-        let before = if i < span { ahead[0].min(reach) } else { ahead[i - span] };
+        // A record that begins loud begins within a sound, and not with an impact.
+        let known = i.max(span / 4).min(values.len());
+        let before = if i < span { largest(&values[..known]) } else { ahead[i - span] };
         // What is below the noise limit is noise, and no sound that something rises from.
         if ahead[i] <= CLEAR * reach || before > reach && ahead[i] <= RISE * before {
             i += 1;
@@ -30,6 +32,11 @@ pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
         i = half + span;
     }
     found
+}
+
+/// Largest absolute value.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |h: f64, v| h.max(v.abs()))
 }
 
 /// Largest absolute value of the span that begins at each sample.
@@ -56,12 +63,22 @@ mod tests {
     use vibro_math::Noise;
 
     #[test]
+    fn a_record_that_begins_in_a_sound_does_not_begin_with_an_impact() {
+        // A ring of 2 kHz that fades within 10 ms, and an impact that rings so after 50 ms; sampled at 20 kHz.
+        let ring =
+            |t: f64| if t < 0.0 { 0.0 } else { (-t / 2e-3).exp() * (4e3 * std::f64::consts::PI * t).sin() };
+        let values: Vec<f64> =
+            (0..2000).map(|i| f64::from(i) / 2e4).map(|t| ring(t + 0.1e-3) + ring(t - 0.05)).collect();
+        let starts: Vec<usize> = rises(&values, 0.01, 2e4).iter().map(|r| r.start).collect();
+        assert!(starts.len() == 1 && (1000..1010).contains(&starts[0]), "{starts:?}");
+    }
+
+    #[test]
     fn the_largest_value_ahead_is_that_of_a_plain_search() {
         let mut noise = Noise::new(3);
         let values: Vec<f64> = (0..500).map(|_| noise.normal()).collect();
         for span in [1, 2, 7, 600] {
-            let plain =
-                |i: usize| values[i..(i + span).min(500)].iter().fold(0.0, |h: f64, v| h.max(v.abs()));
+            let plain = |i: usize| largest(&values[i..(i + span).min(500)]);
             assert_eq!(largest_ahead(&values, span), (0..500).map(plain).collect::<Vec<f64>>());
         }
     }
