@@ -139,11 +139,7 @@ impl Run {
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let results = campaign.within().at(&folder);
         let kept = if self.again { Kept::none(&results) } else { Kept::of(&results) };
-        let unused = print::unused(&folder);
-        let elsewhere = match &self.out {
-            Some(_) => format!("--out {}", print::typed(&unused)),
-            None => format!("out = {:?}", unused.file_name().map_or_else(String::new, shown)),
-        };
+        let elsewhere = format!("--out {}", print::typed(&print::unused(&folder)));
         let mut output = print::output(results, Owner::Run, elsewhere)?;
         let campaign = proposed(campaign, &kept, json)?;
         let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);

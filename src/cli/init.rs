@@ -58,7 +58,7 @@ impl super::Run for Init {
             None => proposal.toml(),
         };
         let nothing = text.trim().is_empty();
-        let again = "run the same command again".to_owned();
+        let again = "move that file to another folder, and run the same command again".to_owned();
         let mut output = print::output(within.at(folder_of(&path)), Owner::Person, again)?;
         match &known {
             Some(_) if nothing => {}

@@ -97,7 +97,7 @@ impl File {
         let parent = folder_of(path);
         if !parent.is_dir() {
             let found = format!("the folder {} does not exist", shown(parent));
-            return Err(Error::usage(found, "an existing folder"));
+            return Err(Error::usage(found, "an existing folder").hint("make that folder first"));
         }
         let file = File { output: output(folder.at(parent), owner, typed(&unused(path)))?, name };
         file.expect().map(|()| file)

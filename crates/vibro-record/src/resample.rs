@@ -123,8 +123,11 @@ pub fn evened(error: Error, instants: &[f64]) -> Error {
         );
         return error.hint(hint).set("stretch", number.to_string());
     }
-    if instants.windows(2).any(|w| w[1] <= w[0]) {
+    if instants.windows(2).any(|w| w[1] < w[0]) {
         return error.hint("sort the rows, or cut the file where it begins anew");
+    }
+    if instants.windows(2).any(|w| w[1] == w[0]) {
+        return error.hint("several samples have one time: state the samples per second").setting("rate");
     }
     let mean = instants.len().saturating_sub(1) as f64 / (instants[instants.len() - 1] - instants[0]);
     error.hint("interpolate on an even grid").set("resample", proposed(mean))

@@ -9,7 +9,13 @@ pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()
     let at = before + place;
     let why =
         format!("sample {at} of channel {channel:?} is missing: it would spread over all of the result");
-    Err(Error::refused(why).hint("read the part before the gap, or bridge it").setting("span"))
+    Err(Error::refused(why)
+        .hint(if at == 0 {
+            "read the part behind the gap"
+        } else {
+            "read the part before the gap, or bridge it"
+        })
+        .setting("span"))
 }
 
 /// A channel of one value has no spectrum.

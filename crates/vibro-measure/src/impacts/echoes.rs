@@ -2,6 +2,7 @@
 
 use super::background::median;
 use crate::mean::scatter;
+use std::collections::BTreeSet;
 
 /// Longest delay of an echo of a room in s: a way of 14 m.
 const LONGEST: f64 = 0.04;
@@ -9,7 +10,7 @@ const LONGEST: f64 = 0.04;
 const QUIETER: f64 = 0.8;
 /// Delays that differ by less, in s, are one delay.
 const SAME: f64 = 3e-4;
-/// Part of the impacts that have an echo, at least.
+/// Part of the impacts with any echo that have one of this delay, at least.
 const MOST: f64 = 0.6;
 /// Part of the impacts that something else precedes by the same delay, at most: in a train of uneven heights most do.
 const FEW: f64 = 0.2;
@@ -29,33 +30,67 @@ pub struct Echoes {
     pub sure: bool,
 }
 
-/// Echoes among bursts with their times in s and heights; `None` where none repeats. A burst that no louder one precedes within the longest delay is an
-/// impact, and the others follow the last of these.
+/// Echoes among bursts with their times in s and heights; `None` where none repeats. Delay by delay, the most frequent first: a quieter burst follows
+/// most of the others by it, and hardly anything precedes these by it.
 pub fn echoes(times: &[f64], heights: &[f64]) -> Option<Echoes> {
-    let (mut impacts, mut followers): (Vec<usize>, Vec<(usize, f64)>) = (Vec::new(), Vec::new());
-    for (i, (time, height)) in times.iter().zip(heights).enumerate() {
-        match impacts.last() {
-            Some(last) if time - times[*last] < LONGEST && *height < QUIETER * heights[*last] => {
-                followers.push((i, time - times[*last]));
-            }
-            _ => impacts.push(i),
+    let mut impact = vec![true; times.len()];
+    let (mut longest, mut off) = (0.0, Vec::new());
+    let mut pairs = pairs(times, heights);
+    while let Some((delay, quieter)) = repeated(times, &impact, &pairs) {
+        let members = pairs.iter().filter(|pair| quieter.contains(&pair.1));
+        off.extend(members.map(|pair| pair.2 - delay).filter(|off| off.abs() <= SAME));
+        for i in &quieter {
+            impact[*i] = false;
+        }
+        pairs.retain(|(first, second, _)| impact[*first] && impact[*second]);
+        longest = delay.max(longest);
+    }
+    let of = |is: bool| (0..times.len()).filter(|i| impact[*i] == is).collect::<Vec<usize>>();
+    let kept = of(true);
+    let intervals: Vec<f64> = kept.windows(2).map(|w| times[w[1]] - times[w[0]]).collect();
+    let sure = scatter(&intervals) > APART * scatter(&off);
+    (longest > 0.0).then(|| Echoes { places: of(false), delay: longest, sure })
+}
+
+/// Bursts, quieter ones that follow them within the longest delay, and the delays in s.
+fn pairs(times: &[f64], heights: &[f64]) -> Vec<(usize, usize, f64)> {
+    let mut all = Vec::new();
+    for (second, time) in times.iter().enumerate() {
+        let before = (0..second).rev().take_while(|first| time - times[*first] < LONGEST);
+        let louder = before.filter(|first| heights[second] < QUIETER * heights[*first]);
+        all.extend(louder.map(|first| (first, second, time - times[first])));
+    }
+    all.sort_by(|a, b| a.2.total_cmp(&b.2));
+    all
+}
+
+/// A delay of many `pairs`, sorted by it, and the bursts that are quieter there, if most of the others that quieter ones follow have one.
+fn repeated(times: &[f64], impact: &[bool], pairs: &[(usize, usize, f64)]) -> Option<(f64, BTreeSet<usize>)> {
+    let near =
+        |at: f64| pairs.partition_point(|p| p.2 < at - SAME)..pairs.partition_point(|p| p.2 <= at + SAME);
+    let mut counts: Vec<(usize, f64)> = pairs.iter().map(|pair| (near(pair.2).len(), pair.2)).collect();
+    counts.retain(|(n, _)| *n >= ENOUGH);
+    counts.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
+    let mut delays: Vec<f64> = Vec::new();
+    for (_, delay) in counts {
+        if delays.iter().all(|known| (known - delay).abs() > SAME) {
+            delays.push(delay);
         }
     }
-    let mut delays: Vec<f64> = followers.iter().map(|f| f.1).collect();
-    delays.sort_by(f64::total_cmp);
-    let near = |all: &[f64], at: f64| {
-        all.partition_point(|d| *d < at - SAME)..all.partition_point(|d| *d <= at + SAME)
-    };
-    let enough = ENOUGH.max((MOST * impacts.len() as f64).ceil() as usize);
-    followers.retain(|f| near(&delays, f.1).len() >= enough);
-    let delay = followers.iter().map(|f| f.1).fold(0.0, f64::max);
-    let repeated = |i: &&usize| followers.iter().any(|f| !near(times, times[**i] - f.1).is_empty());
-    let preceded = impacts.iter().filter(repeated).count();
-    if followers.is_empty() || preceded as f64 > FEW * impacts.len() as f64 {
-        return None;
-    }
-    let intervals: Vec<f64> = impacts.windows(2).map(|w| times[w[1]] - times[w[0]]).collect();
-    let off: Vec<f64> = followers.iter().map(|f| f.1 - median(&delays[near(&delays, f.1)])).collect();
-    let sure = scatter(&intervals) > APART * scatter(&off);
-    Some(Echoes { places: followers.into_iter().map(|f| f.0).collect(), delay, sure })
+    delays.into_iter().find_map(|delay| {
+        let members = &pairs[near(delay)];
+        let quieter: BTreeSet<usize> = members.iter().map(|pair| pair.1).collect();
+        let of = |pairs: &[(usize, usize, f64)]| -> BTreeSet<usize> {
+            pairs.iter().map(|pair| pair.0).filter(|i| !quieter.contains(i)).collect()
+        };
+        let (leaders, leading) = (of(members).len(), of(pairs).len());
+        let others: Vec<usize> = (0..times.len()).filter(|i| impact[*i] && !quieter.contains(i)).collect();
+        let at = |time: f64| {
+            times.partition_point(|t| *t < time - SAME) < times.partition_point(|t| *t <= time + SAME)
+        };
+        let preceded = others.iter().filter(|i| at(times[**i] - delay)).count();
+        let enough = leaders >= ENOUGH && leaders as f64 >= MOST * leading as f64;
+        let own: Vec<f64> = members.iter().map(|pair| pair.2).collect();
+        (enough && preceded as f64 <= FEW * others.len() as f64).then(|| (median(&own), quieter))
+    })
 }
