@@ -38,7 +38,7 @@ impl Train {
     /// fall if R were 1, where the height is known.
     ///
     /// # Errors
-    /// As [`detect_among`]; also where no train of two impacts is more plausible than all others.
+    /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all others.
     pub fn of(trace: &Trace, options: &ImpactsOptions, full: Option<f64>) -> Result<(Train, Detected)> {
         let ends = (trace.axis.start(), trace.axis.at(trace.values.len()));
         let choose =
