@@ -113,20 +113,15 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     // Seconds printed ten times each: the record may begin and end within one, so the step is that between their changes.
     let between = turns.filter(|_| smallest == 0.0 && 2 * long < steps.len());
     let between = between.map(|(first, last)| (values[last + 1] - values[first + 1]) / (last - first) as f64);
-    let rounded = if doubled && turns.is_none() {
+    let mut axis = if doubled && turns.is_none() {
         Axis { kind, grid: Grid::Uneven(values) }
     } else {
         Axis::from_values(kind, values, resolution)
     };
-    let (mut axis, clock) = match rounded {
-        Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) } => match Clock::of(&values, resolution) {
-            Some(clock) => (Axis::time(clock.start, clock.step, values.len()), Some(clock)),
-            None => (Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) }, None),
-        },
-        even => (even, None),
-    };
-    if let Some(clock) = clock {
-        return (axis, Some(clock.finding(what)));
+    if let Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) } = &axis
+        && let Some(clock) = Clock::of(values, resolution)
+    {
+        return (Axis::time(clock.start, clock.step, values.len()), Some(clock.finding(what)));
     }
     if let (Grid::Even { step, .. }, Some(between)) = (&mut axis.grid, between) {
         *step = between;
@@ -155,9 +150,9 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
 fn between_gaps(axis: &Axis, code: &'static str) -> Option<Finding> {
     let Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) } = axis else { return None };
     let all = stretches(values);
-    let (i, longest) = all.iter().enumerate().max_by(|a, b| a.1.duration().total_cmp(&b.1.duration()))?;
+    let (number, longest) = Stretch::longest(&all)?;
     let (rate, std) = longest.clock.rate();
-    let found = Finding::caution(code).count("stretches", all.len()).count("longest", i + 1);
+    let found = Finding::caution(code).count("stretches", all.len()).count("longest", number);
     let found = found.number("duration", longest.duration()).number("start", longest.clock.start);
     let found = found.number("rate", rate).number("std", std);
     let durations: Vec<f64> = all.iter().map(Stretch::duration).collect();

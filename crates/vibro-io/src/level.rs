@@ -35,7 +35,9 @@ pub fn settle(mut contents: Contents, format: Format, options: &Options) -> Resu
 
 /// Whether values that were not kept are needed to settle it.
 pub fn needs_values(contents: &Contents) -> bool {
-    let spectrum = |record: &Record| matches!(record, Record::Spectrum(_));
+    let counts = |meta: &Meta| meta.unit.reference().is_some() || is_spectral(&meta.name);
+    let spectrum =
+        |record: &Record| matches!(record, Record::Spectrum(Spectrum { meta, .. }) if counts(meta));
     contents.records.iter().any(|(record, ends)| ends.is_some() && spectrum(record))
 }
 

@@ -15,6 +15,7 @@ mod rises;
 
 pub use detect::{Detected, ImpactsOptions, detect};
 pub(crate) use detect::{Sound, detect_among};
+pub(crate) use echoes::QUIETER;
 pub use excitation::{PerCycle, Phase};
 pub use hum::Hum;
 pub use interval::{Interval, interval};

@@ -131,6 +131,11 @@ pub struct Stretch {
 }
 
 impl Stretch {
+    /// The longest of several, with its number from 1.
+    pub fn longest(all: &[Stretch]) -> Option<(usize, &Stretch)> {
+        (1..).zip(all).max_by(|a, b| a.1.duration().total_cmp(&b.1.duration()))
+    }
+
     /// Its duration in s.
     pub fn duration(&self) -> f64 {
         self.clock.step * self.samples.len() as f64

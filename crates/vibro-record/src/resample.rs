@@ -115,9 +115,8 @@ impl Trace {
 /// A refusal of uneven instants, with what makes them even: one of their stretches, or interpolation.
 pub fn evened(error: Error, instants: &[f64]) -> Error {
     let all = stretches(instants);
-    let longest = all.iter().enumerate().max_by(|a, b| a.1.duration().total_cmp(&b.1.duration()));
-    if let Some((i, longest)) = longest {
-        let (n, number, duration) = (all.len(), i + 1, longest.duration());
+    if let Some((number, longest)) = Stretch::longest(&all) {
+        let (n, duration) = (all.len(), longest.duration());
         let hint = format!(
             "use one of {n} stretches without a gap; number {number} is the longest, {duration:.4} s"
         );

@@ -3,7 +3,7 @@
 use super::background::{background, bursts, median};
 use super::onset::Shape;
 use super::onset::{Onsets, onsets};
-use super::rises::rises;
+use super::rises::{largest, rises};
 use super::{Hum, hum};
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -94,9 +94,7 @@ pub(crate) fn detect_among(
         }
     }
     let all = match choose {
-        Some(_) => {
-            bursts.iter().map(|b| values[b.clone()].iter().fold(0.0, |h: f64, v| h.max(v.abs()))).collect()
-        }
+        Some(_) => bursts.iter().map(|b| largest(&values[b.clone()])).collect(),
         None => heights(&values, &bursts, 1.0),
     };
     let least = (options.threshold.unwrap_or(THRESHOLD) * median(&all)).max(quiet.reach);

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 /// Longest delay of an echo of a room in s: a way of 14 m.
 const LONGEST: f64 = 0.04;
 /// An echo is quieter than its impact by this factor or more.
-const QUIETER: f64 = 0.8;
+pub const QUIETER: f64 = 0.8;
 /// Delays that differ by less, in s, are one delay.
 const SAME: f64 = 3e-4;
 /// Part of the impacts with any echo that have one of this delay, at least.

@@ -35,7 +35,7 @@ pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
 }
 
 /// Largest absolute value.
-fn largest(values: &[f64]) -> f64 {
+pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |h: f64, v| h.max(v.abs()))
 }
 

@@ -4,7 +4,7 @@
 //! all sounds are foreign and come at random, averaged over ln R; the train follows by dynamic programming over pairs of sounds. A sound that follows an
 //! impact soon and is quieter is its echo or ringing.
 
-use crate::impacts::Sound;
+use crate::impacts::{QUIETER, Sound};
 
 /// Sounds that are looked at: the loudest. Trains take the square of their number.
 const MOST: usize = 128;
@@ -28,8 +28,6 @@ const CAP: f64 = 4.0;
 /// Within this time in s echoes of a room and ringing follow an impact, so many a second.
 const SHADOW: f64 = 0.06;
 const ECHOES: f64 = 50.0;
-/// An echo is quieter than its impact by this factor or more.
-const QUIETER: f64 = 0.8;
 /// Foreign sounds of a record in which none is heard: one in five has a hand, a latch or a voice.
 const UNHEARD: f64 = 0.2;
 /// First flights in s, evenly likely on a logarithmic scale.
