@@ -1,9 +1,13 @@
 //! Records of a file as a person names them: one of a recording, or time traces block by block.
 
 use super::{Format, Reader, Recording};
+use crate::text;
 use crate::wav::Wave;
 use std::path::Path;
 use vibro_record::{Error, Meta, Place, Record, Result, Stream as _, Trace, Traces, find_channel};
+
+/// Texts of fewer bytes are held, which saves reading them twice: their values take less than 256 MB, for a value takes two bytes with what ends it.
+const LONG: u64 = 64 << 20;
 
 impl Reader {
     /// Opens all time traces of a file to be read block by block.
@@ -23,13 +27,27 @@ impl Reader {
         let source = self.source(path)?;
         let path = source.path().to_owned();
         let as_it_is = self.options.stretch.is_none() && self.options.resample.is_none();
-        if as_it_is && self.entry(&source)?.format == Format::Wav {
+        let format = self.entry(&source)?.format;
+        if as_it_is && format == Format::Wav {
             let mut wave = Wave::open(&source, &self.options)?;
             let chosen = named(&path, channels, wave.channels.iter().map(|t| &t.meta))?;
             let traces: Vec<Trace> = chosen.iter().map(|i| wave.channels[*i].clone()).collect();
             wave.keep(&chosen);
             let (findings, frames) = (wave.layout.findings.clone(), wave.frames());
             return Traces::of_stream(path, findings, &traces, frames, Box::new(wave));
+        }
+        // What is wrong with a text is said where it is read as a whole.
+        let long = || text::stream(&source, &self.options, format).ok().flatten();
+        if as_it_is
+            && self.options.span.is_none()
+            && source.len() >= LONG
+            && let Some((traces, findings, mut columns)) = long()
+        {
+            let chosen = named(&path, channels, traces.iter().map(|t| &t.meta))?;
+            let traces: Vec<Trace> = chosen.iter().map(|i| traces[*i].clone()).collect();
+            columns.keep(&chosen);
+            let frames = traces.first().map_or(0, |trace| trace.axis.len());
+            return Traces::of_stream(path, findings, &traces, frames, Box::new(columns));
         }
         let recording = self.read(&source)?;
         let nothing = recording.no_trace();

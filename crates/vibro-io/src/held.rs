@@ -38,6 +38,14 @@ impl Held {
         }
     }
 
+    /// All real values; none where they were not kept, or are complex.
+    pub fn reals(&self) -> &[f64] {
+        match self {
+            Held::Values(Values::Real(values)) => values,
+            _ => &[],
+        }
+    }
+
     /// All values, where they may have gaps.
     pub fn values_mut(&mut self) -> Option<&mut Values> {
         if let Held::Values(values) = self { Some(values) } else { None }
@@ -58,12 +66,12 @@ impl Held {
     ///
     /// # Errors
     /// As there.
-    pub fn record(self, meta: Meta, axis: Axis) -> Result<(Record, Option<Extremes>)> {
+    pub fn record(self, meta: Meta, axis: Axis, said: Spectral) -> Result<(Record, Option<Extremes>)> {
         let (values, ends) = match self {
             Held::Values(values) => (values, None),
             Held::Ends(ends) => (Values::Real(Vec::new()), Some(ends)),
         };
-        Ok((assemble::record(meta, axis, values, Spectral::default())?, ends))
+        Ok((assemble::record(meta, axis, values, said)?, ends))
     }
 }
 

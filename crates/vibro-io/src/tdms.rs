@@ -19,6 +19,7 @@ use super::Source;
 use super::missing;
 use super::reader::Options;
 use crate::assemble;
+use crate::assemble::Spectral;
 use crate::held::{Contents, Held, rises};
 use axes::Clock;
 use description::Value;
@@ -115,7 +116,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             meta.found(assemble::fewer(object.declared as usize, n));
         }
         let axis = axes::of(&channel, options, &mut meta);
-        channel.values.record(meta, axis)
+        channel.values.record(meta, axis, Spectral::default())
     };
     let records = channels.into_iter().map(record).collect::<Result<Vec<_>>>()?;
     if records.is_empty() {

@@ -18,6 +18,7 @@ mod numbers;
 mod preamble;
 mod records;
 mod rows;
+mod stream;
 mod table;
 mod tables;
 mod tail;
@@ -25,7 +26,7 @@ pub(crate) mod unit_words;
 mod word_columns;
 mod wrapped;
 
-use crate::held::Contents;
+use crate::held::{Contents, Held};
 use crate::reader::Options;
 use crate::{Format, Limit, Source, missing, number};
 use dialect::Dialect;
@@ -34,7 +35,7 @@ use header::Stated;
 use rows::Rows;
 use std::borrow::Cow;
 pub(crate) use tail::Digits;
-use vibro_record::{Error, Finding, Place, Result, Values};
+use vibro_record::{Error, Finding, Place, Record, Result, Trace, Values};
 
 /// A text and what is known of it before its rows are read.
 pub(crate) struct Text<'a> {
@@ -93,7 +94,7 @@ pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
     words && encoding::is_text(head) && found().is_ok_and(|found| found.is_some())
 }
 
-pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<Contents> {
+pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     let without_names = || {
         Error::usage(
             "no row of numbers with names of columns right above it",
@@ -104,15 +105,15 @@ pub(crate) fn read_table(source: &Source, options: &Options, _: bool) -> Result<
     };
     with_text(source, options.limit, |text| match table::detect(text, options) {
         Some(dialect) => table::grouped(text, &dialect)
-            .and_then(|()| read(text, &dialect, options))
+            .and_then(|()| read(text, &dialect, options, survey))
             .or_else(|why| one_table(text, options, why)),
         None => without_words(text, options, without_names()),
     })
 }
 
-pub(crate) fn read_numbers(source: &Source, options: &Options, _: bool) -> Result<Contents> {
+pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     with_text(source, options.limit, |text| match numbers::detect(text, options) {
-        Ok(dialect) => read(text, &dialect, options).or_else(|why| one_table(text, options, why)),
+        Ok(dialect) => read(text, &dialect, options, survey).or_else(|why| one_table(text, options, why)),
         Err(why) => without_words(text, options, why),
     })
 }
@@ -138,40 +139,96 @@ fn without((source, found): (Source, Finding), options: &Options) -> Result<Cont
     Ok(contents)
 }
 
-/// What an abscissa takes while it is looked whether it is even, beside all columns and in their size.
-const ABSCISSA: f64 = 0.75;
+/// What a column that rises takes while it is looked whether it is an even axis, beside itself and in its size.
+const ABSCISSA: f64 = 1.5;
 
-fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Contents> {
+/// What was read of a text.
+struct Read {
+    columns: Vec<records::Built>,
+    findings: Vec<Finding>,
+    /// Where clean rows stand: their shape, and the byte behind the last.
+    clean: Option<(Shape, u64)>,
+}
+
+fn read(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Contents> {
+    let Read { columns, findings, .. } = read_rows(text, dialect, options, survey)?;
+    let records = columns.into_iter().map(|column| (column.record, column.ends)).collect();
+    Ok(Contents { records, findings })
+}
+
+/// The traces of a text without their values, which are read again block by block, and what is said of the text; `None` of a text that must be
+/// held, for it is in memory, has rows that are not clean, or no traces.
+///
+/// # Errors
+/// As reading the text.
+pub(crate) fn stream(
+    source: &Source,
+    options: &Options,
+    format: Format,
+) -> Result<Option<(Vec<Trace>, Vec<Finding>, stream::Columns)>> {
+    with_text(source, options.limit, |text| {
+        let dialect = match format {
+            Format::Csv => table::detect(text, options),
+            Format::Ascii => numbers::detect(text, options).ok(),
+            _ => None,
+        };
+        let Some(dialect) = dialect.filter(|d| format == Format::Ascii || table::grouped(text, d).is_ok())
+        else {
+            return Ok(None);
+        };
+        let Read { columns, findings, clean } = read_rows(text, &dialect, options, true)?;
+        let Some((shape, end)) = clean.filter(|_| text.source.in_memory().is_none()) else { return Ok(None) };
+        let handed = columns.iter().map(|column| (column.at, column.factor)).collect();
+        let trace = |column| match column {
+            records::Built { record: Record::Trace(trace), .. } => Some(trace),
+            _ => None,
+        };
+        let traces: Option<Vec<Trace>> = columns.into_iter().map(trace).collect();
+        let Some(traces) = traces else { return Ok(None) };
+        Ok(Some((traces, findings, stream::Columns::open(source, shape, end, handed)?)))
+    })
+}
+
+fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Read> {
+    let stated = Stated::of(dialect.header.iter().map(String::as_str));
+    let kept = kept(dialect, options, &stated, survey);
     // As many rows as the first bytes let expect.
     let lines = text.head.lines().count() as f64 / text.head.len().max(1) as f64;
     let bytes = text.source.len() as f64;
     // A value takes two bytes with what ends it.
-    let values = (bytes * lines * dialect.columns as f64).min(bytes / 2.0);
-    options.hold(values * (1.0 + ABSCISSA))?;
+    let rows = (bytes * lines).min(bytes / (2.0 * dialect.columns as f64));
+    let held = kept.iter().filter(|kept| **kept).count() as f64;
+    options.hold(rows * (held + if dialect.columns > 1 { ABSCISSA } else { 0.0 }))?;
     let tail = tail::of(text.source)?;
     let plain = dialect.columns > 1 && dialect.names.is_none() && !dialect.complex;
-    let stated = Stated::of(dialect.header.iter().map(String::as_str));
     let declared = stated.values;
     if plain && (options.wrapped == Some(true) || options.wrapped.is_none() && declared.is_some()) {
         let values = wrapped::flat(text, dialect)?;
         if let Some(values) = values.filter(|v| options.wrapped.is_some() || declared == Some(v.len())) {
-            let rows = Rows { columns: vec![Values::Real(values)], ..Rows::default() };
+            let rows = Rows { columns: vec![Values::Real(values).into()], ..Rows::default() };
             return records_of(text, &tail, &Dialect { columns: 1, ..dialect.clone() }, rows, options);
         }
     }
     let shape = Shape::of(dialect, text.source.head());
     let end = text.source.len() - (tail.len() - tail.trim_ascii_end().len()) as u64;
     let one_step = plain && options.wrapped.is_none() && dialect.clock.is_none() && stated.of_one_series;
-    let clean = shape.map(|shape| fast::read(text.source, &shape, end)).transpose()?.flatten();
-    let rows = match clean {
-        Some(columns) => Rows { columns, ..Rows::default() },
-        None => carefully(text, dialect, options).map_err(|why| {
-            // The last line of one series is shorter.
-            let short = plain && options.wrapped.is_none() && wrapped::ends_short(text, dialect);
-            if one_step && dialect.columns > 2 || short { wrapped::question(dialect.columns) } else { why }
-        })?,
+    let clean = shape.map(|shape| fast::read(text.source, &shape, end, &kept)).transpose()?.flatten();
+    let (rows, clean) = match clean {
+        Some(columns) => (Rows { columns, ..Rows::default() }, shape.map(|shape| (shape, end))),
+        None => (
+            carefully(text, dialect, options).map_err(|why| {
+                // The last line of one series is shorter.
+                let short = plain && options.wrapped.is_none() && wrapped::ends_short(text, dialect);
+                if one_step && dialect.columns > 2 || short {
+                    wrapped::question(dialect.columns)
+                } else {
+                    why
+                }
+            })?,
+            None,
+        ),
     };
-    let n = rows.columns.first().map_or(0, Values::len);
+    let n = rows.columns.first().map_or(0, Held::len);
     let series = || one_step && declared != Some(n) || declared.is_some_and(|declared| declared > n);
     if plain
         && options.wrapped.is_none()
@@ -179,16 +236,22 @@ fn read(text: &Text, dialect: &Dialect, options: &Options) -> Result<Contents> {
     {
         return Err(wrapped::question(dialect.columns));
     }
-    records_of(text, &tail, dialect, rows, options)
+    let read = records_of(text, &tail, dialect, rows, options)?;
+    Ok(Read { clean, ..read })
 }
 
-fn records_of(
-    text: &Text,
-    tail: &[u8],
-    dialect: &Dialect,
-    rows: Rows,
-    options: &Options,
-) -> Result<Contents> {
+/// The columns whose values are held: all, or, where a `survey` asks for the ends of traces, what may be an abscissa.
+fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> Vec<bool> {
+    let names = dialect.names.iter().flatten();
+    let complex = options.complex || stated.complex || names.clone().any(|name| name.part().is_some());
+    // Columns without names may continue each other, which their values tell.
+    let plain = dialect.names.is_none() && dialect.columns > 2;
+    let all = !survey || complex || plain;
+    let abscissa = |i: usize| dialect.named_abscissa() == Some(i) || i == 0 && dialect.columns > 1;
+    (0..dialect.columns).map(|i| all || abscissa(i)).collect()
+}
+
+fn records_of(text: &Text, tail: &[u8], dialect: &Dialect, rows: Rows, options: &Options) -> Result<Read> {
     let mut findings: Vec<Finding> =
         tail::cut_off(tail, dialect.separator, dialect.decimal).into_iter().collect();
     findings.extend(missing::kept(rows.missing));
@@ -199,8 +262,8 @@ fn records_of(
     if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
-    let records = records::build(text, tail, dialect, rows, options, &mut findings)?;
-    Ok(Contents::of(records, findings))
+    let columns = records::build(text, tail, dialect, rows, options, &mut findings)?;
+    Ok(Read { columns, findings, clean: None })
 }
 
 /// How many lines of a head are rows of another table: numbers alone, as many as in the line above or below.

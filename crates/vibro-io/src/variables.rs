@@ -9,6 +9,7 @@ pub mod names;
 use super::Source;
 use super::missing;
 use super::reader::Options;
+use crate::assemble::Spectral;
 use crate::held::{Contents, Held};
 use axes::Axes;
 use names::{Dialect, Scoped};
@@ -126,7 +127,7 @@ pub fn contents(
         let stated = dialect.attributes || options.unit.is_some() || unit.is_some();
         let factor = if stated { options.adopt(&mut meta, unit) } else { 1.0 };
         values.scale(factor)?;
-        values.record(meta, axis)
+        values.record(meta, axis, Spectral::default())
     };
     let records = records.into_iter().map(record).collect::<Result<_>>()?;
     Ok(Contents { records, findings })

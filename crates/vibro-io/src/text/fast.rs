@@ -5,10 +5,13 @@
 
 use super::dialect::{Dialect, Separator};
 use crate::Source;
+use crate::held::{Held, rises};
 use crate::number::{self, Exponential};
+use crate::source::ReadSeek;
 use rayon::prelude::*;
-use std::io::{Read, SeekFrom};
+use std::io::{self, Read, SeekFrom, Take};
 use std::slice::IterMut;
+use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Result, Values};
 
 /// Bytes read at a time: small enough to stay in the second-level cache.
@@ -21,8 +24,13 @@ const SMALLEST_PIECE: u64 = 1024 * 1024;
 const ENOUGH: usize = 24;
 
 /// How clean rows look, as bytes.
-pub struct Shape<'a> {
-    dialect: &'a Dialect,
+#[derive(Debug, Clone, Copy)]
+pub struct Shape {
+    separator: Separator,
+    /// Decimal mark.
+    decimal: u8,
+    /// Columns of a row.
+    pub columns: usize,
     /// Byte offset of the first row.
     first_byte: u64,
     /// Parser of unsigned numbers and their width, where the first rows print them all like `1.234e+05`.
@@ -31,9 +39,9 @@ pub struct Shape<'a> {
     fixed: Option<(usize, usize)>,
 }
 
-impl<'a> Shape<'a> {
+impl Shape {
     /// The shape of rows of real numbers that begin in `head`; `None` for others.
-    pub fn of(dialect: &'a Dialect, head: &[u8]) -> Option<Shape<'a>> {
+    pub fn of(dialect: &Dialect, head: &[u8]) -> Option<Shape> {
         if dialect.complex || dialect.skipped > 0 || dialect.separator == Separator::Char(dialect.decimal) {
             return None;
         }
@@ -44,7 +52,8 @@ impl<'a> Shape<'a> {
         let size = |row: &&[u8]| (row.len(), row.trim_ascii_end().len());
         let common = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
         let fixed = common.filter(|_| dialect.columns == 1 && exponential.is_some());
-        Some(Shape { dialect, first_byte: first_byte as u64, exponential, fixed })
+        let Dialect { separator, decimal, columns, .. } = *dialect;
+        Some(Shape { separator, decimal, columns, first_byte: first_byte as u64, exponential, fixed })
     }
 }
 
@@ -62,20 +71,20 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
     number::exponential_of(width?).map(|parse| (parse, width.unwrap_or_default()))
 }
 
-/// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean.
-pub fn read(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<Values>>> {
-    let columns = match columns(source, shape, end)? {
-        None if shape.fixed.is_some() => columns(source, &Shape { fixed: None, ..*shape }, end)?,
-        columns => columns,
-    };
-    Ok(columns.map(|columns| columns.into_iter().map(Values::Real).collect()))
+/// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean. Of a column that is not to be `kept` and
+/// falls somewhere only the ends are held.
+pub fn read(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
+    match columns(source, shape, end, kept)? {
+        None if shape.fixed.is_some() => columns(source, &Shape { fixed: None, ..*shape }, end, kept),
+        columns => Ok(columns),
+    }
 }
 
 /// All columns; `None` where the file is not clean.
 ///
 /// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes twice costs less
-/// than joining vectors.
-fn columns(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<Vec<f64>>>> {
+/// than joining vectors. Memory that is not written to costs nothing.
+fn columns(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     let from = shape.first_byte;
     let to = end.max(from);
     let pieces = ((to - from) / SMALLEST_PIECE).clamp(1, rayon::current_num_threads().max(1) as u64);
@@ -86,28 +95,109 @@ fn columns(source: &Source, shape: &Shape, end: u64) -> Result<Option<Vec<Vec<f6
     let counts: Vec<usize> = pieces.par_iter().map(|p| rows_in(source, shape, *p)).collect::<Result<_>>()?;
     let total = counts.iter().sum::<usize>();
     // A value takes two bytes with what ends it: blank lines must not claim room for rows of many columns.
-    if total == 0 || total.saturating_mul(shape.dialect.columns) as u64 > (to - from) / 2 + 1 {
+    if total == 0 || total.saturating_mul(shape.columns) as u64 > (to - from) / 2 + 1 {
         return Ok(None);
     }
-    let mut columns: Vec<Vec<f64>> = (0..shape.dialect.columns).map(|_| vec![0.0; total]).collect();
+    let mut columns: Vec<Vec<f64>> = (0..shape.columns).map(|_| vec![0.0; total]).collect();
     let mut rest: Vec<&mut [f64]> = columns.iter_mut().map(Vec::as_mut_slice).collect();
     let mut parts = Vec::new();
     for (rows, piece) in counts.iter().zip(pieces) {
         let part = rest.iter_mut().map(|column| {
             let (part, behind) = std::mem::take(column).split_at_mut(*rows);
             *column = behind;
-            part.iter_mut()
+            part
         });
         parts.push((part.collect::<Vec<_>>(), piece));
     }
-    let clean: Vec<bool> = parts
-        .into_par_iter()
-        .map(|(mut part, piece)| {
-            let clean = blocks(source, piece, |block| rows(block, shape, &mut part))?;
-            Ok(clean.is_some() && part.iter().all(|column| column.len() == 0))
-        })
-        .collect::<Result<_>>()?;
-    Ok(clean.into_iter().all(|clean| clean).then_some(columns))
+    let all = kept.iter().all(|kept| *kept);
+    let read = |(part, piece): (Vec<&mut [f64]>, (u64, u64))| {
+        if all { whole(source, shape, piece, part) } else { surveyed(source, shape, piece, part, kept) }
+    };
+    let read: Option<Vec<Vec<Lane>>> =
+        parts.into_par_iter().map(read).collect::<Result<Vec<_>>>()?.into_iter().collect();
+    let Some(seen) = read else { return Ok(None) };
+    let seen: Vec<Lane> = seen.into_iter().reduce(Lane::joined).unwrap_or_default();
+    let mut seen = seen.into_iter();
+    let held = columns.into_iter().map(|values| match seen.next() {
+        Some(lane) if lane.falls && !lane.kept => Held::Ends(lane.ends),
+        _ => Held::Values(Values::Real(values)),
+    });
+    Ok(Some(held.collect()))
+}
+
+/// Reads all values of a piece; `None` where it is not clean.
+fn whole(
+    source: &Source,
+    shape: &Shape,
+    piece: (u64, u64),
+    part: Vec<&mut [f64]>,
+) -> Result<Option<Vec<Lane>>> {
+    let mut part: Vec<IterMut<f64>> = part.into_iter().map(<[f64]>::iter_mut).collect();
+    let clean = blocks(source, piece, |block| rows(block, shape, &mut part))?;
+    Ok(clean.filter(|()| part.iter().all(|column| column.len() == 0)).map(|()| Vec::new()))
+}
+
+/// As [`whole`], where the values of a column are written only while it rises or if it is kept.
+fn surveyed(
+    source: &Source,
+    shape: &Shape,
+    piece: (u64, u64),
+    part: Vec<&mut [f64]>,
+    kept: &[bool],
+) -> Result<Option<Vec<Lane>>> {
+    let mut lanes: Vec<(&mut [f64], Lane)> =
+        part.into_iter().zip(kept).map(|(values, kept)| (values, Lane::new(*kept))).collect();
+    let mut block_of = vec![Vec::new(); shape.columns];
+    let clean = blocks(source, piece, |bytes| {
+        let n = parsed(bytes, shape, &mut block_of)?;
+        lanes.iter_mut().zip(&block_of).try_for_each(|((values, lane), block)| lane.take(&block[..n], values))
+    })?;
+    let all = lanes.iter().all(|(values, lane)| lane.ends.len() == values.len());
+    Ok(clean.filter(|()| all).map(|()| lanes.into_iter().map(|(_, lane)| lane).collect()))
+}
+
+/// What was seen of a column.
+#[derive(Debug, Clone, Copy)]
+struct Lane {
+    /// Whether all its values are written.
+    kept: bool,
+    /// Whether a value lies no higher than the one before it.
+    falls: bool,
+    first: f64,
+    last: f64,
+    ends: Extremes,
+}
+
+impl Lane {
+    fn new(kept: bool) -> Lane {
+        Lane { kept, falls: false, first: f64::NAN, last: f64::NEG_INFINITY, ends: Extremes::NONE }
+    }
+
+    /// Takes the next values and writes them where they belong; `None` where there are more than were counted.
+    fn take(&mut self, next: &[f64], values: &mut [f64]) -> Option<()> {
+        let (Some(first), Some(last)) = (next.first(), next.last()) else { return Some(()) };
+        if self.kept || !self.falls {
+            let n = self.ends.len();
+            values.get_mut(n..n + next.len())?.copy_from_slice(next);
+        }
+        self.falls = self.falls || *first <= self.last || !rises(next);
+        if self.ends.len() == 0 {
+            self.first = *first;
+        }
+        self.last = *last;
+        self.ends.take(next);
+        Some(())
+    }
+
+    /// The columns of two pieces, one behind the other.
+    fn joined(mut before: Vec<Lane>, behind: Vec<Lane>) -> Vec<Lane> {
+        for (lane, next) in before.iter_mut().zip(behind).filter(|(_, next)| next.ends.len() > 0) {
+            lane.falls = lane.falls || next.falls || next.first <= lane.last;
+            lane.last = next.last;
+            lane.ends.join(next.ends);
+        }
+        before
+    }
 }
 
 /// The first row that starts at `at` or behind, before `to`.
@@ -150,26 +240,71 @@ fn blocks(
     if let Some(bytes) = source.in_memory() {
         return Ok(each(&bytes[from as usize..to as usize]));
     }
-    let failed = |e| Error::io("read", source.path(), e);
-    let mut file = source.open()?;
-    file.seek(SeekFrom::Start(from)).map_err(failed)?;
-    let mut file = file.take(to - from);
-    let mut buffer = vec![0u8; BLOCK.min((to - from) as usize + 1)];
-    let mut filled = 0;
+    let mut all = Blocks::open(source, (from, to))?;
     loop {
-        let read = file.read(&mut buffer[filled..]).map_err(failed)?;
-        filled += read;
-        let end = buffer[..filled].iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
-        let whole = if read == 0 { filled } else { end };
-        if each(&buffer[..whole]).is_none() || (whole == 0 && filled == buffer.len()) {
-            return Ok(None);
+        match all.next().map_err(|e| Error::io("read", source.path(), e))? {
+            Some([]) => return Ok(Some(())),
+            Some(block) if each(block).is_some() => {}
+            _ => return Ok(None),
         }
-        if read == 0 {
-            return Ok(Some(()));
-        }
-        buffer.copy_within(whole..filled, 0);
-        filled -= whole;
     }
+}
+
+/// Whole rows of a part of a file, block by block.
+pub struct Blocks {
+    file: Take<Box<dyn ReadSeek>>,
+    buffer: Vec<u8>,
+    /// Bytes in the buffer, and those of them that were handed out.
+    filled: usize,
+    out: usize,
+}
+
+impl Blocks {
+    /// The rows of a shape, up to the byte `end`.
+    ///
+    /// # Errors
+    /// If it cannot be opened.
+    pub fn of(source: &Source, shape: &Shape, end: u64) -> Result<Blocks> {
+        Blocks::open(source, (shape.first_byte, end.max(shape.first_byte)))
+    }
+
+    fn open(source: &Source, (from, to): (u64, u64)) -> Result<Blocks> {
+        let mut file = source.open()?;
+        file.seek(SeekFrom::Start(from)).map_err(|e| Error::io("read", source.path(), e))?;
+        let buffer = vec![0u8; BLOCK.min((to - from) as usize + 1)];
+        Ok(Blocks { file: file.take(to - from), buffer, filled: 0, out: 0 })
+    }
+
+    /// The next rows, none at the end; `None` where a row is longer than a block.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub fn next(&mut self) -> io::Result<Option<&[u8]>> {
+        self.buffer.copy_within(self.out..self.filled, 0);
+        self.filled -= std::mem::take(&mut self.out);
+        while self.out == 0 && self.filled < self.buffer.len() {
+            let read = self.file.read(&mut self.buffer[self.filled..])?;
+            self.filled += read;
+            let end = self.buffer[..self.filled].iter().rposition(|b| *b == b'\n').map(|end| end + 1);
+            self.out = if read == 0 { self.filled } else { end.unwrap_or_default() };
+            if read == 0 {
+                return Ok(Some(&self.buffer[..self.out]));
+            }
+        }
+        Ok((self.out > 0).then(|| &self.buffer[..self.out]))
+    }
+}
+
+/// Reads whole rows to the columns of a block, which grow as they must, and gives their number; `None` where one is not clean.
+pub fn parsed(bytes: &[u8], shape: &Shape, block: &mut [Vec<f64>]) -> Option<usize> {
+    let most = bytes.iter().filter(|b| **b == b'\n').count() + 1;
+    for column in block.iter_mut().filter(|column| column.len() < most) {
+        column.resize(most, 0.0);
+    }
+    let mut columns: Vec<IterMut<f64>> = block.iter_mut().map(|column| column.iter_mut()).collect();
+    rows(bytes, shape, &mut columns)?;
+    let left = columns.first().map_or(0, IterMut::len);
+    Some(block.first()?.len() - left)
 }
 
 /// Reads whole rows; `None` where one is not clean or there are more than were counted.
@@ -221,7 +356,7 @@ fn value(bytes: &[u8], shape: &Shape) -> Option<(f64, usize)> {
             return Some((if first == b'-' { -magnitude } else { magnitude }, sign + width));
         }
     }
-    number::prefix(bytes, shape.dialect.decimal)
+    number::prefix(bytes, shape.decimal)
 }
 
 /// Reads one row; gives its bytes with its line end.
@@ -245,7 +380,7 @@ fn row(bytes: &[u8], shape: &Shape, columns: &mut [IterMut<f64>]) -> Option<usiz
     let last = columns.len() - 1;
     for (column, values) in columns.iter_mut().enumerate() {
         if column > 0
-            && let Separator::Char(mark) = shape.dialect.separator
+            && let Separator::Char(mark) = shape.separator
             && mark != b'\t'
         {
             if bytes.get(at) != Some(&mark) {
@@ -262,7 +397,7 @@ fn row(bytes: &[u8], shape: &Shape, columns: &mut [IterMut<f64>]) -> Option<usiz
         blank(&mut at);
         let touching = before == at
             && column < last
-            && !matches!(shape.dialect.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
+            && !matches!(shape.separator, Separator::Char(mark) if bytes.get(at) == Some(&mark));
         if touching {
             return None;
         }

@@ -8,10 +8,12 @@ use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
-use crate::assemble::{self, NOMINAL, Spectral, domain, from_values, kind_of, short, to_si};
+use crate::assemble::{self, NOMINAL, Spectral, domain, from_values, kind_of, short};
+use crate::held::Held;
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
+use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::units::notation::counted;
 use vibro_record::{
@@ -29,8 +31,8 @@ pub fn build(
     rows: Rows,
     options: &Options,
     findings: &mut Vec<Finding>,
-) -> Result<Vec<Record>> {
-    let n = rows.columns.iter().map(Values::len).max().unwrap_or(0);
+) -> Result<Vec<Built>> {
+    let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
     let made = Made { text, tail, dialect, is_table, options, stated };
@@ -81,7 +83,7 @@ pub fn build(
     if table.len() == 2 && !has_axis && dialect.names.is_none() && !options.complex {
         of_axis.push(Finding::caution("two-channels"));
     }
-    let mut records = Vec::new();
+    let mut built = Vec::new();
     let table = made.joined(table, &axis)?;
     if let Some(scale) = &made.stated.scale {
         of_axis.push(Finding::caution("scale-in-head").name("scale", scale.as_str()));
@@ -96,10 +98,11 @@ pub fn build(
     }
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
-        let mut record = match sparse {
+        let mut column = match sparse {
             Some((first, every)) => made.record(i, column, &axis.every(first, every))?,
             None => made.record(i, column, &axis)?,
         };
+        let record = &mut column.record;
         if let Some((_, every)) = sparse {
             record.meta_mut().found(Finding::note("column-sparse").count("every", every));
         }
@@ -109,41 +112,53 @@ pub fn build(
                 record.meta_mut().found(found.clone());
             }
         }
-        records.push(record);
+        built.push(column);
     }
     if is_table {
         // What holds for all columns of a table is said of the table.
         findings.append(&mut of_axis);
     }
-    Ok(records)
+    Ok(built)
+}
+
+/// The record of a column, and how its values are read again.
+pub struct Built {
+    pub record: Record,
+    /// The ends of values that were not held.
+    pub ends: Option<Extremes>,
+    /// Place in the row, counted from 0.
+    pub at: usize,
+    /// Takes values as they are written to SI units.
+    pub factor: f64,
 }
 
 struct Column {
     /// Place in the row, counted from 1.
     at: usize,
     name: Name,
-    values: Values,
+    values: Held,
     /// First row and distance of its rows, where it has a value in some only.
     sparse: Option<(usize, usize)>,
 }
 
 impl Column {
+    /// Its values, of complex ones the real parts; none that were not held.
     fn reals(&self) -> Cow<'_, [f64]> {
         match &self.values {
-            Values::Real(values) => values.into(),
-            Values::Complex(values) => values.iter().map(|v| v.re).collect(),
+            Held::Values(Values::Complex(values)) => values.iter().map(|v| v.re).collect(),
+            held => held.reals().into(),
         }
     }
 
     fn rises(&self) -> bool {
-        self.reals().windows(2).all(|w| w[1] > w[0])
+        !matches!(self.values, Held::Ends(_)) && self.reals().windows(2).all(|w| w[1] > w[0])
     }
 
     /// Whether it rises as a clock or a counter does, and has no unit of anything else.
     fn rises_evenly(&self) -> bool {
         let unit = self.name.unit.as_deref();
         let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
-        let values = self.values.reals().filter(|values| !other && values.len() > 10);
+        let values = Some(self.values.reals()).filter(|values| !other && values.len() > 10);
         // Ends with the first step that is another: long records hold it soon.
         let even = |(low, high): (f64, f64), step: f64| {
             let (low, high) = (low.min(step), high.max(step));
@@ -176,7 +191,9 @@ impl Column {
     fn counts(&self) -> bool {
         let values = self.reals();
         let first = values.first().copied().unwrap_or(0.0);
-        self.name.counts() && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
+        self.name.counts()
+            && !matches!(self.values, Held::Ends(_))
+            && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
     }
 
     fn label(&self) -> String {
@@ -365,13 +382,13 @@ impl Made<'_> {
             }
             let (re, im) = (real.reals(), column.reals());
             let both = re.iter().zip(im.iter()).map(|(re, im)| Complex64::new(*re, *im)).collect();
-            real.values = Values::Complex(both);
+            real.values = Values::Complex(both).into();
             real.name.unit = real.name.unit.take().or(column.name.unit);
             if let Some((_, whole)) = real.name.part() {
                 real.name.name = whole;
             }
         }
-        if stated && out.iter().all(|column| matches!(column.values, Values::Real(_))) {
+        if stated && out.iter().all(|column| !column.values.is_complex()) {
             let over = if axis.kind == AxisKind::Time { " over time" } else { " of values" };
             let found = counted(out.len(), "column") + over + ", where complex values were stated";
             return Err(Error::usage(found, "two columns over frequency, real and imaginary part")
@@ -383,7 +400,7 @@ impl Made<'_> {
     }
 
     /// The record of one column.
-    fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Record> {
+    fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Built> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
@@ -414,9 +431,10 @@ impl Made<'_> {
         let unit = unit.as_deref().or(self.stated.unit.as_deref()).map(amplitude);
         let said = unit.map(|(unit, _)| unit).or(unknown.as_deref());
         let factor = self.options.adopt(&mut meta, said);
-        to_si(&mut values, factor)?;
+        values.scale(factor)?;
         let spectral = self.spectral(&meta.name, unit);
-        assemble::record(meta, axis.clone(), values, spectral)
+        let (record, ends) = values.record(meta, axis.clone(), spectral)?;
+        Ok(Built { record, ends, at: at - 1, factor })
     }
 
     /// What remarks and the unit of a column say of its spectrum.

@@ -6,6 +6,7 @@ use super::lines::{Fields, Line, Lines};
 use super::numbers::complex;
 use super::tail::CUT_OFF;
 use super::{in_line, shorten};
+use crate::held::Held;
 use crate::missing::Missing;
 use crate::{Format, number};
 use num_complex::Complex64;
@@ -17,7 +18,7 @@ use vibro_record::{Error, Result, Values};
 #[derive(Debug, Default, PartialEq)]
 pub struct Rows {
     /// One a column, all of one length; a missing value is NaN.
-    pub columns: Vec<Values>,
+    pub columns: Vec<Held>,
     /// First row and distance of the rows that have a value, for each column that has one in every second, third, … only.
     pub sparse: Vec<Option<(usize, usize)>>,
     /// Number of missing values.
@@ -129,7 +130,11 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
     rows.missing = gaps;
     let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
     let all = columns.into_iter();
-    rows.columns = if dialect.complex { all.map(Values::Complex).collect() } else { all.map(real).collect() };
+    rows.columns = if dialect.complex {
+        all.map(|c| Values::Complex(c).into()).collect()
+    } else {
+        all.map(|c| real(c).into()).collect()
+    };
     Ok(rows)
 }
 
@@ -282,8 +287,7 @@ mod tests {
     }
 
     fn column(rows: &Rows, at: usize) -> &[f64] {
-        let Values::Real(values) = &rows.columns[at] else { panic!() };
-        values
+        rows.columns[at].reals()
     }
 
     fn complaint(text: &str) -> String {

@@ -5,6 +5,7 @@ use crate::{Format, Reader};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::fmt::Write as _;
+use vibro_record::lanes::Extremes;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Record, Scaling, Spectrum, Values};
 
@@ -291,6 +292,50 @@ fn plain_columns_are_left_to_the_reader_of_plain_columns() {
     // A head that ends within a row.
     let long = format!("t,a\n{}", "0.125,1\n".repeat(10_000));
     assert!(sniffed("x", long.as_bytes()));
+}
+
+/// 20 000 rows, more than the first bytes hold: times, a velocity that falls and rises, and a distance that rises.
+fn long_text() -> String {
+    let row = |i: u32| format!("{},{},{}\n", f64::from(i) / 1024.0, (i * 7919) % 1009, 3 * i);
+    "time [s],v [mm/s],x [mm]\n".to_owned() + &(0..20_000).map(row).collect::<String>()
+}
+
+#[test]
+fn a_text_that_is_read_again_has_the_values_of_one_that_is_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.csv");
+    std::fs::write(&path, long_text()).unwrap();
+    let whole = Reader::new().from_path(&path).unwrap();
+    let source = Source::file(&path).unwrap();
+    let (traces, findings, columns) =
+        stream(&source, &Options::default(), Format::Csv).unwrap().expect("clean rows on a disk");
+    assert_eq!((traces.len(), &findings), (2, &whole.findings));
+    let frames = traces[0].axis.len();
+    let mut again =
+        vibro_record::Traces::of_stream(path, findings, &traces, frames, Box::new(columns)).unwrap();
+    again.keep(&[1, 0]);
+    let mut all = Vec::new();
+    while again.append(&mut all).unwrap() > 0 {}
+    for ((record, read), meta) in whole.records.iter().rev().zip(&all).zip(again.channels()) {
+        let Record::Trace(trace) = record else { panic!("{record:?}") };
+        assert_eq!((&trace.values, &trace.meta), (read, meta));
+        assert_eq!((trace.axis.len(), trace.rate()), (again.frames(), Some(again.rate())));
+    }
+}
+
+#[test]
+fn a_survey_holds_what_rises() {
+    let text = long_text();
+    let source = Source::memory("long.csv", text.as_bytes()).unwrap();
+    let whole = read_table(&source, &Options::default(), false).unwrap();
+    let seen = read_table(&source, &Options::default(), true).unwrap();
+    let held = |(record, ends): &(Record, Option<Extremes>)| (record.meta().name.clone(), ends.is_none());
+    assert_eq!(seen.records.iter().map(held).collect::<Vec<_>>(), [("v".into(), false), ("x".into(), true)]);
+    for ((whole, _), (seen, ends)) in whole.records.iter().zip(&seen.records) {
+        assert_eq!(ends.unwrap_or_else(|| seen.extremes()).range(), whole.extremes().range());
+        assert_eq!(ends.unwrap_or_else(|| seen.extremes()).largest(), whole.extremes().largest());
+        assert_eq!((whole.meta(), whole.axis()), (seen.meta(), seen.axis()));
+    }
 }
 
 #[test]

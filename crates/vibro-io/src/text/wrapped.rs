@@ -4,8 +4,9 @@ use super::Text;
 use super::dialect::Dialect;
 use super::encoding;
 use super::lines::{Line, fields};
+use crate::held::Held;
 use crate::number;
-use vibro_record::{Error, Result, Values};
+use vibro_record::{Error, Result};
 
 /// Rows that tell whether columns continue each other.
 const LOOK: usize = 100_000;
@@ -59,9 +60,8 @@ pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
 
 /// Whether columns look like one series, row after row: from one value to the next, also to the first of the next row, it goes less far than
 /// down a column.
-pub fn continues(columns: &[Values]) -> bool {
-    let reals: Option<Vec<&[f64]>> = columns.iter().map(Values::reals).collect();
-    let Some(columns) = reals else { return false };
+pub fn continues(columns: &[Held]) -> bool {
+    let columns: Vec<&[f64]> = columns.iter().map(Held::reals).collect();
     if columns.len() < 3 || columns[0].len() < FEWEST {
         // A file of one line is one series.
         return columns.len() > FEWEST && columns[0].len() == 1;
@@ -80,8 +80,8 @@ pub fn continues(columns: &[Values]) -> bool {
 }
 
 /// Whether there are three columns or more and the first is no abscissa.
-pub fn no_abscissa(columns: &[Values]) -> bool {
-    let first = columns.first().filter(|_| columns.len() > 2).and_then(Values::reals);
+pub fn no_abscissa(columns: &[Held]) -> bool {
+    let first = columns.first().filter(|_| columns.len() > 2).map(Held::reals);
     first.is_some_and(|first| first.windows(2).any(|w| w[1] <= w[0]))
 }
 
@@ -104,10 +104,11 @@ pub fn question(columns: usize) -> Error {
 mod tests {
     use super::*;
     use vibro_math::Noise;
+    use vibro_record::Values;
 
     /// Rows of so many columns.
-    fn columns(n: usize, value: impl Fn(usize) -> f64) -> Vec<Values> {
-        (0..n).map(|c| Values::Real((0..200).map(|i| value(n * i + c)).collect())).collect()
+    fn columns(n: usize, value: impl Fn(usize) -> f64) -> Vec<Held> {
+        (0..n).map(|c| Values::Real((0..200).map(|i| value(n * i + c)).collect()).into()).collect()
     }
 
     #[test]
