@@ -5,8 +5,9 @@ pub mod figures;
 use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral};
-use crate::record::{Scaling, Window};
+use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
+use crate::read::Recording;
+use crate::record::{Record, Scaling, Window};
 use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table, files};
@@ -112,10 +113,37 @@ impl Keys {
         let options = self.options()?;
         let reader = source.reader()?.rate_of_base_band();
         let (channel, reference) = (source.channel, self.reference.as_deref());
-        let mut traces =
-            reader.stream_chosen(source.path, reference, channel.channel.as_deref(), channel.calibration)?;
+        let traces =
+            reader.stream_chosen(source.path, reference, channel.channel.as_deref(), channel.calibration);
+        let mut traces = match traces {
+            Ok(traces) => traces,
+            // A base band is that of the lines then.
+            Err(why) => match source.reader()?.from_path(source.path) {
+                Ok(all) if all.records.iter().any(|record| matches!(record, Record::Spectrum(_))) => {
+                    return self.stored(source, &all, &options);
+                }
+                _ => return Err(why),
+            },
+        };
         let all = traces.frames();
         let found = spectral(&mut traces, &options, |done| source.progress.at(done, all))?;
+        Ok(found)
+    }
+
+    /// The lines of a spectrum that the file holds.
+    fn stored(
+        &self,
+        source: &Source<'_>,
+        all: &Recording,
+        options: &SpectralOptions,
+    ) -> Result<SpectralResult> {
+        if let Some(factor) = source.channel.calibration {
+            let found = format!("a calibration of {factor} of a spectrum that the file holds");
+            return Err(Error::usage(found, "the unit of its lines").setting("calibration").setting("unit"));
+        }
+        let spectrum = all.spectrum(source.channel.channel.as_deref())?;
+        let mut found = stored(spectrum, options)?;
+        found.findings.extend(all.findings.iter().cloned());
         Ok(found)
     }
 }

@@ -4,7 +4,7 @@ use super::{Format, Reader, Recording};
 use crate::text;
 use crate::wav::Wave;
 use std::path::Path;
-use vibro_record::{Error, Meta, Place, Record, Result, Stream as _, Trace, Traces, find_channel};
+use vibro_record::{Error, Meta, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel};
 
 /// Texts of fewer bytes are held, which saves reading them twice: their values take less than 256 MB, for a value takes two bytes with what ends it.
 const LONG: u64 = 64 << 20;
@@ -159,6 +159,31 @@ impl Recording {
         let Record::Trace(trace) = &mut self.records[chosen] else { return Err(nothing) };
         let values = std::mem::take(&mut trace.values);
         calibrated(Trace { values, ..trace.clone() }, calibration)
+    }
+
+    /// The stored spectrum that `channel` names, or by its number among the spectra from 1; the only one where it is `None`.
+    ///
+    /// # Errors
+    /// If there is no such spectrum, or several and none was named.
+    pub fn spectrum(&self, channel: Option<&str>) -> Result<&Spectrum> {
+        let spectra: Vec<&Spectrum> = self
+            .records
+            .iter()
+            .filter_map(|record| if let Record::Spectrum(spectrum) = record { Some(spectrum) } else { None })
+            .collect();
+        let chosen = match (channel, spectra.len()) {
+            (_, 0) => {
+                let place = Place::file(&self.path);
+                return Err(Error::input(place, "no spectrum", "a file that holds a spectrum"));
+            }
+            (None, 1) => Ok(0),
+            (None, _) => {
+                let names = spectra.iter().map(|s| s.meta.name.as_str()).enumerate();
+                return Err(none_chosen(&self.path, &names.collect::<Vec<_>>()));
+            }
+            (Some(name), _) => find_channel(&self.path, name, spectra.iter().map(|s| s.meta.called())),
+        };
+        Ok(spectra[chosen.map_err(|e| e.setting("channel"))?])
     }
 
     /// The trace that is meant, and its place among the records.

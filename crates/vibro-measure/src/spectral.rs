@@ -68,6 +68,48 @@ pub fn spectral(
     Ok(found)
 }
 
+/// The lines of a spectrum that an instrument took: they have no uncertainty, since a file does not say how many segments they are averages of.
+///
+/// # Errors
+/// If options are of how a spectrum is taken, or the values are levels without a reference.
+pub fn stored(spectrum: &Spectrum, options: &SpectralOptions) -> Result<SpectralResult> {
+    options.check()?;
+    let SpectralOptions { integrate, fmin, decibel, .. } = *options;
+    let own = SpectralOptions { integrate, fmin, decibel, ..SpectralOptions::default() };
+    if *options != own {
+        let found = format!("{:?} is a spectrum already", spectrum.meta.name);
+        return Err(Error::usage(
+            found,
+            "integrate, fmin and decibel at most, for the rest belongs to a time record",
+        ));
+    }
+    if spectrum.meta.unit.is_level() {
+        let found = format!("{:?} has levels in {}", spectrum.meta.name, spectrum.meta.unit);
+        let hint = "state the unit with its reference, such as \"dB re 1 g\"";
+        return Err(Error::usage(found, "amplitudes, or levels with their reference")
+            .hint(hint)
+            .setting("unit"));
+    }
+    let fmin = options.lowest(spectrum.axis.step().unwrap_or(0.0));
+    let lines = in_frequency(spectrum, integrate, fmin)?;
+    let (powers, left_out) = (powers(spectrum), spectrum.axis.len() - lines.axis.len());
+    let (window, enbw) = (spectrum.window, spectrum.enbw);
+    let mut found = SpectralResult::of(Lines::Spectrum(lines), &own, fmin, spectrum.meta.findings.clone());
+    found.clear = (0..found.value.len())
+        .map(|k| found.is_peak(k) && stands_out(&powers, k + left_out, 1.0, window))
+        .collect();
+    found.false_alarms = Some(FALSE_ALARMS);
+    (found.window, found.detrend) = (window.map_or(UNSAID, Window::name), UNSAID);
+    found.enbw = enbw.unwrap_or(f64::NAN);
+    if let Some(reference) = decibel {
+        found.over(reference, spectrum.meta.unit.times_seconds(integrate).symbol());
+    }
+    Ok(found)
+}
+
+/// What a file does not say.
+const UNSAID: &str = "not said";
+
 fn lines(
     traces: &mut Traces,
     options: &SpectralOptions,
@@ -150,7 +192,7 @@ fn is_of_mean(powers: &[f64], k: usize, window: Window) -> bool {
 /// Powers of the lines.
 fn powers(spectrum: &Spectrum) -> Vec<f64> {
     let mut powers = spectrum.values.magnitudes();
-    if matches!(spectrum.scaling, Scaling::Peak | Scaling::Rms) {
+    if matches!(spectrum.scaling, Scaling::Peak | Scaling::Rms | Scaling::Unknown) {
         for v in &mut powers {
             *v *= *v;
         }

@@ -369,3 +369,43 @@ fn a_channel_that_rests_at_an_end_of_its_range_is_clipped_and_one_of_two_levels_
     assert!(!of(&|i| if sine(i) > 0.5 { 5.0 } else { 0.0 }).0);
     assert!(!of(&|i| (100.0 * sine(i)).round()).0);
 }
+
+/// A spectrum as LabVIEW writes it, in dB re 1 g over an axis that it calls a time: noise of about −100 dB, three lines of 0 to −20 dB.
+fn labview(folder: &Path) -> PathBuf {
+    let head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\nChannels\t1\n";
+    let axis = "Y_Unit_Label\tg\nX_Dimension\tTime\nX0\t0\nDelta_X\t0.1\n***End_of_Header***\n";
+    let mut file = format!("{head}{axis}X_Value\tAcceleration (FFT - (RMS))\tComment\n");
+    for k in 0..2000 {
+        let peak = [(66, 0.0), (415, -10.0), (1179, -20.0)].iter().find(|(at, _)| *at == k);
+        let _ = writeln!(file, "\t{}", peak.map_or(-100.0 - f64::from(k * 7919 % 13), |(_, level)| *level));
+    }
+    let path = folder.join("fft.lvm");
+    fs::write(&path, file).unwrap();
+    path
+}
+
+#[test]
+fn peaks_of_a_spectrum_that_a_file_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = labview(folder.path());
+    let read = ["spectrum", text(&path), "--base-band", "200", "--unit", "dB re 1 g"];
+    let value = json(&read);
+    let (f, v) = (numbers(&value, "frequency"), numbers(&value, "value"));
+    let peaks: Vec<usize> = (0..f.len()).filter(|k| v[*k] > 0.5).collect();
+    assert_eq!(peaks, [66, 415, 1179]);
+    // Standard gravity, 9.80665 m/s².
+    for (k, level) in [(66, 0.0), (415, -10.0), (1179, -20.0)] {
+        assert!((f[k] - 0.1 * k as f64).abs() < 1e-9);
+        assert!((v[k] / (9.80665 * 10f64.powf(level / 20.0)) - 1.0).abs() < 1e-12);
+    }
+    assert_eq!((value["window"].as_str(), value["value_std"].as_array().map(Vec::len)), (Some("not said"), Some(0)));
+    let shown = String::from_utf8(vibro(&read).stdout).unwrap();
+    for peak in ["6.60", "41.50", "117.90"] {
+        assert!(shown.contains(peak), "{peak}: {shown}");
+    }
+    let said = complaint(&[&read[..], &["--segment", "512"]].concat(), 2);
+    assert!(said.contains("is a spectrum already"), "{said}");
+    // Without its reference a level is no amplitude.
+    let said = complaint(&["spectrum", text(&path), "--base-band", "200"], 2);
+    assert!(said.contains("dB"), "{said}");
+}
