@@ -8,7 +8,7 @@ use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
-use crate::assemble::{self, NOMINAL, Spectral, domain, from_values, kind_of, short, to_si};
+use crate::assemble::{self, Judged, NOMINAL, Spectral, domain, from_values, kind_of, short, to_si};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -61,7 +61,8 @@ pub fn build(
     if numbered && !has_axis {
         of_axis.push(Finding::caution("column-numbers-rows"));
     }
-    let mut axis = choose(printed, n, &made.stated, options, &mut of_axis)?;
+    let resolution = printed.as_ref().map_or(0.0, |printed| printed.resolution);
+    let (clock, mut axis) = choose(printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }
@@ -103,7 +104,11 @@ pub fn build(
         if let Some((_, every)) = sparse {
             record.meta_mut().found(Finding::note("column-sparse").count("every", every));
         }
-        record.meta_mut().declared_n = declared;
+        let meta = record.meta_mut();
+        meta.declared_n = declared;
+        if axis.kind == AxisKind::Time {
+            (meta.clock, meta.resolution) = (clock, resolution);
+        }
         if !is_table {
             for found in &of_axis {
                 record.meta_mut().found(found.clone());
@@ -268,10 +273,11 @@ impl Made<'_> {
         let own = own.max(if finer { largest * f64::EPSILON } else { single });
         self.one_clock(&kind, column, (factor, own), others)?;
         let values = values.iter().map(|v| (v - from) * factor).collect();
-        let (axis, finding) = from_values(kind, values, own * factor, &label);
+        let resampled = self.options.resample.is_some();
+        let Judged { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
-        let findings = assumed.into_iter().chain(finding).collect();
-        Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), findings })
+        let findings = assumed.into_iter().chain(found).collect();
+        Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), clock, findings })
     }
 
     /// Unit of a column without a name, and its factor to s, by which it agrees with the stated rate.
