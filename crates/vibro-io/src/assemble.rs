@@ -4,7 +4,7 @@ use crate::Options;
 use vibro_record::units::{self, Quantity, Unit};
 use vibro_record::{
     Axis, AxisKind, Clock, Error, Finding, Frf, Grid, Meta, Record, Result, Scaling, Spectrum, Stretch,
-    Trace, Values, Window, stretches,
+    Trace, Values, Window, is_fine, stretches, uniform_std,
 };
 
 /// What a file states of a spectrum.
@@ -98,58 +98,61 @@ pub fn domain(kind: &AxisKind) -> (&'static str, &'static str) {
     }
 }
 
-/// Axis of `values` (SI) and a finding where it is uneven or was printed with too few digits.
-///
-/// `resolution` is half a unit in the last digit, `what` names the values, e.g. `column "t"`.
-pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str) -> (Axis, Option<Finding>) {
-    let unit = domain(&kind).1;
-    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+/// An axis that is made of values one by one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    pub axis: Axis,
+    /// Relative standard uncertainty of an even step.
+    pub clock: f64,
+    /// What is to be said of it, where it is uneven, jitters or was printed with too few digits.
+    pub found: Option<Finding>,
+}
+
+/// Judges `values` (SI), of which half a unit in the last digit is `resolution`; `what` names them, e.g. `column "t"`. Instants that jitter stay as
+/// they are where they are `resampled`.
+pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str, resampled: bool) -> Judged {
+    let n = values.len();
+    let mean = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
+    // Digits that are fine hide nothing, and even ones of any size nothing that can be seen.
+    let tolerance = if is_fine(resolution, mean) { resolution } else { 0.0 };
+    let axis = Axis::from_values(kind, values, tolerance);
+    let Axis { kind, grid: Grid::Uneven(values) } = axis else {
+        let clock = axis.step().map_or(0.0, |step| uniform_std(resolution, n) / step);
+        return Judged { axis, clock, found: None };
+    };
+    if n < 2 {
+        return Judged { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found: None };
+    }
+    let time = kind == AxisKind::Time;
+    let clock = if time { Clock::of(&values, resolution) } else { Clock::rounded(&values, resolution) };
+    let steps = || values.windows(2).map(|w| w[1] - w[0]);
     let (smallest, largest) =
-        steps.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(*d), b.max(*d)));
-    let long = steps.iter().filter(|d| **d > f64::midpoint(smallest, largest)).count();
-    // Steps of one and of two units in the last digit: rounding of 1.25 ms to whole ones, or a sample that was lost.
-    let doubled = smallest > 0.0 && largest > 1.5 * smallest;
-    let turns = rounding(&steps, f64::midpoint(smallest, largest));
-    // Seconds printed ten times each: the record may begin and end within one, so the step is that between their changes.
-    let between = turns.filter(|_| smallest == 0.0 && 2 * long < steps.len());
-    let between = between.map(|(first, last)| (values[last + 1] - values[first + 1]) / (last - first) as f64);
-    let mut axis = if doubled && turns.is_none() {
-        Axis { kind, grid: Grid::Uneven(values) }
-    } else {
-        Axis::from_values(kind, values, resolution)
+        steps().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
+    let long = steps().filter(|d| *d > f64::midpoint(smallest, largest)).count();
+    let said = |found: Finding| {
+        let found = found.name("column", what).name("unit", domain(&kind).1);
+        let found = found.number("smallest", smallest).number("largest", largest);
+        Some(found.count("long", long).count("n", n - 1))
     };
-    if let Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) } = &axis
-        && let Some(clock) = Clock::of(values, resolution)
-    {
-        return (Axis::time(clock.start, clock.step, values.len()), Some(clock.finding(what)));
+    let kept = resampled && clock.is_some_and(|clock| clock.jitter > 0.0) && smallest > 0.0;
+    if let Some(clock) = clock.filter(|_| !kept) {
+        let found = clock.finding(what);
+        let found = if clock.jitter > 0.0 { Some(found) } else { said(found) };
+        let grid = Grid::Even { start: clock.start, step: clock.step, n };
+        return Judged { axis: Axis { kind, grid }, clock: clock.relative(), found };
     }
-    if let (Grid::Even { step, .. }, Some(between)) = (&mut axis.grid, between) {
-        *step = between;
-    }
-    let finding = match axis.step() {
-        _ if axis.len() < 2 => None,
-        // Steps may differ by rounding in binary; a thousandth of a step is visible.
-        Some(step) if largest - smallest > 2e-3 * step => {
-            Some(Finding::note("axis-rounded").number("step", step))
-        }
-        Some(_) => None,
-        None if smallest > 0.0 => {
-            Some(between_gaps(&axis, "samples-lost").unwrap_or(Finding::caution("axis-uneven")))
-        }
-        None => Some(between_gaps(&axis, "axis-backwards").unwrap_or(Finding::caution("axis-backwards"))),
-    };
-    let steps = steps.len();
-    let finding = finding.map(|found| {
-        let found = found.name("column", what).name("unit", unit);
-        found.number("smallest", smallest).number("largest", largest).count("long", long).count("n", steps)
-    });
-    (axis, finding)
+    // Several samples within one printed digit have one time.
+    let rises = smallest > 0.0 || (smallest == 0.0 && !is_fine(resolution, mean));
+    let gaps = between_gaps(&values, resolution, if rises { "samples-lost" } else { "axis-backwards" });
+    let code = if smallest > 0.0 { "axis-uneven" } else { "axis-backwards" };
+    let found = gaps.filter(|_| time).unwrap_or_else(|| Finding::caution(code));
+    let found = if kept { None } else { said(found) };
+    Judged { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found }
 }
 
 /// What is said, under this code, of times with even stretches between lost samples, pauses or restarts.
-fn between_gaps(axis: &Axis, code: &'static str) -> Option<Finding> {
-    let Axis { kind: AxisKind::Time, grid: Grid::Uneven(values) } = axis else { return None };
-    let all = stretches(values);
+fn between_gaps(instants: &[f64], resolution: f64, code: &'static str) -> Option<Finding> {
+    let all = stretches(instants, resolution);
     let (number, longest) = Stretch::longest(&all)?;
     let (rate, std) = longest.clock.rate();
     let found = Finding::caution(code).count("stretches", all.len()).count("longest", number);
@@ -233,9 +236,10 @@ impl Abscissa {
             // Lines of a spectrum are used one by one and keep their frequencies.
             (None, None) if kind != AxisKind::Time => return Axis { kind, grid: Grid::Uneven(stored) },
             (None, None) => {
-                let (axis, found) = from_values(kind, stored, resolution, "abscissa");
-                meta.findings.extend(found);
-                return axis;
+                let judged = from_values(kind, stored, resolution, "abscissa", options.resample.is_some());
+                (meta.clock, meta.resolution) = (judged.clock, resolution);
+                meta.findings.extend(judged.found);
+                return judged.axis;
             }
         };
         if step > 0.0 && step.is_finite() && start.is_finite() {
@@ -244,15 +248,6 @@ impl Abscissa {
         meta.found(Finding::caution("increment-impossible").number("step", step));
         Axis::index(n)
     }
-}
-
-/// The first and the last of the longer steps, where they come as regularly as rounding an even grid makes them: the distances between them
-/// differ by one at most. Fewer than three of them prove nothing.
-fn rounding(steps: &[f64], middle: f64) -> Option<(usize, usize)> {
-    let long: Vec<usize> = steps.iter().enumerate().filter(|(_, d)| **d > middle).map(|(i, _)| i).collect();
-    let gaps = long.windows(2).map(|w| w[1] - w[0]);
-    let (least, most) = gaps.fold((usize::MAX, 0), |(a, b), gap| (a.min(gap), b.max(gap)));
-    (long.len() >= 3 && most - least <= 1).then(|| (long[0], long[long.len() - 1]))
 }
 
 /// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴, those of 64 to 2⁻⁵³.
@@ -297,7 +292,7 @@ mod tests {
     fn whole_seconds_of_a_faster_logger_give_its_rate() {
         for n in [34, 65, 1003] {
             let printed = (0..n).map(|i| (0.7 + 0.1 * f64::from(i)).floor()).collect();
-            let (axis, found) = from_values(AxisKind::Time, printed, 0.5, "column \"t\"");
+            let Judged { axis, found, .. } = from_values(AxisKind::Time, printed, 0.5, "column \"t\"", false);
             // 0.7 + 0.1 i meets a whole second or just misses it by rounding: one sample in all that lie between.
             assert!((axis.step().unwrap() - 0.1).abs() < 0.1 / f64::from(n - 20), "{n}: {:?}", axis.step());
             assert_eq!(found.unwrap().code, "axis-rounded");
@@ -307,7 +302,8 @@ mod tests {
     #[test]
     fn only_what_a_person_must_know_is_said() {
         let of = |values: &[f64], resolution| {
-            from_values(AxisKind::Time, values.to_vec(), resolution, "column \"t\"")
+            let judged = from_values(AxisKind::Time, values.to_vec(), resolution, "column \"t\"", false);
+            (judged.axis, judged.found)
         };
         let (axis, doubt) = of(&[0.0, 0.1, 0.2, 0.300_000_000_000_000_04], 0.0);
         assert_eq!((axis.step().is_some(), doubt), (true, None));
@@ -333,9 +329,9 @@ mod tests {
         for lost in [vec![3], vec![5, 20], vec![5, 6, 30, 70]] {
             let times: Vec<f64> =
                 (0..100).filter(|i| !lost.contains(i)).map(|i| f64::from(i) / 1e3).collect();
-            let (axis, doubt) = from_values(AxisKind::Time, times.clone(), 0.5e-3, "column \"t\"");
-            assert_eq!(axis.values(), times, "{lost:?}");
-            assert_eq!(doubt.unwrap().code, "samples-lost", "{lost:?}");
+            let judged = from_values(AxisKind::Time, times.clone(), 0.5e-3, "column \"t\"", false);
+            assert_eq!(judged.axis.values(), times, "{lost:?}");
+            assert_eq!(judged.found.unwrap().code, "samples-lost", "{lost:?}");
         }
     }
 }

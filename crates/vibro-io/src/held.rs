@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::assemble::{self, NOMINAL, Spectral};
 use vibro_record::lanes::Extremes;
-use vibro_record::{Axis, Clock, Error, Finding, Meta, Record, Result, Values, units};
+use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
 
 /// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing is to be said of any of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,26 +98,24 @@ impl Contents {
     /// # Errors
     /// If there is no such stretch, or a trace cannot be interpolated.
     pub fn evened(mut self, options: &Options) -> Result<Contents> {
-        let of_clock = |found: &&Finding| found.code == Clock::JITTERS;
-        let of_file = self.findings.iter().find(of_clock).cloned();
         let held = self.records.iter_mut().filter(|(_, ends)| ends.is_none());
         for trace in
             held.filter_map(|(record, _)| if let Record::Trace(trace) = record { Some(trace) } else { None })
         {
-            let clock = trace.meta.findings.iter().find(of_clock).or(of_file.as_ref());
-            trace.meta.clock = clock.and_then(|found| found.get("relative")).unwrap_or_default();
             options.stretch.map_or(Ok(()), |number| trace.keep_stretch(number))?;
-            if let Some(rate) = options.resample {
-                let end = trace.axis.len().saturating_sub(1);
-                options.hold((trace.axis.at(end) - trace.axis.start()) * rate)?;
-                trace.resample(rate)?;
-            }
-            let one = options.stretch.is_some() && options.resample.is_none();
-            let own = trace.rate().zip(options.rate).filter(|_| one);
+            let steps = trace.axis.len().saturating_sub(1);
+            let duration = || trace.axis.at(steps) - trace.axis.start();
+            let made = options.stretch.is_some() || options.resample.is_some();
+            let own = trace.rate().or_else(|| (steps > 0).then(|| steps as f64 / duration()));
+            let own = own.zip(options.rate).filter(|_| made && trace.axis.kind == AxisKind::Time);
             if let Some((own, stated)) = own.filter(|(own, stated)| (own / stated - 1.0).abs() > NOMINAL) {
                 let found =
                     format!("a sampling rate of {stated} Hz was stated, and the samples come at {own:.6} Hz");
                 return Err(Error::usage(found, "").hint("leave the rate out").setting("rate"));
+            }
+            if let Some(rate) = options.resample {
+                options.hold(duration() * rate)?;
+                trace.resample(rate)?;
             }
         }
         Ok(self)

@@ -21,7 +21,7 @@ use super::reader::Options;
 use super::text::names::Name;
 use super::text::{encoding, in_line};
 use super::{Source, number};
-use crate::assemble::{self, Abscissa, Spectral, from_values, to_si};
+use crate::assemble::{self, Abscissa, Judged, Spectral, from_values, to_si};
 use crate::held::Contents;
 use std::collections::HashMap;
 use vibro_record::units::Unit;
@@ -266,15 +266,22 @@ impl<'h, 'a> Segment<'h, 'a> {
             meta.findings.extend(declared.map(|declared| assemble::fewer(declared, n)));
             let factor = options.adopt(&mut meta, said("y_unit_label").or(unit.as_deref()));
             to_si(&mut values, factor)?;
-            let axis =
-                self.abscissa(*c, x.map(|x| &self.columns[x]), n, &mut meta).axis(n, options, &mut meta);
+            let (x, resampled) = (x.map(|x| &self.columns[x]), options.resample.is_some());
+            let axis = self.abscissa(*c, x, n, resampled, &mut meta).axis(n, options, &mut meta);
             records.push(assemble::record(meta, axis, values, Spectral::default())?);
         }
         Ok(records)
     }
 
     /// The X column of a channel; where it is even, start and step as the head states them with more digits.
-    fn abscissa(&self, channel: usize, x: Option<&Column>, n: usize, meta: &mut Meta) -> Abscissa {
+    fn abscissa(
+        &self,
+        channel: usize,
+        x: Option<&Column>,
+        n: usize,
+        resampled: bool,
+        meta: &mut Meta,
+    ) -> Abscissa {
         let frequency =
             self.head.above("x_dimension", channel).is_some_and(|d| d.eq_ignore_ascii_case("frequency"));
         let kind = if frequency { AxisKind::Frequency } else { AxisKind::Time };
@@ -288,20 +295,21 @@ impl<'h, 'a> Segment<'h, 'a> {
             let last = start + step * (n - 1) as f64;
             (start - values[0]).abs() <= resolution && (last - values[n - 1]).abs() <= 2.0 * resolution
         };
-        let (axis, found) =
-            from_values(kind.clone(), values.to_vec(), resolution, &format!("column {:?}", x.name));
+        let label = format!("column {:?}", x.name);
+        let Judged { axis, clock, found } =
+            from_values(kind.clone(), values.to_vec(), resolution, &label, resampled);
         if let (Some(stated), Some(step)) = (stated, axis.step()) {
             if agrees(&stated) {
                 return Abscissa::even(kind, Some(stated));
             }
             if (step / stated.1 - 1.0).abs() > 1e-3 {
-                let found =
-                    Finding::caution("header-step-differs").name("column", format!("column {:?}", x.name));
+                let found = Finding::caution("header-step-differs").name("column", label.as_str());
                 meta.found(found.number("header", stated.1).number("step", step));
             }
         }
         // Of an uneven one it is said where it becomes the axis.
         meta.findings.extend(found.filter(|_| axis.step().is_some()));
+        meta.clock = clock;
         Abscissa::of(axis)
     }
 }

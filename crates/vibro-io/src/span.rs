@@ -48,13 +48,13 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if part.len() < trace.values.len() {
             let mut axis = trace.axis.part(part.clone());
             if let Grid::Uneven(instants) = axis.grid {
-                let resolution = drift(&instants, false);
-                let (even, found) = from_values(AxisKind::Time, instants, resolution, "time");
-                if even.step().is_none() {
+                let resolution = trace.meta.resolution.max(drift(&instants, false));
+                let judged = from_values(AxisKind::Time, instants, resolution, "time", false);
+                if judged.axis.step().is_none() {
                     trace.sampling_rate()?;
                 }
-                trace.meta.findings.extend(found);
-                axis = even;
+                trace.meta.findings.extend(judged.found);
+                (axis, trace.meta.clock) = (judged.axis, judged.clock);
             }
             trace.axis = axis;
             trace.values.truncate(part.end);

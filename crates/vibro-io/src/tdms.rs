@@ -100,7 +100,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let all = all.filter_map(|channel| Some((channel.name, channel.values.values_mut()?)));
     findings.extend(missing::checked(all, options.allow_missing)?);
     let several = channels.iter().any(|channel| channel.group != channels[0].group);
-    axes::assign(&mut channels, &mut findings)?;
+    axes::assign(&mut channels, options, &mut findings)?;
     let record = |mut channel: Channel| {
         let Channel { object, group, name, .. } = channel;
         let shown = if several { format!("{group}/{name}") } else { name.to_owned() };

@@ -6,7 +6,8 @@ use std::ops::Range;
 /// Largest jitter, as a part of a step, of an instant on an even grid. Below 1/6: where every third sample is lost, all that are left lie within
 /// 1/6 of a step of another even grid. No other pattern of lost samples has them nearer.
 const JITTER: f64 = 0.15;
-/// The same with the rounding of what is printed. Behind a lost sample instants are half a step from the line through all of them.
+/// The same with the rounding of what is printed, between lost samples that show as long steps. Beside one that does not show, instants are
+/// half a step from the line through all of them.
 const ROUNDED: f64 = 0.4;
 /// Fewest instants that tell jitter from a lost sample: it bends the line through fewer so far that it lies near all of them.
 const FEWEST: usize = 16;
@@ -14,23 +15,31 @@ const FEWEST: usize = 16;
 const PARTS: usize = 8;
 /// Instants that a part must have for a step of its own.
 const FEWEST_OF_PART: usize = 8;
-/// Steps further from the median step than this part of it end a stretch.
+/// Part of a step: steps further from the usual one end a stretch, residuals that jump further hide a lost sample.
 const BREAK: f64 = 0.5;
+/// Printed digits that rows must span for the mean of their rounding to be far below one step.
+const CYCLES: f64 = 8.0;
+/// Fewest steps of one digit more that prove rounding: one or two may be lost samples, where a sample is as long as a digit.
+const FEWEST_SLIPS: usize = 3;
+/// Part of a step that a printed digit may have for lost samples to show as long steps.
+const FINEST_HIDING: f64 = 0.25;
+/// Largest part of a step, as a printed digit, that hides no sample and shifts no instant visibly.
+const FINE: f64 = 2e-3;
 /// Samples a period at which analysers end their base band.
 const BASE_BAND: f64 = 2.56;
 /// Error of an amplitude, as a part of it, that a person must know of.
 const VISIBLE: f64 = 0.01;
 
-/// An even clock, found from instants that jitter about it.
+/// An even clock, found from instants that were rounded when printed and may jitter about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
     /// First instant of the grid in s.
     pub start: f64,
-    /// Sampling interval in s, by least squares.
+    /// Sampling interval in s.
     pub step: f64,
-    /// Its standard uncertainty in s: of steps that jitter, wander or drift.
+    /// Its standard uncertainty in s: of rounding, and of steps that jitter, wander or drift.
     pub step_std: f64,
-    /// Standard deviation in s of the instants from the grid.
+    /// Standard deviation in s of the instants from the grid, beyond rounding; 0 where rounding explains all of it.
     pub jitter: f64,
 }
 
@@ -38,14 +47,40 @@ impl Clock {
     /// Code of the finding that instants jitter.
     pub const JITTERS: &str = "axis-jitter";
 
-    /// The clock of `instants` in s, which were printed to within `resolution`; `None` where they do not lie on an even grid within 0.15 of
-    /// a step, or are fewer than 16.
+    /// The clock of `instants` in s, which were printed to within `resolution`, half a unit in the last digit, rounded or cut off. `None` where they
+    /// neither lie on an even grid that was printed so, nor, of 16 and more, within 0.15 of a step beside; and where samples were lost.
     pub fn of(instants: &[f64], resolution: f64) -> Option<Clock> {
-        Clock::within(instants, |step| (JITTER * step + resolution).min(ROUNDED * step))
+        Clock::rounded(instants, resolution).or_else(|| {
+            let resolution = printed(instants, resolution);
+            Clock::within(instants, resolution, |step| JITTER * step + resolution)
+                .filter(|clock| !hides_lost(instants, clock, resolution))
+        })
     }
 
-    /// The clock of instants that lie within `tolerance` of an even grid with that step.
-    fn within(instants: &[f64], tolerance: impl Fn(f64) -> f64) -> Option<Clock> {
+    /// The clock of instants that are rounded and no more: the middle of all steps whose grid lies within `resolution` of all of them. The true
+    /// step is one of these, and anywhere among them.
+    pub fn rounded(instants: &[f64], resolution: f64) -> Option<Clock> {
+        let (n, resolution) = (instants.len(), printed(instants, resolution));
+        let (low, high) = (
+            -largest_step(instants.iter().map(|t| -t), resolution)?,
+            largest_step(instants.iter().copied(), resolution)?,
+        );
+        let step = f64::midpoint(low, high);
+        if !(low <= high && step > 0.0 && step.is_finite()) || !slips(instants).is_empty() {
+            return None;
+        }
+        // One or two lost samples that are shorter than a digit pass for the drift of a clock, which makes the step too long by 3/2n of it for each.
+        let hidden = if step < 2.0 * resolution { 1.5 * step / (n - 1) as f64 } else { 0.0 };
+        // Clocks jitter below a digit, too: no step is known better than by least squares from errors of that size.
+        let least = independent(resolution / 3f64.sqrt(), n);
+        let step_std = ((high - low) / 12f64.sqrt()).hypot(hidden).hypot(least);
+        let residuals = instants.iter().enumerate().map(|(i, t)| t - i as f64 * step);
+        let ends = residuals.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), e| (a.min(e), b.max(e)));
+        Some(Clock { start: f64::midpoint(ends.0, ends.1), step, step_std, jitter: 0.0 })
+    }
+
+    /// The clock, by least squares, of instants that lie within `tolerance` of an even grid with that step.
+    fn within(instants: &[f64], resolution: f64, tolerance: impl Fn(f64) -> f64) -> Option<Clock> {
         let n = instants.len();
         if n < FEWEST {
             return None;
@@ -58,8 +93,10 @@ impl Clock {
             return None;
         }
         let squares: f64 = instants.iter().enumerate().map(|(i, t)| (t - line.at(i)).powi(2)).sum();
-        let jitter = (squares / (n - 2) as f64).sqrt();
-        Some(Clock { start: line.at(0), step: line.step, step_std: step_std(instants, jitter), jitter })
+        let scatter = squares / (n - 2) as f64;
+        let step_std = step_std(instants, scatter.sqrt()).hypot(uniform_std(resolution, n));
+        let jitter = (scatter - resolution * resolution / 3.0).max(0.0).sqrt();
+        Some(Clock { start: line.at(0), step: line.step, step_std, jitter })
     }
 
     /// Sampling rate in Hz and its standard uncertainty.
@@ -67,10 +104,19 @@ impl Clock {
         (1.0 / self.step, self.step_std / self.step.powi(2))
     }
 
-    /// The finding that a column is used as even: the rate, the jitter, and what it does to the amplitude of a sine at the end of the base band,
-    /// 2πf·σ of it at most.
+    /// Relative standard uncertainty of step and rate.
+    pub fn relative(&self) -> f64 {
+        self.step_std / self.step
+    }
+
+    /// The finding that a column is used as even: that it is rounded; or the rate, the jitter, and what it does to the amplitude of a sine at the
+    /// end of the base band, 2πf·σ of it at most.
     pub fn finding(&self, column: &str) -> Finding {
         let (rate, std) = self.rate();
+        if self.jitter == 0.0 {
+            let found = Finding::note("axis-rounded").name("column", column);
+            return found.number("step", self.step).number("std", self.step_std);
+        }
         let frequency = rate / BASE_BAND;
         let error = std::f64::consts::TAU * frequency * self.jitter;
         let found =
@@ -84,11 +130,92 @@ impl Clock {
     }
 }
 
+/// Standard uncertainty of a step by the ends of `n` instants that are each off by at most `resolution`, with all errors between equally likely.
+pub fn uniform_std(resolution: f64, n: usize) -> f64 {
+    2.0 * resolution / (3f64.sqrt() * n.saturating_sub(1).max(1) as f64)
+}
+
+/// Whether digits of which a half is `resolution` are so fine that rounding shifts no instant visibly from a grid of that step.
+pub fn is_fine(resolution: f64, step: f64) -> bool {
+    2.0 * resolution <= FINE * step
+}
+
+/// The resolution of instants, with what binary numbers of their size are off.
+fn printed(instants: &[f64], resolution: f64) -> f64 {
+    let largest = instants.iter().fold(0.0, |largest: f64, t| largest.max(t.abs()));
+    resolution * (1.0 + 1e-6) + 4.0 * f64::EPSILON * largest
+}
+
+/// The largest step of an even grid that lies within `resolution` of all instants, as far as those know that are later than others: the least
+/// (tⱼ − tᵢ + 2·resolution)/(j − i) of all i < j. By Dinkelbach's iteration: the pair that violates the present step most gives the next one.
+fn largest_step(instants: impl Iterator<Item = f64> + Clone, resolution: f64) -> Option<f64> {
+    let (first, last) = (instants.clone().next()?, instants.clone().last()?);
+    let n = instants.clone().count();
+    if n < 3 {
+        return None;
+    }
+    let mut step = (last - first + 2.0 * resolution) / (n - 1) as f64;
+    loop {
+        // Deviations from the grid; the highest so far, and the deepest fall from it.
+        let (mut top, mut worst) = ((0, first), (0.0, step));
+        for (j, t) in instants.clone().enumerate() {
+            let fall = (top.1 - first) - (t - first) + (j - top.0) as f64 * step;
+            if fall < 0.0 {
+                top = (j, t);
+            } else if fall > worst.0 {
+                worst = (fall, (t - top.1 + 2.0 * resolution) / (j - top.0) as f64);
+            }
+        }
+        if worst.0.is_nan() || worst.1 >= step {
+            return Some(step);
+        }
+        step = worst.1;
+    }
+}
+
+/// The one or two steps that stand out, as a lost sample does where a sample is about as long as a printed digit; none where there are more.
+fn slips(instants: &[f64]) -> Vec<usize> {
+    let steps = || instants.windows(2).map(|w| w[1] - w[0]);
+    let (low, high) = steps().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
+    if low <= 0.0 || high <= 1.5 * low {
+        return Vec::new();
+    }
+    let long = steps().enumerate().filter(|(_, d)| *d > f64::midpoint(low, high)).map(|(i, _)| i);
+    let long: Vec<usize> = long.take(FEWEST_SLIPS).collect();
+    if long.len() < FEWEST_SLIPS { long } else { Vec::new() }
+}
+
+/// Whether the residual of instants from the line through them jumps by about a sample or more. Where a printed digit is as long as a sample no step
+/// shows that, and no residual of its own; those before and behind do, cumulated: the jump at s that least squares find beside the line.
+fn hides_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
+    if 2.0 * resolution < BREAK * clock.step {
+        return false;
+    }
+    let n = instants.len();
+    let rows = (CYCLES * 2.0 * resolution / clock.step).ceil().max(CYCLES) as usize;
+    if n < 4 * rows {
+        return true;
+    }
+    let (whole, mut cumulated) = (n as f64, 0.0);
+    instants.iter().enumerate().take(n - rows).any(|(i, t)| {
+        cumulated += t - (clock.start + i as f64 * clock.step);
+        let part = (i + 1) as f64;
+        let both = part * (whole - part);
+        let jump = cumulated / (both / whole * (1.0 - 3.0 * both / (whole * whole - 1.0)));
+        i + 1 >= rows && jump.abs() > BREAK * clock.step
+    })
+}
+
+/// Standard uncertainty of the step of a line through `n` instants that are each off on their own, by `std`.
+fn independent(std: f64, n: usize) -> f64 {
+    std * (12.0 / (n as f64).powi(3)).sqrt()
+}
+
 /// Standard uncertainty of the step. Independent jitter of size σ gives σ·√(12/n³). The steps of eight parts differ by jitter, too, and as far
 /// as the clock wanders or drifts; their mean is as good as the line through all where deviations add up from step to step, and never better.
 fn step_std(instants: &[f64], jitter: f64) -> f64 {
     let n = instants.len();
-    let independent = jitter * (12.0 / (n as f64).powi(3)).sqrt();
+    let independent = independent(jitter, n);
     if n < PARTS * FEWEST_OF_PART {
         return independent;
     }
@@ -142,30 +269,122 @@ impl Stretch {
     }
 }
 
-/// The stretches of `instants` in s that have an even clock, in order; empty where they hold less than half of the instants. No step of them is near two: that of
-/// a lost sample, so instants may be off as far as jitter and rounding together put them.
-pub fn stretches(instants: &[f64]) -> Vec<Stretch> {
-    let steps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
-    let Some(median) = median(&steps) else { return Vec::new() };
-    let breaks = |(_, step): &(usize, &f64)| step.is_nan() || (*step - median).abs() > BREAK * median;
-    let ends = steps.iter().enumerate().filter(breaks).map(|(i, _)| i + 1).chain([instants.len()]);
-    let mut first = 0;
-    let runs = ends.map(|end| std::mem::replace(&mut first, end)..end);
-    let stretch = |samples: Range<usize>| {
-        let clock = Clock::within(&instants[samples.clone()], |step| ROUNDED * step)?;
-        Some(Stretch { samples, clock })
+/// The stretches of `instants` in s, printed to within `resolution`, that have an even clock, in order; empty where they hold less than half of the
+/// instants. No step of them is near two: that of a lost sample, so instants may be off as far as jitter and rounding together put them. Where a
+/// digit hides lost samples, stretches end before and begin behind where they may be.
+pub fn stretches(instants: &[f64], resolution: f64) -> Vec<Stretch> {
+    let resolution = printed(instants, resolution);
+    let Some(usual) = usual_step(instants, resolution) else { return Vec::new() };
+    let shows = 2.0 * resolution < FINEST_HIDING * usual;
+    let margin = if shows { 0.0 } else { 2.0 * resolution };
+    let breaks = |(_, w): &(usize, &[f64])| {
+        let off = w[1] - w[0] - usual;
+        off.is_nan() || off.abs() > BREAK * usual + margin
     };
-    let all: Vec<Stretch> = runs.filter_map(stretch).collect();
-    let held: usize = all.iter().map(|stretch| stretch.samples.len()).sum();
-    // Steps of any size have even stretches, too, by chance.
-    if 2 * held < instants.len() { Vec::new() } else { all }
+    let long: Vec<usize> = instants.windows(2).enumerate().filter(breaks).map(|(i, _)| i).collect();
+    let mut left = cut_behind(0..instants.len(), &long);
+    left.reverse();
+    let mut runs = Vec::new();
+    while let Some(run) = left.pop() {
+        let found = slips(&instants[run.clone()]);
+        if found.is_empty() {
+            runs.push(run);
+        } else {
+            left.extend(cut_behind(run, &found).into_iter().rev());
+        }
+    }
+    let of = |samples: Range<usize>| {
+        let part = &instants[samples.clone()];
+        let clock = if part.len() < FEWEST { None } else { Clock::of(part, resolution) };
+        let near = || Clock::within(part, resolution, |step| ROUNDED * step).filter(|_| shows);
+        Some(Stretch { clock: clock.or_else(near)?, samples })
+    };
+    let enough =
+        |all: &Vec<Stretch>| 2 * all.iter().map(|s| s.samples.len()).sum::<usize>() >= instants.len();
+    let whole: Vec<Stretch> = runs.iter().cloned().filter_map(of).collect();
+    if shows {
+        // Steps of any size have even stretches, too, by chance.
+        return Some(whole).filter(enough).unwrap_or_default();
+    }
+    let cut = |tolerance: f64| -> Vec<Stretch> {
+        let within = |run: &Range<usize>| {
+            let pieces = pieces(&instants[run.clone()], tolerance).into_iter();
+            pieces.map(|piece| run.start + piece.start..run.start + piece.end).collect::<Vec<_>>()
+        };
+        let parts =
+            runs.iter().flat_map(|run| of(run.clone()).map_or_else(|| within(run), |s| vec![s.samples]));
+        parts.filter_map(of).collect()
+    };
+    let tolerances = [resolution, resolution + JITTER * usual];
+    tolerances.into_iter().map(cut).find(enough).unwrap_or_default()
 }
 
-/// Median of steps; `None` where there are none or it is not above 0.
-pub(crate) fn median(steps: &[f64]) -> Option<f64> {
-    let mut sorted = steps.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().filter(|median| *median > 0.0 && median.is_finite())
+/// The parts of a range between the indices of it that end one, counted from its start.
+fn cut_behind(range: Range<usize>, last: &[usize]) -> Vec<Range<usize>> {
+    let mut first = range.start;
+    let ends = last.iter().map(|i| range.start + i + 1).chain([range.end]);
+    ends.map(|end| std::mem::replace(&mut first, end)..end).collect()
+}
+
+/// Pieces of `instants` that surely lie between lost samples: each as long as an even grid is within `tolerance` of it, from the first on and from the
+/// last back. Any other way to cut them into as few ends each piece between the two.
+fn pieces(instants: &[f64], tolerance: f64) -> Vec<Range<usize>> {
+    let n = instants.len();
+    let back: Vec<f64> = instants.iter().rev().map(|t| -t).collect();
+    let ends = |instants: &[f64]| {
+        let mut ends = vec![0];
+        while ends[ends.len() - 1] < n {
+            let start = ends[ends.len() - 1];
+            ends.push(start + longest_even(&instants[start..], tolerance));
+        }
+        ends
+    };
+    let (forth, back) = (ends(instants), ends(&back));
+    let starts = forth.iter();
+    starts.zip(back.iter().rev().skip(1)).map(|(start, end)| *start..(n - end).max(*start)).collect()
+}
+
+/// How many of the first instants lie within `tolerance` of an even grid.
+fn longest_even(instants: &[f64], tolerance: f64) -> usize {
+    let even = |n: usize| {
+        let part = &instants[..n];
+        let high = largest_step(part.iter().copied(), tolerance);
+        let low = largest_step(part.iter().map(|t| -t), tolerance);
+        n < 3 || high.zip(low).is_some_and(|(high, low)| -low <= high)
+    };
+    let n = instants.len();
+    let mut known = n.min(2);
+    let mut odd = known;
+    while known < n && odd == known {
+        odd = (2 * known).min(n);
+        if even(odd) {
+            known = odd;
+        }
+    }
+    while odd > known + 1 {
+        let middle = usize::midpoint(known, odd);
+        if even(middle) { known = middle } else { odd = middle }
+    }
+    known
+}
+
+/// The usual step, by the median over so many that a printed digit is a small part of them; `None` where it is not above 0.
+fn usual_step(instants: &[f64], resolution: f64) -> Option<f64> {
+    let mut lag = 1;
+    loop {
+        let mut steps: Vec<f64> = instants.windows(lag + 1).map(|w| w[lag] - w[0]).collect();
+        let usual = median(&mut steps)?;
+        if usual >= CYCLES * 2.0 * resolution || 8 * lag >= instants.len() {
+            return Some(usual / lag as f64).filter(|step| *step > 0.0 && step.is_finite());
+        }
+        lag *= 2;
+    }
+}
+
+/// The upper median of values, which are left in another order; `None` where there are none.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]
@@ -230,7 +449,7 @@ mod tests {
             assert!(Clock::of(&instants, 0.0).is_some(), "{seed}");
             instants.remove(lost);
             assert_eq!(Clock::of(&instants, 0.0), None, "{seed}: {lost} of {n}, jitter {size}");
-            let found = stretches(&instants);
+            let found = stretches(&instants, 0.0);
             let long = [0..lost, lost..n - 1].into_iter().filter(|part| part.len() >= FEWEST);
             assert!(found.iter().map(|s| s.samples.clone()).eq(long), "{seed}: {found:?}");
         }
@@ -243,12 +462,12 @@ mod tests {
     fn a_restart_and_a_pause_end_stretches() {
         let instants: Vec<f64> =
             (0..100).map(|i| f64::from(if i < 40 { i } else { i - 40 + 7 * i32::from(i >= 70) })).collect();
-        let found = stretches(&instants);
+        let found = stretches(&instants, 0.0);
         assert_eq!(found.iter().map(|s| s.samples.clone()).collect::<Vec<_>>(), [0..40, 40..70, 70..100]);
         assert!((found[2].clock.start - 37.0).abs() < 1e-12);
         assert!((found[2].duration() - 30.0).abs() < 1e-12);
         for odd in [vec![], vec![1.0; 50], (0..50).rev().map(f64::from).collect(), vec![f64::NAN; 50]] {
-            assert_eq!(stretches(&odd), []);
+            assert_eq!(stretches(&odd, 0.0), []);
             assert_eq!(Clock::of(&odd, 0.0), None);
         }
     }

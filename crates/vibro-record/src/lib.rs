@@ -24,7 +24,7 @@ use lanes::Extremes;
 use num_complex::Complex64;
 
 pub use axis::{Axis, AxisKind, Grid};
-pub use clock::{Clock, Stretch, stretches};
+pub use clock::{Clock, Stretch, is_fine, stretches, uniform_std};
 pub use error::{Error, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};

@@ -47,8 +47,10 @@ pub struct Meta {
     pub declared_n: Option<usize>,
     /// Header lines that are kept but not interpreted, as key and value (the key may be empty).
     pub notes: Vec<(String, String)>,
-    /// Relative standard uncertainty of the sampling rate, where the instants jitter; else 0.
+    /// Relative standard uncertainty of the sampling rate, where instants were printed or jitter; else 0.
     pub clock: f64,
+    /// Half a unit in the last digit that instants were printed with, in s; 0 where they were not printed.
+    pub resolution: f64,
     /// What a person must know before trusting the values.
     pub findings: Vec<Finding>,
     /// Every step that made the record, oldest first.
@@ -60,7 +62,7 @@ impl Meta {
     pub fn new(name: impl Into<String>, unit: Unit) -> Meta {
         let (name, quantity) = (name.into(), unit.quantity());
         let (notes, findings, history) = Default::default();
-        Meta { name, quantity, unit, declared_n: None, notes, clock: 0.0, findings, history }
+        Meta { name, quantity, unit, declared_n: None, notes, clock: 0.0, resolution: 0.0, findings, history }
     }
 
     /// Name and quantity, by which a channel is looked for.

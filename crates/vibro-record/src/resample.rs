@@ -29,13 +29,13 @@ impl Trace {
             ));
         }
         let steps: Vec<f64> = t.windows(2).map(|w| w[1] - w[0]).collect();
-        let typical = median(&steps).filter(|_| steps.iter().all(|step| *step > 0.0));
+        let typical = median(&mut steps.clone()).filter(|_| steps.iter().all(|step| *step > 0.0));
         let typical =
             typical.ok_or_else(|| Error::refused("instants that do not rise cannot be resampled"))?;
         if let Some(i) = steps.iter().position(|step| *step > LONGEST * typical) {
             let found =
                 format!("a gap of {:.4} s behind {:.6} s is too long to be interpolated", steps[i], t[i]);
-            return Err(evened(Error::refused(found), &t));
+            return Err(evened(Error::refused(found), &t, self.meta.resolution));
         }
         let mean = (n - 1) as f64 / (t[n - 1] - t[0]);
         if !(SLOWEST * mean..=FASTEST * mean).contains(&rate) {
@@ -71,6 +71,7 @@ impl Trace {
             .name("unit", self.meta.unit.symbol())
             .number("share", if error == 0.0 { 0.0 } else { error / spread });
         self.axis = Axis::time(t[0], 1.0 / rate, many);
+        self.meta.clock = 0.0;
         self.values = values;
         self.meta.found(found);
         self.meta.step("resample", &[("rate", &rate), ("method", &"cubics through four samples")]);
@@ -83,7 +84,7 @@ impl Trace {
     /// If there is no such stretch.
     pub fn keep_stretch(&mut self, number: usize) -> Result<()> {
         let all = match &self.axis.grid {
-            Grid::Uneven(t) if self.axis.kind == AxisKind::Time => stretches(t),
+            Grid::Uneven(t) if self.axis.kind == AxisKind::Time => stretches(t, self.meta.resolution),
             // An even record is one stretch.
             _ if number == 1 => return Ok(()),
             _ => Vec::new(),
@@ -104,7 +105,7 @@ impl Trace {
         let found = Finding::note("stretch-used").count("stretch", number).count("of", all.len());
         let found = found.count("n", samples.len()).number("start", clock.start).number("rate", rate);
         self.meta.found(found.number("std", std));
-        self.meta.clock = std / rate;
+        self.meta.clock = clock.relative();
         self.meta.step("stretch", &[("first", &samples.start), ("n", &samples.len())]);
         self.axis = Axis::time(clock.start, clock.step, samples.len());
         self.values = self.values[samples.clone()].to_vec();
@@ -112,9 +113,9 @@ impl Trace {
     }
 }
 
-/// A refusal of uneven instants, with what makes them even: one of their stretches, or interpolation.
-pub fn evened(error: Error, instants: &[f64]) -> Error {
-    let all = stretches(instants);
+/// A refusal of uneven instants, printed to within `resolution` in s, with what makes them even: one of their stretches, or interpolation.
+pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
+    let all = stretches(instants, resolution);
     if let Some((number, longest)) = Stretch::longest(&all) {
         let (n, duration) = (all.len(), longest.duration());
         let hint = format!(

@@ -32,7 +32,7 @@ impl Trace {
             let of = if name.is_empty() { String::new() } else { format!(" of channel {name:?}") };
             if let Grid::Uneven(instants) = &self.axis.grid {
                 let found = format!("the samples{of} are unevenly spaced: they have no sampling rate");
-                return evened(Error::refused(found), instants);
+                return evened(Error::refused(found), instants, self.meta.resolution);
             }
             Error::usage(format!("the sampling rate{of} is not known"), "")
                 .hint("state the samples per second, or the base band of an analyser")

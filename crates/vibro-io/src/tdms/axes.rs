@@ -3,7 +3,7 @@
 use super::Channel;
 use super::description::{Slot, Value};
 use super::segment::Object;
-use crate::assemble::{Abscissa, domain, drift, epoch, from_values, kind_of, short};
+use crate::assemble::{Abscissa, Judged, domain, drift, epoch, from_values, kind_of, short};
 use crate::reader::Options;
 use crate::text::names::Name;
 use std::collections::BTreeMap;
@@ -15,11 +15,13 @@ use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result};
 pub struct Clock {
     name: String,
     axis: Axis,
+    /// Relative standard uncertainty of its step.
+    relative: f64,
     findings: Vec<Finding>,
 }
 
 impl Clock {
-    fn of(channel: &Channel, findings: &mut Vec<Finding>) -> Option<Clock> {
+    fn of(channel: &Channel, resampled: bool, findings: &mut Vec<Finding>) -> Option<Clock> {
         // Of a time `h` is no other unit than this.
         let unit = channel.object.text("unit_string").map(|unit| if unit == "h" { "hour" } else { unit });
         let Name { name, unit } = Name::with_unit_row(channel.name, unit.unwrap_or_default());
@@ -54,9 +56,10 @@ impl Clock {
         let from = if instants || epoch.is_some() { values[0] } else { 0.0 };
         let resolution = drift(values, values.iter().all(|v| f64::from(*v as f32) == *v));
         let values = values.iter().map(|v| (v - from) * factor).collect();
-        let (axis, uneven) = from_values(kind, values, resolution * factor, &label);
-        let findings = assumed.map(|found| found.name("column", label.as_str())).into_iter().chain(uneven);
-        let clock = Clock { name: channel.name.to_owned(), findings: findings.collect(), axis };
+        let Judged { axis, clock, found } = from_values(kind, values, resolution * factor, &label, resampled);
+        let findings = assumed.map(|found| found.name("column", label.as_str())).into_iter().chain(found);
+        let clock =
+            Clock { name: channel.name.to_owned(), findings: findings.collect(), axis, relative: clock };
         (sure || clock.axis.step().is_some()).then_some(clock)
     }
 }
@@ -65,12 +68,13 @@ impl Clock {
 ///
 /// # Errors
 /// If it cannot be told which channels are whose.
-pub fn assign(channels: &mut Vec<Channel>, findings: &mut Vec<Finding>) -> Result<()> {
+pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec<Finding>) -> Result<()> {
     let mut sets: BTreeMap<(&str, usize), Vec<usize>> = BTreeMap::new();
     for (i, channel) in channels.iter().enumerate() {
         sets.entry((channel.group, channel.values.len())).or_default().push(i);
     }
-    let clocks = channels.iter().map(|channel| Clock::of(channel, findings).map(Arc::new));
+    let resampled = options.resample.is_some();
+    let clocks = channels.iter().map(|channel| Clock::of(channel, resampled, findings).map(Arc::new));
     let mut clocks: Vec<Option<Arc<Clock>>> = clocks.collect();
     for (_, set) in sets {
         let timed = set.iter().any(|i| {
@@ -154,7 +158,8 @@ pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
         }
         return Abscissa::even(kind, step).axis(n, options, meta);
     };
-    let Clock { name, axis, .. } = &**clock;
+    let Clock { name, axis, relative, .. } = &**clock;
+    meta.clock = *relative;
     let own = axis.step().unwrap_or(f64::NAN);
     let abscissa = match step.filter(|(_, step)| *step > 0.0) {
         Some((_, step)) if kind == axis.kind && (own / step - 1.0).abs() <= 1e-4 => {

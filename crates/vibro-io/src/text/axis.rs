@@ -19,6 +19,8 @@ pub struct Printed {
     pub resolution: f64,
     /// Whether it is time or frequency only because a person's statement says so.
     pub assumed: bool,
+    /// Relative standard uncertainty of its step, if it is even.
+    pub clock: f64,
     /// What is to be said of it, if it is used.
     pub findings: Vec<Finding>,
 }
@@ -64,7 +66,8 @@ impl Statement {
     }
 }
 
-/// The axis of `n` values: what a person states, then the printed one, then what the header states.
+/// The axis of `n` values: what a person states, then the printed one, then what the header states. Before it the relative
+/// standard uncertainty of its step, where that is printed.
 ///
 /// # Errors
 /// If a person's statement contradicts a whole printed column.
@@ -74,24 +77,24 @@ pub fn choose(
     header: &Stated,
     options: &Options,
     findings: &mut Vec<Finding>,
-) -> Result<Axis> {
+) -> Result<(f64, Axis)> {
     // Times that are made even afterwards keep theirs until then.
     let evened = options.stretch.is_some() || options.resample.is_some();
     let own = evened && printed.as_ref().is_some_and(|p| p.axis.step().is_none());
     let Some(statement) = Statement::of(options, header, printed.as_ref(), n).filter(|_| !own) else {
         return Ok(match printed {
-            Some(printed) => trusted(printed, header, findings),
-            None => headed(n, header, findings),
+            Some(printed) => (printed.clock, trusted(printed, header, findings)),
+            None => (0.0, headed(n, header, findings)),
         });
     };
     statement.against(header, findings);
     let given = &statement.axis;
-    let Some(printed) = printed else { return Ok(statement.axis) };
+    let Some(printed) = printed else { return Ok((0.0, statement.axis)) };
     let Printed { axis, label, .. } = &printed;
     let about = |code| Finding::caution(code).name("column", label.as_str());
     if !matches!(axis.kind, AxisKind::Time | AxisKind::Frequency) {
         findings.push(about("column-no-axis"));
-        return Ok(statement.axis);
+        return Ok((0.0, statement.axis));
     }
     printed.runs_forward()?;
     let step = given.step().unwrap_or(f64::NAN);
@@ -99,20 +102,20 @@ pub fn choose(
         if axis.step().is_none() {
             findings.push(about("column-uneven").number("step", step));
         } else if given.kind == AxisKind::Frequency {
-            return Ok(printed.axis);
+            return Ok((printed.clock, printed.axis));
         }
     } else if axis.step().is_some() && printed.goes_with(&statement, printed.rounded()) {
         findings.push(printed.refines(&statement));
         findings.extend(printed.findings.into_iter().filter(|found| found.code == Clock::JITTERS));
-        return Ok(printed.axis);
+        return Ok((printed.clock, printed.axis));
     } else if printed.assumed && axis.step() == Some(1.0) && matches!(axis.start(), 0.0 | 1.0) {
         findings.push(about("column-counts").number("step", step));
-        return Ok(statement.axis);
+        return Ok((0.0, statement.axis));
     } else {
         return Err(printed.contradicts(&statement));
     }
     let time = given.kind == AxisKind::Time;
-    Ok(if time { Axis::time(axis.start(), step, n) } else { statement.axis })
+    Ok((0.0, if time { Axis::time(axis.start(), step, n) } else { statement.axis }))
 }
 
 impl Printed {
@@ -189,7 +192,7 @@ impl Printed {
         if let Grid::Uneven(instants) = &self.axis.grid
             && axis.kind == AxisKind::Time
         {
-            return evened(error, instants);
+            return evened(error, instants, self.resolution);
         }
         error
             .hint(

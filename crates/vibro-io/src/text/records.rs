@@ -8,7 +8,7 @@ use super::names::{Name, Part};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
-use crate::assemble::{self, NOMINAL, Spectral, domain, from_values, kind_of, short};
+use crate::assemble::{self, Judged, NOMINAL, Spectral, domain, from_values, kind_of, short};
 use crate::held::Held;
 use crate::{Format, Options, number};
 use num_complex::Complex64;
@@ -57,13 +57,14 @@ pub fn build(
     let plain = plain && printed.as_ref().is_some_and(|axis| table.iter().any(|c| !again(c, axis)));
     table.retain(|column| !printed.as_ref().is_some_and(|axis| (is_table || plain) && again(column, axis)));
     table.retain(|column| !printed.as_ref().is_some_and(|axis| is_table && column.is_clock_of(axis)));
-    let printed = printed.map(|column| made.printed(&column, &table)).transpose()?;
+    let printed = printed.map(|column| made.printed(column, &table)).transpose()?;
     table.retain(|column| Some(column.at - 1) != dialect.clock_at());
     let has_axis = printed.is_some();
     if numbered && !has_axis {
         of_axis.push(Finding::caution("column-numbers-rows"));
     }
-    let mut axis = choose(printed, n, &made.stated, options, &mut of_axis)?;
+    let resolution = printed.as_ref().map_or(0.0, |printed| printed.resolution);
+    let (clock, mut axis) = choose(printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
     }
@@ -106,7 +107,11 @@ pub fn build(
         if let Some((_, every)) = sparse {
             record.meta_mut().found(Finding::note("column-sparse").count("every", every));
         }
-        record.meta_mut().declared_n = declared;
+        let meta = record.meta_mut();
+        meta.declared_n = declared;
+        if axis.kind == AxisKind::Time {
+            (meta.clock, meta.resolution) = (clock, resolution);
+        }
         if !is_table {
             for found in &of_axis {
                 record.meta_mut().found(found.clone());
@@ -244,7 +249,7 @@ impl Made<'_> {
     }
 
     /// Axis from its column, and what is to be said of it.
-    fn printed(&self, column: &Column, others: &[Column]) -> Result<Printed> {
+    fn printed(&self, column: Column, others: &[Column]) -> Result<Printed> {
         let at = format!("column {}", column.at);
         let (name, label) = match column.name.name.as_str() {
             "" if column.at == 1 => ("first column", "first column".to_owned()),
@@ -283,12 +288,18 @@ impl Made<'_> {
         let finer = values.windows(2).all(|w| (w[1] - w[0]).abs() < single);
         let own = tail::resolution(self.text, self.tail, self.dialect, column.at - 1);
         let own = own.max(if finer { largest * f64::EPSILON } else { single });
-        self.one_clock(&kind, column, (factor, own), others)?;
-        let values = values.iter().map(|v| (v - from) * factor).collect();
-        let (axis, finding) = from_values(kind, values, own * factor, &label);
+        self.one_clock(&kind, &column, (factor, own), others)?;
+        // Of a long record there is room for one column of times, not for two.
+        let mut values = match column.values {
+            Held::Values(Values::Real(values)) => values,
+            _ => values.into_owned(),
+        };
+        values.iter_mut().for_each(|v| *v = (*v - from) * factor);
+        let resampled = self.options.resample.is_some();
+        let Judged { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
-        let findings = assumed.into_iter().chain(finding).collect();
-        Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), findings })
+        let findings = assumed.into_iter().chain(found).collect();
+        Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), clock, findings })
     }
 
     /// Unit of a column without a name, and its factor to s, by which it agrees with the stated rate.

@@ -4,7 +4,7 @@ use super::Array;
 use super::names::Meaning::{Increment, Rate, Start};
 use super::names::Trust::{Likely, Offered, Sure, Vague};
 use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
-use crate::assemble::{drift, epoch, from_values, kind_of, short};
+use crate::assemble::{Judged, drift, epoch, from_values, kind_of, short};
 use crate::held::Held;
 use crate::number;
 use crate::reader::{Options, POSSIBLE};
@@ -130,7 +130,8 @@ pub struct Axes<'a> {
     pub dialect: &'static Dialect,
     options: &'a Options,
     /// With their names, times before frequencies.
-    vectors: Scoped<(String, Axis)>,
+    /// Name, axis, and the relative standard uncertainty of its step.
+    vectors: Scoped<(String, Axis, f64)>,
     scalars: Scoped<Scalar>,
     /// By struct, how deep the outermost array in it stands, and the longest length of those.
     outer: HashMap<String, (Reverse<usize>, Option<u64>)>,
@@ -194,12 +195,13 @@ impl<'a> Axes<'a> {
             // Seconds since 1970 have no room for the digits of their steps.
             let first = if (vector[0] * factor).abs() >= FAR { vector[0] } else { from };
             let vector = vector.iter().map(|v| (v - first) * factor).collect();
-            let (mut axis, finding) = from_values(kind, vector, drift, &label);
+            let Judged { mut axis, clock, found } =
+                from_values(kind, vector, drift, &label, options.resample.is_some());
             match &mut axis.grid {
                 Grid::Even { start, .. } => *start += (first - from) * factor,
                 Grid::Uneven(values) => values.iter_mut().for_each(|v| *v += (first - from) * factor),
             }
-            findings.extend(assumed.map(|found| found.name("column", label)).into_iter().chain(finding));
+            findings.extend(assumed.map(|found| found.name("column", label)).into_iter().chain(found));
             let said = axes.chosen(name, axis.len(), false).into_iter();
             let mut said = said.filter(|(of, s)| s.kind == Some(AxisKind::Time) && *of == scope);
             let said = options.rate.or_else(|| Some(1.0 / said.next()?.1.value));
@@ -211,7 +213,7 @@ impl<'a> Axes<'a> {
                 findings.push(found.name("used", used).number("rate", rate));
             }
             taken[at] = true;
-            axes.vectors.add(scope, (name.clone(), axis));
+            axes.vectors.add(scope, (name.clone(), axis, clock));
         }
         let mut taken = taken.into_iter();
         arrays.retain(|_| !taken.next().unwrap_or(false));
@@ -254,13 +256,13 @@ impl<'a> Axes<'a> {
     ) -> Result<Axis> {
         let (n, complex) = (values.len(), values.is_complex());
         let fits = |axis: &Axis| axis.len() == n && !(complex && axis.kind == AxisKind::Time);
-        let mut fitting = self.vectors.over(name).filter(|(_, (_, axis))| fits(axis));
+        let mut fitting = self.vectors.over(name).filter(|(_, (_, axis, _))| fits(axis));
         let said = self.chosen(name, n, complex);
         // What stands nearer is meant; a vector beside it is more than an attribute.
         let beside = self.dialect.container(name).len();
         let nearest = said.first().map_or(0, |(scope, _)| scope.len().min(beside));
         let first = fitting.next().filter(|(scope, _)| scope.len() >= nearest);
-        let vector = first.map(|(_, (_, axis))| axis);
+        let vector = first.map(|(_, (_, axis, _))| axis);
         match (self.options.rate, self.options.base_band) {
             (Some(rate), _) if !complex => {
                 let step = said.first().map_or(1.0 / rate, |(_, scalar)| scalar.value);
@@ -276,11 +278,13 @@ impl<'a> Axes<'a> {
             }
             _ => {}
         }
-        if let Some((scope, (used, axis))) = first {
-            if let Some((_, (other, _))) = fitting.find(|(of, (_, other))| *of == scope && other != axis) {
+        if let Some((scope, (used, axis, clock))) = first {
+            if let Some((_, (other, ..))) = fitting.find(|(of, (_, other, _))| *of == scope && other != axis)
+            {
                 let found = Finding::caution("time-or-frequency").name("variable", meta.name.as_str());
                 findings.push(found.name("used", used).name("other", other));
             }
+            meta.clock = *clock;
             return Ok(axis.clone());
         }
         let Some((scope, scalar)) = said.first() else {
@@ -334,7 +338,7 @@ impl<'a> Axes<'a> {
 
     /// Whether an abscissa of `n` values is known for an array.
     pub fn has(&self, name: &str, n: u64) -> bool {
-        self.vectors.over(name).any(|(_, (_, axis))| axis.len() as u64 == n)
+        self.vectors.over(name).any(|(_, (_, axis, _))| axis.len() as u64 == n)
     }
 }
 
