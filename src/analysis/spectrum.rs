@@ -122,6 +122,7 @@ impl Keys {
                 Ok(all) if all.records.iter().any(|record| matches!(record, Record::Spectrum(_))) => {
                     return self.stored(source, &all, &options);
                 }
+                Err(other) if source.reading.base_band.is_some() => return Err(other),
                 _ => return Err(why),
             },
         };
