@@ -13,12 +13,14 @@ mod inputs;
 pub(crate) mod job;
 mod kept;
 pub(crate) mod model;
+mod named;
 pub(crate) mod precision;
 pub(crate) mod pulse;
 mod recordings;
 pub(crate) mod source;
 pub(crate) mod spectrum;
 pub(crate) mod sweep;
+pub(crate) mod tone;
 
 mod headline;
 mod page;
@@ -31,7 +33,8 @@ pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 
 pub(crate) use job::Job;
-pub(crate) use source::{Source, file_name};
+pub(crate) use named::{Named, few, twice};
+pub(crate) use source::{Source, file_name, name_of};
 
 /// Figures of results, as data.
 pub mod figures {
@@ -47,12 +50,13 @@ pub mod figures {
     pub use super::sweep::figures::{fit, map, overlay, receptance, response, waterfall};
 }
 
-use crate::campaign::{Campaign, Entry};
+use crate::campaign::{Campaign, Entry, Fault};
 use crate::error::{Error, Result};
-use crate::read::Folder;
+use crate::read::{Folder, plain};
 use crate::record::{find_channel, shown};
 use crate::report::files::Names;
 use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The keys of a kind of record.
@@ -77,6 +81,11 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
     /// # Errors
     /// If keys contradict each other, are impossible, or one is missing.
     fn check(entry: &Entry<Self>, earlier: &[Entry<Self>]) -> Result<()>;
+
+    /// The name that a table states.
+    fn stated_name(entry: &Entry<Self>) -> Option<String> {
+        entry.name.clone()
+    }
 
     /// Keys that name files beside that of the record.
     fn beside(&self) -> Option<(&'static str, &PathBuf)> {
@@ -118,9 +127,10 @@ pub(crate) struct Kind {
     section: &'static str,
     title: &'static str,
     names: Names,
-    check: fn(&Campaign) -> Result<()>,
+    check: fn(&Campaign) -> Result<Vec<Fault>>,
     files: fn(&Campaign) -> Result<Vec<PathBuf>>,
-    channels: fn(&Campaign) -> Result<()>,
+    channels: fn(&Campaign) -> Result<Vec<Error>>,
+    records: fn(&Campaign) -> Result<Vec<Named>>,
     run: fn(&mut Job<'_>) -> Result<()>,
 }
 
@@ -133,6 +143,7 @@ impl Kind {
             check: check::<A>,
             files: files_of::<A>,
             channels: channels_of::<A>,
+            records: records_of::<A>,
             run: run_all::<A>,
         }
     }
@@ -155,10 +166,10 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
 }
 
-/// Reads a campaign and checks all its records.
+/// Reads a campaign and checks all its records. A table with a value that cannot be is left out: [`Campaign::faults`].
 ///
 /// # Errors
-/// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
+/// If it is not TOML, has an unknown key, or a value that cannot be outside of the tables of records; each points at its line.
 pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
     open_in(&Folder::default(), path.as_ref())
 }
@@ -180,39 +191,54 @@ pub fn parse(within: &Folder, path: &Path, text: String) -> Result<Campaign> {
 }
 
 fn checked(campaign: Campaign) -> Result<Campaign> {
-    KINDS.iter().try_for_each(|kind| (kind.check)(&campaign))?;
-    Ok(campaign)
+    let faults = faults(&campaign)?;
+    Ok(campaign.without(faults))
 }
 
-/// The recordings that a campaign names.
+/// The tables of a campaign that cannot be.
+fn faults(campaign: &Campaign) -> Result<Vec<Fault>> {
+    Ok(KINDS
+        .iter()
+        .map(|kind| (kind.check)(campaign))
+        .collect::<Result<Vec<_>>>()?
+        .into_iter()
+        .flatten()
+        .collect())
+}
+
+/// All that is wrong with the tables of a campaign: values that cannot be, files that do not exist or cannot be read, channels that a file
+/// does not have.
 ///
 /// # Errors
-/// If one leads outside its folder or does not exist.
+/// As [`open`].
+pub fn errors(campaign: &Campaign) -> Result<Vec<Error>> {
+    let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
+    let of_files: Result<Vec<_>> = KINDS.iter().map(|kind| (kind.channels)(campaign)).collect();
+    Ok(of_tables.chain(of_files?.into_iter().flatten()).collect())
+}
+
+/// The recordings that the tables of a campaign name, but for those of a table that names one that is outside its folder or does not exist.
+///
+/// # Errors
+/// As [`open`].
 pub fn files(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     let files: Result<Vec<_>> = KINDS.iter().map(|kind| (kind.files)(campaign)).collect();
     Ok(files?.concat())
 }
 
-/// Looks for the channel that each table names in its file.
-///
-/// # Errors
-/// If a file cannot be read, or has no such channel.
-pub fn channels(campaign: &Campaign) -> Result<()> {
-    KINDS.iter().try_for_each(|kind| (kind.channels)(campaign))
-}
-
-/// The tables of a kind of record; one whose file is a pattern stands for one of each file that it matches.
-///
-/// # Errors
-/// As [`Campaign::entries`].
-pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
-    let all: Vec<Entry<A>> = campaign.entries(A::SECTION, A::OF_FILES)?;
+/// The tables of a kind of record as they are written, one of each file that a pattern matches, with what is wrong with the table.
+fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>)>> {
     let folder = campaign.within();
-    let each = |entry: Entry<A>| {
-        let Some(pattern) = entry.file.clone().filter(|file| is_pattern(folder, file)) else {
-            return Ok(vec![entry]);
+    let each = |(entry, checked): (Entry<A>, Result<()>)| {
+        let pattern = entry.file.clone().filter(|file| checked.is_ok() && is_pattern(folder, file));
+        let Some(pattern) = pattern else { return vec![(entry, checked)] };
+        let files = match matching(folder, &pattern) {
+            Ok(files) => files,
+            Err(error) => {
+                let error = campaign.fault(&entry, error.setting("file"));
+                return vec![(entry, Err(error))];
+            }
         };
-        let files = matching(folder, &pattern).map_err(|e| campaign.fault(&entry, e.setting("file")))?;
         let one = |file: PathBuf| {
             let own = |name: &String| {
                 if A::TOGETHER { name.clone() } else { format!("{name}, {}", shown(&file)) }
@@ -220,58 +246,110 @@ pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>>
             let mut one = entry.clone();
             one.name = entry.name.as_ref().map(own);
             one.file = Some(file);
-            one
+            (one, Ok(()))
         };
-        Ok(files.into_iter().map(one).collect())
+        files.into_iter().map(one).collect()
     };
-    Ok(all.into_iter().map(each).collect::<Result<Vec<_>>>()?.concat())
+    Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(each).collect())
 }
 
-fn check<A: Analysis>(campaign: &Campaign) -> Result<()> {
-    let entries = entries::<A>(campaign)?;
-    for (i, entry) in entries.iter().enumerate() {
+/// The tables of a kind of record that can be; one whose file is a pattern stands for one of each file that it matches.
+///
+/// # Errors
+/// As [`Campaign::entries`].
+pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
+    let faults: BTreeSet<_> = campaign.faults().iter().map(|fault| &fault.place).collect();
+    let all = written::<A>(campaign)?.into_iter().map(|(entry, _)| entry);
+    Ok(all.filter(|entry| !faults.contains(&entry.place())).collect())
+}
+
+/// As [`entries`], where none may be left out.
+///
+/// # Errors
+/// That of the first table that cannot be.
+pub(crate) fn all_entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
+    check::<A>(campaign)?.into_iter().next().map_or(Ok(()), |fault| Err(fault.error))?;
+    entries(campaign)
+}
+
+fn check<A: Analysis>(campaign: &Campaign) -> Result<Vec<Fault>> {
+    let (mut usable, mut faults): (Vec<Entry<A>>, Vec<Fault>) = (Vec::new(), Vec::new());
+    for (i, (entry, checked)) in written::<A>(campaign)?.into_iter().enumerate() {
         let reads = entry.reads().filter(|_| A::OF_FILES && entry.file.is_none());
-        let without = reads.map(|key| {
-            Error::usage(format!("{key} without a file"), "file, too, or leave it out").setting(key)
+        let without =
+            |key| Error::usage(format!("{key} without a file"), "file, too, or leave it out").setting(key);
+        let checked = checked.and_then(|()| match reads {
+            Some(key) => Err(campaign.fault(&entry, without(key))),
+            None => (entry.reading.reader().and_then(|_| A::check(&entry, &usable)))
+                .map_err(|e| campaign.fault(&entry, e)),
         });
-        let checked = match without {
-            Some(error) => Err(error),
-            None => entry.reading.reader().and_then(|_| A::check(entry, &entries[..i])),
-        };
-        checked.map_err(|e| campaign.fault(entry, e))?;
+        match checked {
+            Ok(()) => usable.push(entry),
+            Err(error) => {
+                let (section, name, place) = (A::SECTION, name_of(&entry, i + 1), entry.place());
+                faults.push(Fault { section, name, place, error });
+            }
+        }
     }
-    Ok(())
+    Ok(faults)
 }
 
-fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<()> {
-    for entry in entries::<A>(campaign)? {
-        let named = entry.channel.channel.iter().map(|name| ("channel", name));
-        let named: Vec<_> = named.chain(entry.keys.channels()).collect();
-        if entry.file.is_none() && named.is_empty() {
-            continue;
-        }
-        let Some(path) = A::files(campaign, &entry)?.into_iter().next() else { continue };
-        let (_, headers, _) = entry.reading.reader()?.within(campaign.within()).survey(&path)?;
-        // Values that are numbered, as a step without a rate shows.
-        if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
-            let error = Error::usage(format!("{} has no sampling rate", shown(&path)), "rate = HZ");
-            return Err(campaign.fault(&entry, error.setting("rate").setting("file")));
-        }
-        let names = headers.iter().map(|h| (h.name.as_str(), h.quantity));
-        for (key, name) in named {
-            find_channel(&path, name, names.clone()).map_err(|e| campaign.fault(&entry, e.setting(key)))?;
-        }
+fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Error>> {
+    Ok(entries::<A>(campaign)?.iter().filter_map(|entry| channels_in(campaign, entry).err()).collect())
+}
+
+/// Looks for the channels that a table names in its file.
+fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()> {
+    let files = A::files(campaign, entry)?;
+    let named = entry.channel.channel.iter().map(|name| ("channel", name));
+    let named: Vec<_> = named.chain(entry.keys.channels()).collect();
+    let Some(path) = files.first().filter(|_| entry.file.is_some() || !named.is_empty()) else {
+        return Ok(());
+    };
+    let (_, headers, _) = entry.reading.reader()?.within(campaign.within()).survey(path)?;
+    // Values that are numbered, as a step without a rate shows.
+    if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
+        let error = Error::usage(format!("{} has no sampling rate", shown(path)), "rate = HZ");
+        return Err(campaign.fault(entry, error.setting("rate").setting("file")));
     }
-    Ok(())
+    let names = headers.iter().map(|h| (h.name.as_str(), h.quantity));
+    named.into_iter().try_for_each(|(key, name)| {
+        find_channel(path, name, names.clone()).map(drop).map_err(|e| campaign.fault(entry, e.setting(key)))
+    })
 }
 
 fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
-    let files: Result<Vec<_>> =
-        entries::<A>(campaign)?.iter().map(|entry| A::files(campaign, entry)).collect();
-    Ok(files?.concat())
+    // A table whose files are not there says so itself.
+    let files = entries::<A>(campaign)?.into_iter().filter_map(|entry| A::files(campaign, &entry).ok());
+    Ok(files.flatten().collect())
+}
+
+fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Named>> {
+    let mut all = Vec::new();
+    for (i, entry) in entries::<A>(campaign)?.iter().enumerate() {
+        let files: Vec<PathBuf> = match &entry.file {
+            Some(file) => vec![campaign.folder().join(file)],
+            None if A::OF_FILES => Vec::new(),
+            None => A::files(campaign, entry).unwrap_or_default(),
+        };
+        let (own, also) = (&entry.channel.channel, entry.keys.channels());
+        let record = format!("{own:?} {also:?} {:?}", entry.reading.stated());
+        let (section, table) = (A::SECTION, name_of(entry, i + 1));
+        let named = |file: PathBuf| Named {
+            file: plain(&file),
+            section,
+            table: table.clone(),
+            record: record.clone(),
+        };
+        all.extend(files.into_iter().map(named));
+    }
+    Ok(all)
 }
 
 fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
+    for fault in job.campaign.faults().iter().filter(|fault| fault.section == A::SECTION) {
+        job.found.add(&fault.name, [answer::left_out("left-out", &fault.error)]);
+    }
     let entries = entries::<A>(job.campaign)?;
     if A::TOGETHER && !entries.is_empty() {
         return job.together(A::SECTION, |job| A::run(&entries, job));

@@ -47,6 +47,7 @@ use crate::read::Folder;
 use crate::record::{Finding, shown};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::de::DeTable;
 
 /// Folder for results where none is named.
@@ -82,6 +83,21 @@ pub struct Campaign {
     folder: Folder,
     #[serde(skip)]
     text: String,
+    #[serde(skip)]
+    faults: Arc<Vec<Fault>>,
+}
+
+/// A table that cannot be. It is left out, and the others are answered.
+#[derive(Debug)]
+pub struct Fault {
+    /// Its section.
+    pub(crate) section: &'static str,
+    /// Its name for people.
+    pub(crate) name: String,
+    /// Where it stands, and its file.
+    pub(crate) place: (usize, Option<PathBuf>),
+    /// What is wrong, with its line.
+    pub error: Error,
 }
 
 impl Campaign {
@@ -195,6 +211,16 @@ impl Campaign {
             Some(Finding::note("file-not-used").about(file).name("why", why))
         });
         (0..lines.len()).filter_map(table).chain(unused).collect()
+    }
+
+    /// The same without the tables that cannot be.
+    pub(crate) fn without(self, faults: Vec<Fault>) -> Campaign {
+        Campaign { faults: Arc::new(faults), ..self }
+    }
+
+    /// The tables that cannot be.
+    pub fn faults(&self) -> &[Fault] {
+        &self.faults
     }
 
     /// Its text.

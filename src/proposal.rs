@@ -5,9 +5,13 @@
 mod alike;
 mod folder;
 mod found;
+mod joined;
+mod notes;
 mod trial;
 
 use folder::{Inventory, Series};
+pub use joined::more_steps;
+use notes::Note;
 
 use crate::analysis::{self, Kept, Progress};
 use crate::campaign::{Campaign, Reading};
@@ -28,6 +32,8 @@ pub struct Proposal {
     pub tables: Vec<Table>,
     /// Files that stand in no table, and why.
     pub left: Vec<(String, String)>,
+    /// What notes in the folder state.
+    notes: Vec<Note>,
 }
 
 /// A table of a campaign.
@@ -55,6 +61,9 @@ pub struct Row {
     /// How it is known.
     pub known: Known,
 }
+
+/// Characters of a key and its value beside which the comments of a table stand in a column.
+const WIDEST: usize = 60;
 
 /// How the value of a key is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -161,8 +170,18 @@ impl Table {
         self.rows.iter().find(|row| row.key == key).map_or("", |row| bare(&row.value))
     }
 
-    /// As a campaign writes it. What lacks a key is a comment.
-    fn toml(&self) -> String {
+    /// Whether a key is open that a line of notes may state. The mass of a sweep is a number, not a weight.
+    fn asks(&self, row: &Row, note: &Note) -> bool {
+        let open = matches!(row.known, Known::Open(_) | Known::Missing(_));
+        open && note.is_of(row.key) && (self.section, row.key) != ("sweep", "mass")
+    }
+
+    /// As a campaign writes it, what lacks a key as a comment, with what notes state of its open keys.
+    fn toml(&self, notes: &[Note]) -> String {
+        let said = |row: &Row| {
+            let of_key = notes.iter().filter(|note| self.asks(row, note));
+            of_key.map(|note| format!("; {}: {}", note.place, note.text)).collect::<String>()
+        };
         let mut text = format!("[[{}]]\n", self.section);
         let row = |row: &Row| match row.known {
             Known::Open(_) => format!("# {} =", row.key),
@@ -170,14 +189,14 @@ impl Table {
             _ => format!("{} = {}", row.key, row.value),
         };
         let commented = self.rows.iter().filter(|row| row.known.why().is_some());
-        let wide = commented.map(|r| row(r).chars().count()).max().unwrap_or(0);
+        let wide = commented.map(|r| row(r).chars().count()).filter(|n| *n <= WIDEST).max().unwrap_or(0);
         for one in &self.rows {
             let row = row(one);
             let _ = match one.known {
                 Known::Found => writeln!(text, "{row}"),
                 Known::Guessed(why) => writeln!(text, "{row:wide$}   # guessed: {why}"),
-                Known::Open(what) => writeln!(text, "{row:wide$}   # open: {what}"),
-                Known::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}"),
+                Known::Open(what) => writeln!(text, "{row:wide$}   # open: {what}{}", said(one)),
+                Known::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", said(one)),
             };
         }
         let about = format!("# {}\n", shown(self.in_words()));
@@ -217,7 +236,8 @@ impl Proposal {
             });
         }
         let found = Inventory::of(within, reading, known, progress)?;
-        let mut proposal = Proposal { folder: within.clone(), tables: Vec::new(), left: found.left };
+        let notes = Note::all(within);
+        let mut proposal = Proposal { folder: within.clone(), tables: Vec::new(), left: found.left, notes };
         for (name, path) in found.lists {
             let table =
                 Table::new("sweep", "the list of a sweep", &path).found("name", name).found("list", path);
@@ -226,7 +246,8 @@ impl Proposal {
             let table = table.open("window", "", "\"hann\", \"flat-top\", ... as the analyser was set");
             proposal.tables.push(table.open("scaling", "", "\"peak\" or \"rms\""));
         }
-        for series in alike::all(&found.series, within, kept, progress) {
+        let all = joined::all(found.series, within, kept);
+        for series in alike::all(&all, within, kept, progress) {
             proposal.tables.extend(series.tables);
             proposal.left.extend(series.left);
         }
@@ -285,6 +306,11 @@ impl Proposal {
             "# Proposed by `vibro init`. Check what is guessed, fill in what is missing, then: vibro run {}\n# docs/campaign.md lists every key.\nname = {name}\n",
             Proposal::FILE
         );
+        let beside =
+            |note: &Note| self.tables.iter().any(|table| table.rows.iter().any(|row| table.asks(row, note)));
+        for note in self.notes.iter().filter(|note| !beside(note)) {
+            let _ = writeln!(text, "# {}: {}", note.place, note.text);
+        }
         text += &self.tables();
         text
     }
@@ -294,7 +320,7 @@ impl Proposal {
         let mut text = String::new();
         for table in &self.tables {
             text += "\n";
-            text += &table.toml();
+            text += &table.toml(&self.notes);
         }
         if !self.left.is_empty() {
             text += "\n# Not used:\n";
@@ -329,11 +355,12 @@ pub fn of_steps(within: &Folder, files: &[PathBuf], reading: &Reading) -> Result
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let (name, reading) = (folder::name(&names), reading.clone());
-    let series = Series { name, files: names, headers, pattern: None, reading };
+    let series = Series { name, files: names, headers, pattern: None, alike: false, reading };
     let table = series.sweep().ok_or_else(|| {
         let found = format!("the channels {}", channels.join(", "));
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")
             .hint("name them in a campaign: [[sweep]] with traces, force and response; docs/campaign.md shows one")
     })?;
-    Ok(Proposal { folder: within.at("."), tables: vec![table.stated(&series.reading)], left: Vec::new() })
+    let tables = vec![table.stated(&series.reading)];
+    Ok(Proposal { folder: within.at("."), tables, left: Vec::new(), notes: Vec::new() })
 }

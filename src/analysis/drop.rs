@@ -336,10 +336,11 @@ impl Analysis for Keys {
             let Some((_, name, series)) = all.get_mut(at) else { continue };
             series.add_numbers(&entry.keys);
             if entry.file.is_some() {
-                let path = job.path(entry)?;
                 let keys = &entry.keys;
-                let added = job.measured(entry, name, &path, |source| series.add_record(keys, source));
-                job.found(&file_name(&path), added);
+                let added = job.path(entry).and_then(|path| {
+                    job.measured(entry, name, &path, |source| series.add_record(keys, source))
+                });
+                job.found(&file_name(entry.file.as_deref().unwrap_or(Path::new(""))), added);
             }
         }
         let mut records = Vec::new();

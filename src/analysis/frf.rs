@@ -8,17 +8,25 @@ pub use function::Function;
 
 use super::answer::left_out;
 use super::spectrum::{self, Detrend};
+use super::tone::Strongest;
 use super::{Analysis, Answer, Job, Source, named_in, no_file, sweep};
 use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
-use crate::record::{Meta, Record, Window};
+use crate::record::{Axis, Meta, Record, Trace, Window, shown};
 use crate::report::files;
 use crate::report::files::Names;
 use crate::report::words::About;
 use crate::signal::transfer::Estimator;
+use crate::units::notation::significant;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+/// Part of the power of a reference that its strongest sine has, at least, where it is alone: 20 dB above all else. Noise and blows spread
+/// their power over all lines.
+const ALONE: f64 = 0.99;
+/// Samples of a reference that are looked at first.
+const HEAD: usize = 1 << 16;
 
 /// Code of the finding that a sweep jumps.
 const JUMPS: &str = "modal-sweep-jumps";
@@ -140,6 +148,7 @@ impl Keys {
 
     fn functions(&self, source: &Source<'_>, of_file: &mut Answer) -> Result<Vec<Function>> {
         if self.reference.is_some() {
+            self.refuse_sine(source)?;
             let found = self.taken().lines(source)?;
             of_file.add("", &found.findings);
             let records = found.records();
@@ -170,6 +179,36 @@ impl Keys {
             Ok(Function::new(meta, measured))
         };
         all.into_iter().map(function).collect()
+    }
+
+    /// Refuses a reference that is one sine: a function of it is known in one line, and noise over noise in all others.
+    fn refuse_sine(&self, source: &Source<'_>) -> Result<()> {
+        let (channel, reference) = (source.channel, self.reference.as_deref());
+        let reader = source.reader()?.rate_of_base_band();
+        let mut traces = reader.stream_chosen(source.path, reference, channel.channel.as_deref(), None)?;
+        let names: Vec<String> = traces.channels().iter().map(|meta| meta.name.clone()).collect();
+        traces.keep(&[0]);
+        let mut block = vec![Vec::new()];
+        let mut alone = None;
+        // Most records that are no sine show it in their beginning.
+        for enough in [HEAD, usize::MAX] {
+            while block[0].len() < enough && traces.append(&mut block)? > 0 {}
+            let (meta, values) = (traces.channels()[0].clone(), block[0].clone());
+            let axis = Axis::time(traces.start(), 1.0 / traces.rate(), values.len());
+            alone = Strongest::of(&Trace { meta, axis, values }).filter(|tone| tone.share >= ALONE);
+            if alone.is_none() {
+                return Ok(());
+            }
+        }
+        let Some((tone, [name, response])) = alone.zip(names.first_chunk()) else { return Ok(()) };
+        let folder = source.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let frequency = significant(tone.frequency, 5);
+        let why =
+            format!("{name} is a sine of {frequency} Hz alone, and a function needs power at all lines");
+        let (folder, file) = (shown(folder), shown(source.path));
+        Err(Error::refused(why).hint(format!(
+            "vibro response {folder} for steps of a sweep, or vibro spectrum {file} --channel \"{response}\" --tones 1"
+        )))
     }
 
     /// The modes of a function, with figures, tables and files.

@@ -5,7 +5,7 @@ use super::inputs::inputs;
 use super::kept::{Kept, digest, packed};
 use super::recordings::beside;
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, Answer, KINDS, Kind, files as files_of, page};
+use super::{Analysis, Answer, KINDS, Kind, faults, files as files_of, page, twice};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;
@@ -176,10 +176,10 @@ impl<'a> Job<'a> {
         digest(words.chain(files))
     }
 
-    /// Measures the record of each table by itself.
+    /// Measures the record of each table by itself. One whose file is not there or cannot be read loses only itself.
     ///
     /// # Errors
-    /// If a file cannot be read.
+    /// If the campaign cannot be read.
     pub fn each<K: Analysis>(
         &mut self,
         kind: &str,
@@ -189,7 +189,7 @@ impl<'a> Job<'a> {
         let mut records: Vec<Record> = Vec::new();
         for (i, entry) in entries.iter().enumerate() {
             let name = name_of(entry, i + 1);
-            let mut files = K::files(self.campaign, entry)?;
+            let Some(mut files) = self.found(&name, K::files(self.campaign, entry)) else { continue };
             // Numbers alone have no file.
             let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();
             let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
@@ -350,8 +350,10 @@ pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn
     }
     job.found.add("", campaign.commented());
     job.found.add("", beside(campaign)?);
-    if let Some(error) = job.failed.take_if(|_| job.answers == 0) {
-        return Err(error);
+    job.found.add("", twice(campaign)?);
+    if job.answers == 0 {
+        let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
+        of_tables.chain(job.failed.take()).next().map_or(Ok(()), Err)?;
     }
     if campaign.is_empty() {
         job.found.add("", [Finding::caution("campaign-without-record")]);

@@ -1,6 +1,6 @@
 //! The recordings of a folder, and those of them that its campaign does not name.
 
-use super::{REPORT, RESULTS, file_name, files};
+use super::{REPORT, RESULTS, few, file_name, files};
 use crate::campaign::Campaign;
 use crate::error::{Error, Result};
 use crate::read::{Folder, Manifest, Walk, plain};
@@ -178,11 +178,9 @@ pub fn beside(campaign: &Campaign) -> Result<Vec<Finding>> {
     }
     let seen = recordings(campaign.within())?;
     let new = unnamed(campaign, &seen.files)?;
-    let names: Vec<String> = new.iter().take(SHOWN).map(|path| file_name(path)).collect();
-    let more = new.len().saturating_sub(SHOWN);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let names: Vec<String> = new.iter().map(|path| file_name(path)).collect();
     let found = Finding::note("files-not-named").count("n", new.len());
-    let found = (!new.is_empty()).then(|| found.name("files", names.join(", ") + &more));
+    let found = (!new.is_empty()).then(|| found.name("files", few(&names)));
     let skipped = seen.skipped.into_iter().map(|(path, why)| (file_name(&path), why));
     // One that the campaign names says itself why it is not used.
     let skipped = skipped.filter(|(name, _)| !campaign.text().contains(name));
@@ -192,6 +190,3 @@ pub fn beside(campaign: &Campaign) -> Result<Vec<Finding>> {
 
 /// Name of the file of a folder's own campaign.
 pub const OWN: &str = "campaign.toml";
-
-/// Files that are named one by one.
-const SHOWN: usize = 5;

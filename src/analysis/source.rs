@@ -78,6 +78,6 @@ pub fn file_name(path: &Path) -> String {
 
 /// Name of a table for people: that stated, else the file's, else that of its section with this number.
 pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>, number: usize) -> String {
-    let own = entry.name.clone().or_else(|| entry.file.as_deref().map(file_name));
+    let own = K::stated_name(entry).or_else(|| entry.file.as_deref().map(file_name));
     own.unwrap_or_else(|| format!("{} {number}", K::SECTION))
 }

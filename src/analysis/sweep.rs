@@ -3,6 +3,7 @@
 pub mod figures;
 pub mod listed;
 pub mod modelled;
+pub(crate) mod order;
 pub mod pairing;
 pub mod stored;
 pub mod tables;
@@ -10,8 +11,8 @@ pub mod tables;
 pub use listed::{Files, Listed};
 pub use stored::Stored;
 
-use super::{Analysis, Answer, Job, Progress, entries};
-use crate::campaign::{Campaign, Entry, one_or_more};
+use super::{Analysis, Answer, Job, Progress, all_entries, check, entries};
+use crate::campaign::{Campaign, Entry, Fault, one_or_more};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};
 use crate::measure::waterfall::{Waterfall, waterfall};
@@ -184,6 +185,11 @@ impl Keys {
 /// If there is no such sweep, or its list cannot be read.
 pub fn named(campaign: &Campaign, name: Option<&str>) -> Result<Listed> {
     let all = each(entries(campaign)?);
+    // One that cannot be says why.
+    let meant = |fault: &Fault| name.map_or(all.is_empty(), |name| fault.name == name);
+    if let Some(fault) = check::<Keys>(campaign)?.into_iter().find(meant) {
+        return Err(fault.error);
+    }
     let names = || all.iter().map(|s| s.keys.name.as_str()).collect::<Vec<_>>().join(", ");
     let none = |found: String| Error::input(Place::file(campaign.path()), found, names());
     let entry = match (name, all.as_slice()) {
@@ -228,7 +234,7 @@ fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
 /// If a list or a spectrum cannot be read, or an excitation cannot be found.
 pub fn responses(campaign: &Campaign, progress: &dyn Progress) -> Result<Vec<Response>> {
     let taken: Result<Vec<Taken>> =
-        taken(campaign, entries(campaign)?, progress).into_iter().map(|(_, taken)| taken).collect();
+        taken(campaign, all_entries(campaign)?, progress).into_iter().map(|(_, taken)| taken).collect();
     let mut responses: Vec<Response> = taken?.into_iter().map(|(_, response, _)| response).collect();
     pairing::name(&mut responses.iter_mut().collect::<Vec<_>>());
     Ok(responses)
@@ -284,6 +290,10 @@ impl Analysis for Keys {
             return Err(Error::usage(format!("two sweeps are named {name:?}"), expected).setting("name"));
         }
         entry.keys.usable()
+    }
+
+    fn stated_name(entry: &Entry<Keys>) -> Option<String> {
+        Some(entry.keys.name.clone()).filter(|name| !name.is_empty())
     }
 
     fn channels(&self) -> Vec<(&'static str, &String)> {

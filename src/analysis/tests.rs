@@ -6,7 +6,8 @@ fn of(text: &str) -> Result<Campaign> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("campaign.toml");
     std::fs::write(&path, text).unwrap();
-    open(path)
+    let campaign = open(path)?;
+    faults(&campaign)?.into_iter().next().map_or(Ok(campaign), |fault| Err(fault.error))
 }
 
 const SWEEP: &str = "[[sweep]]\nname = \"a\"\nlist = \"L.TXT\"\n";

@@ -38,6 +38,11 @@ struct Named {
 const NAMED: [&str; 2] = ["name", "file"];
 
 impl<K> Entry<K> {
+    /// The table and its file, which tell it from all others of the campaign.
+    pub fn place(&self) -> (usize, Option<PathBuf>) {
+        (self.head.start, self.file.clone())
+    }
+
     /// The first key that says how a file is read.
     pub fn reads(&self) -> Option<&'static str> {
         let mut keys = Reading::KEYS.into_iter().chain(Channel::KEYS);
@@ -46,7 +51,8 @@ impl<K> Entry<K> {
 }
 
 impl Campaign {
-    /// The tables of a section in their order; those of a record in a file have the keys of `Reading` and `Channel`, too.
+    /// The tables of a section in their order, each with the error of a number that lies outside of its range; those of a record in a file have
+    /// the keys of `Reading` and `Channel`, too.
     ///
     /// # Errors
     /// If one has an unknown key, or a value of the wrong kind.
@@ -54,7 +60,7 @@ impl Campaign {
         &self,
         section: &str,
         of_a_file: bool,
-    ) -> Result<Vec<Entry<K>>> {
+    ) -> Result<Vec<(Entry<K>, Result<()>)>> {
         let Some(all) = self.table()?.remove(section) else { return Ok(Vec::new()) };
         let several = |span: Range<usize>| {
             let found = format!("{section} is not a list of tables");
@@ -92,7 +98,7 @@ impl Campaign {
         mut rows: DeTable<'_>,
         head: Range<usize>,
         of_a_file: bool,
-    ) -> Result<Entry<K>> {
+    ) -> Result<(Entry<K>, Result<()>)> {
         let places =
             rows.iter().map(|(k, v)| (k.get_ref().to_string(), k.span().start..v.span().end)).collect();
         let beside: Vec<&str> =
@@ -111,8 +117,7 @@ impl Campaign {
         let Named { name, file } = locate::keys(named, head.clone()).map_err(complaint)?;
         let channel = locate::keys(channel, head.clone()).map_err(complaint)?;
         let reading = locate::keys(reading, head.clone()).map_err(complaint)?;
-        in_range?;
-        Ok(Entry { name, file, channel, reading, keys, head, places })
+        Ok((Entry { name, file, channel, reading, keys, head, places }, in_range))
     }
 
     /// What a table states, word by word.

@@ -13,15 +13,23 @@ use std::path::Path;
 
 /// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
 pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
-    let mut text = error.spoken(|key, value| voice.set(key, value));
-    if voice == Voice::Command && error.is_bare_usage() {
-        text = format!("{text}\n  try: {} --help", typed().0);
-    }
-    line(&format!("vibro: {text}"));
+    errors(std::slice::from_ref(error), voice, json)
+}
+
+/// Prints several errors as [`error`] does one. The exit code is the largest.
+pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
+    let spoken = |error: &Error| {
+        let text = error.spoken(|key, value| voice.set(key, value));
+        let help = voice == Voice::Command && error.is_bare_usage();
+        if help { format!("{text}\n  try: {} --help", typed().0) } else { text }
+    };
+    let texts: Vec<String> = all.iter().map(spoken).collect();
+    texts.iter().for_each(|text| line(&format!("vibro: {text}")));
+    let code = all.iter().map(Error::exit_code).max().unwrap_or(0);
     if json {
-        object(&text, error.exit_code());
+        object(&texts.join("\n"), code);
     }
-    error.exit_code()
+    code
 }
 
 /// Prints what can be typed where no command was, with `json` as an object on standard output as well.

@@ -43,7 +43,9 @@ impl super::Run for Init {
         let linked = within.occupant(&path) == Occupant::Special;
         let path = if linked { path.canonicalize().unwrap_or(path) } else { path };
         let name = path.file_name().map_or_else(String::new, shown);
-        let known = if path.exists() { Some(analysis::open_in(&within, &path)?) } else { None };
+        let known =
+            path.exists().then(|| analysis::open_in(&within, &path).map_err(|e| foreign(&within, &path, e)));
+        let known = known.transpose()?;
         let proposal = print::busy(json, "looking at files", |bar| {
             Proposal::of(&within, &self.reading, known.as_ref(), &Kept::default(), bar)
         })?;
@@ -92,6 +94,18 @@ impl super::Run for Init {
     }
 }
 
+/// The error of a campaign that cannot be read, with another advice where the file has no table of one: another program has made it.
+fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
+    let bytes = within.read(path).unwrap_or_default();
+    let text = String::from_utf8_lossy(&bytes);
+    if analysis::sections().any(|section| text.contains(&format!("[[{section}]]"))) {
+        return error;
+    }
+    let renamed = path.with_extension("other.toml");
+    let error = error.aside("this file is no campaign of vibro");
+    error.hint(format!("mv {} {}", print::typed(path), print::typed(&renamed)))
+}
+
 /// The keys that are known in one way.
 fn keys(proposal: &Proposal, of: impl Fn(Known) -> bool) -> Vec<Value> {
     let of = &of;
@@ -138,10 +152,13 @@ impl super::Run for Check {
             &Folder::default().allow_outside(self.allow_outside),
             if self.campaign.is_dir() { &of_folder } else { &self.campaign },
         )?;
+        let errors = analysis::errors(&campaign)?;
+        if !errors.is_empty() {
+            return Ok(complain::errors(&errors, Voice::Campaign, json));
+        }
         let files = analysis::files(&campaign)?;
-        analysis::channels(&campaign)?;
-        let commented: Vec<_> =
-            campaign.commented().into_iter().map(|found| (String::new(), found)).collect();
+        let found = campaign.commented().into_iter().chain(analysis::twice(&campaign)?);
+        let commented: Vec<_> = found.map(|found| (String::new(), found)).collect();
         if json {
             let mut answer = Map::new();
             answer.insert("files".to_owned(), json!(files));

@@ -194,7 +194,7 @@ impl Measured<frf::Keys> {
             let (name, folder) = (path.to_owned(), folder.clone());
             let mut reader = SweepReader { name, folder, ..SweepReader::default() };
             Stored { unit, calibration, ..Stored::default() }.apply(&mut reader)?;
-            Listed { files: Files::Spectra(list), reader }
+            Listed { files: Files::Spectra(list), reader, findings: Vec::new() }
         };
         let (_, response) = listed.taken(&ResponseOptions::default())?;
         frf::Function::of_response(&response).map(Some)

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::measure::response::{ResponseOptions, ResponsePoint};
 use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
-use crate::proposal::{Proposal, of_steps};
+use crate::proposal::{Proposal, more_steps, of_steps};
 use crate::read::{Folder, Owner, SweepList, SweepReader, plain};
 use crate::record::{Finding, Sweep, SweepPoint, shown};
 use crate::report::files::Names;
@@ -109,12 +109,17 @@ impl Source {
         let Place { path, name, campaign } = Place::of(&self.paths[0]);
         let mut listed = if let Some(proposal) = self.proposed(folder)? {
             init::tell(&proposal);
-            named(&proposal.campaign()?, None)?
+            let mut listed = named(&proposal.campaign()?, None)?;
+            if let Files::Traces(steps) = &listed.files {
+                listed.findings.extend(more_steps(&folder.clone().allow_outside(true), &steps.files));
+            }
+            listed
         } else if campaign {
             named(&analysis::open_in(folder, Path::new(path))?, name)?
         } else {
             let files = Files::Spectra(SweepList::from_path(path, folder)?);
-            Listed { files, reader: SweepReader { folder: folder.clone(), ..SweepReader::default() } }
+            let reader = SweepReader { folder: folder.clone(), ..SweepReader::default() };
+            Listed { files, reader, findings: Vec::new() }
         };
         let how = &mut listed.reader;
         if how.name.is_empty() {

@@ -79,7 +79,7 @@ pub(super) fn all<'a>(
 }
 
 /// At most `few` of so many files, at even distances.
-fn spread(n: usize, few: usize) -> Vec<usize> {
+pub(super) fn spread(n: usize, few: usize) -> Vec<usize> {
     if n <= few { (0..n).collect() } else { (0..few).map(|k| k * (n - 1) / (few - 1)).collect() }
 }
 
@@ -117,7 +117,7 @@ fn tried<T: Clone + Send + Sync>(
 
 impl Series {
     /// Some of its files, by their places.
-    fn part(&self, places: Vec<usize>) -> Series {
+    pub(super) fn part(&self, places: Vec<usize>) -> Series {
         let pattern = self.pattern.clone().filter(|_| places.len() == self.files.len());
         Series { files: places.into_iter().map(|k| self.files[k].clone()).collect(), pattern, ..self.clone() }
     }

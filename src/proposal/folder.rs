@@ -21,7 +21,7 @@ pub(super) struct Inventory {
     pub left: Vec<(String, String)>,
 }
 
-/// Files of the same channels whose names differ in one number; or one file.
+/// Files of the same channels whose names differ in one number, or whatever their names are; or one file.
 #[derive(Debug, Clone)]
 pub struct Series {
     /// What their names have in common.
@@ -32,6 +32,8 @@ pub struct Series {
     pub headers: Vec<Header>,
     /// Pattern that means all of them and no other file.
     pub pattern: Option<String>,
+    /// Whether its files are told by what they hold, not by their names.
+    pub alike: bool,
     /// What is stated of the files.
     pub reading: Reading,
 }
@@ -131,7 +133,7 @@ impl Inventory {
                 }
             }
             let reading = if key.2 { &untimed_reading } else { reading }.clone();
-            found.series.push(Series { name, files, headers, pattern, reading });
+            found.series.push(Series { name, files, headers, pattern, alike: false, reading });
         }
         if let ([first, more @ ..], None) = (others.as_slice(), known) {
             let names = match more.len() {
@@ -150,14 +152,15 @@ impl Series {
         let (force, responses) = self.force_and_responses()?;
         let table = Table::new("sweep", "a stepped sweep, one file a step", &self.in_words());
         let table = table.found("name", &self.name);
-        let name = self.name.to_lowercase();
-        let way = name.split(|c: char| !c.is_alphanumeric()).find(|word| ["up", "down"].contains(word));
-        let table = match way {
+        let table = match self.way() {
             Some(way) => table.guessed("direction", way, "the name says it"),
             None => table,
         };
         let table = match &self.pattern {
             Some(pattern) => table.found("traces", pattern),
+            None if self.alike => {
+                table.guessed("traces", &self.files, "alike but for their names; by frequency")
+            }
             None => table.found("traces", &self.files),
         };
         let table = table.with("force", self.channel(force), Known::Guessed("the channel in N"));
@@ -192,7 +195,10 @@ impl Series {
     pub(super) fn in_words(&self) -> String {
         match self.files.as_slice() {
             [one] => one.clone(),
-            [first, .., last] => format!("{} files, {first} to {last}", self.files.len()),
+            [first, .., last] => {
+                let alike = if self.alike { " of the same columns and rate" } else { "" };
+                format!("{} files{alike}, {first} to {last}", self.files.len())
+            }
             [] => String::new(),
         }
     }
@@ -262,6 +268,12 @@ fn common(before: &str) -> String {
 fn signature(headers: &[Header]) -> String {
     let one = |h: &Header| [h.unit.as_str(), h.kind].join("|");
     headers.iter().map(one).collect::<Vec<_>>().join("\n")
+}
+
+/// Channels and sampling rates of files that are alike. Rates that are counted from times differ in their sixth digit.
+pub(super) fn columns(headers: &[Header]) -> String {
+    let rate = |h: &Header| h.rate.map_or_else(String::new, |rate| format!("{rate:.4e}"));
+    headers.iter().map(rate).chain([signature(headers)]).collect::<Vec<_>>().join("\n")
 }
 
 /// The first line of an error, without the file's own name.

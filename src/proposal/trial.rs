@@ -42,7 +42,7 @@ const SINE: Range<f64> = 1.8..2.7;
 const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
 
 /// Files that may be steps of a sweep.
-const STEPS: usize = 5;
+pub(super) const STEPS: usize = 5;
 
 /// Values of a file that are tried: five minutes of eight channels at 51.2 kHz are 123 million, some minutes' work and 80 bytes each in memory.
 const VALUES: usize = 1 << 27;
@@ -62,7 +62,7 @@ impl Trial<'_> {
     /// The answers of the records of tables; else why there is none.
     fn answers(&self, tables: &[Table]) -> Result<Answer, String> {
         let path = self.folder.root().join(Proposal::FILE);
-        let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml()).collect();
+        let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml(&[])).collect();
         let answered =
             analysis::parse(self.folder, &path, text).and_then(|c| analysis::answers(&c, self.kept, &()));
         answered.map_err(|error| short(&error))?
@@ -140,8 +140,13 @@ impl Trial<'_> {
                 None => series.files.iter().map(one).collect::<Vec<Table>>(),
             }
         };
-        // Repeated drops of one body agree.
-        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).is_some();
+        // Repeated drops of one body agree. Of those that names do not join each is one.
+        let each = |heard: &Answer| {
+            let of_series = heard.result.get("drops").and_then(|all| all.get(0));
+            let files = of_series.and_then(|drop| drop["files"].as_array());
+            !few.alike || files.is_some_and(|files| files.len() == few.files.len())
+        };
+        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).filter(each).is_some();
         let kind = [Series::bounces as Kind, Series::fall].into_iter().find(agree)?;
         Some(Found { tables: drops(series, kind), ..Found::default() })
     }
@@ -312,7 +317,13 @@ impl Series {
         let file = self.pattern.as_ref().filter(|_| self.files.len() > 1).unwrap_or(&self.files[0]);
         let several = self.headers.len() > 1;
         let called = if several { format!("{name} {}", self.headers[k].name) } else { name.to_owned() };
-        let table = Table::new(section, about, &self.in_words()).found("name", called).found("file", file);
+        let table = Table::new(section, about, &self.in_words());
+        let table = if self.alike {
+            table.guessed("name", called, "the columns and rate of the others, and agrees with them")
+        } else {
+            table.found("name", called)
+        };
+        let table = table.found("file", file);
         if several { table.found("channel", self.channel(k)) } else { table }
     }
 

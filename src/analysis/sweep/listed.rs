@@ -1,13 +1,13 @@
 //! The files of a sweep, before they are read.
 
-use super::Keys;
+use super::{Keys, order};
 use crate::analysis::matching;
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, answerable, response};
 use crate::measure::stepped::stepped;
 use crate::read::{Steps, SweepList, SweepReader};
-use crate::record::{Axis, Sweep};
+use crate::record::{Axis, Finding, Sweep};
 use std::path::{Path, PathBuf};
 
 /// A sweep that can be read.
@@ -17,6 +17,8 @@ pub struct Listed {
     pub files: Files,
     /// How they are read.
     pub reader: SweepReader,
+    /// What is known of it before it is read.
+    pub findings: Vec<Finding>,
 }
 
 /// What the files of a sweep hold.
@@ -61,7 +63,7 @@ impl Listed {
             Files::Traces(Steps { files, force, response, rate: keys.rate })
         };
         let reader = SweepReader { folder: campaign.within().clone(), ..keys.reader()? };
-        Ok(Listed { files, reader })
+        Ok(Listed { files, reader, findings: Vec::new() })
     }
 
     /// The spectra of the sweep.
@@ -89,11 +91,26 @@ impl Listed {
                 Ok((sweep, response))
             }
             Files::Traces(steps) => {
-                let SweepReader { name, direction, mass, .. } = self.reader.clone();
-                let (axis, points, findings) = (Axis::index(0), Vec::new(), Vec::new());
-                let named = Sweep { name, direction, mass, axis, analyser_integrated: 0, points, findings };
-                stepped(named, self.reader.steps(steps)?, options)
+                let (mut sweep, mut response) = self.stepped(steps, options)?;
+                // Channels of one file are in the order in which they are named.
+                let sorted = order::sorted(&sweep, &response, &steps.files).filter(|_| steps.files.len() > 1);
+                if let Some(files) = sorted {
+                    let found = Finding::caution("sweep-sorted").count("n", response.points.len());
+                    (sweep, response) = self.stepped(&Steps { files, ..steps.clone() }, options)?;
+                    response.findings.push(found);
+                }
+                response.findings.extend(order::repeated(&sweep, &response));
+                response.findings.extend(self.findings.iter().cloned());
+                Ok((sweep, response))
             }
         }
+    }
+
+    /// The sweep of time traces in the order of their files.
+    fn stepped(&self, steps: &Steps, options: &ResponseOptions) -> Result<(Sweep, Response)> {
+        let SweepReader { name, direction, mass, .. } = self.reader.clone();
+        let (axis, points, findings) = (Axis::index(0), Vec::new(), Vec::new());
+        let named = Sweep { name, direction, mass, axis, analyser_integrated: 0, points, findings };
+        stepped(named, self.reader.steps(steps)?, options)
     }
 }

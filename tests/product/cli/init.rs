@@ -11,7 +11,7 @@ use std::process::Command;
 use vibroimpact::math::Noise;
 
 /// A file of one channel beside the time.
-fn write(path: &Path, head: &str, rate: f64, seconds: f64, value: &mut dyn FnMut(f64) -> f64) {
+pub fn write(path: &Path, head: &str, rate: f64, seconds: f64, value: &mut dyn FnMut(f64) -> f64) {
     let mut text = format!("time [s],{head}\n");
     for i in 0..(rate * seconds) as usize {
         let t = i as f64 / rate;
@@ -21,7 +21,7 @@ fn write(path: &Path, head: &str, rate: f64, seconds: f64, value: &mut dyn FnMut
 }
 
 /// A burst of ringing that begins at 0.
-fn burst(t: f64) -> f64 {
+pub fn burst(t: f64) -> f64 {
     if t < 0.0 { 0.0 } else { (-t / 0.003).exp() * (TAU * 2900.0 * t).sin() }
 }
 

@@ -25,24 +25,30 @@ fn frequency(step: usize) -> f64 {
 
 /// Files of 12 steps of 6 s: force in N with an offset, acceleration in m/s² with noise of a thousandth and a transient.
 pub fn steps(folder: &Path) {
+    let named: Vec<(String, f64)> = (1..=12).map(|k| (format!("step{k}.csv"), frequency(k))).collect();
+    write_steps(folder, &named, 6.0);
+    let campaign = "[[sweep]]\nname = \"up\"\ntraces = \"step*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"\n\n[[frf]]\nsweep = \"up\"\n";
+    fs::write(folder.join("campaign.toml"), campaign).unwrap();
+}
+
+/// Files of steps at these frequencies in Hz, of so many seconds.
+pub fn write_steps(folder: &Path, named: &[(String, f64)], seconds: f64) {
     let mut noise = Noise::new(1);
-    for step in 1..=12 {
-        let f = frequency(step);
+    for (name, f) in named {
+        let f = *f;
         let ((re, im), minus) = (receptance(f), -(TAU * f).powi(2));
         let size = re.hypot(im) * minus.abs();
         let mut text = "Time (s),Force (N),Accel (m/s²)\n".to_owned();
-        for i in 0..3600 {
-            let t = f64::from(i) / 600.0;
+        for i in 0..(600.0 * seconds) as usize {
+            let t = i as f64 / 600.0;
             let (sin, cos) = (TAU * f * t + 0.4).sin_cos();
             let steady = 3.0 * minus * (re * cos - im * sin);
             let transient = size * (-4.0 * t).exp() * (TAU * MODES[0].0 * t).cos();
             let (a, b) = (0.003 * noise.normal(), 0.003 * size * noise.normal());
             writeln!(text, "{t:.5},{:.6},{:.8}", 3.0 * cos + 0.1 + a, steady + transient + b).unwrap();
         }
-        fs::write(folder.join(format!("step{step}.csv")), text).unwrap();
+        fs::write(folder.join(name), text).unwrap();
     }
-    let campaign = "[[sweep]]\nname = \"up\"\ntraces = \"step*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"\n\n[[frf]]\nsweep = \"up\"\n";
-    fs::write(folder.join("campaign.toml"), campaign).unwrap();
 }
 
 #[test]

@@ -1,0 +1,50 @@
+//! The order of the steps of a sweep, and steps at one frequency.
+
+use crate::analysis::{few, file_name};
+use crate::measure::response::Response;
+use crate::record::{Direction, Finding, Sweep};
+use crate::units::notation::significant;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// Part of a frequency by which two steps at one setting of the generator differ at most: twice the 50 ppm of a quartz.
+const SAME: f64 = 1e-4;
+
+/// Whether two frequencies are one setting of the generator.
+pub(crate) fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+/// The files in the order of their frequencies, where the order of their names turns more than once. An order that turns once is that of
+/// a sweep up and down.
+pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> Option<Vec<PathBuf>> {
+    let frequency = |k: usize| response.points[k].excitation;
+    let mut order: Vec<usize> = (0..response.points.len()).collect();
+    let steps = order.windows(2).map(|w| (frequency(w[0]), frequency(w[1])));
+    let rises: Vec<bool> = steps.filter(|(a, b)| !same(*a, *b)).map(|(a, b)| b > a).collect();
+    if rises.windows(2).filter(|w| w[0] != w[1]).count() < 2 {
+        return None;
+    }
+    order.sort_by(|a, b| frequency(*a).total_cmp(&frequency(*b)));
+    if sweep.direction == Some(Direction::Down) {
+        order.reverse();
+    }
+    let mut sorted: Vec<PathBuf> = order.iter().map(|k| sweep.points[*k].response_path.clone()).collect();
+    // Steps that were left out have no frequency.
+    let known: BTreeSet<&PathBuf> = sorted.iter().collect();
+    let rest: Vec<PathBuf> = files.iter().filter(|file| !known.contains(file)).cloned().collect();
+    sorted.extend(rest);
+    Some(sorted)
+}
+
+/// Steps at the frequency of the step before them.
+pub(super) fn repeated(sweep: &Sweep, response: &Response) -> Option<Finding> {
+    let at = |k: usize| response.points[k].excitation;
+    let file = |k: usize| file_name(&sweep.points[k].response_path);
+    let again = (1..response.points.len()).filter(|k| same(at(k - 1), at(*k)));
+    let name = |k: usize| format!("{} as {} ({} Hz)", file(k), file(k - 1), significant(at(k), 5));
+    let names: Vec<String> = again.map(name).collect();
+    let n = names.len();
+    let found = Finding::note("sweep-frequency-repeated").count("n", n);
+    (n > 0).then(|| found.name("files", few(&names)))
+}

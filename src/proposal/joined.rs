@@ -1,0 +1,201 @@
+//! Files of one folder that hold alike records under odd names: steps of one sweep, drops of one series.
+
+use super::alike::spread;
+use super::folder::{Series, columns, name};
+use super::trial::{STEPS, Trial};
+use crate::analysis::sweep::order::same;
+use crate::analysis::tone::Strongest;
+use crate::analysis::{self, Kept, file_name, in_order};
+use crate::campaign::Reading;
+use crate::read::{Folder, Header, plain};
+use crate::record::{Finding, Record};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Part by which steps of one sweep differ in length, at most: a step is stopped by hand, or by a clock.
+const LENGTH: f64 = 0.01;
+/// Part of the power of a force that its strongest sine has, at least, in a step of a sweep: a shaker that is driven through a resonance
+/// distorts, but its sine stays the larger part.
+const SINE: f64 = 0.5;
+/// Files that tell whether to look at all.
+const FEW: usize = 8;
+/// Drops of names of their own that are looked at, one by one.
+const MOST: usize = 64;
+
+/// The series, those joined whose files are alike but for their names.
+pub(super) fn all(series: Vec<Series>, folder: &Folder, kept: &Kept) -> Vec<Series> {
+    let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (i, one) in series.iter().enumerate() {
+        families.entry(one.family()).or_default().push(i);
+    }
+    let sets = |places: &Vec<usize>| {
+        let members: Vec<&Series> = places.iter().map(|i| &series[*i]).collect();
+        let trial = Trial { folder, reading: &members[0].reading, kept };
+        let sets = match members[0].force_and_responses() {
+            _ if members.len() < 2 => Vec::new(),
+            Some((force, _)) => sweeps(&trial, &members, force),
+            None => drops(&trial, &members).into_iter().collect(),
+        };
+        let in_folder = |(set, joined): (Vec<usize>, Series)| {
+            (set.into_iter().map(|k| places[k]).collect::<Vec<_>>(), joined)
+        };
+        sets.into_iter().map(in_folder).collect::<Vec<_>>()
+    };
+    let joined: Vec<(Vec<usize>, Series)> = families.values().flat_map(sets).collect();
+    let mut all: Vec<Option<Series>> = series.into_iter().map(Some).collect();
+    for (places, one) in joined {
+        places.iter().for_each(|place| all[*place] = None);
+        all[places[0]] = Some(one);
+    }
+    all.into_iter().flatten().collect()
+}
+
+/// Sweeps that are made of several of these series of steps. Frequencies tell which: a series that goes through those of a sweep once more
+/// is another sweep, and one of other frequencies, or of a few, belongs to it.
+fn sweeps(trial: &Trial<'_>, members: &[&Series], force: usize) -> Vec<(Vec<usize>, Series)> {
+    let n = |k: usize| members[k].files.len();
+    let Some(base) = (0..members.len()).rev().max_by_key(|k| n(*k)) else { return Vec::new() };
+    let length = |k: usize| members[k].headers[force].n as f64;
+    let mut alike: Vec<usize> =
+        (0..members.len()).filter(|k| (length(*k) / length(base) - 1.0).abs() <= LENGTH).collect();
+    alike.sort_by_key(|k| std::cmp::Reverse(n(*k)));
+    let files: Vec<&String> = alike.iter().flat_map(|k| &members[*k].files).collect();
+    let few: Vec<&String> = spread(files.len(), FEW).into_iter().map(|k| files[k]).collect();
+    let tones = |files: &[&String]| trial.frequencies(force, files);
+    if files.len() < STEPS || 2 * tones(&few).iter().flatten().count() < few.len() {
+        return Vec::new();
+    }
+    let frequency: BTreeMap<&String, f64> =
+        files.iter().zip(tones(&files)).filter_map(|(file, f)| Some((*file, f?))).collect();
+    let of = |k: usize| members[k].files.iter().filter_map(|file| frequency.get(file).copied());
+    let mut sets: Vec<Vec<usize>> = Vec::new();
+    for k in alike.into_iter().filter(|k| 2 * of(*k).count() >= n(*k)) {
+        let again = |set: &Vec<usize>| {
+            let known = |f: f64| set.iter().any(|m| of(*m).any(|other| same(f, other)));
+            n(k) >= STEPS && 2 * of(k).filter(|f| known(*f)).count() > n(k)
+        };
+        let takes = |set: &Vec<usize>| members[set[0]].way() == members[k].way() && !again(set);
+        let takers: Vec<usize> = (0..sets.len()).filter(|i| takes(&sets[*i])).collect();
+        match takers[..] {
+            [] => sets.push(vec![k]),
+            [one] => sets[one].push(k),
+            // Whose step it is nobody can tell.
+            [..] => {}
+        }
+    }
+    let joined = |set: Vec<usize>| {
+        let mut one = Series::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
+        let at = |file: &String| frequency.get(file).copied().unwrap_or(f64::INFINITY);
+        one.files.sort_by(|a, b| at(a).total_cmp(&at(b)));
+        if one.way().as_deref() == Some("down") {
+            one.files.reverse();
+        }
+        (set, one)
+    };
+    let several = sets.into_iter().filter(|set| set.len() > 1).map(joined);
+    several.filter(|(_, one)| one.files.len() >= STEPS).collect()
+}
+
+/// A series of drops and the drops under other names that agree with it. Where two series have numbers in their names, names tell them apart.
+fn drops(trial: &Trial<'_>, members: &[&Series]) -> Option<(Vec<usize>, Series)> {
+    let (several, alone): (Vec<usize>, Vec<usize>) =
+        (0..members.len()).partition(|k| members[*k].files.len() > 1);
+    let joined = |set: &[usize]| Series::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
+    let agree = |series: &Series| trial.drops(series, series).is_some();
+    let set = match several[..] {
+        [base] if alone.len() <= MOST => {
+            let base_few = members[base].part(spread(members[base].files.len(), FEW));
+            agree(&base_few).then_some(())?;
+            let with = |k: &usize| {
+                let pair = members[base].part(vec![0]);
+                agree(&Series::of_all(&[&pair, members[*k]]))
+            };
+            [base].into_iter().chain(alone.into_iter().filter(with)).collect::<Vec<_>>()
+        }
+        [] if alone.len() <= MOST => agree(&joined(&alone)).then_some(alone)?,
+        _ => return None,
+    };
+    (set.len() > 1).then(|| (set.clone(), joined(&set)))
+}
+
+impl Trial<'_> {
+    /// Frequency of the force of each file in Hz, where it is a sine.
+    fn frequencies(&self, force: usize, files: &[&String]) -> Vec<Option<f64>> {
+        let Ok(reader) = self.reading.reader() else { return vec![None; files.len()] };
+        let reader = reader.within(self.folder);
+        let one = |file: &&String| {
+            let recording = reader.from_path(self.folder.root().join(file)).ok()?;
+            let Some(Record::Trace(trace)) = recording.records.get(force) else { return None };
+            Strongest::of(trace).filter(|tone| tone.share >= SINE).map(|tone| tone.frequency)
+        };
+        files.par_iter().map(one).collect()
+    }
+}
+
+impl Series {
+    /// What files have in common that may be one series, however they are called: folder, columns and sampling rate.
+    fn family(&self) -> String {
+        let folder = Path::new(&self.files[0]).parent();
+        format!("{folder:?}\n{:?}\n{}", self.reading.stated(), columns(&self.headers))
+    }
+
+    /// The direction of a sweep that its names say.
+    pub(super) fn way(&self) -> Option<String> {
+        let name = self.files[0].rsplit('/').next().unwrap_or_default().to_lowercase();
+        let mut words = name.split(|c: char| !c.is_alphanumeric());
+        words.find(|word| ["up", "down"].contains(word)).map(str::to_owned)
+    }
+
+    /// All files of several series as one.
+    fn of_all(members: &[&Series]) -> Series {
+        let mut headers = members[0].headers.clone();
+        for (k, header) in headers.iter_mut().enumerate() {
+            if members.iter().any(|other| other.headers[k].name != header.name) {
+                header.name.clear();
+            }
+        }
+        let mut files: Vec<PathBuf> = members.iter().flat_map(|one| &one.files).map(PathBuf::from).collect();
+        in_order(&mut files);
+        let files: Vec<String> = files.iter().map(|file| file.to_string_lossy().into_owned()).collect();
+        let longest = members.iter().rev().max_by_key(|one| one.files.len());
+        let own = longest.filter(|one| one.files.len() > 1).map(|one| one.name.clone());
+        let name = own.unwrap_or_else(|| name(&files));
+        Series { name, files, headers, pattern: None, alike: true, reading: members[0].reading.clone() }
+    }
+}
+
+/// The files beside those of a sweep that look like more of its steps; the frequency of their force tells.
+pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
+    let first = files.first()?;
+    let parent = first.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (folder, reading) = (within.at(parent), Reading::default());
+    let reader = reading.reader().ok()?.within(&folder);
+    let headers = |path: &PathBuf| reader.survey(path).ok().map(|(_, headers, _)| headers);
+    let own: Vec<Header> = headers(first)?;
+    let named: BTreeSet<PathBuf> = files.iter().map(|file| plain(file)).collect();
+    // Files much larger or smaller are not even opened.
+    let sizes = files.iter().filter_map(|file| Some(folder.stamp(file)?.0));
+    let (least, most) = sizes.fold((u64::MAX, 0), |(a, b), size| (a.min(size), b.max(size)));
+    let near = |path: &PathBuf| {
+        let size = folder.stamp(path).map_or(0, |stamp| stamp.0);
+        plain(path).parent() == plain(first).parent()
+            && !named.contains(&plain(path))
+            && (least / 2..=most.saturating_mul(2)).contains(&size)
+    };
+    let others: Vec<PathBuf> = analysis::recordings(&folder).ok()?.files.into_iter().filter(near).collect();
+    let is_alike = |path: &&PathBuf| headers(path).is_some_and(|other| columns(&other) == columns(&own));
+    let alike: Vec<String> = others.par_iter().filter(is_alike).map(|path| file_name(path)).collect();
+    let names = vec![String::new()];
+    let series =
+        Series { name: String::new(), files: names, headers: own, pattern: None, alike: true, reading };
+    let (force, _) = series.force_and_responses()?;
+    let trial = Trial { folder: &folder, reading: &series.reading, kept: &Kept::default() };
+    let tones = |files: &[&String]| trial.frequencies(force, files);
+    let few: Vec<&String> = spread(alike.len(), FEW).into_iter().map(|k| &alike[k]).collect();
+    tones(&few).iter().flatten().next()?;
+    let all: Vec<&String> = alike.iter().collect();
+    let more = all.iter().zip(tones(&all)).filter(|(_, f)| f.is_some()).map(|(file, _)| file.as_str());
+    let more: Vec<&str> = more.collect();
+    Some(Finding::note("sweep-more-steps").count("n", more.len()).name("files", analysis::few(&more)))
+}
