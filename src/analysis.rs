@@ -22,7 +22,7 @@ pub(crate) mod spectrum;
 pub(crate) mod sweep;
 pub(crate) mod tone;
 
-mod headline;
+pub(crate) mod headline;
 mod page;
 
 pub use answer::Answer;

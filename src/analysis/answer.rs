@@ -1,7 +1,8 @@
 //! What an analysis of one record has to show.
 
+use super::sweep::modelled::Compared;
 use crate::error::{Error, Result};
-use crate::record::Finding;
+use crate::record::{Finding, Step};
 use crate::report::files::Files;
 use crate::report::words::{About, Voice};
 use crate::report::{Figure, Table};
@@ -17,6 +18,8 @@ pub struct Answer {
     pub result: Map<String, Value>,
     /// What a person should know.
     pub findings: Vec<About>,
+    /// Its main numbers, with which a report begins: all columns but that of the record.
+    pub headlines: Vec<Table>,
     /// What a person wants first.
     pub tables: Vec<Table>,
     /// Tables for a person who looks at this record alone.
@@ -25,6 +28,10 @@ pub struct Answer {
     pub figures: Vec<(String, Figure)>,
     /// Files of numbers.
     pub files: Files,
+    /// By which steps a file became a result, for each record that tells.
+    pub histories: Vec<(String, Vec<Step>)>,
+    /// The model that the measurements were compared with.
+    pub compared: Option<Compared>,
     /// Why its main part is missing, where the rest can be shown all the same.
     #[serde(skip)]
     pub refused: Option<Error>,
@@ -62,13 +69,10 @@ impl Answer {
 
     /// Adds all of another answer; tables with the same columns are one.
     pub(super) fn append(&mut self, mut more: Answer) {
-        for table in more.tables.into_iter().filter(|table| !table.rows.is_empty()) {
-            let same = |known: &&mut Table| known.title == table.title && known.columns == table.columns;
-            match self.tables.iter_mut().find(same) {
-                Some(known) => known.rows.extend(table.rows),
-                None => self.tables.push(table),
-            }
-        }
+        join(&mut self.headlines, more.headlines);
+        join(&mut self.tables, more.tables);
+        self.histories.append(&mut more.histories);
+        self.compared = self.compared.take().or(more.compared);
         self.result.append(&mut more.result);
         self.findings.append(&mut more.findings);
         self.details.append(&mut more.details);
@@ -79,6 +83,22 @@ impl Answer {
     /// Adds a table as a file of numbers.
     pub fn csv(&mut self, name: &str, table: &Table) {
         self.files.push((format!("{name}.csv"), table.csv().into_bytes()));
+    }
+}
+
+/// Adds tables; those with the same title and columns are one.
+fn join(tables: &mut Vec<Table>, more: Vec<Table>) {
+    for table in more.into_iter().filter(|table| !table.rows.is_empty()) {
+        let same = |known: &&mut Table| known.title == table.title && known.columns == table.columns;
+        match tables.iter_mut().find(same) {
+            Some(known) => {
+                known.rows.extend(table.rows);
+                if known.note.is_empty() {
+                    known.note = table.note;
+                }
+            }
+            None => tables.push(table),
+        }
     }
 }
 

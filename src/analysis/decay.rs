@@ -2,6 +2,7 @@
 
 pub mod figures;
 
+use super::headline::headline;
 use super::{Analysis, Answer, Job, OfFile, Source, no_file};
 use crate::campaign::Entry;
 use crate::error::Result;
@@ -37,6 +38,14 @@ impl OfFile for Keys {
         answer.add("", &found.findings);
         answer.add("", &recording.findings);
         answer.add("", &trace.meta.findings);
+        answer.headlines.push(headline(
+            "Free decays",
+            &found.modes,
+            &[
+                ("frequency", "Hz", &|mode| Cell::from(&mode.frequency)),
+                ("damping ratio", "", &|mode| Cell::from(&mode.zeta)),
+            ],
+        ));
         answer.table("modes", modes(source.name, &found));
         if !found.levels.is_empty() {
             answer.table("levels", levels(source.name, &found));

@@ -5,11 +5,13 @@ pub mod figures;
 mod file;
 pub mod tables;
 
+use super::headline::headline;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
 use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Slices, Smoothing, drill_each};
 use crate::read::Header;
+use crate::report::Cell;
 use crate::report::files::Names;
 use crate::units::notation::counted;
 use file::Channels;
@@ -246,6 +248,16 @@ impl Keys {
         found.findings.splice(..0, channels.findings);
         let mut answer = Answer::of(&found)?;
         answer.add("", &found.findings);
+        answer.headlines.push(headline(
+            "Hammer drill",
+            [&found],
+            &[
+                ("speed", "Hz", &|f| Cell::from(&f.speed)),
+                ("velocity before impact", "m/s", &|f| f.before.as_ref().into()),
+                ("restitution", "", &|f| f.restitution.as_ref().into()),
+                ("impacts", "", &|f| Some(f.impacts.len()).filter(|n| *n > 0).into()),
+            ],
+        ));
         answer.tables.push(tables::drill(source.name, &found));
         answer.figures = figures::drill(source.name, &found);
         answer.csv("average", &tables::drill_average(&found));

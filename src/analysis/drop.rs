@@ -1,5 +1,6 @@
 //! Drops: `[[drop]]`, `vibro restitution`.
 
+use super::headline::headline;
 use super::job::Record;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Job, Source, impacts};
@@ -254,6 +255,11 @@ impl Series {
             answer.figure("drop", impacts::figures::drops(name, plots));
         }
         answer.add("", &found.findings);
+        answer.headlines.push(headline(
+            "Restitution",
+            [&found],
+            &[("coefficient of restitution", "", &|f| Cell::from(&f.restitution))],
+        ));
         answer.table("restitution", by_method(name, &found));
         let columns: [Shown<Restitution>; 3] = [
             ("series", "", &|_| name.into()),

@@ -7,6 +7,7 @@ pub mod tables;
 pub use function::Function;
 
 use super::answer::left_out;
+use super::headline::headline;
 use super::spectrum::{self, Detrend};
 use super::tone::Strongest;
 use super::{Analysis, Answer, Job, Source, named_in, no_file, sweep};
@@ -14,6 +15,7 @@ use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
 use crate::record::{Axis, Meta, Record, Trace, Window, shown};
+use crate::report::Cell;
 use crate::report::files;
 use crate::report::files::Names;
 use crate::report::words::About;
@@ -238,6 +240,14 @@ impl Keys {
         answer.add("", findings);
         answer.add("", &found.findings);
         answer.refused = refused;
+        answer.headlines.push(headline(
+            "Modes",
+            &found.modes,
+            &[
+                ("frequency", "Hz", &|mode| Cell::from(&mode.frequency)),
+                ("damping ratio", "", &|mode| Cell::from(&mode.zeta)),
+            ],
+        ));
         answer.table("modes", tables::modes(name, &found));
         let methods = tables::modal_methods(&found);
         answer.csv("methods", &methods);
@@ -251,6 +261,10 @@ impl Keys {
         Ok(answer)
     }
 }
+
+/// Why the modes of a sweep differ from its resonances.
+const OF_SWEEP: &str =
+    "Modes of a sweep use all its points and their phase; its resonances are by the points around each peak.";
 
 impl Analysis for Keys {
     const SECTION: &'static str = "frf";
@@ -295,7 +309,9 @@ impl Analysis for Keys {
             let mut answers = match &entry.keys.sweep {
                 Some(name) => {
                     let function = Function::of_sweep(campaign, Some(name))?;
-                    vec![entry.keys.modes(&function.meta.name, &function)?]
+                    let mut answer = entry.keys.modes(&function.meta.name, &function)?;
+                    answer.headlines.iter_mut().for_each(|table| OF_SWEEP.clone_into(&mut table.note));
+                    vec![answer]
                 }
                 None => entry.keys.measure(source)?,
             };

@@ -2,6 +2,7 @@
 
 pub mod figures;
 
+use super::headline::headline;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
@@ -91,6 +92,15 @@ impl Keys {
         answer.add("", &found.findings);
         answer.add("", &recording.findings);
         answer.add("", &trace.meta.findings);
+        answer.headlines.push(headline(
+            "Impacts",
+            [&found],
+            &[
+                ("impacts", "", &|f| f.n.into()),
+                ("frequency", "Hz", &|f| Cell::from(&f.frequency)),
+                ("impacts/cycles", "", &|f| per_cycle(f)),
+            ],
+        ));
         answer.tables.push(summary(source.name, &found));
         answer.figure("impacts", figures::impacts(source.name, &trace, &found));
         answer.csv("impacts", &times(&found));
@@ -113,7 +123,7 @@ fn summary(name: &str, found: &Impacts) -> Table {
             ("interval spread", "s", &|f| f.spread.map(|s| pair(s, None)).into()),
             ("missed", "", &|f| f.missed.into()),
             ("double", "", &|f| f.doubled.into()),
-            ("impacts/cycles", "", &|f| f.per_cycle.map(|p| format!("{}/{}", p.impacts, p.cycles)).into()),
+            ("impacts/cycles", "", &|f| per_cycle(f)),
             ("rhythm", "", &|f| rhythm(f).into()),
         ],
     )
@@ -121,6 +131,10 @@ fn summary(name: &str, found: &Impacts) -> Table {
         needs.to_owned()
             + "Missed: intervals of several periods. Double: a second impact within half an interval.",
     )
+}
+
+fn per_cycle(found: &Impacts) -> Cell {
+    found.per_cycle.map(|p| format!("{}/{}", p.impacts, p.cycles)).into()
 }
 
 /// How the impacts repeat, in words.

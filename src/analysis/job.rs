@@ -1,6 +1,7 @@
 //! All that a campaign asks for, and its files.
 
 use super::answer::{left_out, unwritten};
+use super::headline::of_record;
 use super::inputs::inputs;
 use super::kept::{Kept, digest, packed};
 use super::recordings::beside;
@@ -109,7 +110,10 @@ impl<'a> Job<'a> {
 
     /// Shows what an answer has and gives its result; a mark stands behind the names of figures and files.
     pub(super) fn show(&mut self, name: &str, mark: &str, answer: Answer) -> Map<String, Value> {
-        let Answer { mut result, findings, tables, figures, files, .. } = answer;
+        let Answer { mut result, findings, headlines, tables, figures, files, histories, compared, .. } =
+            answer;
+        let of_record = |headline| of_record(headline, name, findings.iter().map(|(_, finding)| finding));
+        let headlines = headlines.into_iter().map(of_record).collect();
         put(&mut result, &findings, Voice::Campaign);
         let about =
             |(record, finding): About| (if record.is_empty() { name.to_owned() } else { record }, finding);
@@ -120,7 +124,10 @@ impl<'a> Job<'a> {
         };
         self.found.append(Answer {
             findings: findings.into_iter().map(about).collect(),
+            headlines,
             tables,
+            histories,
+            compared,
             figures: figures.into_iter().map(|(name, figure)| (marked(name), figure)).collect(),
             files: files.into_iter().map(|(name, bytes)| (marked(name), bytes)).collect(),
             ..Answer::default()

@@ -1,7 +1,8 @@
 //! The report of a campaign as one page.
 
-use super::headline::headlines;
+use super::headline::shortened;
 use super::job::Part;
+use super::sweep::modelled::Compared;
 use super::{Answer, Job};
 use crate::model::Parameter;
 use crate::record::{Severity, Step};
@@ -9,8 +10,7 @@ use crate::report::Page;
 use crate::report::Picture;
 use crate::report::words::{Voice, graded};
 use crate::units::notation::{counted, shortest};
-use serde::Deserialize;
-use serde_json::{Map, Value, json};
+use serde_json::json;
 use std::fmt::Write as _;
 
 /// Lays out all that is shown, with the pictures of its figures: answers first, then kind by kind, then where they come from.
@@ -23,7 +23,7 @@ pub fn page(
     parts: &[Part],
 ) -> Page {
     let mut page = Page::new(job.title.as_str()).heading("Answers");
-    page = page.answers(&headlines(&all.result));
+    page = page.answers(&shortened(&all.headlines));
     let mut worst = graded(&all.findings, Voice::Campaign);
     worst.retain(|(severity, _)| *severity > Severity::Note);
     let doubts = worst.iter().filter(|(severity, _)| *severity == Severity::Doubt).count();
@@ -46,24 +46,22 @@ pub fn page(
         }
         page = tables.iter().chain(details).fold(page, Page::table);
     }
-    if let Some(start) = what_if(job, &all.result) {
-        page = page.heading("What if").paragraph(WHAT_IF).what_if(start);
+    let compared = all.compared.as_ref();
+    if let Some(sliders) = compared.and_then(|compared| compared.sliders.as_ref()) {
+        page = page.heading("What if").paragraph(WHAT_IF).what_if(json!(sliders));
     }
     let rest = parts.last().map_or(0, |(_, [.., findings])| findings.end);
     page =
         page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
-    if let Some(rig) = all.result.get("rig").and_then(Value::as_object) {
+    if let Some(Compared { rig, .. }) = compared {
+        let mut rig = *rig;
         let values: Vec<(&str, String)> =
-            rig.iter().map(|(key, value)| (key.as_str(), constant(key, value))).collect();
+            Parameter::of_rig().filter_map(|p| Some((p.name(), constant(p, *p.place(&mut rig)?)))).collect();
         page =
             page.details("Rig of the comparison", values.iter().map(|(key, value)| (*key, value.as_str())));
     }
-    let responses = all.result.get("responses").and_then(Value::as_array);
-    let steps = |response: &Value| {
-        let steps = Vec::<Step>::deserialize(&response["history"]).unwrap_or_default();
-        (response["name"].as_str().unwrap_or_default().to_owned(), history(&steps))
-    };
-    let steps: Vec<(String, String)> = responses.into_iter().flatten().map(steps).collect();
+    let steps: Vec<(String, String)> =
+        all.histories.iter().map(|(name, steps)| (name.clone(), history(steps))).collect();
     let files = inputs
         .lines()
         .filter(|line| !line.starts_with('#'))
@@ -83,46 +81,13 @@ pub fn page(
 }
 
 /// A value of a rig with its unit.
-fn constant(key: &str, value: &Value) -> String {
-    let unit = Parameter::named(key).map(Parameter::unit).filter(|unit| *unit != "1").unwrap_or_default();
-    format!("{value} {unit}")
+fn constant(of: Parameter, value: f64) -> String {
+    format!("{} {}", json!(value), Some(of.unit()).filter(|unit| *unit != "1").unwrap_or_default())
 }
 
 /// What stands above the sliders.
 const WHAT_IF: &str = "Curves: motions with one impact a cycle and without impacts, as the model has them for these values. A contact stiffness is taken into account to first \
     order, and curves end where the contact lasts longer than 2.5 % of a cycle.";
-
-/// What the sliders begin with: the rig of the overlay, over what was measured.
-fn what_if(job: &Job<'_>, results: &Map<String, Value>) -> Option<Value> {
-    let rig = results.get("rig").filter(|rig| rig.is_object())?;
-    let overlay = results.get("overlay").filter(|overlay| overlay.is_object())?;
-    let force = overlay["levels"][0]["force"].as_f64()?;
-    // The sweeps of one level of force.
-    let level = overlay["levels"][0]["sweeps"].as_array()?;
-    let pairs = overlay["pairs"].as_array()?;
-    let point = |pair: &Value| Some((pair["frequency"].as_f64()?, 1e3 * pair["measured"]["value"].as_f64()?));
-    let of = |sweep: &Value| pairs.iter().filter(|pair| pair["sweep"] == *sweep).collect::<Vec<&Value>>();
-    let (mut measured, mut all) = (Vec::new(), Vec::new());
-    for sweep in level {
-        let own = of(sweep);
-        let Some(first) = own.first() else { continue };
-        let points: Vec<(f64, f64)> = own.iter().filter_map(|pair| point(pair)).collect();
-        let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-        let down = first["direction"] == "down";
-        measured.push(json!({"name": sweep, "mass": first["mass"], "down": down, "x": x, "y": y}));
-        all.extend(points);
-    }
-    let largest = all.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let lowest = all.iter().map(|point| point.0).fold(f64::INFINITY, f64::min);
-    let highest = all.iter().map(|point| point.0).fold(0.0, f64::max);
-    let stiffness = job.campaign.contact.and_then(|contact| contact.stiffness).unwrap_or(0.0);
-    (lowest < highest).then(|| {
-        json!({
-            "rig": rig, "force": force, "stiffness": stiffness, "frequency": largest.0, "from": lowest, "to": highest,
-            "low": largest.1 * 1e-3, "high": largest.1 * 3.0, "measured": measured,
-        })
-    })
-}
 
 /// Findings that the page begins with: so many, or all doubts up to the most.
 const MATTER: usize = 3;

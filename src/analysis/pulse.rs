@@ -2,6 +2,7 @@
 
 pub mod figures;
 
+use super::headline::headline;
 use super::{Analysis, Answer, Job, Source};
 use crate::campaign::{Entry, LowPass};
 use crate::error::{Error, Result};
@@ -98,6 +99,15 @@ fn shown(name: &str, found: &PulseResult) -> Result<Answer> {
     let mut answer = Answer::of(found)?;
     answer.add("", &found.findings);
     answer.figures.extend(figures::pulse(name, found).map(|figure| ("pulse".to_owned(), figure)));
+    answer.headlines.push(headline(
+        "Contact pulses",
+        [found],
+        &[
+            ("damping ratio ξ", "", &|f| Cell::from(&f.xi)),
+            ("restitution", "", &|f| Cell::from(&f.restitution)),
+            ("duration", "s", &|f| Cell::from(&f.duration)),
+        ],
+    ));
     answer.table("pulse", contact(name, found));
     if !found.fits.is_empty() {
         answer.table("pulse_fits", models(name, found));

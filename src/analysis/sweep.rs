@@ -338,7 +338,7 @@ impl Analysis for Keys {
             all.tables = vec![tables::resonances(&responses), tables::jumps(&responses)];
         }
         job.show("", "", all);
-        modelled::run(job, &responses)?;
+        let agreement = modelled::run(job, &responses)?;
         let slugs = files::slugs(responses.iter().map(|r| r.name.as_str()));
         let compute = &job.campaign.compute;
         let mut shown = Vec::new();
@@ -349,11 +349,14 @@ impl Analysis for Keys {
                 one.figure("waterfall", figures::waterfall(matrix, compute.fmax)?);
                 one.figure("map", figures::map(matrix, compute.fmax)?);
             }
+            one.headlines = vec![tables::named_peaks(response), tables::jumped(response)];
+            one.histories.push((response.name.clone(), response.history.clone()));
             one.csv("response", &tables::response(response));
             one.files.push(("waterfall.csv".to_owned(), files::matrix_csv(matrix).into_bytes()));
             shown.push(job.show(&response.name, slug, one));
             job.found.details.push(tables::curve(response));
         }
+        job.found.headlines.extend(agreement);
         job.put("responses", &shown)
     }
 }

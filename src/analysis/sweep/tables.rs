@@ -1,5 +1,6 @@
 //! Tables of sweeps, and of sweeps against the model.
 
+use crate::analysis::headline::{headline, remarked};
 use crate::compare::{Fit, Kind, Overlay};
 use crate::measure::response::{Response, ResponsePoint};
 use crate::report::layout::{pair, table};
@@ -79,6 +80,47 @@ pub fn resonances(responses: &[Response]) -> Table {
         ],
     )
     .note(words.join(" "))
+}
+
+/// The resonances of one sweep, which a report begins with.
+pub fn named_peaks(response: &Response) -> Table {
+    remarked(
+        "Resonances",
+        &response.resonances,
+        &[
+            ("kind", "", &|r| Cell::from(r.kind.name())),
+            ("frequency", "Hz", &|r| pair(r.frequency, r.frequency_std)),
+            ("amplitude", response.unit, &|r| pair(r.amplitude, r.amplitude_std)),
+        ],
+        &|r| if r.at_jump { "ends in a jump" } else { "" },
+    )
+}
+
+/// The jumps of one sweep, which a report begins with.
+pub fn jumped(response: &Response) -> Table {
+    headline(
+        "Jumps",
+        &response.jumps,
+        &[
+            ("change", "", &|j| Cell::from(j.change)),
+            ("frequency", "Hz", &|j| pair(j.frequency, Some(j.frequency_std))),
+        ],
+    )
+}
+
+/// Agreement with the model, sweep by sweep, which a report begins with.
+pub fn agreement(overlay: &Overlay) -> Table {
+    let percent = |part: Option<f64>| Cell::from(part.map(|part| 100.0 * part));
+    table(
+        "Agreement with the model",
+        &overlay.scores,
+        &[
+            ("sweep", "", &|s| s.sweep.as_str().into()),
+            ("points compared", "", &|s| s.n.saturating_sub(s.faint).into()),
+            ("median deviation", "%", &|s| percent(s.median_relative)),
+            ("largest", "%", &|s| percent(s.max_relative)),
+        ],
+    )
 }
 
 /// Jumps.

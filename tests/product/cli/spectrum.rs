@@ -398,7 +398,10 @@ fn peaks_of_a_spectrum_that_a_file_holds() {
         assert!((f[k] - 0.1 * k as f64).abs() < 1e-9);
         assert!((v[k] / (9.80665 * 10f64.powf(level / 20.0)) - 1.0).abs() < 1e-12);
     }
-    assert_eq!((value["window"].as_str(), value["value_std"].as_array().map(Vec::len)), (Some("not said"), Some(0)));
+    assert_eq!(
+        (value["window"].as_str(), value["value_std"].as_array().map(Vec::len)),
+        (Some("not said"), Some(0))
+    );
     let shown = String::from_utf8(vibro(&read).stdout).unwrap();
     for peak in ["6.60", "41.50", "117.90"] {
         assert!(shown.contains(peak), "{peak}: {shown}");
