@@ -7,6 +7,7 @@ pub(crate) mod answer;
 pub(crate) mod decay;
 pub(crate) mod drill;
 pub(crate) mod drop;
+pub(crate) mod evidence;
 pub(crate) mod frf;
 pub(crate) mod impacts;
 mod inputs;
@@ -26,6 +27,7 @@ pub(crate) mod headline;
 mod page;
 
 pub use answer::Answer;
+pub use evidence::Evidence;
 pub use job::{INPUTS, Progress, REPORT, RESULTS, Ran, answers, run};
 pub use kept::Kept;
 pub(crate) use recordings::{OWN, Recordings, in_order, is_pattern, matching, recordings, unnamed};

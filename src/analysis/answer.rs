@@ -1,5 +1,6 @@
 //! What an analysis of one record has to show.
 
+use super::Evidence;
 use super::sweep::modelled::Compared;
 use crate::error::{Error, Result};
 use crate::record::{Finding, Step};
@@ -32,6 +33,8 @@ pub struct Answer {
     pub histories: Vec<(String, Vec<Step>)>,
     /// The model that the measurements were compared with.
     pub compared: Option<Compared>,
+    /// What it shows of the kinds of its records.
+    pub evidence: Vec<Evidence>,
     /// Why its main part is missing, where the rest can be shown all the same.
     #[serde(skip)]
     pub refused: Option<Error>,
@@ -72,6 +75,7 @@ impl Answer {
         join(&mut self.headlines, more.headlines);
         join(&mut self.tables, more.tables);
         self.histories.append(&mut more.histories);
+        self.evidence.append(&mut more.evidence);
         self.compared = self.compared.take().or(more.compared);
         self.result.append(&mut more.result);
         self.findings.append(&mut more.findings);

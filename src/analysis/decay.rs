@@ -38,6 +38,7 @@ impl OfFile for Keys {
         answer.add("", &found.findings);
         answer.add("", &recording.findings);
         answer.add("", &trace.meta.findings);
+        answer.evidence.push((&found).into());
         answer.headlines.push(headline(
             "Free decays",
             &found.modes,

@@ -3,7 +3,7 @@
 use super::headline::headline;
 use super::job::Record;
 use super::source::{file_name, name_of};
-use super::{Analysis, Answer, Job, Source, impacts};
+use super::{Analysis, Answer, Evidence, Job, Source, impacts};
 use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;
@@ -243,6 +243,7 @@ impl Series {
         {
             return Err(error);
         }
+        let files = self.records.len();
         let drop = self.drop.beginning(&self.trains);
         let fell = drop.height.is_finite() && !drop.intervals.is_empty();
         let drop = fell.then_some(drop);
@@ -255,6 +256,7 @@ impl Series {
             answer.figure("drop", impacts::figures::drops(name, plots));
         }
         answer.add("", &found.findings);
+        answer.evidence.push(Evidence::of_drops(&found, files));
         answer.headlines.push(headline(
             "Restitution",
             [&found],

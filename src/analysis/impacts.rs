@@ -92,6 +92,7 @@ impl Keys {
         answer.add("", &found.findings);
         answer.add("", &recording.findings);
         answer.add("", &trace.meta.findings);
+        answer.evidence.push((&found).into());
         answer.headlines.push(headline(
             "Impacts",
             [&found],

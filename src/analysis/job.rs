@@ -110,8 +110,18 @@ impl<'a> Job<'a> {
 
     /// Shows what an answer has and gives its result; a mark stands behind the names of figures and files.
     pub(super) fn show(&mut self, name: &str, mark: &str, answer: Answer) -> Map<String, Value> {
-        let Answer { mut result, findings, headlines, tables, figures, files, histories, compared, .. } =
-            answer;
+        let Answer {
+            mut result,
+            findings,
+            headlines,
+            tables,
+            figures,
+            files,
+            histories,
+            compared,
+            evidence,
+            ..
+        } = answer;
         let of_record = |headline| of_record(headline, name, findings.iter().map(|(_, finding)| finding));
         let headlines = headlines.into_iter().map(of_record).collect();
         put(&mut result, &findings, Voice::Campaign);
@@ -128,6 +138,7 @@ impl<'a> Job<'a> {
             tables,
             histories,
             compared,
+            evidence,
             figures: figures.into_iter().map(|(name, figure)| (marked(name), figure)).collect(),
             files: files.into_iter().map(|(name, bytes)| (marked(name), bytes)).collect(),
             ..Answer::default()

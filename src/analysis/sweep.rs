@@ -349,6 +349,7 @@ impl Analysis for Keys {
                 one.figure("waterfall", figures::waterfall(matrix, compute.fmax)?);
                 one.figure("map", figures::map(matrix, compute.fmax)?);
             }
+            one.evidence.push(response.into());
             one.headlines = vec![tables::named_peaks(response), tables::jumped(response)];
             one.histories.push((response.name.clone(), response.history.clone()));
             one.csv("response", &tables::response(response));

@@ -4,12 +4,11 @@ use super::alike::{CHANNELS, share};
 use super::folder::{Series, short};
 use super::found::Found;
 use super::{Proposal, Table};
-use crate::analysis::{self, Answer, Kept};
+use crate::analysis::{self, Answer, Evidence, Kept};
 use crate::campaign::Reading;
 use crate::read::{Folder, Header};
 use crate::record::{Record, Severity};
 use rayon::prelude::*;
-use serde_json::Value;
 use std::ops::Range;
 use std::slice::from_ref;
 
@@ -37,6 +36,9 @@ const AT_ONCE: f64 = 0.01;
 
 /// Square of the crest factor of a sine: 2, and what noise adds; a square wave has 1.
 const SINE: Range<f64> = 1.8..2.7;
+
+/// Restitution beyond which nothing returns: a ringing body repeats, it does not bounce.
+const LOSSLESS: f64 = 0.99;
 
 /// What stands in names of channels with the pulses of a crank.
 const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
@@ -116,8 +118,7 @@ impl Trial<'_> {
             1 => series.name.clone(),
             _ => format!("{} {}", series.name, series.channel(k).to_string().trim_matches('"')),
         };
-        let jumps =
-            |i: usize| heard.result["responses"][i]["jumps"].as_array().is_some_and(|j| !j.is_empty());
+        let jumps = |i: usize| matches!(heard.evidence.get(i), Some(Evidence::Sweep { jumps: true, .. }));
         // A motion that jumps is not that of linear modes.
         let modes = responses.iter().enumerate().filter(|(i, _)| !jumps(*i)).map(|(_, k)| {
             let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
@@ -142,9 +143,8 @@ impl Trial<'_> {
         };
         // Repeated drops of one body agree. Of those that names do not join each is one.
         let each = |heard: &Answer| {
-            let of_series = heard.result.get("drops").and_then(|all| all.get(0));
-            let files = of_series.and_then(|drop| drop["files"].as_array());
-            !few.alike || files.is_some_and(|files| files.len() == few.files.len())
+            let of = |evidence: &Evidence| matches!(evidence, Evidence::Drops { files, .. } if *files == few.files.len());
+            !few.alike || heard.evidence.first().is_some_and(of)
         };
         let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).filter(each).is_some();
         let kind = [Series::bounces as Kind, Series::fall].into_iter().find(agree)?;
@@ -192,9 +192,10 @@ impl Trial<'_> {
         let [pulse, others @ ..] = series.of_channel(k, name);
         // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
         let alone = |heard: Answer| {
-            let record = heard.result.get("pulses").and_then(|all| all.get(0));
-            let short = record.and_then(|pulse| pulse["duration"]["value"].as_f64()) < Some(LONGEST_CONTACT);
-            short && heard.findings.iter().all(|(_, finding)| finding.code != ANOTHER)
+            let short =
+                |e: &Evidence| matches!(e, Evidence::Pulse { duration } if *duration < LONGEST_CONTACT);
+            heard.evidence.first().is_some_and(short)
+                && heard.findings.iter().all(|(_, finding)| finding.code != ANOTHER)
         };
         if self.answers(from_ref(&pulse)).is_ok_and(alone) {
             return Found::table(pulse);
@@ -345,45 +346,35 @@ impl Series {
 
 /// Whether this share of the steps of each sweep or more have an uncertainty, and one at least: one that is clipped makes no other kind of the rest.
 fn settled(heard: &Answer, share: f64) -> bool {
-    let responses = heard.result.get("responses").and_then(Value::as_array);
-    let most = |response: &Value| {
-        let points = response["points"].as_array().map_or(&[][..], Vec::as_slice);
-        let sure = points.iter().filter(|point| point["amplitude"]["std"].is_number()).count();
-        sure as f64 >= share * points.len() as f64 && sure > 0
+    let most = |of: &Evidence| match of {
+        Evidence::Sweep { steps, sure, .. } => *sure as f64 >= share * *steps as f64 && *sure > 0,
+        _ => false,
     };
-    responses.is_some_and(|all| !all.is_empty() && all.iter().all(most))
+    !heard.evidence.is_empty() && heard.evidence.iter().all(most)
 }
 
 /// Part of the record before a decay begins; nothing where the answer is no decay.
 fn begins(heard: &Answer) -> Option<f64> {
-    let decay = heard.result.get("decays")?.get(0)?;
-    Some(decay["start"].as_f64()? / decay["last"].as_f64()?)
+    let Some(Evidence::Decay { start, last, .. }) = heard.evidence.first() else { return None };
+    Some(start / last)
 }
 
 /// Whether the answer is a decay that takes a small part of its record: where impacts in a row ring down, one of them is a decay, too.
 fn is_brief(heard: &Answer) -> bool {
-    let used = |decay: &Value| {
-        let [start, end, last] = ["start", "end", "last"].map(|key| decay[key].as_f64());
-        Some((end? - start?) / (last? - start?))
-    };
-    let decay = heard.result.get("decays").and_then(|all| all.get(0));
-    decay.is_some_and(|decay| used(decay) < Some(MOSTLY))
+    matches!(heard.evidence.first(), Some(Evidence::Decay { start, end, last }) if end - start < MOSTLY * (last - start))
 }
 
 /// Whether impacts are as their tables have them: three or more in a row, few of them missed; two in a fall with one rebound; and none that return with
 /// the speed with which they came.
 fn sensible(tables: &[Table], heard: &Answer) -> bool {
-    let first = |section: &str| heard.result.get(section).and_then(|all| all.get(0));
-    let few = first("impacts").is_some_and(|impacts| {
-        let [n, missed] = ["n", "missed"].map(|key| impacts[key].as_u64().unwrap_or(0));
-        n < 3 || 4 * missed > n
-    });
-    let drop = first("drops");
-    let lossless = drop.is_some_and(|drop| drop["restitution"]["value"].as_f64() > Some(0.99));
-    let one = |intervals: &Value| intervals.as_array().is_some_and(|all| all.len() == 1);
-    let of_each = drop.and_then(|drop| drop["intervals"].as_array());
-    let several = tables.iter().any(Table::lacks) && of_each.is_some_and(|all| !all.iter().all(one));
-    !few && !lossless && !several
+    let rebound = tables.iter().any(Table::lacks);
+    match heard.evidence.first() {
+        Some(Evidence::Impacts { n, missed }) => *n >= 3 && 4 * missed <= *n,
+        Some(Evidence::Drops { restitution, one_interval_each, .. }) => {
+            *restitution <= LOSSLESS && (!rebound || *one_interval_each)
+        }
+        _ => true,
+    }
 }
 
 /// Whether a trace reaches as far as a sine of its power does, noise included.

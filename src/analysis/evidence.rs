@@ -1,0 +1,57 @@
+//! What an answer shows of its record's kind, for those who ask what kind it is.
+
+use crate::measure::decay::DecayResult;
+use crate::measure::impacts::Impacts;
+use crate::measure::pulse::PulseResult;
+use crate::measure::response::Response;
+use crate::measure::restitution::Restitution;
+use serde::{Deserialize, Serialize};
+
+/// Numbers of one record by which its kind is judged; times in s.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)] // each kind says what its fields are
+pub enum Evidence {
+    /// A sweep: its steps, those of them with an uncertainty, and whether it jumps.
+    Sweep { steps: usize, sure: usize, jumps: bool },
+    /// A decay: when it begins and ends, and the end of its record, in s.
+    Decay { start: f64, end: f64, last: f64 },
+    /// Impacts: how many, and how many are missed.
+    Impacts { n: usize, missed: usize },
+    /// Drops: their files, their restitution, and whether each has one interval between impacts.
+    Drops { files: usize, restitution: f64, one_interval_each: bool },
+    /// A contact pulse: its duration in s.
+    Pulse { duration: f64 },
+}
+
+impl From<&Response> for Evidence {
+    fn from(response: &Response) -> Evidence {
+        let sure = response.points.iter().filter(|point| point.amplitude.std.is_some()).count();
+        Evidence::Sweep { steps: response.points.len(), sure, jumps: !response.jumps.is_empty() }
+    }
+}
+
+impl From<&DecayResult> for Evidence {
+    fn from(found: &DecayResult) -> Evidence {
+        Evidence::Decay { start: found.start, end: found.end, last: found.last }
+    }
+}
+
+impl From<&Impacts> for Evidence {
+    fn from(found: &Impacts) -> Evidence {
+        Evidence::Impacts { n: found.n, missed: found.missed }
+    }
+}
+
+impl From<&PulseResult> for Evidence {
+    fn from(found: &PulseResult) -> Evidence {
+        Evidence::Pulse { duration: found.duration.value }
+    }
+}
+
+impl Evidence {
+    /// That of drops in so many files.
+    pub fn of_drops(found: &Restitution, files: usize) -> Evidence {
+        let one_interval_each = found.intervals.iter().all(|intervals| intervals.len() == 1);
+        Evidence::Drops { files, restitution: found.restitution.value, one_interval_each }
+    }
+}
