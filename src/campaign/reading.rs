@@ -34,8 +34,8 @@ pub struct Reading {
     pub wrapped: bool,
     /// Each column is a channel, however much the rows look like one series
     pub columns: bool,
-    /// Only this part of a time trace, from and to in s
-    #[cfg_attr(feature = "cli", arg(value_name = "FROM:TO", allow_hyphen_values = true, value_parser = crate::campaign::two::<':'>))]
+    /// Only this part of a time trace, from and to in s; 600: is to its end
+    #[cfg_attr(feature = "cli", arg(value_name = "FROM:TO", allow_hyphen_values = true, value_parser = crate::campaign::part))]
     pub span: Option<(f64, f64)>,
     /// Stretch between lost samples that is used, by its number from 1
     #[cfg_attr(feature = "cli", arg(value_name = "N"))]

@@ -22,6 +22,20 @@ pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
     Ok((number(a)?, number(b)?))
 }
 
+/// A part of a record between two times in s, `FROM:TO`; without one of them to its end or from its beginning.
+///
+/// # Errors
+/// With what stands there.
+pub fn part(typed: &str) -> Result<(f64, f64), String> {
+    let whole = |text: &str, end: &str| if text.trim().is_empty() { end.to_owned() } else { text.to_owned() };
+    match typed.split_once(':') {
+        Some((from, to)) if !(from.trim().is_empty() && to.trim().is_empty()) => {
+            two::<':'>(&format!("{}:{}", whole(from, "-inf"), whole(to, "inf")))
+        }
+        _ => Err("two times in s with ':' between them, or one of them and ':'".to_owned()),
+    }
+}
+
 /// Units that keys of a campaign have, and parts of them as powers of ten.
 const UNITS: [(&str, i32); 17] = [
     ("k", 3),

@@ -38,3 +38,36 @@ fn the_uncertainty_of_a_frequency_holds_the_truth_where_the_clock_wanders() {
     // The mean of 120 squares of seven degrees of freedom scatters by 5 %.
     assert!((mean.sqrt() / expected - 1.0).abs() < 0.15, "{} of {expected}", mean.sqrt());
 }
+
+/// A sine whose times are printed in whole milliseconds, at rates that no millisecond divides, once with a sample lost.
+#[test]
+fn a_tone_lies_within_its_uncertainty_where_times_have_few_digits() {
+    for seed in 1..=DRAWS / 2 {
+        let mut noise = Noise::new(seed);
+        let (rate, frequency) = (noise.between(200.0, 1600.0), noise.between(10.0, 60.0));
+        let lost = if seed % 2 == 0 { 2000 } else { usize::MAX };
+        let mut row = |i: usize| {
+            let t = i as f64 / rate;
+            let value = (std::f64::consts::TAU * frequency * t).sin() + 1e-2 * noise.normal();
+            format!("{:.3},{value:.5}\n", (1e3 * t).floor() / 1e3)
+        };
+        let rows: String = (0..6000).filter(|i| *i != lost).map(&mut row).collect();
+        let text = format!("time (s),a (m/s^2)\n{rows}");
+        let read = |stretch| {
+            let read = Reader::new().stretch(stretch).from_reader("a.csv", text.as_bytes()).expect("read");
+            let number = read.all_findings().iter().find_map(|found| found.get("longest"));
+            (read.trace(None, None).expect("a trace"), number)
+        };
+        let (trace, longest) = read(None);
+        assert_eq!(trace.rate().is_none(), seed % 2 == 0, "{rate} Hz");
+        let trace = longest.map_or(trace, |number| read(Some(number as usize)).0);
+        let found = &tones(&trace, 1).expect("a sine").tones[0].frequency;
+        let std = found.std.expect("an uncertainty");
+        assert!(
+            (found.value - frequency).abs() <= 3.5 * std,
+            "{rate} Hz: {} ± {std}, not {frequency}",
+            found.value
+        );
+        assert!(std < 1e-4 * frequency, "{rate} Hz: {std}");
+    }
+}

@@ -113,8 +113,8 @@ pub struct Judged {
 pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str, resampled: bool) -> Judged {
     let n = values.len();
     let mean = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
-    // Digits that are fine hide nothing, and even ones of any size nothing that can be seen.
-    let tolerance = if is_fine(resolution, mean) { resolution } else { 0.0 };
+    // Digits that are fine hide nothing, and equal steps of any size nothing that can be seen.
+    let tolerance = if is_fine(resolution, mean) { resolution } else { EQUAL * resolution };
     let axis = Axis::from_values(kind, values, tolerance);
     let Axis { kind, grid: Grid::Uneven(values) } = axis else {
         let clock = axis.step().map_or(0.0, |step| uniform_std(resolution, n) / step);
@@ -161,6 +161,9 @@ fn between_gaps(instants: &[f64], resolution: f64, code: &'static str) -> Option
     let durations: Vec<f64> = all.iter().map(Stretch::duration).collect();
     Some(if all.len() <= LISTED { found.numbers("durations", durations) } else { found })
 }
+
+/// Part of half a printed digit by which equal steps may differ: binary numbers of s since 1970 are off by 1e-7 s.
+const EQUAL: f64 = 1e-2;
 
 /// Relative difference between the rate that a logger or a telephone was set to and that of its clock.
 pub const NOMINAL: f64 = 1e-2;

@@ -26,8 +26,9 @@ pub fn settle(mut contents: Contents, format: Format, options: &Options) -> Resu
     for (record, _) in &mut contents.records {
         match record {
             Record::Trace(trace) if !table => no_spectrum(trace, options)?,
+            Record::Trace(trace) => linear(&trace.meta)?,
             Record::Spectrum(spectrum) => amplitudes(spectrum)?,
-            Record::Trace(_) | Record::Frf(_) => {}
+            Record::Frf(_) => {}
         }
     }
     Ok(contents)
@@ -73,19 +74,28 @@ fn amplitudes(spectrum: &mut Spectrum) -> Result<()> {
         let factor = meta.adopt_unit(reference.symbol());
         return to_si(&mut spectrum.values, factor);
     }
+    linear(meta)?;
     let below =
         values.len() >= FEW && values.iter().all(|value| *value <= 0.0) && values.iter().any(|v| *v < 0.0);
-    let linear = !meta.unit.is_level();
-    let words = decibels(meta).filter(|_| linear && meta.unit.is_known());
-    let why = match words {
-        Some(words) => format!("{:?} has levels ({words:?}) in the linear unit {}", meta.name, meta.unit),
-        None if below && linear && is_spectral(&meta.name) => {
-            format!("no value of {:?} is above 0: they may be levels in decibels", meta.name)
-        }
-        None => return Ok(()),
-    };
+    if below && !meta.unit.is_level() && is_spectral(&meta.name) {
+        return Err(levels(format!(
+            "no value of {:?} is above 0: they may be levels in decibels",
+            meta.name
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses levels in a linear unit.
+fn linear(meta: &Meta) -> Result<()> {
+    let words = decibels(meta).filter(|_| !meta.unit.is_level() && meta.unit.is_known());
+    let Some(words) = words else { return Ok(()) };
+    Err(levels(format!("{:?} has levels ({words:?}) in the linear unit {}", meta.name, meta.unit)))
+}
+
+fn levels(found: String) -> Error {
     let hint = "state the unit with its reference, such as \"dB re 1 g\"";
-    Err(Error::usage(why, "amplitudes, or levels with their reference").hint(hint).setting("unit"))
+    Error::usage(found, "amplitudes, or levels with their reference").hint(hint).setting("unit")
 }
 
 /// The words by which a file says that its values are levels: their unit, or a header line that states unit, scale or level.
@@ -182,6 +192,27 @@ mod tests {
             assert!((found / expected - 1.0).abs() < 1e-15, "{found}");
         }
         assert_eq!(values("dB"), [-20.0, -10.0, 10.0]);
+    }
+
+    #[test]
+    fn levels_of_names_and_of_the_head_are_levels() {
+        let rows = (0..30).map(|i| format!("{},{}\n", 0.1 * f64::from(i), 60 + i % 7)).collect::<String>();
+        for (head, column) in
+            [("magnitude scale: dB\n", "level"), ("", "Lp_dB"), ("", "Lp (dB)"), ("", "LAeq_dBA")]
+        {
+            for axis in ["time (s)", "frequency (Hz)"] {
+                let text = format!("{head}{axis},{column}\n{rows}");
+                let read = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap();
+                let found = read.all_findings();
+                assert!(
+                    found.iter().any(|f| f.code == "levels-in-decibels"),
+                    "{head}{axis} {column}: {found:?}"
+                );
+            }
+        }
+        let text = format!("magnitude scale: dB\ntime (s),level (Pa)\n{rows}");
+        let why = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap_err().to_string();
+        assert!(why.contains("levels") && why.contains("linear unit"), "{why}");
     }
 
     fn of(unit: &str, name: &str, key: &str, value: &str) -> Option<String> {

@@ -1,6 +1,6 @@
 //! A part of time traces, from one time to another.
 
-use crate::assemble::{drift, from_values, short};
+use crate::assemble::{drift, epoch, from_values, short};
 use crate::held::Contents;
 use std::ops::Range;
 use vibro_record::{Axis, AxisKind, Error, Grid, Meta, Record, Result};
@@ -44,7 +44,9 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if matches!(&trace.axis.grid, Grid::Uneven(instants) if !rises(instants)) {
             trace.sampling_rate()?;
         }
-        let part = within(&trace.axis, span)?;
+        let counted = [span.0, span.1].into_iter().any(|t| t.is_finite() && epoch(t).is_some());
+        let from = if counted { trace.meta.origin } else { 0.0 };
+        let part = within(&trace.axis, (span.0 - from, span.1 - from))?;
         if part.len() < trace.values.len() {
             let mut axis = trace.axis.part(part.clone());
             if let Grid::Uneven(instants) = axis.grid {
@@ -104,6 +106,26 @@ mod tests {
             assert!(
                 read(name, bytes, (4.0, 3.0)).unwrap_err().to_string().contains("a time, and a later one")
             );
+        }
+    }
+
+    #[test]
+    fn parts_have_open_ends_and_count_from_1970_where_the_file_does() {
+        let rows = (0..100).map(|i| format!("{}.5,{i}\n", 1_700_000_000 + i)).collect::<String>();
+        let text = format!("timestamp,a (V)\n{rows}");
+        let begun = 1_700_000_000.5;
+        let ends = (f64::NEG_INFINITY, f64::INFINITY);
+        for (span, first, n) in [
+            ((10.0, 20.0), 10.0, 10),
+            ((begun + 10.0, begun + 20.0), 10.0, 10),
+            ((begun + 90.0, ends.1), 90.0, 10),
+            ((ends.0, begun + 5.0), 0.0, 5),
+            ((95.0, ends.1), 95.0, 5),
+        ] {
+            let Record::Trace(part) = read("x.csv", text.as_bytes(), span).unwrap().records.remove(0) else {
+                panic!()
+            };
+            assert_eq!((part.values[0], part.values.len()), (first, n), "{span:?}");
         }
     }
 

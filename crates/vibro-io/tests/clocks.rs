@@ -3,7 +3,7 @@
 
 use vibro_io::{Reader, Recording};
 use vibro_math::Noise;
-use vibro_record::{Error, Grid, Record, Trace};
+use vibro_record::{AxisKind, Error, Grid, Record, Trace};
 
 /// How an export stamps its samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -388,5 +388,99 @@ fn a_short_last_row_of_a_series_loses_no_value() {
         let found = Reader::new().wrapped(Some(true)).from_reader("a.EW", text.as_bytes()).expect("read");
         let trace = first(&found);
         assert_eq!((&trace.values, trace.rate()), (&values, Some(100.0)), "{columns}");
+    }
+}
+
+/// Heads of loggers and oscilloscopes that state a rate, between semicolons and commas, with units of their own.
+#[test]
+fn rates_in_units_of_samples_a_second_are_used() {
+    let row = |i| format!("{:.5};{:.5}\n", (0.1 * f64::from(i)).sin(), (0.3 * f64::from(i)).cos());
+    let rows = concat((0..300).map(row));
+    let mut wrong = Vec::new();
+    for (head, rate) in [
+        ("Sample rate: 2 kS/s", 2000.0),
+        ("Sampling rate;2 kS/s", 2000.0),
+        ("Sample Rate;2;kS/s", 2000.0),
+        ("Abtastrate [Hz];500", 500.0),
+        ("Abtastrate;500 Hz", 500.0),
+        ("Abtastrate: 500,0 Hz", 500.0),
+        ("Samplerate: 1 kHz", 1000.0),
+        ("Sample rate = 51.2 kSa/s", 51_200.0),
+        ("Sampling Rate: 1 MS/s", 1e6),
+        ("Sample Frequency (Hz);1000", 1000.0),
+        ("Samplingrate;1000 Hz", 1000.0),
+        ("Sample rate [S/s];1000", 1000.0),
+        ("Scan rate: 100 samples/s", 100.0),
+        ("Sample Rate: 100 samples/sec", 100.0),
+        ("Sample rate: 100 samples per second", 100.0),
+        ("Sample rate (samples/second);100", 100.0),
+        ("Rate: 250 SPS", 250.0),
+        ("ODR: 400 Hz", 400.0),
+        ("Output data rate: 400 Hz", 400.0),
+        ("sampling_rate_hz: 200", 200.0),
+        ("sample_rate_hz=200", 200.0),
+        ("fs_Hz = 200", 200.0),
+        ("# fs = 200 Hz", 200.0),
+        ("Fs;200 Hz", 200.0),
+        ("Fréquence d'échantillonnage: 200 Hz", 200.0),
+        ("Frequenza di campionamento: 200 Hz", 200.0),
+        ("Frecuencia de muestreo: 200 Hz", 200.0),
+        ("Abtastfrequenz = 2,5 kHz", 2500.0),
+        ("Abtastzeit: 2 ms", 500.0),
+        ("Abtastintervall [ms];2", 500.0),
+        ("Messintervall: 2 ms", 500.0),
+        ("Sample interval: 2 ms", 500.0),
+        ("Sample period (s);0.002", 500.0),
+        ("Sampling time: 2 ms", 500.0),
+        ("Ts: 2 ms", 500.0),
+    ] {
+        let text = format!("{head}\nA (V);B (V)\n{rows}");
+        match Reader::new().from_reader("a.csv", text.as_bytes()) {
+            Ok(found) => {
+                let own = first(&found).rate().unwrap_or(f64::NAN);
+                let said = found.all_findings().iter().any(|found| found.code == "rate-from-head");
+                if (own / rate - 1.0).abs() > 1e-12 || first(&found).axis.kind != AxisKind::Time || !said {
+                    wrong.push(format!("{head}: {own}, said: {said}"));
+                }
+            }
+            Err(why) => wrong.push(format!("{head}: {why}")),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Jitter that passes for an even grid is not in what is interpolated: that uses the instants themselves.
+#[test]
+fn jittering_samples_are_interpolated_from_their_own_times() {
+    for seed in 1..=60 {
+        let mut noise = Noise::new(seed);
+        let step = 8e-3;
+        let size = noise.between(0.02, 0.15);
+        let frequency = noise.between(2.0, 6.0);
+        let signal = |t: f64| 3.0 * (std::f64::consts::TAU * frequency * t).sin();
+        // The line through 800 is off by a twentieth of the jitter.
+        let instants: Vec<f64> =
+            (0..800).map(|i| step * (f64::from(i) + 0.95 * size * noise.between(-1.0, 1.0))).collect();
+        let rows = concat(instants.iter().map(|t| format!("{t:.9},{:.12}\n", signal(*t))));
+        let text = format!("time (s),a (m/s^2)\n{rows}");
+        let read = |reader: Reader| reader.from_reader("a.csv", text.as_bytes());
+        let off = |recording: &Recording| {
+            let trace = first(recording);
+            let squares =
+                trace.values.iter().enumerate().map(|(i, v)| (v - signal(trace.axis.at(i))).powi(2));
+            (squares.sum::<f64>() / trace.values.len() as f64).sqrt()
+        };
+        let even = read(Reader::new()).expect("read");
+        assert!(even.all_findings().iter().any(|found| found.code == "axis-jitter"), "{seed}");
+        let made = read(Reader::new().resample(Some(130.0))).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let stated =
+            made.all_findings().iter().find_map(|f| f.get("error").filter(|_| f.code == "resampled"));
+        let (own, grid) = (off(&made), off(&even));
+        assert!(own <= stated.expect("an error"), "{seed}: {own} of {stated:?}");
+        // Twenty samples a period: cubics are wrong by 0.023·(2π/20)⁴ of it, the grid by 2π/20 of the jitter, 1 % of a step at least.
+        assert!(own < 0.3 * grid, "{seed}: {own} and {grid}");
+        assert!(read(Reader::new().rate(Some(125.4)).resample(Some(130.0))).is_ok(), "{seed}");
+        let why = read(Reader::new().rate(Some(250.0)).resample(Some(130.0))).expect_err("another rate");
+        assert!(why.to_string().contains("250 Hz was stated"), "{why}");
     }
 }

@@ -1,6 +1,7 @@
 //! Clocks of loggers and telephones: the even grid that jittering instants mean, and the stretches between lost samples.
 
 use crate::Finding;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// Largest jitter, as a part of a step, of an instant on an even grid. Below 1/6: where every third sample is lost, all that are left lie within
@@ -166,7 +167,8 @@ fn largest_step(instants: impl Iterator<Item = f64> + Clone, resolution: f64) ->
                 worst = (fall, (t - top.1 + 2.0 * resolution) / (j - top.0) as f64);
             }
         }
-        if worst.0.is_nan() || worst.1 >= step {
+        // An instant that is missing leaves nothing to compare.
+        if worst.1.partial_cmp(&step) != Some(Ordering::Less) {
             return Some(step);
         }
         step = worst.1;

@@ -51,6 +51,8 @@ pub struct Meta {
     pub clock: f64,
     /// Half a unit in the last digit that instants were printed with, in s; 0 where they were not printed.
     pub resolution: f64,
+    /// Instant 0 of the record in s since 1970, where the file counts from there; else 0.
+    pub origin: f64,
     /// What a person must know before trusting the values.
     pub findings: Vec<Finding>,
     /// Every step that made the record, oldest first.
@@ -62,7 +64,18 @@ impl Meta {
     pub fn new(name: impl Into<String>, unit: Unit) -> Meta {
         let (name, quantity) = (name.into(), unit.quantity());
         let (notes, findings, history) = Default::default();
-        Meta { name, quantity, unit, declared_n: None, notes, clock: 0.0, resolution: 0.0, findings, history }
+        Meta {
+            name,
+            quantity,
+            unit,
+            declared_n: None,
+            notes,
+            clock: 0.0,
+            resolution: 0.0,
+            origin: 0.0,
+            findings,
+            history,
+        }
     }
 
     /// Name and quantity, by which a channel is looked for.

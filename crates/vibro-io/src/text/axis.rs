@@ -19,6 +19,8 @@ pub struct Printed {
     pub resolution: f64,
     /// Whether it is time or frequency only because a person's statement says so.
     pub assumed: bool,
+    /// Its 0 in s since 1970, where it counts from there; else 0.
+    pub origin: f64,
     /// Relative standard uncertainty of its step, if it is even.
     pub clock: f64,
     /// What is to be said of it, if it is used.
@@ -231,6 +233,9 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             }
             let assumed = header.assumed.map(|key| Finding::caution("head-step-assumed").name("key", key));
             findings.extend(assumed.map(|found| found.number("step", 1.0 / rate)));
+            if header.assumed.is_none() {
+                findings.push(Finding::note("rate-from-head").number("rate", rate));
+            }
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {

@@ -45,9 +45,10 @@ pub struct Stated {
 /// Keys of a sampling rate, and of the step of time.
 const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|sampling freq|data rate|fs|rate|abtastrate|\
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
-                    messfrequenz";
-const STEP: &str = "dt|delta t|sampling interval|sampling interval s|sample interval|sampling period|time step|delta time|increment|clock|\
-                    interval|time interval|tinc|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
+                    messfrequenz|samplingrate|sampling speed|output data rate|odr|acquisition rate|logging rate|\
+                    frequenza di campionamento|frecuencia de muestreo|frequência de amostragem";
+const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
+                    interval|time interval|tinc|sample period|sampling time|sample time|ts|scan interval|logging interval|abtastzeit|messintervall|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
                     x delta|xdelta|abtastintervall";
 /// Keys of what the abscissa is, or of its unit.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
@@ -135,11 +136,17 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         None => (key, ""),
     };
     let key: String = key.chars().map(|c| if matches!(c, '_' | '-' | '.') { ' ' } else { c }).collect();
+    // `sample_rate_hz`
+    let behind = key.rsplit_once(' ').filter(|(key, unit)| {
+        let of = |keys: &str, units: &[(&str, f64)]| {
+            keys.split('|').any(|known| known == *key) && units.iter().any(|(known, _)| known == unit)
+        };
+        unit_in_key.is_empty() && (of(RATE, &HERTZ) || of(STEP, &SECONDS))
+    });
+    let (key, unit_in_key) = behind.unwrap_or((key.as_str(), unit_in_key));
     let hertz = || {
-        // Samples a second are written `S/s`, `Sa/s` and `Sps`.
-        let value = value.replace("mHz", MILLIHERTZ).to_lowercase();
-        let value = value.replace("sa/s", "hz").replace("sps", "hz").replace("s/s", "hz");
-        quantity(&value, unit_in_key, &HERTZ)
+        let value = value.replace("mHz", MILLIHERTZ);
+        quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ)
     };
     let bare = unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit());
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
@@ -153,7 +160,8 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             (stated.step, stated.of_one_series) = (step, true);
         }
         "rate" | "data rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval"
-        | "time interval"
+        | "time interval" | "odr" | "ts" | "sampling time" | "sample time" | "scan interval"
+        | "logging interval" | "messintervall"
             if bare => {}
         "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
@@ -206,6 +214,12 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         }
         _ => {}
     }
+}
+
+/// Samples a second, as they are written, in Hz: `2 kS/s`, `100 samples/s`.
+fn samples_a_second(text: &str) -> String {
+    let words = ["samples per second", "samples/second", "samples/sec", "samples/s", "sa/s", "sps", "s/s"];
+    words.iter().fold(text.to_lowercase(), |text, word| text.replace(word, "hz"))
 }
 
 /// Lines without a key: `20 Hz 400 lines`, `64 samples, 2000 sps`.

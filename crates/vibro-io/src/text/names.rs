@@ -2,7 +2,9 @@
 
 use super::dialect::Separator;
 use super::header;
-use super::unit_words::{COUNTERS, DAY, HOUR, amplitude, bare_unit, is_angular, is_unit_row, symbol};
+use super::unit_words::{
+    COUNTERS, DAY, HOUR, amplitude, bare_unit, is_angular, is_decibel, is_unit_row, symbol,
+};
 use crate::assemble::{domain, kind_of};
 use crate::number;
 use vibro_record::units::{Quantity, Unit};
@@ -289,13 +291,13 @@ fn begins(text: &str, word: &str) -> bool {
     text.strip_prefix(word).is_some_and(|rest| !rest.starts_with(char::is_alphabetic))
 }
 
-/// A quotient, hertz, or a unit of the quantity that the name says: `x_m` may be a name, `force_N` is not.
+/// A quotient, hertz, a level, or a unit of the quantity that the name says: `x_m` may be a name, `force_N` is not.
 fn cannot_be_name(name: &str, unit: &str) -> bool {
     let quantity = Unit::parse(unit).map(|u| u.quantity());
     let key = name.to_lowercase();
     let named =
         |quantity: Quantity| key.contains(quantity.name()) || (quantity == Quantity::Time && key == "t");
-    unit.contains('/') || unit.ends_with("Hz") || quantity.is_some_and(named)
+    unit.contains('/') || unit.ends_with("Hz") || is_decibel(unit) || quantity.is_some_and(named)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use super::tail;
 use super::unit_words::amplitude;
 use crate::assemble::{self, Judged, NOMINAL, Spectral, domain, from_values, kind_of, short};
 use crate::held::Held;
-use crate::{Format, Options, number};
+use crate::{Format, Options, level, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::lanes::Extremes;
@@ -63,7 +63,8 @@ pub fn build(
     if numbered && !has_axis {
         of_axis.push(Finding::caution("column-numbers-rows"));
     }
-    let resolution = printed.as_ref().map_or(0.0, |printed| printed.resolution);
+    let (resolution, origin) =
+        printed.as_ref().map_or((0.0, 0.0), |printed| (printed.resolution, printed.origin));
     let (clock, mut axis) = choose(printed, n, &made.stated, options, &mut of_axis)?;
     if let (AxisKind::Index, Some(first), Grid::Even { start, .. }) = (&axis.kind, first, &mut axis.grid) {
         *start = first;
@@ -110,7 +111,7 @@ pub fn build(
         let meta = record.meta_mut();
         meta.declared_n = declared;
         if axis.kind == AxisKind::Time {
-            (meta.clock, meta.resolution) = (clock, resolution);
+            (meta.clock, meta.resolution, meta.origin) = (clock, resolution, origin);
         }
         if !is_table {
             for found in &of_axis {
@@ -275,6 +276,7 @@ impl Made<'_> {
         let epoch = values.first().filter(|_| !clock && kind == AxisKind::Time);
         let unsaid = column.name.unit.is_none();
         let epoch = epoch.and_then(|first| assemble::epoch(*first)).filter(|(_, f)| unsaid || *f == factor);
+        let since = epoch.map_or(0.0, |(_, factor)| values[0] * factor);
         let (from, factor) = epoch.map_or((0.0, factor), |(_, factor)| (values[0], factor));
         let assumed = match epoch {
             Some((unit, _)) if unsaid => Some(Finding::caution("axis-epoch").name("unit", unit)),
@@ -295,11 +297,15 @@ impl Made<'_> {
             _ => values.into_owned(),
         };
         values.iter_mut().for_each(|v| *v = (*v - from) * factor);
+        let head = if kind == AxisKind::Frequency { "frequency (kHz)" } else { "time (ms)" };
         let resampled = self.options.resample.is_some();
         let Judged { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
+        let assumed = assumed
+            .map(|found| if found.code == "axis-unit-assumed" { found.name("head", head) } else { found });
         let findings = assumed.into_iter().chain(found).collect();
-        Ok(Printed { axis, label, resolution: own * factor, assumed: by_name.is_none(), clock, findings })
+        let resolution = own * factor;
+        Ok(Printed { axis, label, resolution, assumed: by_name.is_none(), origin: since, clock, findings })
     }
 
     /// Unit of a column without a name, and its factor to s, by which it agrees with the stated rate.
@@ -440,7 +446,8 @@ impl Made<'_> {
         }
         meta.step("read", &how);
         let unit = unit.as_deref().or(self.stated.unit.as_deref()).map(amplitude);
-        let said = unit.map(|(unit, _)| unit).or(unknown.as_deref());
+        let level = || level::decibels(&meta).filter(|_| self.options.unit.is_none()).map(|_| "dB");
+        let said = unit.map(|(unit, _)| unit).or(unknown.as_deref()).or_else(level);
         let factor = self.options.adopt(&mut meta, said);
         values.scale(factor)?;
         let spectral = self.spectral(&meta.name, unit);

@@ -61,6 +61,7 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
         let unit = symbol(bare_unit(field));
         let understood = Unit::parse(amplitude(unit).0).is_some()
             || matches!(unit, "h" | "d" | HOUR)
+            || is_decibel(unit)
             || COUNTERS.contains(&unit.to_lowercase().as_str());
         total += 1;
         known += usize::from(understood);
@@ -69,6 +70,11 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
         first.get_or_insert(understood);
     }
     known > 0 && (sure == total || (first == Some(true) && short == total && 2 * known >= total))
+}
+
+/// `dB`, `dBA`, `dB(A)`, `dBV`: `dbl` is none.
+pub(super) fn is_decibel(unit: &str) -> bool {
+    unit.strip_prefix("dB").is_some_and(|of| of.chars().all(|c| c.is_ascii_uppercase() || "()".contains(c)))
 }
 
 pub(super) fn bare_unit(field: &str) -> &str {

@@ -34,7 +34,11 @@ pub const ALL: &[Dialect] = &[
                 format!("{i},{},{},", u(0, i), u(1, i))
             })
         },
-        outcome: read(&[ch("CH1", "V", 0, 1.0, U), ch("CH2", "V", 1, 1.0, U)], X::Even(START), &[]),
+        outcome: read(
+            &[ch("CH1", "V", 0, 1.0, U), ch("CH2", "V", 1, 1.0, U)],
+            X::Even(START),
+            &["rate-from-head"],
+        ),
     },
     Dialect {
         of: "Rigol MSO5000",
@@ -45,7 +49,11 @@ pub const ALL: &[Dialect] = &[
                 format!("{},{},,", u(0, i), u(1, i))
             })
         },
-        outcome: read(&[ch("CH1", "V", 0, 1.0, U), ch("CH2", "V", 1, 1.0, U)], X::Even(START), &[]),
+        outcome: read(
+            &[ch("CH1", "V", 0, 1.0, U), ch("CH2", "V", 1, 1.0, U)],
+            X::Even(START),
+            &["rate-from-head"],
+        ),
     },
     Dialect {
         of: "Rigol DHO800",
@@ -79,14 +87,14 @@ pub const ALL: &[Dialect] = &[
         file: "DS0002.CSV",
         // A division of 25 V makes a count a volt, so that the signal is in the digits.
         text: || table(&gw("Fast"), |i| format!("{:.0},", 1e3 * value(0, i))),
-        outcome: read(&[ch("CH1", "", 0, 1e3, 0.5e-3)], X::Even(0.0), &["unit-unsaid"]),
+        outcome: read(&[ch("CH1", "", 0, 1e3, 0.5e-3)], X::Even(0.0), &["rate-from-head", "unit-unsaid"]),
     },
     Dialect {
         of: "Hantek DSO, data file",
         oddity: "`#CLOCK=500uS` is the step, `#UNITS:V` the unit, one number a row behind a comma",
         file: "WaveData.csv",
         text: || table("#CHANNEL:CH1\n#CLOCK=500uS\n#SIZE=128\n#UNITS:V\n", |i| format!("{},", u(0, i))),
-        outcome: read(&[ch("CH1", "V", 0, 1.0, U)], X::Even(0.0), &[]),
+        outcome: read(&[ch("CH1", "V", 0, 1.0, U)], X::Even(0.0), &["rate-from-head"]),
     },
     Dialect {
         of: "Hantek DSO2000 (dso-via-scpi)",
@@ -112,7 +120,11 @@ pub const ALL: &[Dialect] = &[
                 "Channel : CH1\nFrequency : 318.3Hz\nTime interval : 0.50000mS\n\n  #  CH1_Voltage(mV)\n";
             table(head, |i| format!("{i:5} {:>12}", fixed(1e3 * value(0, i), 2)))
         },
-        outcome: read(&[ch("CH1_Voltage", "V", 0, 1.0, 5e-6)], X::Even(0.0), &["column-numbers-rows"]),
+        outcome: read(
+            &[ch("CH1_Voltage", "V", 0, 1.0, 5e-6)],
+            X::Even(0.0),
+            &["column-numbers-rows", "rate-from-head"],
+        ),
     },
     Dialect {
         of: "Tektronix TDS2000",
@@ -172,7 +184,7 @@ pub const ALL: &[Dialect] = &[
         oddity: "one value a row; start and step as `XOrg:` and `XInc:`",
         file: "wavey.csv",
         text: || table(&infiniium(), |i| u(0, i)),
-        outcome: read(&[ch("column 1", "V", 0, 1.0, U)], X::Even(START), &[]),
+        outcome: read(&[ch("column 1", "V", 0, 1.0, U)], X::Even(START), &["rate-from-head"]),
     },
     Dialect {
         of: "Keysight Infiniium, spectrum",
@@ -256,7 +268,11 @@ pub const ALL: &[Dialect] = &[
             );
             table(&head, |i| format!(",{},{}", u(0, i), u(1, i)))
         },
-        outcome: read(&[ch("CH1", "V", 0, 1.0, U), ch("CH2", "A", 1, 1.0, U)], X::Even(START), &[]),
+        outcome: read(
+            &[ch("CH1", "V", 0, 1.0, U), ch("CH2", "A", 1, 1.0, U)],
+            X::Even(START),
+            &["rate-from-head"],
+        ),
     },
     Dialect {
         of: "Yokogawa DL and DLM, history",
@@ -267,7 +283,7 @@ pub const ALL: &[Dialect] = &[
                         \"HResolution\",5e-4\n\n";
             table(head, |i| format!("{},{}", if i == N / 2 { "\n" } else { "" }, u(0, i)))
         },
-        outcome: read(&[ch("CH1", "V", 0, 1.0, U)], X::Even(0.0), &["fewer-values"]),
+        outcome: read(&[ch("CH1", "V", 0, 1.0, U)], X::Even(0.0), &["fewer-values", "rate-from-head"]),
     },
     Dialect {
         of: "PicoScope 6",

@@ -23,7 +23,7 @@ pub const ALL: &[Dialect] = &[
                         NPTS=    128, DT=   .0005 SEC\n";
             wrapped(head, 5, |v| format!("{:>15}", sci(v, 7, 2)))
         },
-        outcome: read(&[ch("", "m/s²", 0, 9.80665, 5e-8)], X::Even(0.0), &[]),
+        outcome: read(&[ch("", "m/s²", 0, 9.80665, 5e-8)], X::Even(0.0), &["rate-from-head"]),
     },
     Dialect {
         of: "K-NET, KiK-net",
@@ -43,7 +43,7 @@ pub const ALL: &[Dialect] = &[
             right: Right {
                 channels: &[ch("", "", 0, 1e3, 0.5e-3)],
                 x: X::Even(0.0),
-                findings: &["unit-unsaid"],
+                findings: &["rate-from-head", "unit-unsaid"],
             },
         }),
     },
@@ -55,7 +55,7 @@ pub const ALL: &[Dialect] = &[
             let head = "TIMESERIES XX_BENCH__HHZ_D, 128 samples, 2000 sps, 2020-01-24T12:00:00.000000, SLIST, FLOAT, M/S\n";
             wrapped(head, 6, |v| format!("{}\t", sci(v, 6, 2)))
         },
-        outcome: read(&[ch("", "", 0, 1.0, 5e-7)], X::Even(0.0), &["unit-unsaid"]),
+        outcome: read(&[ch("", "", 0, 1.0, 5e-7)], X::Even(0.0), &["rate-from-head", "unit-unsaid"]),
     },
     Dialect {
         of: "TIMESERIES, TSPAIR",
@@ -74,6 +74,6 @@ pub const ALL: &[Dialect] = &[
         oddity: "count and step in the first line, five values a line",
         file: "accel.txt",
         text: || wrapped("   128  0.0005\n", 5, |v| format!("{:>15}", sci(v, 7, 2))),
-        outcome: read(&[ch("", "", 0, 1.0, 5e-8)], X::Even(0.0), &["unit-unsaid"]),
+        outcome: read(&[ch("", "", 0, 1.0, 5e-8)], X::Even(0.0), &["rate-from-head", "unit-unsaid"]),
     },
 ];

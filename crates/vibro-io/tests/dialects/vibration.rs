@@ -191,7 +191,7 @@ pub const ALL: &[Dialect] = &[
         outcome: read(
             &[ch("column 1", "", 0, 1.0, 5e-6), ch("column 2", "", 1, 1.0, 5e-6)],
             X::Even(0.0),
-            &["two-channels", "unit-unsaid"],
+            &["rate-from-head", "two-channels", "unit-unsaid"],
         ),
     },
     Dialect {
@@ -282,7 +282,7 @@ pub const ALL: &[Dialect] = &[
                 fixed(value(0, i), 6)
             })
         },
-        outcome: read(&[ch("", "m/s²", 0, 1.0, 5e-7)], X::Even(0.0), &[]),
+        outcome: read(&[ch("", "m/s²", 0, 1.0, 5e-7)], X::Even(0.0), &["rate-from-head"]),
     },
     Dialect {
         of: "REW, measurement as text",
