@@ -244,6 +244,7 @@ impl Keys {
         let still = still.and_then(|s| s.values.into_iter().next());
         let record =
             Slices { rate: channels.rate, channels: channels.values.iter().map(Vec::as_slice).collect() };
+        let options = DrillOptions { clock: channels.clock(), ..options };
         let mut found = drill_each(&record, &options, still.as_deref(), each)?;
         found.findings.splice(..0, channels.findings);
         let mut answer = Answer::of(&found)?;

@@ -225,6 +225,7 @@ impl Keys {
             least_coherence: self.least_coherence,
             decay: meta.added_decay(),
             from_blows: meta.from_blows(),
+            clock: meta.clock,
         };
         // A function without a mode is still a function to be seen.
         let (found, refused) = match modal(measured, &options) {

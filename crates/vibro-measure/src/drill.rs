@@ -136,7 +136,8 @@ pub fn drill_each(
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
     // Where speeds are too small, so is what they add up to: no uncertainty is stated.
     let metres = |mean: Mean, method| {
-        Estimate::new(mean.value, mean.std.filter(|_| faults.clipped == 0), "m", mean.n, method)
+        let known = mean.std.filter(|_| faults.clipped == 0);
+        Estimate::new(mean.value, known, "m", mean.n, method).by_clock(options.clock)
     };
     let noise_floor = still.and_then(|still| NoiseFloor::new(velocity, scaled(still), rate, options.margin));
     let slow = [
@@ -147,7 +148,7 @@ pub fn drill_each(
     ];
     let slow: Vec<&str> = slow.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name).collect();
     let mut result = Drill {
-        speed,
+        speed: speed.by_clock(options.clock),
         speed_variation: scatter(&speeds),
         cycles: whole.len(),
         averaged,

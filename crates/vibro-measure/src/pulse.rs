@@ -182,6 +182,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     found.extend(more.then(|| gained(&result)));
     found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained")));
     result = if more || unexplained { result.doubted() } else { result };
+    result = result.by_clock(trace.meta.clock);
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)

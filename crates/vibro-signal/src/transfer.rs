@@ -220,6 +220,7 @@ fn named(reference: &Meta, response: &Meta) -> Meta {
     meta.findings.clone_from(&response.findings);
     reference.findings.iter().for_each(|f| meta.found(f.clone()));
     meta.history.clone_from(&response.history);
+    meta.clock = response.clock.max(reference.clock);
     meta
 }
 

@@ -46,6 +46,11 @@ impl Channels {
         self.metas.get(channel).is_some_and(|meta| meta.quantity == quantity)
     }
 
+    /// Relative standard uncertainty of the sampling rate.
+    pub fn clock(&self) -> f64 {
+        self.metas.iter().fold(0.0, |most, meta| meta.clock.max(most))
+    }
+
     /// Multiplies the channels from this one on.
     pub fn scale(&mut self, from: usize, factor: f64) {
         self.values.iter_mut().skip(from).flatten().for_each(|v| *v *= factor);

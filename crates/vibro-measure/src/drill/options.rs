@@ -174,6 +174,8 @@ pub struct DrillOptions {
     pub margin: f64,
     /// Hours a day of the exposure of a hand.
     pub hours: Option<f64>,
+    /// Relative standard uncertainty of the sampling rate. Default 0.
+    pub clock: f64,
 }
 
 impl DrillOptions {
@@ -202,6 +204,7 @@ impl DrillOptions {
             instrument: None,
             margin: 10.0,
             hours: None,
+            clock: 0.0,
         }
     }
 

@@ -20,6 +20,8 @@ pub struct ModalOptions {
     /// Whether the function was averaged over the blows of a hammer, each a record as long as one over the distance of the lines.
     /// Default: false.
     pub from_blows: bool,
+    /// Relative standard uncertainty of the sampling rate, by which all frequencies are off alike. Default 0.
+    pub clock: f64,
 }
 
 /// The modes of a frequency response function.

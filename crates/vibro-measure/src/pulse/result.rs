@@ -93,6 +93,21 @@ impl PulseResult {
         self
     }
 
+    /// The same of a record whose sampling rate has the relative standard uncertainty `clock`: ratios do not depend on it, stiffness on its square.
+    pub(super) fn by_clock(mut self, clock: f64) -> PulseResult {
+        let once = [
+            Some(&mut self.frequency),
+            Some(&mut self.duration),
+            self.damping.as_mut(),
+            self.initial_velocity.as_mut(),
+        ];
+        let all = once.into_iter().map(|of| (of, 1.0)).chain([(self.stiffness.as_mut(), 2.0)]);
+        for (estimate, power) in all.filter_map(|(of, power)| Some((of?, power))) {
+            *estimate = estimate.clone().by_clock(power * clock);
+        }
+        self
+    }
+
     /// The same without uncertainties.
     pub(super) fn doubted(mut self) -> PulseResult {
         self.estimates().for_each(|estimate| estimate.std = None);
