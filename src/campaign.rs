@@ -39,7 +39,7 @@ pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 pub(crate) use entry::Entry;
 pub(crate) use range::in_range;
 pub(crate) use reading::{Channel, Reading, above_zero};
-pub(crate) use value::{LowPass, channel, channels, one_or_more, two, without_unit, word};
+pub(crate) use value::{LowPass, channel, channels, one_or_more, part, two, without_unit, word};
 
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Parameter, Rig, Scene};
