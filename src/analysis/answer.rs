@@ -19,6 +19,8 @@ pub struct Answer {
     pub result: Map<String, Value>,
     /// What a person should know.
     pub findings: Vec<About>,
+    /// The channel that it is of; empty where it is of several.
+    pub channel: String,
     /// Its main numbers, with which a report begins: all columns but that of the record.
     pub headlines: Vec<Table>,
     /// What a person wants first.

@@ -237,6 +237,7 @@ impl Keys {
         let (quantity, unit) = (meta.quantity.name(), meta.unit.symbol());
         let mut answer = Answer::of(&Found { quantity, unit, modal: &found })?;
         answer.result.insert("channel".to_owned(), meta.name.clone().into());
+        answer.channel.clone_from(&meta.name);
         answer.add("", &meta.findings);
         answer.add("", findings);
         answer.add("", &found.findings);

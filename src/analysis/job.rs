@@ -332,6 +332,8 @@ pub fn answers(
 pub struct Ran {
     /// All answers.
     pub answer: Answer,
+    /// Names of the files that were written.
+    pub files: Vec<String>,
     /// Whether any record was answered.
     pub answered: bool,
     /// How many answers are those of the last run, because all that they rest on is the same.
@@ -392,11 +394,11 @@ pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn
     }
     put(&mut all.result, &all.findings, Voice::Campaign);
     output.write(INPUTS, &inputs)?;
-    let names = output.written().chain([RESULTS, REPORT]);
-    all.result.insert("files".to_owned(), names.collect());
+    let names: Vec<String> = output.written().chain([RESULTS, REPORT]).map(str::to_owned).collect();
+    all.result.insert("files".to_owned(), names.clone().into());
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
     output.write(RESULTS, json + "\n")?;
     output.write(REPORT, page::page(&job, version, &inputs, &all, &pictures, &parts).html())?;
     output.write(Kept::FILE, kept.bytes())?;
-    Ok(Ran { answer: all, answered: job.answers > 0, again: job.again })
+    Ok(Ran { answer: all, files: names, answered: job.answers > 0, again: job.again })
 }

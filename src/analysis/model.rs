@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::model::{Draft, Excitation, Orbit, Scene};
 use crate::record::Finding;
 use num_complex::Complex64;
-use serde_json::{Value, json};
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// The scene that a model is asked about.
@@ -87,14 +87,29 @@ pub(super) fn rig_left_out(table: &str, keys: &[&str]) -> Option<Finding> {
 /// Lines that are listed of each orbit.
 const LINES: u32 = 8;
 
-/// An orbit with its amplitudes at the first multiples of 1/T, and what the uncertainty of the gap (m) leaves of it.
-fn judged(orbit: &Orbit, gap_std: Option<f64>) -> Value {
-    let v = &orbit.validity;
-    let mut all = json!(orbit);
-    all["lines"] = (1..=LINES).map(|n| json!(orbit.line(n).map(Complex64::norm))).collect();
-    all["robust"] = json!(gap_std.map(|std| orbit.robust(std)));
-    all["near_grazing"] = json!(gap_std.filter(|_| v.exists).map(|std| v.grazing_distance <= std));
-    all
+/// An orbit with what is computed from it.
+#[derive(Serialize)]
+struct Judged<'a> {
+    #[serde(flatten)]
+    orbit: &'a Orbit,
+    /// Amplitudes of both masses at the first multiples of 1/T.
+    lines: Vec<[f64; 2]>,
+    /// What the uncertainty of the gap leaves of it, where that is stated.
+    robust: Option<bool>,
+    near_grazing: Option<bool>,
+}
+
+impl Judged<'_> {
+    /// `gap_std` in m.
+    fn of(orbit: &Orbit, gap_std: Option<f64>) -> Judged<'_> {
+        let v = &orbit.validity;
+        Judged {
+            orbit,
+            lines: (1..=LINES).map(|n| orbit.line(n).map(Complex64::norm)).collect(),
+            robust: gap_std.map(|std| orbit.robust(std)),
+            near_grazing: gap_std.filter(|_| v.exists).map(|std| v.grazing_distance <= std),
+        }
+    }
 }
 
 /// Checks an uncertainty of the gap.

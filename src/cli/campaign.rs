@@ -11,10 +11,10 @@ use crate::read::{Folder, Occupant, Owner};
 use crate::record::shown;
 use crate::report::Table;
 use crate::report::files::Names;
-use crate::report::words::{Voice, graded};
+use crate::report::words::{Voice, graded, sentences};
 use crate::units::notation::counted;
 use indicatif::ProgressBar;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -143,7 +143,7 @@ impl Run {
         let mut output = print::output(results, Owner::Run, elsewhere)?;
         let campaign = proposed(campaign, &kept, json)?;
         let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);
-        let Ran { answer, answered, again } = print::busy(json, "campaign", run)?;
+        let Ran { answer, files, answered, again } = print::busy(json, "campaign", run)?;
         output.commit()?;
         if again > 0 {
             let kept = counted(again, "answer");
@@ -151,23 +151,20 @@ impl Run {
                 "{kept} of the last run kept: same files, same keys; --again computes anew"
             ));
         }
-        let files = answer.result["files"].as_array().map_or(0, Vec::len);
         if json {
-            of_results(&answer.result.into(), &folder)?;
+            let warnings = sentences(&answer.findings, Voice::Campaign, false);
+            let folder = folder.display().to_string();
+            print::object(
+                json!({ "warnings": warnings, "results": answer.result, "files": files, "folder": folder }),
+            )?;
         } else {
             complain::warn(&graded(&answer.findings, Voice::Campaign));
             let tables = answer.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
+            let files = files.len();
             print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", shown(&folder)))?;
         }
         Ok(u8::from(!answered && !campaign.is_empty()))
     }
-}
-
-/// Prints the results of a campaign as one object.
-fn of_results(results: &Value, folder: &Path) -> Result<()> {
-    let (warnings, files) = (&results["warnings"], &results["files"]);
-    let folder = folder.display().to_string();
-    print::object(json!({ "warnings": warnings, "results": results, "files": files, "folder": folder }))
 }
 
 impl super::Run for Compare {

@@ -210,7 +210,7 @@ impl Run for Measured<frf::Keys> {
             None => self.by(&folder, json, frf::Keys::measure)?,
         };
         if answers.len() > 1 {
-            let names: Vec<&str> = answers.iter().filter_map(|a| a.result["channel"].as_str()).collect();
+            let names: Vec<&str> = answers.iter().map(|answer| answer.channel.as_str()).collect();
             let found = format!("{} frequency response functions, and none was chosen", names.len());
             let error = Error::usage(found, format!("one of {}", names.join(", ")));
             return Err(error.set("channel", format!("{:?}", names.first().unwrap_or(&"1"))));

@@ -11,7 +11,7 @@ use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::io::Write as _;
-use vibro_figure::{Figure, escaped};
+use vibro_figure::{Figure, Matrices, escaped};
 
 /// A report in the order in which it is read. Figures are drawn by a script, so that they can be searched and turned; a reader without
 /// scripts sees them as they are printed.
@@ -29,7 +29,7 @@ pub struct Page {
     headings: Vec<String>,
     body: String,
     figures: Vec<Value>,
-    matrices: Vec<Value>,
+    matrices: Matrices,
     whatif: Option<Value>,
 }
 
@@ -105,20 +105,16 @@ impl Page {
         for file in files {
             let _ = write!(below, " <a href=\"./{0}\">{0}</a>", escaped(file));
         }
-        let mut data = figure.data();
-        let drawn = data["panels"].as_array().is_some_and(|all| !all.iter().any(Value::is_null));
-        let heavy =
-            data["panels"].as_array().is_some_and(|all| all.iter().any(|panel| panel["map"].is_object()));
-        self.share(&mut data);
+        let data = figure.data(&mut self.matrices);
         let svg = &picture.svg;
         let width = picture.width.round();
-        let inside = match (drawn, files.first()) {
-            (false, _) => svg.clone(),
+        let inside = match (data, files.first()) {
+            (None, _) => svg.clone(),
             // A map would be half of the page.
-            (true, Some(file)) if heavy => {
+            (Some(data), Some(file)) if figure.has_map() => {
                 self.place(data, &format!("<p>The map is in {}.</p>\n", escaped(file)))
             }
-            (true, _) => self.place(data, svg),
+            (Some(data), _) => self.place(data, svg),
         };
         self.element(&format!(
             "<figure style=\"--width:{width}\">\n<h3>{title}</h3>\n{inside}<figcaption>{}</figcaption>\n</figure>",
@@ -139,22 +135,6 @@ impl Page {
     pub fn what_if(mut self, start: Value) -> Page {
         self.whatif = Some(start);
         self.element("<div id=\"what-if\"></div>\n<noscript><p>This part needs scripts.</p></noscript>")
-    }
-
-    /// Puts matrices into the list of the page, each once: a waterfall and a map show the same.
-    fn share(&mut self, data: &mut Value) {
-        let Some(panels) = data["panels"].as_array_mut() else { return };
-        for panel in panels {
-            for place in ["/z/levels", "/map/z/levels"] {
-                let Some(levels) = panel.pointer_mut(place) else { continue };
-                let known = self.matrices.iter().position(|m| m == levels);
-                let number = known.unwrap_or_else(|| {
-                    self.matrices.push(levels.clone());
-                    self.matrices.len() - 1
-                });
-                *levels = json!(number);
-            }
-        }
     }
 
     /// Adds a part that is shown on demand, such as where the data came from: pairs of a name and a text, the

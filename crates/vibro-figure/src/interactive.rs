@@ -4,26 +4,69 @@ use crate::style::{Look, looks};
 use crate::{Axis, Figure, Heatmap, Key, Panel, Plot, Scale, Shape, Sheet, Waterfall};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 impl Figure {
     /// The figure for a page: panels with axes, series and matrices, all values as the axes show them. Lists are base64 of 32-bit floats,
-    /// least significant byte first; matrices base64 of 16-bit levels between `low` and `high`, logarithmic for magnitudes (0 is a gap). A panel
-    /// that is a table of classes is null; one that shows another once more is left out.
-    pub fn data(&self) -> Value {
+    /// least significant byte first; matrices are put into those of the page, which the figure numbers. A panel that shows another once more is
+    /// left out. `None` where a page cannot draw a panel, as a table of classes.
+    pub fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let again = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
-        let panels: Vec<Value> = self.panels.iter().filter(|panel| !again(panel)).map(Panel::data).collect();
+        let shown: Vec<&Panel> = self.panels.iter().filter(|panel| !again(panel)).collect();
+        if !shown.iter().all(|panel| panel.is_drawable()) {
+            return None;
+        }
+        let panels: Option<Vec<Value>> = shown.iter().map(|panel| panel.data(matrices)).collect();
+        let panels = panels?;
         let grows = if self.width > 0.0 { self.height / self.width } else { 0.6 };
-        json!({ "title": self.title, "columns": self.columns.max(1), "aspect": grows, "panels": panels })
+        Some(
+            json!({ "title": self.title, "columns": self.columns.max(1), "aspect": grows, "panels": panels }),
+        )
+    }
+
+    /// Whether a panel has a heat map, whose picture is large.
+    pub fn has_map(&self) -> bool {
+        self.panels.iter().any(|panel| matches!(panel, Panel::Plot(plot) if plot.heatmap.is_some()))
+    }
+}
+
+/// The matrices of a page, each once: a waterfall and a map show the same. Base64 of 16-bit levels between `low` and `high` of the panel that
+/// shows it, logarithmic for magnitudes; 0 is a gap.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Matrices(Vec<String>);
+
+impl Matrices {
+    /// How many there are.
+    #[allow(clippy::len_without_is_empty)] // nobody asks
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The number of a matrix, which is added where it is new.
+    fn number(&mut self, levels: String) -> usize {
+        self.0.iter().position(|known| *known == levels).unwrap_or_else(|| {
+            self.0.push(levels);
+            self.0.len() - 1
+        })
     }
 }
 
 impl Panel {
-    fn data(&self) -> Value {
+    /// Whether a page can draw it.
+    fn is_drawable(&self) -> bool {
         match self {
-            Panel::Plot(plot) => plot.data().unwrap_or(Value::Null),
-            Panel::Waterfall(waterfall) => waterfall.data().unwrap_or(Value::Null),
-            Panel::Grid(_) => Value::Null,
+            Panel::Plot(plot) => plot.sheet().axes.is_some(),
+            Panel::Waterfall(waterfall) => waterfall.axes().is_some(),
+            Panel::Grid(_) => false,
+        }
+    }
+
+    fn data(&self, matrices: &mut Matrices) -> Option<Value> {
+        match self {
+            Panel::Plot(plot) => plot.data(matrices),
+            Panel::Waterfall(waterfall) => waterfall.data(matrices),
+            Panel::Grid(_) => None,
         }
     }
 }
@@ -58,9 +101,12 @@ impl Axis {
 }
 
 impl Plot {
-    fn data(&self) -> Option<Value> {
-        let shared = crate::plot::extents(self).0;
-        let (x, y) = Sheet::new(self, shared, true).axes?;
+    fn sheet(&self) -> Sheet<'_> {
+        Sheet::new(self, crate::plot::extents(self).0, true)
+    }
+
+    fn data(&self, matrices: &mut Matrices) -> Option<Value> {
+        let (x, y) = self.sheet().axes?;
         let series: Vec<Value> = self
             .series
             .iter()
@@ -90,13 +136,13 @@ impl Plot {
             "y": y.data(),
             "series": series,
             "notes": self.notes.iter().map(note).collect::<Vec<_>>(),
-            "map": self.heatmap.as_ref().and_then(|map| map.data(&x, &y)),
+            "map": self.heatmap.as_ref().and_then(|map| map.data(&x, &y, matrices)),
         }))
     }
 }
 
 impl Heatmap {
-    fn data(&self, x: &Axis, y: &Axis) -> Option<Value> {
+    fn data(&self, x: &Axis, y: &Axis, matrices: &mut Matrices) -> Option<Value> {
         let key = match &self.key {
             Key::Quantity(_) => self.colour_axis()?.data(),
             Key::Classes(names) => {
@@ -108,14 +154,14 @@ impl Heatmap {
         Some(json!({
             "x": x.list(&self.x),
             "y": y.list(&self.y),
-            "z": levels(self.values.iter().copied(), matches!(self.key, Key::Quantity(_))),
+            "z": levels(self.values.iter().copied(), matches!(self.key, Key::Quantity(_)), matrices),
             "key": key,
         }))
     }
 }
 
 impl Waterfall {
-    fn data(&self) -> Option<Value> {
+    fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let [x, depth, up] = self.axes()?;
         Some(json!({
             "kind": "waterfall",
@@ -124,7 +170,7 @@ impl Waterfall {
             "up": up.data(),
             "frequency": x.list(&self.frequency),
             "excitation": depth.list(&self.rows.iter().map(|row| row.0).collect::<Vec<_>>()),
-            "z": levels(self.rows.iter().flat_map(|row| row.1.iter().copied()), true),
+            "z": levels(self.rows.iter().flat_map(|row| row.1.iter().copied()), true, matrices),
         }))
     }
 }
@@ -149,9 +195,9 @@ fn floats(values: impl Iterator<Item = f64>) -> Value {
 /// Decades below the largest magnitude that levels reach.
 const DECADES: f64 = 8.0;
 
-/// Base64 of 16-bit levels from 1 to 65535 between `low` and `high`: of log₁₀ where all are magnitudes, 8 decades at most, in steps of
+/// 16-bit levels from 1 to 65535 between `low` and `high`: of log₁₀ where all are magnitudes, 8 decades at most, in steps of
 /// 0.03 %; what lies deeper is at the lowest level.
-fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool) -> Value {
+fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool, matrices: &mut Matrices) -> Value {
     let finite = values.clone().filter(|v| v.is_finite());
     let magnitudes = quantity && finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);
     let scale = if magnitudes { Scale::Log } else { Scale::Linear };
@@ -167,7 +213,8 @@ fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool) -> Value {
         u => 1 + (((u - low) / span).clamp(0.0, 1.0) * 65534.0).round() as u16,
     };
     let bytes: Vec<u8> = values.flat_map(|v| level(v).to_le_bytes()).collect();
-    json!({ "levels": STANDARD.encode(bytes), "low": low, "high": low + span, "log": magnitudes })
+    let number = matrices.number(STANDARD.encode(bytes));
+    json!({ "levels": number, "low": low, "high": low + span, "log": magnitudes })
 }
 
 #[cfg(test)]
@@ -185,7 +232,7 @@ mod tests {
     fn values_are_as_the_axes_show_them() {
         let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("Displacement", "m"))
             .with(Series::points("a", [1.0, 2.0], [0.001, 0.002]).y_error([1e-4, f64::NAN]));
-        let data = Figure::single("x").panel(plot).data();
+        let data = Figure::single("x").panel(plot).data(&mut Matrices::default()).unwrap();
         let panel = &data["panels"][0];
         assert_eq!(panel["y"]["title"], "Displacement (mm)");
         assert_eq!(decoded(&panel["series"][0]["y"]), [1.0, 2.0]);
@@ -197,8 +244,10 @@ mod tests {
     #[test]
     fn levels_keep_magnitudes_to_their_step() {
         let values = [1.0, 3e-4, 0.0, f64::NAN, 2e-9];
-        let data = levels(values.into_iter(), true);
-        let bytes = STANDARD.decode(data["levels"].as_str().unwrap()).unwrap();
+        let mut matrices = Matrices::default();
+        let data = levels(values.into_iter(), true, &mut matrices);
+        assert_eq!(data["levels"], 0);
+        let bytes = STANDARD.decode(&matrices.0[0]).unwrap();
         let (low, high) = (data["low"].as_f64().unwrap(), data["high"].as_f64().unwrap());
         let value = |b: &[u8]| match u16::from_le_bytes([b[0], b[1]]) {
             0 => f64::NAN,
@@ -210,11 +259,15 @@ mod tests {
         // Zero and what lies deeper than eight decades are at the lowest level.
         assert!((found[2] / 1e-8 - 1.0).abs() < 1.5e-4 && found[4] == found[2]);
         // Classes are as far apart as they are, and the lowest is its own.
-        let classes = levels([0.0, 1.0, 2.0].into_iter(), false);
+        let classes = levels([0.0, 1.0, 2.0].into_iter(), false, &mut matrices);
         assert_eq!((classes["low"].as_f64(), classes["log"].as_bool()), (Some(0.0), Some(false)));
         let matrix = array![[1.0, 2.0], [3.0, f64::NAN]];
         let map = Heatmap::new(&[0.0, 1.0], &[0.0, 1.0], &matrix, AxisSpec::new("z", "m")).unwrap();
         let plot = Plot::new(AxisSpec::frequency(), AxisSpec::frequency()).heatmap(map);
-        assert!(Figure::single("").panel(plot).data()["panels"][0]["map"]["z"]["log"].as_bool().unwrap());
+        let figure = Figure::single("").panel(plot);
+        assert!(figure.has_map());
+        let data = figure.data(&mut matrices).unwrap();
+        assert_eq!(data["panels"][0]["map"]["z"]["log"], true);
+        assert_eq!((data["panels"][0]["map"]["z"]["levels"].as_u64(), matrices.len()), (Some(2), 3));
     }
 }

@@ -33,6 +33,7 @@ pub use draw::Drawing;
 pub use figure::{Figure, Legend, Note, Panel, Plot};
 pub use grid::{Grid, Kind};
 pub use heatmap::Heatmap;
+pub use interactive::Matrices;
 pub use medium::Medium;
 pub use series::{Ink, Marker, Series, Shape, Stroke};
 pub use waterfall::Waterfall;

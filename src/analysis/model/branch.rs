@@ -10,7 +10,7 @@ use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
 use crate::units::notation::counted;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// What is asked.
@@ -161,15 +161,22 @@ fn ones(rig: &Rig, sine: &Sine) -> Result<Vec<PeriodicOrbit>> {
     Ok(real.filter_map(|o| PeriodicOrbit::near(rig, sine, 1, &[(o.force_phase, o.impulse)]).ok()).collect())
 }
 
+/// A point of a branch, and the value over which that is followed.
+#[derive(Serialize)]
+struct Point {
+    #[serde(flatten)]
+    orbit: Value,
+    value: f64,
+}
+
 fn told(over: Parameter, branch: &Branch) -> Value {
-    let with = |orbit: &PeriodicOrbit| {
-        let mut all = pattern::told(orbit, None);
-        all["value"] = json!(over.of(&orbit.rig, &orbit.sine));
-        all
+    let with = |orbit: &PeriodicOrbit| Point {
+        orbit: pattern::told(orbit, None),
+        value: over.of(&orbit.rig, &orbit.sine),
     };
     let mark = |m: &crate::model::continuation::Mark| json!({ "kind": m.kind, "after": m.after, "orbit": with(&m.orbit) });
     json!({
-        "points": branch.points.iter().map(with).collect::<Vec<Value>>(),
+        "points": branch.points.iter().map(with).collect::<Vec<Point>>(),
         "marks": branch.marks.iter().map(mark).collect::<Vec<Value>>(),
         "ends": branch.ends,
     })

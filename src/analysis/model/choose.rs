@@ -2,12 +2,11 @@
 
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::Answer;
-use crate::analysis::answer::unwritten;
 use crate::compare::Overlay;
 use crate::error::{Error, Result};
 use crate::model::Observable;
 use crate::model::ladder::{
-    Choice, Model, Need, Question, Rung, Sensitivity, Stretch, Survey, choose, choose_over,
+    Choice, Model, Need, Question, Rung, Sensitivity, Stretch, Summary, Survey, choose, choose_over,
 };
 use crate::record::{Direction, Finding, Severity};
 use crate::report::files::Names;
@@ -15,6 +14,7 @@ use crate::report::layout::table;
 use crate::report::words::{Voice, sentence, sentences};
 use crate::report::{Cell, Table};
 use crate::units::notation::significant;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 /// What is asked.
@@ -92,10 +92,7 @@ impl Keys {
 }
 
 fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<()> {
-    if let Value::Object(mut found) = worded(choice)? {
-        found.shift_remove("findings");
-        answer.result.extend(found);
-    }
+    answer.result.extend(Answer::of(&Worded::of(choice))?.result);
     answer.add("", &choice.findings);
     answer.table("rungs", rungs(choice, question));
     if !choice.sensitivity.is_empty() {
@@ -115,16 +112,14 @@ fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<(
 
 fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()> {
     let points = survey.points.len();
-    let mut found = serde_json::to_value(survey).map_err(unwritten)?;
-    for (rung, summary) in survey.rungs.iter().enumerate() {
-        let (valid, chosen) = (summary.valid_at, summary.chosen_at);
-        found["rungs"][rung]["why"] =
-            format!("Valid at {valid} and chosen at {chosen} of {points} points.").into();
-    }
-    found["points"] = survey.points.iter().map(worded).collect::<Result<Vec<Value>>>()?.into();
-    if let Value::Object(found) = found {
-        answer.result.extend(found);
-    }
+    let why =
+        |of: &Summary| format!("Valid at {} and chosen at {} of {points} points.", of.valid_at, of.chosen_at);
+    let rungs: Vec<_> = survey.rungs.iter().map(|rung| Why { rung, why: why(rung) }).collect();
+    let worded: Vec<Worded> = survey.points.iter().map(Worded::of).collect();
+    let found = json!({
+        "chosen": survey.chosen, "rungs": rungs, "stretches": survey.stretches, "points": worded,
+    });
+    answer.result.extend(Answer::of(&found)?.result);
     // Of each code the first, and at how many points it was found.
     let all = || survey.points.iter().flat_map(|c| c.findings.iter().map(move |f| (c.frequency, f)));
     let mut seen: Vec<&str> = Vec::new();
@@ -174,16 +169,33 @@ fn fates(choice: &Choice) -> Vec<(String, &'static str, String)> {
         .collect()
 }
 
-/// A choice as JSON, with `why` of each rung and `reasons` in words.
-fn worded(choice: &Choice) -> Result<Value> {
-    let mut value = serde_json::to_value(choice).map_err(unwritten)?;
-    for (rung, found) in choice.rungs.iter().enumerate() {
-        value["rungs"][rung]["why"] = why(found).into();
+/// A rung, and in words why it answers or does not.
+#[derive(Serialize)]
+struct Why<'a, T> {
+    #[serde(flatten)]
+    rung: &'a T,
+    why: String,
+}
+
+/// A choice with its reasons in words. Its rungs stand in place of those of the choice, which have no words.
+#[derive(Serialize)]
+struct Worded<'a> {
+    #[serde(flatten)]
+    choice: &'a Choice,
+    rungs: Vec<Why<'a, Rung>>,
+    reasons: Vec<String>,
+}
+
+impl Worded<'_> {
+    fn of(choice: &Choice) -> Worded<'_> {
+        let rungs = fates(choice).into_iter().map(|(names, fate, why)| format!("{names}: {fate}. {why}"));
+        let found: Vec<_> = choice.findings.iter().map(|f| (String::new(), f.clone())).collect();
+        Worded {
+            choice,
+            rungs: choice.rungs.iter().map(|rung| Why { rung, why: why(rung) }).collect(),
+            reasons: rungs.chain(sentences(&found, Voice::Command, true)).collect(),
+        }
     }
-    let rungs = fates(choice).into_iter().map(|(names, fate, why)| format!("{names}: {fate}. {why}"));
-    let found: Vec<_> = choice.findings.iter().map(|f| (String::new(), f.clone())).collect();
-    value["reasons"] = rungs.chain(sentences(&found, Voice::Command, true)).collect();
-    Ok(value)
 }
 
 fn percent(part: Option<f64>) -> Cell {

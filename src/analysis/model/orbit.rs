@@ -1,6 +1,6 @@
 //! All motions with one impact a period at one frequency, and those with several that are found: `vibro model orbit`.
 
-use super::{Driven, SceneKeys, check_gap_std, figures, judged, pattern};
+use super::{Driven, Judged, SceneKeys, check_gap_std, figures, pattern};
 use crate::analysis::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
@@ -9,6 +9,7 @@ use crate::record::Finding;
 use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table};
+use serde::Serialize;
 use serde_json::{Value, json};
 
 /// What is asked.
@@ -49,14 +50,12 @@ impl Keys {
         let found = orbits_of(&scene.rig, excitation, self.cycles)?;
         let mut softening = Vec::new();
         let (contact, soft) = soften(&driven, &found, &mut softening)?;
-        let findings = found.orbits.iter().zip(&soft).map(|(orbit, soft)| {
-            let mut all = judged(orbit, self.gap_std);
-            all["soft"] = json!(soft);
-            all
-        });
+        let both = found.orbits.iter().zip(&soft);
+        let listed: Vec<WithSoft> =
+            both.map(|(orbit, soft)| WithSoft { orbit: Judged::of(orbit, self.gap_std), soft }).collect();
         let mut answer = Answer::of(&json!({
             "scene": scene,
-            "orbits": findings.collect::<Vec<Value>>(),
+            "orbits": listed,
             "no_impact": found.no_impact,
             "contact": contact,
         }))?;
@@ -112,6 +111,14 @@ impl Keys {
 }
 
 /// The contact and what it changes in each orbit; a finding where that is not known.
+/// An orbit, and what it becomes where its contacts take time.
+#[derive(Serialize)]
+struct WithSoft<'a> {
+    #[serde(flatten)]
+    orbit: Judged<'a>,
+    soft: &'a Option<Softened>,
+}
+
 fn soften(
     driven: &Driven,
     found: &Orbits,
