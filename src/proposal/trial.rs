@@ -146,7 +146,7 @@ impl Trial<'_> {
             let files = of_series.and_then(|drop| drop["files"].as_array());
             !few.alike || files.is_some_and(|files| files.len() == few.files.len())
         };
-        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).filter(each).is_some();
+        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).as_ref().is_some_and(each);
         let kind = [Series::bounces as Kind, Series::fall].into_iter().find(agree)?;
         Some(Found { tables: drops(series, kind), ..Found::default() })
     }
