@@ -180,7 +180,7 @@ impl Table {
     fn toml(&self, notes: &[Note]) -> String {
         let said = |row: &Row| {
             let of_key = notes.iter().filter(|note| self.asks(row, note));
-            of_key.map(|note| format!("; {}: {}", note.place, note.text)).collect::<String>()
+            of_key.fold(String::new(), |said, note| format!("{said}; {}: {}", note.place, note.text))
         };
         let mut text = format!("[[{}]]\n", self.section);
         let row = |row: &Row| match row.known {

@@ -10,7 +10,7 @@ use super::answer::left_out;
 use super::headline::headline;
 use super::spectrum::{self, Detrend};
 use super::tone::Strongest;
-use super::{Analysis, Answer, Job, Source, named_in, no_file, sweep};
+use super::{Analysis, Answer, Job, Source, no_file, sweep};
 use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
@@ -50,7 +50,7 @@ pub struct Keys {
     pub coherence: Option<PathBuf>,
     /// Lines with a lower coherence are left out [default: 0.5]
     pub least_coherence: Option<f64>,
-    /// Channel of the excitation in a time record: the frequency response function is computed first
+    /// Channel of the excitation in a time record, or FILE#CHANNEL: the frequency response function is computed first
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
     /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
@@ -185,9 +185,7 @@ impl Keys {
 
     /// Refuses a reference that is one sine: a function of it is known in one line, and noise over noise in all others.
     fn refuse_sine(&self, source: &Source<'_>) -> Result<()> {
-        let (channel, reference) = (source.channel, self.reference.as_deref());
-        let reader = source.reader()?.rate_of_base_band();
-        let mut traces = reader.stream_chosen(source.path, reference, channel.channel.as_deref(), None)?;
+        let mut traces = self.taken().traces(source)?;
         let names: Vec<String> = traces.channels().iter().map(|meta| meta.name.clone()).collect();
         traces.keep(&[0]);
         let mut block = vec![Vec::new()];
@@ -294,11 +292,11 @@ impl Analysis for Keys {
             let known = sweep::named(campaign, Some(name));
             known.map_err(|e| campaign.fault(entry, e.hint("the name of a [[sweep]]").setting("sweep")))?;
         }
-        named_in(campaign, entry)
+        spectrum::with_reference(campaign, entry, entry.keys.reference.as_ref())
     }
 
     fn channels(&self) -> Vec<(&'static str, &String)> {
-        self.reference.iter().map(|name| ("reference", name)).collect()
+        spectrum::own_reference(self.reference.as_ref())
     }
 
     fn beside(&self) -> Option<(&'static str, &PathBuf)> {

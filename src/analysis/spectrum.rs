@@ -2,17 +2,18 @@
 
 pub mod figures;
 
-use super::{Analysis, Answer, Job, OfFile, Source, no_file};
-use crate::campaign::{Entry, channel};
+use super::{Analysis, Answer, Job, OfFile, Source, named_in, no_file};
+use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
 use crate::read::Recording;
-use crate::record::{Record, Scaling, Window};
+use crate::record::{Record, Scaling, Traces, Window, shown};
 use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
 use serde::Deserialize;
+use std::path::{Path, PathBuf};
 
 /// How a spectrum is taken, or the function of two channels.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -41,7 +42,7 @@ pub struct Keys {
     pub integrate: Option<i8>,
     /// Lowest frequency of the result, in Hz [default: two lines where integrated, else 0]
     pub fmin: Option<f64>,
-    /// Channel of the excitation, for the frequency response function
+    /// Channel of the excitation, or FILE#CHANNEL, for the frequency response function
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
     /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
@@ -111,11 +112,7 @@ impl Keys {
     /// If the file cannot be read, or the record allows no answer.
     pub fn lines(&self, source: &Source<'_>) -> Result<SpectralResult> {
         let options = self.options()?;
-        let reader = source.reader()?.rate_of_base_band();
-        let (channel, reference) = (source.channel, self.reference.as_deref());
-        let traces =
-            reader.stream_chosen(source.path, reference, channel.channel.as_deref(), channel.calibration);
-        let mut traces = match traces {
+        let mut traces = match self.traces(source) {
             Ok(traces) => traces,
             // A base band is that of the lines then.
             Err(why) => match source.reader()?.from_path(source.path) {
@@ -147,6 +144,57 @@ impl Keys {
         found.findings.extend(all.findings.iter().cloned());
         Ok(found)
     }
+}
+
+impl Keys {
+    /// The channel of a record, behind its reference where there is one; that may lie in a file of its own.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or two differ in rate, length or begin.
+    pub(super) fn traces(&self, source: &Source<'_>) -> Result<Traces> {
+        let reader = source.reader()?.rate_of_base_band();
+        let (channel, reference) = (source.channel, self.reference.as_deref());
+        let beside = reference.and_then(in_other_file);
+        let beside = beside.and_then(|(file, name)| Some(((source.beside)("reference", file).ok()?, name)));
+        let Some((file, name)) = beside.filter(|(file, _)| source.folder.exists(file)) else {
+            let (named, factor) = (channel.channel.as_deref(), channel.calibration);
+            return reader.stream_chosen(source.path, reference, named, factor);
+        };
+        let force = reader.from_path(&file)?.trace(Some(name), None)?;
+        let recording = reader.from_path(source.path)?;
+        let response = source.trace(&recording)?;
+        let traces = Traces::of_file(source.path.to_owned(), recording.findings, vec![force, response]);
+        traces.map_err(|error| error.aside(format!("reference in {}", shown(&file))))
+    }
+}
+
+/// A reference that lies in a file of its own: `FILE#CHANNEL`.
+fn in_other_file(reference: &str) -> Option<(&Path, &str)> {
+    let (file, channel) = reference.rsplit_once('#')?;
+    let file = Path::new(file);
+    file.extension().map(|_| (file, channel))
+}
+
+/// The files of a table, with that of its reference.
+///
+/// # Errors
+/// If one leads outside the folder or does not exist.
+pub(super) fn with_reference<A: Analysis>(
+    campaign: &Campaign,
+    entry: &Entry<A>,
+    reference: Option<&String>,
+) -> Result<Vec<PathBuf>> {
+    let mut files = named_in(campaign, entry)?;
+    if let Some((file, _)) = reference.and_then(|reference| in_other_file(reference)) {
+        files.push(campaign.file(entry, "reference", file)?);
+    }
+    Ok(files)
+}
+
+/// The reference, where it is a channel of the file itself.
+pub(super) fn own_reference(reference: Option<&String>) -> Vec<(&'static str, &String)> {
+    let own = reference.filter(|reference| in_other_file(reference).is_none());
+    own.into_iter().map(|name| ("reference", name)).collect()
 }
 
 impl OfFile for Keys {
@@ -246,7 +294,11 @@ impl Analysis for Keys {
     }
 
     fn channels(&self) -> Vec<(&'static str, &String)> {
-        self.reference.iter().map(|name| ("reference", name)).collect()
+        own_reference(self.reference.as_ref())
+    }
+
+    fn files(campaign: &Campaign, entry: &Entry<Keys>) -> Result<Vec<PathBuf>> {
+        with_reference(campaign, entry, entry.keys.reference.as_ref())
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {

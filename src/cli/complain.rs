@@ -24,7 +24,9 @@ pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
         if help { format!("{text}\n  try: {} --help", typed().0) } else { text }
     };
     let texts: Vec<String> = all.iter().map(spoken).collect();
-    texts.iter().for_each(|text| line(&format!("vibro: {text}")));
+    for text in &texts {
+        line(&format!("vibro: {text}"));
+    }
     let code = all.iter().map(Error::exit_code).max().unwrap_or(0);
     if json {
         object(&texts.join("\n"), code);

@@ -98,7 +98,7 @@ impl super::Run for Init {
 fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
     let bytes = within.read(path).unwrap_or_default();
     let text = String::from_utf8_lossy(&bytes);
-    if analysis::sections().any(|section| text.contains(&format!("[[{section}]]"))) {
+    if analysis::sections().any(|section| text.contains(section)) {
         return error;
     }
     let renamed = path.with_extension("other.toml");

@@ -45,8 +45,11 @@ pub(super) fn all(series: Vec<Series>, folder: &Folder, kept: &Kept) -> Vec<Seri
     let joined: Vec<(Vec<usize>, Series)> = families.values().flat_map(sets).collect();
     let mut all: Vec<Option<Series>> = series.into_iter().map(Some).collect();
     for (places, one) in joined {
-        places.iter().for_each(|place| all[*place] = None);
-        all[places[0]] = Some(one);
+        let first = places[0];
+        for place in places {
+            all[place] = None;
+        }
+        all[first] = Some(one);
     }
     all.into_iter().flatten().collect()
 }

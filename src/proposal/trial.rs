@@ -146,7 +146,7 @@ impl Trial<'_> {
             let of = |evidence: &Evidence| matches!(evidence, Evidence::Drops { files, .. } if *files == few.files.len());
             !few.alike || heard.evidence.first().is_some_and(of)
         };
-        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).filter(each).is_some();
+        let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).as_ref().is_some_and(each);
         let kind = [Series::bounces as Kind, Series::fall].into_iter().find(agree)?;
         Some(Found { tables: drops(series, kind), ..Found::default() })
     }

@@ -5,8 +5,10 @@ use super::stepped::write_steps;
 use super::{complaint, json, text, vibro};
 use serde_json::Value;
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use vibroimpact::math::Noise;
 
 /// A folder with a free decay and a campaign of this text.
 fn campaign(root: &Path, tables: &str) {
@@ -153,4 +155,56 @@ fn a_campaign_file_of_another_program_is_not_touched() {
         fs::rename(from, to).unwrap();
         json(&["init", text(root.path())]);
     }
+}
+
+/// Force and response in files of their own give the function of both in one file, bit for bit.
+#[test]
+fn a_reference_may_lie_in_a_file_of_its_own() {
+    let root = tempfile::tempdir().unwrap();
+    let mut noise = Noise::new(4);
+    let (mut last, mut before) = (0.0, 0.0);
+    let mut both = "time [s],force [N],velocity [m/s]\n".to_owned();
+    let [mut force, mut velocity] =
+        ["time [s],force [N]\n".to_owned(), "time [s],velocity [m/s]\n".to_owned()];
+    for i in 0..8192 {
+        let (t, f) = (f64::from(i) / 1024.0, noise.normal());
+        // A mode at 100 Hz that loses 5 % of its amplitude a sample.
+        let v = 2.0 * 0.95 * (TAU * 100.0 / 1024.0).cos() * last - 0.95 * 0.95 * before + 0.01 * f;
+        (before, last) = (last, v);
+        writeln!(both, "{t:.10},{f:.6},{v:.7}").unwrap();
+        writeln!(force, "{t:.10},{f:.6}").unwrap();
+        writeln!(velocity, "{t:.10},{v:.7}").unwrap();
+    }
+    let at = |name: &str| root.path().join(name);
+    for (name, text) in [("both.csv", &both), ("force.csv", &force), ("velocity.csv", &velocity)] {
+        fs::write(at(name), text).unwrap();
+    }
+    let beside = format!("{}#force", text(&at("force.csv")));
+    let modal = |file: &str, reference: &str| {
+        json(&[
+            "modal",
+            text(&at(file)),
+            "--reference",
+            reference,
+            "--channel",
+            "velocity",
+            "--segment",
+            "1024",
+        ])
+    };
+    let expected = modal("both.csv", "force")["modes"].clone();
+    assert!((expected[0]["frequency"]["value"].as_f64().unwrap() - 100.0).abs() < 2.0, "{expected}");
+    assert_eq!(modal("velocity.csv", &beside)["modes"], expected);
+    let table = |reference: &str| {
+        format!("[[frf]]\nfile = \"velocity.csv\"\nreference = \"{reference}\"\nsegment = 1024\n")
+    };
+    fs::write(at("campaign.toml"), table("force.csv#force")).unwrap();
+    assert_eq!(json(&["check", text(root.path())])["files"].as_array().unwrap().len(), 2);
+    assert_eq!(json(&["run", text(root.path())])["results"]["frf"][0]["modes"], expected);
+    fs::write(at("campaign.toml"), table("gone.csv#force")).unwrap();
+    assert!(complaint(&["check", text(root.path())], 2).contains("gone.csv does not exist"));
+    // Another length is no pair.
+    fs::write(at("force.csv"), force.lines().take(4000).collect::<Vec<_>>().join("\n")).unwrap();
+    let said = complaint(&["modal", text(&at("velocity.csv")), "--reference", &beside], 2);
+    assert!(said.contains("reference in") && said.contains("samples"), "{said}");
 }
