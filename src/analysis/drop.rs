@@ -33,7 +33,7 @@ pub struct Keys {
     /// Times between successive impacts of one train of bounces, in s
     #[cfg_attr(feature = "cli", arg(long, value_name = "A,B,C", value_delimiter = ','))]
     pub intervals: Vec<f64>,
-    /// How long an impact lasts, in s: taken off each interval, which runs from beginning to beginning [default: 0]
+    /// How long an impact lasts, in s: taken off each interval, which runs from beginning to beginning [default: as a force shows it, else 0]
     pub contact_time: Option<f64>,
     /// Acceleration of free fall in m/s² [default: 9.80665]
     pub gravity: Option<f64>,
@@ -185,7 +185,7 @@ impl Series {
         self.drop.intervals.extend(keys.interval);
         if !keys.intervals.is_empty() {
             let onset_std = keys.interval_std.map(|s| s / 2f64.sqrt());
-            self.trains.push(Train { intervals: keys.intervals.clone(), onset_std });
+            self.trains.push(Train { intervals: keys.intervals.clone(), onset_std, ..Train::default() });
         }
         self.velocities = self.velocities.take().or_else(|| keys.velocities());
     }

@@ -5,6 +5,7 @@
 //! excitation. What was assumed and what is doubtful is in [`Impacts::findings`].
 
 mod background;
+mod bands;
 mod detect;
 mod echoes;
 mod excitation;
@@ -13,8 +14,9 @@ mod interval;
 mod onset;
 mod rises;
 
+pub(crate) use bands::{chosen, octaves};
+pub(crate) use detect::{Choose, Sound, detect_among};
 pub use detect::{Detected, ImpactsOptions, detect};
-pub(crate) use detect::{Sound, detect_among};
 pub(crate) use echoes::QUIETER;
 pub use excitation::{PerCycle, Phase};
 pub use hum::Hum;
@@ -79,13 +81,51 @@ pub struct Impacts {
     pub findings: Vec<Finding>,
 }
 
-/// Finds the impacts of `trace`, their mean interval, and what they repeat.
+/// Finds the impacts of `trace`, their mean interval, and what they repeat. Where the whole record shows none, or loses most in its noise, and no option
+/// says how to look for them: in the envelope of the octave in which they ring.
 ///
 /// # Errors
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the reference channel has fewer than two
 /// edges; on impossible options.
 pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
-    let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution } =
+    let whole = impacts_so(trace, options);
+    let lost = |f: &Finding| ["impacts-lost-in-noise", "impacts-mostly-missed"].contains(&&*f.code);
+    let shown = match &whole {
+        Ok(found) => !found.findings.iter().any(lost),
+        Err(error) => error.exit_code() != 1,
+    };
+    let open =
+        ImpactsOptions { excitation: None, reference: None, ..options.clone() } == ImpactsOptions::default();
+    if shown || !open {
+        return whole;
+    }
+    ringing(trace, options).map_or(whole, Ok)
+}
+
+/// The impacts of the octave in which they repeat best.
+fn ringing(trace: &Trace, options: &ImpactsOptions) -> Option<Impacts> {
+    let inside = |band: (f64, f64)| {
+        if !bands::is_impulsive(trace, band) {
+            return None;
+        }
+        let own = ImpactsOptions { band: Some(band), envelope: true, ..options.clone() };
+        let mut found = impacts_so(trace, &own).ok()?;
+        let steady = found.spread.is_some_and(|spread| spread < REGULAR * found.median_interval);
+        let sure = found.findings.iter().all(|f| f.severity < Severity::Doubt);
+        let all = found.n > TELLING && MISSING * found.missed < found.n;
+        found.findings.insert(0, chosen(band));
+        (steady && sure && all).then_some((found.frequency.std? / found.frequency.value, found))
+    };
+    let each = octaves(trace.sampling_rate().ok()?).filter_map(inside);
+    each.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
+}
+
+/// Of so many impacts of a band fewer than one is missing.
+const MISSING: usize = 4;
+
+/// As [`impacts`], with these options alone.
+fn impacts_so(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
+    let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution, .. } =
         detect(trace, options)?;
     let stated = options.complete || options.refractory.is_some();
     if let Some(echoes) = echoes(&times, &heights).filter(|_| !stated) {

@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use vibro_measure::restitution::{Measured, Train, restitution};
-//! let bounces = Train { intervals: vec![0.300, 0.181, 0.109, 0.066], onset_std: None };
+//! let bounces = Train { intervals: vec![0.300, 0.181, 0.109, 0.066], ..Train::default() };
 //! let found = restitution(&Measured { trains: vec![bounces], ..Measured::default() })?;
 //! assert!((found.restitution.value - 0.60).abs() < 0.01);
 //! # Ok::<(), vibro_record::Error>(())
@@ -32,6 +32,7 @@ pub mod restitution;
 pub mod spectral;
 mod stands_out;
 pub mod stepped;
+mod swings;
 #[cfg(test)]
 #[path = "tests/synthetic.rs"]
 pub(crate) mod synthetic;

@@ -56,8 +56,8 @@ pub struct Measured {
     pub trains: Vec<Train>,
     /// Velocities before and after.
     pub velocities: Option<Velocities>,
-    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than the flights. Where `None` none is taken off,
-    /// and the uncertainties allow for up to a millisecond, longer than steel and most plastics touch.
+    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than the flights. Where `None` it is what the
+    /// records of all trains show; else none is taken off, and the uncertainties allow for up to a millisecond, longer than steel and most plastics touch.
     pub contact_time: Option<f64>,
 }
 
@@ -78,7 +78,7 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     not_negative("a contact time", measured.contact_time)?;
     let (mut by, mut findings) = (Vec::new(), Vec::new());
     let mut intervals: Vec<Vec<f64>> = measured.trains.iter().map(|t| t.intervals.clone()).collect();
-    let contact = measured.contact_time.unwrap_or(0.0);
+    let (contact, contact_std) = contact(measured);
     let flights =
         |intervals: &[f64]| intervals.iter().map(|interval| interval - contact).collect::<Vec<f64>>();
     // What a thousandth of a second of contact makes of R.
@@ -96,11 +96,10 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     match train::answer(&trains, &mut findings) {
         Ok(way) => {
             by.extend(way);
-            let of = |t: &Train| {
-                Some(
-                    1e-3 * (1.0 / t.intervals.last()? - 1.0 / t.intervals.first()?)
-                        / t.intervals.len() as f64,
-                )
+            // ln R is (ln Δt_n − ln Δt₁)/(n − 1), and a contact c adds c/Δt to each logarithm.
+            let of = |t: &Train| match t.intervals[..] {
+                [first, .., last] => Some(1e-3 * (1.0 / last - 1.0 / first) / (t.intervals.len() - 1) as f64),
+                _ => None,
             };
             bias.push(average(&trains.iter().filter_map(of).collect::<Vec<f64>>()));
         }
@@ -113,12 +112,14 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         }
         Err(error) => return Err(error),
     }
-    if measured.contact_time.is_none() {
-        // Anywhere between nothing and the longest with equal chance, and the answer at its one end.
-        let by_contact = |(way, part): (&Way, &f64)| part * LONGEST / 3f64.sqrt() * way.restitution.value;
+    if contact_std > 0.0 {
+        let by_contact = |(way, part): (&Way, &f64)| 1e3 * contact_std * part * way.restitution.value;
         let matters = |at: (&Way, &f64)| at.0.restitution.std.is_some_and(|s| by_contact(at) > s);
         let moved: Vec<f64> = by.iter().zip(&bias).map(by_contact).collect();
-        if by.iter().zip(&bias).any(matters) {
+        if contact > 0.0 {
+            let seen = Finding::note("contact-time-seen").number("duration", contact);
+            findings.push(seen.number("std", contact_std));
+        } else if by.iter().zip(&bias).any(matters) {
             let methods: Vec<&str> = by.iter().map(|way| way.method).collect();
             let found = Finding::caution("contact-time-unsaid").numbers("parts", bias);
             findings.push(found.name("methods", methods.join(", ")));
@@ -151,8 +152,22 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     Ok(Restitution { restitution, by, agree, bootstrap_std, intervals, findings })
 }
 
-/// Longest contact in ms that is allowed for where none is stated.
-const LONGEST: f64 = 1.0;
+/// Longest contact in s that is allowed for where none is stated and none is seen.
+const LONGEST: f64 = 1e-3;
+
+/// How long an impact lasts and its standard uncertainty, in s: as stated, or as all records show it. Otherwise anywhere between nothing and the longest
+/// with equal chance, and the answer at its one end.
+fn contact(measured: &Measured) -> (f64, f64) {
+    let seen: Option<Vec<&Estimate>> = measured.trains.iter().map(|train| train.contact.as_ref()).collect();
+    let mean = |seen: &[&Estimate], of: &dyn Fn(&Estimate) -> f64| {
+        average(&seen.iter().map(|contact| of(contact)).collect::<Vec<f64>>())
+    };
+    match (measured.contact_time, seen.filter(|seen| !seen.is_empty())) {
+        (Some(stated), _) => (stated, 0.0),
+        (None, Some(seen)) => (mean(&seen, &|c| c.value), mean(&seen, &|c| c.std.unwrap_or(c.value))),
+        (None, None) => (0.0, LONGEST / 3f64.sqrt()),
+    }
+}
 
 /// Answers that differ by more than this part disagree where one has no uncertainty: the height would be wrong by twice as much. So it is with
 /// a missed flight and a height in mm.

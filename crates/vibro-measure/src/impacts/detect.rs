@@ -1,16 +1,19 @@
 //! Impacts of a trace: bursts above the noise, timed below a sample.
 
-use super::background::{background, bursts, median};
+use super::background::{Background, background, bursts, median};
+use super::bands::within;
 use super::onset::Shape;
 use super::onset::{Onsets, onsets};
 use super::rises::{largest, rises};
 use super::{Hum, hum};
+use crate::Estimate;
+use crate::swings::Swings;
 use std::cmp::Ordering;
+use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 use vibro_record::units::notation::{counted, quantity, shortest};
 use vibro_record::{Error, Finding, Result, Trace};
 use vibro_signal::envelope::envelope;
-use vibro_signal::filter::Filter;
 
 /// Lowest impact as a part of the median one.
 const THRESHOLD: f64 = 0.125;
@@ -34,6 +37,8 @@ pub struct Detected {
     pub onset_std: Option<f64>,
     /// Mains hum that was removed.
     pub hum: Option<Hum>,
+    /// How long an impact lasts, in s, where the trace comes back from each without swinging to the other side, as a force does.
+    pub contact: Option<Estimate>,
     /// What was done to the trace, and what is doubtful.
     pub findings: Vec<Finding>,
     /// How the impacts were timed.
@@ -103,6 +108,12 @@ pub(crate) fn detect_among(
     let low = all.len() - bursts.len();
     let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
     findings.extend((low > 0).then(|| ignored.name("unit", unit)));
+    // An envelope does not swing.
+    if !options.envelope
+        && let Some(swings) = Swings::of(&values, rate, &bursts, quiet.reach)
+    {
+        return Err(swings.refusal());
+    }
     if let Some(choose) = choose {
         let time = |b: &Range<usize>| trace.axis.start() + b.start as f64 / rate;
         let high = all.iter().copied().filter(|h| *h > least);
@@ -151,10 +162,42 @@ pub(crate) fn detect_among(
         heights: each.iter().map(|o| o.height).collect(),
         onset_std: Some(std).filter(|s| s.is_finite()),
         hum,
+        contact: contact(&values, &bursts, &quiet, rate),
         findings,
         method,
         resolution: sharp.then_some(1.0 / rate),
     })
+}
+
+/// A pulse lasts as long as it is above this part of its height, or above the noise where that is more.
+const FOOT: f64 = 0.1;
+/// What swings back by this part of its height or more rings, and is no force of a contact.
+const BACK: f64 = 0.2;
+
+/// How long an impact lasts, the median of all. A pulse that is above the part p of its height for a time w lasts w where its flanks are steep, and
+/// πw/(π − 2 asin p) where it is half a sine: anywhere between them.
+fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f64) -> Option<Estimate> {
+    let bounds = |burst: &Range<usize>| {
+        let peak = burst.clone().max_by(|a, b| values[*a].total_cmp(&values[*b]))?;
+        let height = values[peak];
+        let level = (FOOT * height).max(quiet.reach);
+        let under = |i: &usize| values[*i] < level;
+        let (before, behind) = ((0..peak).rev().find(under)?, (peak..values.len()).find(under)?);
+        let width = behind - 1 - before;
+        let beside = before.saturating_sub(width)..(behind + width).min(values.len());
+        let rings = values[beside].iter().any(|v| *v < -(BACK * height).max(quiet.reach));
+        let cross = |out: usize, on: usize| (level - values[out]) / (values[on] - values[out]);
+        let least = (width as f64 + 1.0 - cross(before, before + 1) - cross(behind, behind - 1)) / rate;
+        let half = 1.0 - (level / height).min(1.0).asin() / FRAC_PI_2;
+        (level < 0.5 * height && !rings).then_some((least, least / half))
+    };
+    let all: Vec<(f64, f64)> = bursts.iter().filter_map(bounds).collect();
+    if 2 * all.len() <= bursts.len() {
+        return None;
+    }
+    let [least, most] = [0, 1].map(|k| median(&all.iter().map(|b| [b.0, b.1][k]).collect::<Vec<f64>>()));
+    let std = (most - least) / 12f64.sqrt();
+    Some(Estimate::new(0.5 * (least + most), Some(std), "s", all.len(), "time above a tenth of the height"))
 }
 
 /// A contact is open below this part of its height and closed above that one.
@@ -185,22 +228,17 @@ fn chatter(values: &[f64], bursts: &[Range<usize>], rate: f64) -> Option<Finding
     (!longest.is_empty()).then(|| found.number("within", within))
 }
 
-/// Order of one pass of a filter.
-const ORDER: usize = 4;
-
 /// The values in their band, without delay.
 fn banded(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f64>> {
-    let mut values = trace.values.clone();
     if let Some((low, high)) = options.band {
         if low.partial_cmp(&high) != Some(Ordering::Less) {
             return Err(Error::usage(format!("a band from {low} to {high} Hz"), "LO:HI in Hz, LO below HI")
                 .hint("the lower limit first")
                 .setting("band"));
         }
-        values = Filter::high_pass(low, ORDER, rate)?.zero_phase(&values)?;
-        values = Filter::low_pass(high, ORDER, rate)?.zero_phase(&values)?;
+        return within(&trace.values, (low, high), rate);
     }
-    Ok(values)
+    Ok(trace.values.clone())
 }
 
 /// The shape of a recorded pulse, for a trace of this sampling rate in Hz.

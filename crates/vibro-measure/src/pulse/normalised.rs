@@ -6,6 +6,7 @@ use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::Estimate;
 use crate::mean::{average, upper_median};
+use crate::swings;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::units::Quantity;
@@ -240,25 +241,6 @@ pub(super) struct Located {
     pub clipped: Vec<usize>,
 }
 
-/// Parts of a pulse that a structure swings back and forth behind it at least, of damping ratios up to a fifth.
-const RINGS: [f64; 2] = [0.5, 0.25];
-
-impl Located {
-    /// How far the record swings back behind the pulse and forth again, in parts of its height, where it rings.
-    fn ringing(&self, values: &[f64]) -> Option<[f64; 2]> {
-        let part = |v: &f64| (v - self.baseline) / self.height;
-        // Half the height of half a sine lasts two thirds of it.
-        let half = 1.5 * (self.flanks.1 - self.flanks.0);
-        let behind = |swings: f64| (self.flanks.1 + swings * half) as usize;
-        let largest = |from: usize, to: usize, sign: f64| {
-            let swing = values.get(from..to.min(values.len()))?.iter().map(|v| sign * part(v));
-            Some(swing.fold(0.0, f64::max))
-        };
-        let swings = [largest(behind(0.0), behind(1.5), -1.0)?, largest(behind(1.0), behind(2.5), 1.0)?];
-        (swings[0] > RINGS[0] && swings[1] > RINGS[1]).then_some(swings)
-    }
-}
-
 /// Fewest samples of a flat top.
 const FLAT: f64 = 3.0;
 
@@ -318,15 +300,10 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let is_flat = flat(run, flanks.1 - flanks.0, depth / height.abs());
     let clipped = if is_flat { (from..=to).collect() } else { Vec::new() };
     let located = Located { baseline, height, flanks, low, clipped };
-    if let Some([back, forth]) = located.ringing(values) {
-        let (back, forth) = (100.0 * back, 100.0 * forth);
-        let why = format!(
-            "the record rings: its largest peak is followed by peaks of −{back:.0} % and {forth:.0} %; a contact pulse has one sign"
-        );
-        let hint = "`vibro decay` measures a ringing; for the contact record its force, or closer to it";
-        return Err(Error::refused(why).hint(hint));
+    match swings::back_and_forth(values, baseline, height, flanks) {
+        Some(rings) => Err(rings),
+        None => Ok(located),
     }
-    Ok(located)
 }
 
 /// Whether `run` samples within `depth` (a part of the height) of the largest are a flat top of a pulse `width` samples wide at half

@@ -24,6 +24,8 @@ pub struct Drop {
     pub gravity: f64,
     /// Its standard uncertainty in m/s².
     pub gravity_std: Option<f64>,
+    /// Relative standard uncertainty of the clock that the intervals are counted by, which all drops share.
+    pub clock: f64,
 }
 
 impl Default for Drop {
@@ -35,6 +37,7 @@ impl Default for Drop {
             interval_std: None,
             gravity: GRAVITY,
             gravity_std: None,
+            clock: 0.0,
         }
     }
 }
@@ -55,6 +58,7 @@ impl Drop {
     pub fn beginning(mut self, trains: &[Train]) -> Drop {
         self.intervals.extend(trains.iter().filter_map(|t| t.intervals.first()));
         let onset_std = together(trains.iter().map(|t| t.onset_std));
+        self.clock = trains.iter().fold(self.clock, |most, train| most.max(train.clock));
         self.interval_std = self.interval_std.or(onset_std.map(|s| 2f64.sqrt() * s));
         self
     }
@@ -110,6 +114,8 @@ impl Drop {
         }
         let of = if n == 1 { "one drop".to_owned() } else { format!("the mean of {n} drops") };
         let restitution = Estimate::new(value, std, "1", n, format!("(Δt/2)√(g/2h) of {of}"));
+        // A ratio of flights does not depend on the clock; one flight against a height does.
+        let restitution = restitution.by_clock(self.clock);
         Ok(Way { method: "drop", restitution })
     }
 

@@ -11,13 +11,14 @@
 //! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it: they rule the last flights, and a
 //! scatter that few flights hardly show rules the first.
 
-use super::plausible::{Heard, plausible};
+use super::plausible::{Heard, Plausible, plausible};
 use super::{Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
-use crate::impacts::{Detected, ImpactsOptions, Sound, detect_among};
+use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
 use crate::mean::mixture;
 use crate::residuals::student;
 use nalgebra::{DMatrix, DVector};
+use std::cell::Cell;
 use vibro_record::units::notation::{counted, quantity};
 use vibro_record::{Error, Finding, Result, Trace};
 
@@ -28,6 +29,10 @@ pub struct Train {
     pub intervals: Vec<f64>,
     /// Standard uncertainty of one impact's time, in s, where it is known.
     pub onset_std: Option<f64>,
+    /// How long an impact lasts, in s, where the record shows it.
+    pub contact: Option<Estimate>,
+    /// Relative standard uncertainty of the sampling rate: all intervals are longer or shorter by it.
+    pub clock: f64,
 }
 
 impl Train {
@@ -41,17 +46,41 @@ impl Train {
     /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all others.
     pub fn of(trace: &Trace, options: &ImpactsOptions, full: Option<f64>) -> Result<(Train, Detected)> {
         let ends = (trace.axis.start(), trace.axis.at(trace.values.len()));
-        let choose =
-            |sounds: &[Sound], reach: f64, median: f64| choose(sounds, Heard { reach, median, ends, full });
-        let found = detect_among(trace, options, Some(&choose))?;
+        // A record that rings is refused before anything is chosen.
+        let heard = Cell::new(usize::MAX);
+        let choose = |sounds: &[Sound], reach: f64, median: f64| {
+            heard.set(sounds.len());
+            choose(sounds, Heard { reach, median, ends, full })
+        };
+        let mut found = detect_among(trace, options, Some(&choose));
+        // Below the impacts may lie hum or slow levels that hide them.
+        if found.is_err() && heard.get() < 2 && options.band.is_none() {
+            found = found.or_else(|error| above_hum(trace, options, &choose).ok_or(error));
+        }
+        let found = found?;
         if found.times.len() < 2 {
             let few = Error::refused("one impact found: restitution from a drop needs two");
             let few = few.hint("a lower threshold, or a shorter pause between impacts");
             return Err(few.setting("threshold").setting("refractory"));
         }
         let intervals = found.times.windows(2).map(|w| w[1] - w[0]).collect();
-        Ok((Train { intervals, onset_std: found.onset_std }, found))
+        let (onset_std, contact, clock) = (found.onset_std, found.contact.clone(), trace.meta.clock);
+        Ok((Train { intervals, onset_std, contact, clock }, found))
     }
+}
+
+/// The train of three impacts or more above the corner that shows most of them, the highest of these: it times them best.
+fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Option<Detected> {
+    let octaves: Vec<(f64, f64)> = octaves(trace.sampling_rate().ok()?).collect();
+    let high = octaves.first()?.1;
+    let above = |(low, _): (f64, f64)| {
+        let band = (low, high);
+        let own = ImpactsOptions { band: Some(band), ..options.clone() };
+        let mut found = detect_among(trace, &own, Some(choose)).ok().filter(|found| found.times.len() > 2)?;
+        found.findings.push(chosen(band));
+        Some(found)
+    };
+    octaves.into_iter().rev().filter_map(above).max_by_key(|found| found.times.len())
 }
 
 /// The impacts among sounds, and what the others are.
@@ -70,13 +99,15 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
         return Err(Error::refused(why).hint(hint));
     }
     if let Some((i, j)) = train.rival {
-        let flight = |i: usize, j: usize| quantity(sounds[j].time - sounds[i].time, "s", 3);
-        let [first, other] = [flight(train.impacts[0], train.impacts[1]), flight(i, j)];
+        let time = |i: usize| sounds[i].time;
+        let (a, b) = (train.impacts[0], train.impacts[1]);
+        let [first, other] = apart([time(b) - time(a), time(j) - time(i)]);
+        let [begin, later] = apart([time(a), time(i)]);
         let why = format!(
-            "{n} sounds, and two trains of bounces among them are as likely: first flight {first} or {other}"
+            "{n} sounds, and two trains of bounces among them are as likely: first flight {first} from {begin} on, or {other} from {later} on"
         );
         let refused = Error::refused(why);
-        return Err(match cure(sounds, heard) {
+        return Err(match cure(sounds, heard, &train) {
             Some(threshold) => refused
                 .hint("a threshold that leaves one of them, if what is quieter is no bounce")
                 .set("threshold", format!("{threshold:.2}")),
@@ -96,14 +127,23 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
     Ok((train.impacts, findings.into_iter().flatten().collect()))
 }
 
-/// The lowest threshold in hundredths that leaves one train of three impacts or more.
-fn cure(sounds: &[Sound], heard: Heard) -> Option<f64> {
+/// Two times in s with as many digits, three at least, as show that they differ.
+pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
+    let shown = |digits| times.map(|time| quantity(time, "s", digits));
+    (3..9).map(shown).find(|[a, b]| a != b).unwrap_or_else(|| shown(3))
+}
+
+/// The lowest threshold in hundredths that leaves one train of three impacts or more, all of them impacts of the most plausible `train` of all sounds: what
+/// is found only without the quieter ones may be an echo.
+fn cure(sounds: &[Sound], heard: Heard, train: &Plausible) -> Option<f64> {
     (1..100).map(|hundredths| 0.01 * f64::from(hundredths)).find(|threshold| {
         let high: Vec<Sound> =
             sounds.iter().copied().filter(|s| s.height > threshold * heard.median).collect();
+        let known = |i: &usize| train.impacts.iter().any(|k| sounds[*k] == high[*i]);
         high.len() < sounds.len()
-            && plausible(&high, heard)
-                .is_some_and(|train| !train.even && train.rival.is_none() && train.impacts.len() > 2)
+            && plausible(&high, heard).is_some_and(|left| {
+                !left.even && left.rival.is_none() && left.impacts.len() > 2 && left.impacts.iter().all(known)
+            })
     })
 }
 
