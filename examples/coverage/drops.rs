@@ -125,7 +125,7 @@ fn times(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {
     let jitter = bounces.jitter;
     let onsets: Vec<f64> = bounces.onsets.iter().map(|(t, _)| t + jitter * mix.random.normal()).collect();
     let intervals = onsets.windows(2).map(|w| w[1] - w[0]).collect();
-    Some(Train { intervals, onset_std: bounces.jitter_stated.then_some(jitter) })
+    Some(Train { intervals, onset_std: bounces.jitter_stated.then_some(jitter), ..Train::default() })
 }
 
 fn forces(mix: &mut Mix, bounces: &Bounces) -> Option<Train> {

@@ -67,7 +67,7 @@ fn trains_of_bounces_are_covered_whether_impacts_or_clock_scatter() {
                 flight *= truth * (per_bounce * noise.normal()).exp();
             }
             let intervals: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-            let train = Train { intervals, onset_std: (timing > 0.0).then_some(timing) };
+            let train = Train { intervals, onset_std: (timing > 0.0).then_some(timing), ..Train::default() };
             let found = restitution(&Measured {
                 trains: vec![train],
                 contact_time: Some(0.0),
@@ -112,7 +112,7 @@ fn trains_together_are_covered(draws: Draws) {
                         flight *= truth * (per_bounce * noise.normal()).exp();
                     }
                     let intervals = times.windows(2).map(|w| w[1] - w[0]).collect();
-                    Train { intervals, onset_std: stated.then_some(timing) }
+                    Train { intervals, onset_std: stated.then_some(timing), ..Train::default() }
                 })
                 .collect();
             let found =
@@ -148,7 +148,7 @@ pub fn train(noise: &mut Noise, r: f64, n: usize, per_bounce: f64, timing: f64) 
         flight *= r * (per_bounce * noise.normal()).exp();
     }
     let intervals = times.windows(2).map(|w| w[1] - w[0]).collect();
-    Train { intervals, onset_std: Some(timing) }
+    Train { intervals, onset_std: Some(timing), ..Train::default() }
 }
 
 /// R scatters by 1 % from bounce to bounce, however surely the onsets are timed.
