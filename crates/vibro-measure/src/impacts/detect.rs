@@ -162,7 +162,7 @@ pub(crate) fn detect_among(
         heights: each.iter().map(|o| o.height).collect(),
         onset_std: Some(std).filter(|s| s.is_finite()),
         hum,
-        contact: contact(&values, &bursts, &quiet, rate),
+        contact: if options.envelope { None } else { contact(&values, &bursts, &quiet, rate) },
         findings,
         method,
         resolution: sharp.then_some(1.0 / rate),
@@ -175,7 +175,7 @@ const FOOT: f64 = 0.1;
 const BACK: f64 = 0.2;
 
 /// How long an impact lasts, the median of all. A pulse that is above the part p of its height for a time w lasts w where its flanks are steep, and
-/// πw/(π − 2 asin p) where it is half a sine: anywhere between them.
+/// πw/(π − 2 asin p) where it is half a sine: anywhere between them. Slower impacts of round bodies last longer: all that were seen are as likely.
 fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f64) -> Option<Estimate> {
     let bounds = |burst: &Range<usize>| {
         let peak = burst.clone().max_by(|a, b| values[*a].total_cmp(&values[*b]))?;
@@ -196,7 +196,9 @@ fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f6
         return None;
     }
     let [least, most] = [0, 1].map(|k| median(&all.iter().map(|b| [b.0, b.1][k]).collect::<Vec<f64>>()));
-    let std = (most - least) / 12f64.sqrt();
+    let (short, long) =
+        all.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), c| (a.min(c.0), b.max(c.0)));
+    let std = (most - least).hypot(long - short) / 12f64.sqrt();
     Some(Estimate::new(0.5 * (least + most), Some(std), "s", all.len(), "time above a tenth of the height"))
 }
 
