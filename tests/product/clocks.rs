@@ -45,7 +45,7 @@ fn a_tone_lies_within_its_uncertainty_where_times_have_few_digits() {
     for seed in 1..=DRAWS / 2 {
         let mut noise = Noise::new(seed);
         let (rate, frequency) = (noise.between(200.0, 1600.0), noise.between(10.0, 60.0));
-        let lost = if seed % 2 == 0 { 2000 } else { usize::MAX };
+        let lost = if seed.is_multiple_of(2) { 2000 } else { usize::MAX };
         let mut row = |i: usize| {
             let t = i as f64 / rate;
             let value = (std::f64::consts::TAU * frequency * t).sin() + 1e-2 * noise.normal();
@@ -59,7 +59,7 @@ fn a_tone_lies_within_its_uncertainty_where_times_have_few_digits() {
             (read.trace(None, None).expect("a trace"), number)
         };
         let (trace, longest) = read(None);
-        assert_eq!(trace.rate().is_none(), seed % 2 == 0, "{rate} Hz");
+        assert_eq!(trace.rate().is_none(), seed.is_multiple_of(2), "{rate} Hz");
         let trace = longest.map_or(trace, |number| read(Some(number as usize)).0);
         let found = &tones(&trace, 1).expect("a sine").tones[0].frequency;
         let std = found.std.expect("an uncertainty");
@@ -68,6 +68,7 @@ fn a_tone_lies_within_its_uncertainty_where_times_have_few_digits() {
             "{rate} Hz: {} ± {std}, not {frequency}",
             found.value
         );
-        assert!(std < 1e-4 * frequency, "{rate} Hz: {std}");
+        // One or two samples shorter than a digit may be lost among the 4000 of a stretch.
+        assert!(std < 1.5 / 3900.0 * frequency, "{rate} Hz: {std}");
     }
 }

@@ -196,7 +196,8 @@ mod tests {
 
     #[test]
     fn levels_of_names_and_of_the_head_are_levels() {
-        let rows = (0..30).map(|i| format!("{},{}\n", 0.1 * f64::from(i), 60 + i % 7)).collect::<String>();
+        let rows =
+            (0..30).map(|i| format!("{},{}\n", 0.1 * f64::from(i), 60 + i % 7)).collect::<Vec<_>>().concat();
         for (head, column) in
             [("magnitude scale: dB\n", "level"), ("", "Lp_dB"), ("", "Lp (dB)"), ("", "LAeq_dBA")]
         {

@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn parts_have_open_ends_and_count_from_1970_where_the_file_does() {
-        let rows = (0..100).map(|i| format!("{}.5,{i}\n", 1_700_000_000 + i)).collect::<String>();
+        let rows = (0..100).map(|i| format!("{}.5,{i}\n", 1_700_000_000 + i)).collect::<Vec<_>>().concat();
         let text = format!("timestamp,a (V)\n{rows}");
         let begun = 1_700_000_000.5;
         let ends = (f64::NEG_INFINITY, f64::INFINITY);

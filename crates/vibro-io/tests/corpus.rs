@@ -53,7 +53,7 @@ const HEADS: [&str; 7] = [
 ];
 
 /// Name, unit as written, factor to SI and its symbol; the last is a level.
-const CHANNELS: [(&str, &str, f64, &str); 10] = [
+const CHANNELS: [Channel; 10] = [
     ("Acceleration X", "m/s^2", 1.0, "m/s²"),
     ("ay", "g", 9.806_65, "m/s²"),
     ("Beschl. Z", "m/s²", 1.0, "m/s²"),
@@ -66,10 +66,112 @@ const CHANNELS: [(&str, &str, f64, &str); 10] = [
     ("Level", "dB", 1.0, "dB"),
 ];
 
+type Channel = (&'static str, &'static str, f64, &'static str);
+
+/// Marks between cells and in numbers, and decimals of values.
+struct Style {
+    separator: &'static str,
+    comma: bool,
+    decimals: usize,
+}
+
+impl Style {
+    fn number(&self, value: f64, decimals: usize) -> String {
+        let text = format!("{value:.decimals$}");
+        if self.comma { text.replace('.', ",") } else { text }
+    }
+}
+
+/// What stands above the rows: statements, names and units.
+fn head(
+    noise: &mut Noise,
+    stamp: Stamp,
+    rate: f64,
+    channels: &[Channel],
+    style: &Style,
+    (unit_row, quoted): (bool, bool),
+) -> String {
+    let mark = one(noise, &["", "", "# "]);
+    let mut text = String::new();
+    for line in ["Device: Logger 3000", "Serial number: 48151", "Date: 2024-03-01", "Operator: N. N."] {
+        if chance(noise, 0.3) {
+            writeln!(text, "{mark}{line}").unwrap();
+        }
+    }
+    if let Stamp::Head(words) = stamp {
+        writeln!(text, "{mark}{}", words.replace("{}", &style.number(rate, 2))).unwrap();
+    }
+    if chance(noise, 0.2) {
+        text.push('\n');
+    }
+    let mut names: Vec<(&str, &str)> = match stamp {
+        Stamp::Column(name, unit, ..) => vec![(name, unit)],
+        Stamp::Clock { dated: true, .. } => vec![("Date", ""), ("Time", "")],
+        Stamp::Clock { .. } => vec![("Time", "")],
+        Stamp::Epoch(_) => vec![("timestamp", "")],
+        Stamp::Head(_) => Vec::new(),
+    };
+    names.extend(channels.iter().map(|(name, unit, ..)| (*name, *unit)));
+    let (quote, [open, close]) = (if quoted { "\"" } else { "" }, one(noise, &[["(", ")"], ["[", "]"]]));
+    let cells = names.iter().map(|(name, unit)| match (unit_row, *unit) {
+        (true, _) | (_, "") => format!("{quote}{name}{quote}"),
+        _ => format!("{quote}{name} {open}{unit}{close}{quote}"),
+    });
+    writeln!(text, "{}", cells.collect::<Vec<_>>().join(style.separator)).unwrap();
+    if unit_row {
+        let units: Vec<&str> = names.iter().map(|(_, unit)| *unit).collect();
+        writeln!(text, "{}", units.join(style.separator)).unwrap();
+    }
+    text
+}
+
+/// The cells of an instant in s, cut off or rounded.
+fn stamped(stamp: Stamp, t: f64, floor: bool, style: &Style) -> Vec<String> {
+    let rounded = |size: f64, decimals: usize| {
+        let unit = 10f64.powi(decimals as i32);
+        let ticks = t / size * unit;
+        (if floor { ticks.floor() } else { ticks.round() }) / unit
+    };
+    match stamp {
+        Stamp::Column(_, _, size, decimals) => vec![style.number(rounded(size, decimals), decimals)],
+        Stamp::Clock { dated, decimals } => {
+            let t = rounded(1.0, decimals) + 3590.0;
+            let (minutes, width) = ((t / 60.0).floor(), decimals + 3);
+            let (hours, seconds) = (12.0 + (minutes / 60.0).floor(), t - 60.0 * minutes);
+            let clock = format!("{hours:02}:{:02}:{seconds:0width$.decimals$}", minutes % 60.0);
+            if dated { vec!["2024-03-01".to_owned(), clock] } else { vec![clock] }
+        }
+        Stamp::Epoch(1.0) => vec![style.number(rounded(1.0, 3) + 1_709_294_400.0, 3)],
+        Stamp::Epoch(size) => vec![style.number(rounded(size, 0) + 1_709_294_400_000.0, 0)],
+        Stamp::Head(_) => Vec::new(),
+    }
+}
+
+/// What stands below the rows: a summary, another table.
+fn behind(noise: &mut Noise, channels: &[Channel], style: &Style, (summary, second): (bool, bool)) -> String {
+    let mut text = String::new();
+    if summary {
+        let line = one(noise, &["Max", "Mean", "End of data", "# end", "EOF"]);
+        let numbers =
+            line.starts_with('M').then(|| channels.iter().map(|_| style.number(1.5, style.decimals)));
+        let join = |row: String, cell: String| row + style.separator + &cell;
+        let cells = numbers.into_iter().flatten().fold(line.to_owned(), join);
+        writeln!(text, "{}{cells}", one(noise, &["", "\n"])).unwrap();
+    }
+    if second {
+        let row = |a: &str, b: f64, c: f64| {
+            [a.to_owned(), style.number(b, 2), style.number(c, 2)].join(style.separator) + "\n"
+        };
+        writeln!(text, "\n{}", ["Channel", "Min", "Max"].join(style.separator)).unwrap();
+        text.extend(channels.iter().map(|(name, ..)| row(name, -2.0, 2.0)));
+    }
+    text
+}
+
 struct Drawn {
     text: String,
     rate: f64,
-    channels: Vec<(&'static str, &'static str, f64, &'static str)>,
+    channels: Vec<Channel>,
     /// Values of each channel in SI, as printed.
     values: Vec<Vec<f64>>,
     /// Largest error of a printed value, in its own unit.
@@ -122,73 +224,20 @@ impl Drawn {
         let summary = oddly(noise, 0.1, "summary");
         let second = oddly(noise, 0.07, "two tables");
         let (unit_row, quoted) = (oddly(noise, 0.2, "row of units"), oddly(noise, 0.15, "quotes"));
-        let brackets = one(noise, &[("(", ")"), ("[", "]")]);
-        let mark = one(noise, &["", "", "# "]);
-        let number = |value: f64, decimals: usize| {
-            let text = format!("{value:.decimals$}");
-            if comma { text.replace('.', ",") } else { text }
-        };
-        let mut text = String::new();
-        for line in ["Device: Logger 3000", "Serial number: 48151", "Date: 2024-03-01", "Operator: N. N."] {
-            if chance(noise, 0.3) {
-                writeln!(text, "{mark}{line}").unwrap();
-            }
-        }
-        if let Stamp::Head(words) = stamp {
-            writeln!(text, "{mark}{}", words.replace("{}", &number(rate, 2))).unwrap();
-        }
-        if chance(noise, 0.2) {
-            text.push('\n');
-        }
-        // Names and units.
-        let mut names: Vec<(&str, &str)> = match stamp {
-            Stamp::Column(name, unit, ..) => vec![(name, unit)],
-            Stamp::Clock { dated: true, .. } => vec![("Date", ""), ("Time", "")],
-            Stamp::Clock { .. } => vec![("Time", "")],
-            Stamp::Epoch(_) => vec![("timestamp", "")],
-            Stamp::Head(_) => Vec::new(),
-        };
-        names.extend(channels.iter().map(|(name, unit, ..)| (*name, *unit)));
-        let quote = if quoted { "\"" } else { "" };
-        let head = names.iter().map(|(name, unit)| match (unit_row, *unit) {
-            (true, _) | (_, "") => format!("{quote}{name}{quote}"),
-            _ => format!("{quote}{name} {}{unit}{}{quote}", brackets.0, brackets.1),
-        });
-        writeln!(text, "{}", head.collect::<Vec<_>>().join(separator)).unwrap();
-        if unit_row {
-            let units: Vec<&str> = names.iter().map(|(_, unit)| *unit).collect();
-            writeln!(text, "{}", units.join(separator)).unwrap();
-        }
-        // Rows.
+        let style = Style { separator, comma, decimals };
+        let mut text = head(noise, stamp, rate, &channels, &style, (unit_row, quoted));
         let frequencies: Vec<f64> = channels.iter().map(|_| noise.between(0.02, 0.2)).collect();
         let phase = noise.between(0.0, 3.0);
         let mut values = vec![Vec::new(); channels.len()];
         for (k, i) in kept.iter().enumerate() {
             let t = phase + (*i as f64 + jitter * noise.normal()) / rate;
-            let rounded = |size: f64, decimals: usize| {
-                let ticks = t / size * 10f64.powi(decimals as i32);
-                let ticks = if floor { ticks.floor() } else { ticks.round() };
-                ticks / 10f64.powi(decimals as i32)
-            };
-            let mut cells = match stamp {
-                Stamp::Column(_, _, size, decimals) => vec![number(rounded(size, decimals), decimals)],
-                Stamp::Clock { dated, decimals } => {
-                    let t = rounded(1.0, decimals) + 3590.0;
-                    let (minutes, width) = ((t / 60.0).floor(), decimals + 3);
-                    let (hours, seconds) = (12.0 + (minutes / 60.0).floor(), t - 60.0 * minutes);
-                    let clock = format!("{hours:02}:{:02}:{seconds:0width$.decimals$}", minutes % 60.0);
-                    if dated { vec!["2024-03-01".to_owned(), clock] } else { vec![clock] }
-                }
-                Stamp::Epoch(1.0) => vec![number(rounded(1.0, 3) + 1_709_294_400.0, 3)],
-                Stamp::Epoch(size) => vec![number(rounded(size, 0) + 1_709_294_400_000.0, 0)],
-                Stamp::Head(_) => Vec::new(),
-            };
+            let mut cells = stamped(stamp, t, floor, &style);
             for (c, (_, unit, factor, _)) in channels.iter().enumerate() {
                 let value = (2.0 + c as f64) * (frequencies[c] * *i as f64).sin() + 0.05 * noise.normal();
                 let value = if *unit == "dB" { 60.0 + value } else { value };
                 let gone = missing && chance(noise, 0.02);
-                cells.push(if gone { "NaN".to_owned() } else { number(value, decimals) });
-                let last = short && k + 1 == kept.len() && c + 1 == channels.len() && !cells.is_empty();
+                cells.push(if gone { "NaN".to_owned() } else { style.number(value, decimals) });
+                let last = short && k + 1 == kept.len() && c + 1 == channels.len();
                 if last && cells.len() > 1 {
                     cells.pop();
                 } else {
@@ -199,18 +248,8 @@ impl Drawn {
         }
         if short {
             text.truncate(text.trim_end().len());
-        }
-        if summary && !short {
-            let line = one(noise, &["Max", "Mean", "End of data", "# end", "EOF"]);
-            let numbers = line.starts_with('M').then(|| names[1..].iter().map(|_| number(1.5, decimals)));
-            let cells =
-                numbers.into_iter().flatten().fold(line.to_owned(), |row, cell| row + separator + &cell);
-            writeln!(text, "{}{cells}", one(noise, &["", "\n"])).unwrap();
-        }
-        if second && !short {
-            let row = |a: &str, b: f64, c: f64| [a.to_owned(), number(b, 2), number(c, 2)].join(separator);
-            let rows = channels.iter().map(|(name, ..)| row(name, -2.0, 2.0) + "\n").collect::<String>();
-            write!(text, "\n{}\n{rows}", ["Channel", "Min", "Max"].join(separator)).unwrap();
+        } else {
+            text += &behind(noise, &channels, &style, (summary, second));
         }
         Drawn { text, rate, channels, values, digit: 0.5 * 10f64.powi(-(decimals as i32)), odd }
     }
@@ -280,7 +319,7 @@ fn no_export_is_read_wrong_in_silence() {
         let drawn = Drawn::new(seed);
         match reader.from_reader("export.csv", drawn.text.as_bytes()) {
             Err(why) => {
-                refused.push(format!("{seed} {:?}: {}", drawn.odd, why.to_string().replace('\n', " ")))
+                refused.push(format!("{seed} {:?}: {}", drawn.odd, why.to_string().replace('\n', " ")));
             }
             Ok(found) => {
                 let faults = drawn.faults(&found);

@@ -34,7 +34,7 @@ impl Drawn {
             kept.remove(noise.between(1.0, (kept.len() - 1) as f64) as usize);
         }
         let jitter = if jitter { noise.between(0.002, 0.03) } else { 0.0 };
-        Drawn { rate, digit, decimals, cut_off: seed % 2 == 0, phase: noise.uniform(), jitter, kept }
+        Drawn { rate, digit, decimals, cut_off: seed.is_multiple_of(2), phase: noise.uniform(), jitter, kept }
     }
 
     fn text(&self) -> String {
@@ -115,7 +115,7 @@ fn the_rate_of_a_printed_clock_that_jitters_lies_within_its_uncertainty() {
 fn lost_samples_of_a_printed_clock_are_seen_or_within_the_uncertainty() {
     let mut wrong = Vec::new();
     for seed in 1..=SEEDS {
-        let drawn = Drawn::new(seed, seed % 5 == 0, 1 + (seed % 3) as usize);
+        let drawn = Drawn::new(seed, seed.is_multiple_of(5), 1 + (seed % 3) as usize);
         let (trace, found) = drawn.read(&Reader::new());
         if trace.rate().is_some() {
             let hidden = drawn.digit * drawn.rate > 0.5;

@@ -62,12 +62,9 @@ impl Clock {
     /// step is one of these, and anywhere among them.
     pub fn rounded(instants: &[f64], resolution: f64) -> Option<Clock> {
         let (n, resolution) = (instants.len(), printed(instants, resolution));
-        let (low, high) = (
-            -largest_step(instants.iter().map(|t| -t), resolution)?,
-            largest_step(instants.iter().copied(), resolution)?,
-        );
+        let (low, high) = steps_within(instants, resolution)?;
         let step = f64::midpoint(low, high);
-        if !(low <= high && step > 0.0 && step.is_finite()) || !slips(instants).is_empty() {
+        if step <= 0.0 || !step.is_finite() || !slips(instants).is_empty() {
             return None;
         }
         // One or two lost samples that are shorter than a digit pass for the drift of a clock, which makes the step too long by 3/2n of it for each.
@@ -147,29 +144,36 @@ fn printed(instants: &[f64], resolution: f64) -> f64 {
     resolution * (1.0 + 1e-6) + 4.0 * f64::EPSILON * largest
 }
 
-/// The largest step of an even grid that lies within `resolution` of all instants, as far as those know that are later than others: the least
-/// (tⱼ − tᵢ + 2·resolution)/(j − i) of all i < j. By Dinkelbach's iteration: the pair that violates the present step most gives the next one.
-fn largest_step(instants: impl Iterator<Item = f64> + Clone, resolution: f64) -> Option<f64> {
-    let (first, last) = (instants.clone().next()?, instants.clone().last()?);
-    let n = instants.clone().count();
-    if n < 3 {
+/// The least and the largest step of an even grid that lies within `resolution` of all instants; `None` where there is none, and for fewer than three.
+fn steps_within(instants: &[f64], resolution: f64) -> Option<(f64, f64)> {
+    if instants.len() < 3 {
         return None;
     }
+    let (low, high) = (-largest_step(instants, -1.0, resolution), largest_step(instants, 1.0, resolution));
+    (low <= high).then_some((low, high))
+}
+
+/// The largest such step, as far as instants know it that are later than others: the least (tⱼ − tᵢ + 2·resolution)/(j − i) of all i < j, of instants
+/// times `sign`. By Dinkelbach's iteration: the pair that violates the present step most gives the next one.
+fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
+    let n = instants.len();
+    let (first, last) = (sign * instants[0], sign * instants[n - 1]);
     let mut step = (last - first + 2.0 * resolution) / (n - 1) as f64;
     loop {
-        // Deviations from the grid; the highest so far, and the deepest fall from it.
+        // The highest deviation from the grid so far, and the deepest fall from it with the step that forbids it.
         let (mut top, mut worst) = ((0, first), (0.0, step));
-        for (j, t) in instants.clone().enumerate() {
-            let fall = (top.1 - first) - (t - first) + (j - top.0) as f64 * step;
+        for (j, t) in instants.iter().map(|t| sign * t).enumerate() {
+            let behind = (j - top.0) as f64;
+            let fall = top.1 - t + behind * step;
             if fall < 0.0 {
                 top = (j, t);
             } else if fall > worst.0 {
-                worst = (fall, (t - top.1 + 2.0 * resolution) / (j - top.0) as f64);
+                worst = (fall, (t - top.1 + 2.0 * resolution) / behind);
             }
         }
-        // An instant that is missing leaves nothing to compare.
+        // Where an instant is missing nothing is less.
         if worst.1.partial_cmp(&step) != Some(Ordering::Less) {
-            return Some(step);
+            return step;
         }
         step = worst.1;
     }
@@ -348,12 +352,7 @@ fn pieces(instants: &[f64], tolerance: f64) -> Vec<Range<usize>> {
 
 /// How many of the first instants lie within `tolerance` of an even grid.
 fn longest_even(instants: &[f64], tolerance: f64) -> usize {
-    let even = |n: usize| {
-        let part = &instants[..n];
-        let high = largest_step(part.iter().copied(), tolerance);
-        let low = largest_step(part.iter().map(|t| -t), tolerance);
-        n < 3 || high.zip(low).is_some_and(|(high, low)| -low <= high)
-    };
+    let even = |n: usize| n < 3 || steps_within(&instants[..n], tolerance).is_some();
     let n = instants.len();
     let mut known = n.min(2);
     let mut odd = known;
