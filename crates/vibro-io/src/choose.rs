@@ -49,7 +49,8 @@ impl Reader {
             let frames = traces.first().map_or(0, |trace| trace.axis.len());
             return Traces::of_stream(path, findings, &traces, frames, Box::new(columns));
         }
-        let recording = self.read(&source)?;
+        let asked = self.clone().only(channels.iter().map(|&name| name.to_owned()));
+        let recording = asked.read(&source)?;
         let nothing = recording.no_trace();
         let trace = |record| if let Record::Trace(trace) = record { Some(Some(trace)) } else { None };
         let mut all: Vec<Option<Trace>> = recording.records.into_iter().filter_map(trace).collect();

@@ -98,10 +98,12 @@ impl Contents {
     /// # Errors
     /// If there is no such stretch, or a trace cannot be interpolated.
     pub fn evened(mut self, options: &Options) -> Result<Contents> {
-        let held = self.records.iter_mut().filter(|(_, ends)| ends.is_none());
-        for trace in
-            held.filter_map(|(record, _)| if let Record::Trace(trace) = record { Some(trace) } else { None })
-        {
+        let mut left_out: Vec<(usize, Error)> = Vec::new();
+        for (number, (record, ends)) in self.records.iter_mut().enumerate() {
+            let Record::Trace(trace) = record else { continue };
+            if ends.is_some() {
+                continue;
+            }
             options.stretch.map_or(Ok(()), |number| trace.keep_stretch(number))?;
             let steps = trace.axis.len().saturating_sub(1);
             let duration = || trace.axis.at(steps) - trace.axis.start();
@@ -115,8 +117,19 @@ impl Contents {
             }
             if let Some(rate) = options.resample {
                 options.hold(duration() * rate)?;
-                trace.resample(rate)?;
+                if let Err(error) = trace.resample(rate) {
+                    left_out.push((number, error));
+                }
             }
+        }
+        // One channel of noise loses only itself, unless it is asked for.
+        let all = left_out.len() == self.records.len();
+        for (number, error) in left_out {
+            let meta = self.records[number].0.meta_mut();
+            if all || options.only.iter().any(|only| *only == meta.name || only.parse() == Ok(number + 1)) {
+                return Err(error);
+            }
+            meta.found(Finding::caution("not-resampled").name("why", error.why()));
         }
         Ok(self)
     }

@@ -10,11 +10,7 @@ pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()
     let why =
         format!("sample {at} of channel {channel:?} is missing: it would spread over all of the result");
     Err(Error::refused(why)
-        .hint(if at == 0 {
-            "read the part behind the gap"
-        } else {
-            "read the part before the gap, or bridge it"
-        })
+        .hint(if at == 0 { "read the part behind the gap" } else { "read a part without a gap" })
         .setting("span"))
 }
 

@@ -50,6 +50,9 @@ pub fn printed_seconds(text: &str) -> String {
     }
     let mut words = words(text).skip_while(|word| !word.contains(':'));
     let time = words.next().unwrap_or_default().replace(',', ".");
+    // A zone has digits, too: 12:00:05.1+02:00.
+    let zone = time.find(':').and_then(|at| Some(at + time[at..].find(['+', '-', '−'])?));
+    let time = &time[..zone.unwrap_or(time.len())];
     let mut cells = time.split(':').skip(1 + usize::from(time.matches(':').count() > 1));
     let seconds = cells.next().unwrap_or_default().trim_end_matches('Z').to_owned();
     let thousandths = cells.next().or(words.find(|word| word.starts_with(|c: char| c.is_ascii_digit())));

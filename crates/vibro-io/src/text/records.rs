@@ -98,6 +98,9 @@ pub fn build(
     if let Some(unit) = made.stated.unit.as_deref().filter(|_| is_table && without > 1) {
         of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
     }
+    if let Some(n) = repeats(&table) {
+        of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", axis.len()));
+    }
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
         let mut column = match sparse {
@@ -125,6 +128,21 @@ pub fn build(
         findings.append(&mut of_axis);
     }
     Ok(built)
+}
+
+/// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
+const REPEATS: f64 = 0.05;
+
+/// How many rows repeat the one before in all of several columns, where these stand alone, between rows that differ: a motion that rests, or coarse
+/// digits, repeat many in a row.
+fn repeats(table: &[Column]) -> Option<usize> {
+    let measured = table.iter().filter(|column| !column.rises());
+    let columns: Vec<&[f64]> = measured.map(|column| column.values.reals()).collect();
+    let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
+    let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
+    let all = (1..n).filter(|i| again(*i)).count();
+    let alone = (2..n - 1).filter(|i| again(*i) && !again(i - 1) && !again(i + 1)).count();
+    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some(all)
 }
 
 /// The record of a column, and how its values are read again.

@@ -13,6 +13,8 @@ const STEP: f64 = 0.015;
 const LEAST: f64 = 0.03;
 /// Largest R of a bounce: a superball returns with 0.92, steel on an anvil with 0.97. Sounds whose intervals shrink less are evenly spaced.
 const LARGEST: f64 = 0.985;
+/// Even trains beside which bounces are sought: a record of more is one of a voice or a machine.
+const EVEN: usize = 4;
 /// Steps of ln R above 0 that are looked at: intervals of a voice or a machine grow, too.
 const GROWS: usize = 2;
 /// Standard deviation of ln R from bounce to bounce.
@@ -26,7 +28,7 @@ const FALL: f64 = 0.03;
 /// A deviation of loudness, or from the stated height, costs no more: contacts may switch, and heights be in mm.
 const CAP: f64 = 4.0;
 /// Within this time in s echoes of a room and ringing follow an impact, so many a second.
-const SHADOW: f64 = 0.06;
+pub const SHADOW: f64 = 0.06;
 const ECHOES: f64 = 50.0;
 /// Foreign sounds of a record in which none is heard: one in five has a hand, a latch or a voice.
 const UNHEARD: f64 = 0.2;
@@ -72,10 +74,11 @@ pub fn plausible(sounds: &[Sound], heard: Heard) -> Option<Plausible> {
     order.sort_unstable();
     // What follows evenly is a voice, a machine or ringing: bounces are sought among the rest.
     let mut even = None;
-    loop {
+    for _ in 0..EVEN {
         let own: Vec<Sound> = order.iter().map(|i| sounds[*i]).collect();
-        let Some(found) = best(&own, heard) else { return even };
-        let evenly = found.log_r > LARGEST.ln();
+        let Some(found) = best(&own, heard) else { break };
+        // The grid of R ends, and trains may lie between its lines.
+        let evenly = found.log_r.max(shrinks(&own, &found.train)) > LARGEST.ln();
         let train = Plausible {
             impacts: found.train.iter().map(|i| order[*i]).collect(),
             rival: found.rival.map(|(i, j)| (order[i], order[j])),
@@ -87,6 +90,19 @@ pub fn plausible(sounds: &[Sound], heard: Heard) -> Option<Plausible> {
         }
         order.retain(|i| !train.impacts.contains(i));
         even = even.or(Some(train));
+    }
+    even
+}
+
+/// Logarithm of the ratio by which the intervals of a train shrink from one to the next, of four impacts or more.
+fn shrinks(sounds: &[Sound], train: &[usize]) -> f64 {
+    let interval = |pair: &[usize]| sounds[pair[1]].time - sounds[pair[0]].time;
+    match train {
+        [_, _, _, _, ..] => {
+            let last = interval(&train[train.len() - 2..]);
+            (last / interval(train)).ln() / (train.len() - 2) as f64
+        }
+        _ => f64::NEG_INFINITY,
     }
 }
 

@@ -11,7 +11,7 @@
 //! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it: they rule the last flights, and a
 //! scatter that few flights hardly show rules the first.
 
-use super::plausible::{Heard, Plausible, plausible};
+use super::plausible::{Heard, Plausible, SHADOW, plausible};
 use super::{Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
@@ -45,7 +45,8 @@ impl Train {
     /// # Errors
     /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all others.
     pub fn of(trace: &Trace, options: &ImpactsOptions, full: Option<f64>) -> Result<(Train, Detected)> {
-        let ends = (trace.axis.start(), trace.axis.at(trace.values.len()));
+        let (start, rate) = (trace.axis.start(), trace.sampling_rate()?);
+        let ends = (start, start + trace.values.len() as f64 / rate);
         // A record that rings is refused before anything is chosen.
         let heard = Cell::new(usize::MAX);
         let choose = |sounds: &[Sound], reach: f64, median: f64| {
@@ -76,7 +77,15 @@ fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Opt
     let above = |(low, _): (f64, f64)| {
         let band = (low, high);
         let own = ImpactsOptions { band: Some(band), ..options.clone() };
-        let mut found = detect_among(trace, &own, Some(choose)).ok().filter(|found| found.times.len() > 2)?;
+        // In a band of steady noise sounds have no end.
+        let few = |sounds: &[Sound], reach: f64, median: f64| {
+            if sounds.len() > FEW {
+                Err(Error::refused("too many sounds"))
+            } else {
+                choose(sounds, reach, median)
+            }
+        };
+        let mut found = detect_among(trace, &own, Some(&few)).ok().filter(|found| found.times.len() > 2)?;
         found.findings.push(chosen(band));
         Some(found)
     };
@@ -107,23 +116,33 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
             "{n} sounds, and two trains of bounces among them are as likely: first flight {first} from {begin} on, or {other} from {later} on"
         );
         let refused = Error::refused(why);
-        return Err(match cure(sounds, heard, &train) {
-            Some(threshold) => refused
+        let delay = if (time(b) - time(a)) / (time(j) - time(i)) - 1.0 < SAME {
+            (time(i) - time(a)).abs()
+        } else {
+            (time(b) - time(a)).min(time(j) - time(i))
+        };
+        if let Some(threshold) = cure(sounds, heard, &train) {
+            return Err(refused
                 .hint("a threshold that leaves one of them, if what is quieter is no bounce")
-                .set("threshold", format!("{threshold:.2}")),
-            None => refused.hint("cut the record to the bounces, or record again in quiet"),
-        });
+                .set("threshold", format!("{threshold:.2}")));
+        }
+        if let Some(pause) = pause(sounds, heard, delay) {
+            return Err(refused
+                .hint("a pause that leaves one of them, if what follows an impact within it is its echo")
+                .set("refractory", format!("{pause:.2}")));
+        }
+        return Err(alone(refused, heard));
     }
     let before = train.impacts[0];
     let other = n - train.impacts.len() - before - train.echoes;
     if train.impacts.len() == 2 && before + other > 0 {
         let sounds = counted(before + other, "other sound");
         let why = format!("one flight beside {sounds}: no second flight shows that it is that of a bounce");
-        return Err(Error::refused(why).hint("cut the record to the bounces, or record again in quiet"));
+        return Err(alone(Error::refused(why), heard));
     }
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));
-    let findings =
-        [of("handling-ignored", before), of("echoes-ignored", train.echoes), of("sounds-ignored", other)];
+    let echoes = of("echoes-ignored", train.echoes).map(|found| found.number("delay", SHADOW));
+    let findings = [of("handling-ignored", before), echoes, of("sounds-ignored", other)];
     Ok((train.impacts, findings.into_iter().flatten().collect()))
 }
 
@@ -133,19 +152,58 @@ pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
     (3..9).map(shown).find(|[a, b]| a != b).unwrap_or_else(|| shown(3))
 }
 
-/// The lowest threshold in hundredths that leaves one train of three impacts or more, all of them impacts of the most plausible `train` of all sounds: what
-/// is found only without the quieter ones may be an echo.
+/// The lowest threshold in hundredths from which on one train of three impacts or more is left, all of them impacts of the most plausible `train` of all
+/// sounds: what is found only without the quieter ones may be an echo.
 fn cure(sounds: &[Sound], heard: Heard, train: &Plausible) -> Option<f64> {
-    (1..100).map(|hundredths| 0.01 * f64::from(hundredths)).find(|threshold| {
-        let high: Vec<Sound> =
-            sounds.iter().copied().filter(|s| s.height > threshold * heard.median).collect();
+    let thresholds = (1..100).rev().map(|hundredths| 0.01 * f64::from(hundredths));
+    let above = |threshold: f64| {
+        let high = sounds.iter().copied().filter(|s| s.height > threshold * heard.median);
+        (threshold, high.collect::<Vec<Sound>>())
+    };
+    let cures = |high: &[Sound]| {
         let known = |i: &usize| train.impacts.iter().any(|k| sounds[*k] == high[*i]);
-        high.len() < sounds.len()
-            && plausible(&high, heard).is_some_and(|left| {
-                !left.even && left.rival.is_none() && left.impacts.len() > 2 && left.impacts.iter().all(known)
-            })
-    })
+        plausible(high, heard).is_some_and(|left| {
+            !left.even && left.rival.is_none() && left.impacts.len() > 2 && left.impacts.iter().all(known)
+        })
+    };
+    let few = thresholds.map(above).take_while(|(_, high)| high.len() < sounds.len().min(FEW));
+    let mut cured = few.skip_while(|(_, high)| !cures(high)).take_while(|(_, high)| cures(high));
+    let (highest, _) = cured.next()?;
+    Some(cured.last().map_or(highest, |(threshold, _)| threshold))
 }
+
+/// What to try where sounds alone do not tell which are the bounces.
+fn alone(refused: Error, heard: Heard) -> Error {
+    let cut = "cut the record to the bounces, or record again in quiet";
+    match heard.full {
+        None => refused
+            .hint("state the height of the fall, which tells them apart; or ".to_owned() + cut)
+            .setting("height"),
+        Some(_) => refused.hint(cut),
+    }
+}
+
+/// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in place of it.
+const SAME: f64 = 0.05;
+
+/// A pause in s behind each impact, a half more than the `delay` of what follows it, that leaves one train of three impacts or more, or of two behind a fall from a
+/// known height.
+fn pause(sounds: &[Sound], heard: Heard, delay: f64) -> Option<f64> {
+    let pause = (150.0 * delay).ceil() / 100.0;
+    let mut kept: Vec<Sound> = Vec::new();
+    for sound in sounds {
+        if kept.last().is_none_or(|last| sound.time >= last.time + pause) {
+            kept.push(*sound);
+        }
+    }
+    let left = plausible(&kept, heard).filter(|_| kept.len() < sounds.len())?;
+    // Where the height is known, it holds one flight to be that of a bounce.
+    let enough = if heard.full.is_some() { 2 } else { 3 };
+    (!left.even && left.rival.is_none() && left.impacts.len() >= enough).then_some(pause)
+}
+
+/// Sounds among which a threshold is sought: what is as quiet as so many others is no bounce that stands out.
+const FEW: usize = 32;
 
 /// A flight this much longer than the first is no bounce of the same fall.
 const LONGER: f64 = 1.2;
