@@ -484,3 +484,49 @@ fn jittering_samples_are_interpolated_from_their_own_times() {
         assert!(why.to_string().contains("250 Hz was stated"), "{why}");
     }
 }
+
+/// A sine of 3 Hz beside white noise, 1000 samples at uneven steps of 4 to 12 ms. Noise cannot be interpolated; a sine of 40 samples a period can.
+#[test]
+fn a_channel_that_cannot_be_interpolated_loses_only_itself() {
+    let (mut noise, mut t) = (Noise::new(7), 0.0);
+    let mut text = "time (s),noise (m/s^2),sine (m/s^2),blank (m/s^2)\n".to_owned();
+    for i in 0..1000 {
+        let blank = if i == 500 { "NaN" } else { "1.5" };
+        text +=
+            &format!("{t:.6},{:.6},{:.6},{blank}\n", noise.normal(), (std::f64::consts::TAU * 3.0 * t).sin());
+        t += 0.008 + 0.004 * (2.0 * noise.uniform() - 1.0);
+    }
+    let reader = Reader::new().resample(Some(125.0)).allow_missing(true);
+    let read = |only: &str| reader.clone().only([only.to_owned()]).from_reader("x.csv", text.as_bytes());
+    for name in ["sine", "2"] {
+        let found = read(name).unwrap();
+        let Record::Trace(sine) = &found.records[1] else { panic!() };
+        assert!((sine.rate().unwrap() - 125.0).abs() < 1e-9);
+        let left: Vec<bool> = found.records.iter().map(|r| r.meta().has("not-resampled")).collect();
+        assert_eq!(left, [true, false, true]);
+    }
+    for name in ["noise", "1"] {
+        assert!(read(name).unwrap_err().to_string().contains("too far apart to interpolate"));
+    }
+    assert!(read("blank").unwrap_err().to_string().contains("without missing values"));
+}
+
+/// A sensor of 100 Hz that is polled at 120 Hz: every sixth row repeats the one before. One that rests, or whose digits are coarse, repeats many.
+#[test]
+fn rows_that_repeat_are_told() {
+    let text = |row: &dyn Fn(usize) -> (f64, f64)| {
+        let rows = (0..600).map(|i| format!("{:.6},{i},{:.5},{:.5}\n", i as f64 / 128.0, row(i).0, row(i).1));
+        "time (s),count,x (m/s^2),y (m/s^2)\n".to_owned() + &rows.collect::<String>()
+    };
+    let told = |text: String| {
+        let found = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap();
+        found.all_findings().iter().find(|f| f.code == "rows-repeat").and_then(|f| f.get("n"))
+    };
+    let sine = |i: usize| ((0.1 * i as f64).sin(), (0.13 * i as f64).cos());
+    // The rows 6, 12, … 594.
+    assert_eq!(told(text(&|i| sine(i - i / 6))), Some(99.0));
+    assert_eq!(told(text(&sine)), None);
+    assert_eq!(told(text(&|i| if i < 300 { (0.0, 0.0) } else { sine(i) })), None);
+    let coarse = |v: f64| (3.0 * v).round();
+    assert_eq!(told(text(&|i| (coarse(sine(i).0), coarse(sine(i).1)))), None);
+}

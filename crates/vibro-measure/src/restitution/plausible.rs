@@ -271,3 +271,37 @@ impl Pairs<'_> {
 
 /// √(2π).
 const TURN: f64 = 2.506_628_274_631_000_5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three bounces of R 0.8 from 0.5 m, and behind them the pitch of a voice, 7.7 ms apart, whose intervals shrink by 0.2 % each.
+    #[test]
+    fn a_voice_is_no_train_whatever_its_intervals_do() {
+        let mut sounds: Vec<Sound> =
+            [1.0, 1.511, 1.920].iter().map(|time| Sound { time: *time, height: 0.3 }).collect();
+        let mut time = 2.6;
+        for k in 0..40 {
+            sounds.push(Sound { time, height: 0.9 + 0.01 * f64::from(k % 3) });
+            time += 7.7e-3 * 0.998f64.powi(k);
+        }
+        let heard = Heard { reach: 0.01, median: 0.9, ends: (0.0, 4.0), full: None };
+        let voice = sounds[3..].to_vec();
+        assert!(plausible(&voice, heard).is_none_or(|train| train.even || train.impacts.len() == 2));
+        let found = plausible(&sounds, heard).unwrap();
+        assert_eq!(found.impacts, [0, 1, 2], "{found:?}");
+    }
+
+    #[test]
+    fn intervals_of_a_train_shrink_by_its_ratio() {
+        let mut times = vec![0.0, 1.0];
+        for k in 1..5 {
+            times.push(times[times.len() - 1] + 0.7f64.powi(k));
+        }
+        let sounds: Vec<Sound> = times.iter().map(|time| Sound { time: *time, height: 1.0 }).collect();
+        let all: Vec<usize> = (0..sounds.len()).collect();
+        assert!((shrinks(&sounds, &all) - 0.7f64.ln()).abs() < 1e-12);
+        assert_eq!(shrinks(&sounds, &all[..3]), f64::NEG_INFINITY);
+    }
+}
