@@ -276,7 +276,7 @@ pub(crate) fn all_entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<
 
 fn check<A: Analysis>(campaign: &Campaign) -> Result<Vec<Fault>> {
     let (mut usable, mut faults): (Vec<Entry<A>>, Vec<Fault>) = (Vec::new(), Vec::new());
-    for (i, (entry, checked)) in written::<A>(campaign)?.into_iter().enumerate() {
+    for (entry, checked) in written::<A>(campaign)? {
         let reads = entry.reads().filter(|_| A::OF_FILES && entry.file.is_none());
         let without =
             |key| Error::usage(format!("{key} without a file"), "file, too, or leave it out").setting(key);
@@ -288,7 +288,7 @@ fn check<A: Analysis>(campaign: &Campaign) -> Result<Vec<Fault>> {
         match checked {
             Ok(()) => usable.push(entry),
             Err(error) => {
-                let (section, name, place) = (A::SECTION, name_of(&entry, i + 1), entry.place());
+                let (section, name, place) = (A::SECTION, name_of(&entry), entry.place());
                 faults.push(Fault { section, name, place, error });
             }
         }
@@ -328,7 +328,7 @@ fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
 
 fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Named>> {
     let mut all = Vec::new();
-    for (i, entry) in entries::<A>(campaign)?.iter().enumerate() {
+    for entry in &entries::<A>(campaign)? {
         let files: Vec<PathBuf> = match &entry.file {
             Some(file) => vec![campaign.folder().join(file)],
             None if A::OF_FILES => Vec::new(),
@@ -336,7 +336,7 @@ fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Named>> {
         };
         let (own, also) = (&entry.channel.channel, entry.keys.channels());
         let record = format!("{own:?} {also:?} {:?}", entry.reading.stated());
-        let (section, table) = (A::SECTION, name_of(entry, i + 1));
+        let (section, table) = (A::SECTION, name_of(entry));
         let named = |file: PathBuf| Named {
             file: plain(&file),
             section,

@@ -18,6 +18,12 @@ pub const KINDS: &[Kind] = &[
     },
     Kind { name: "drops, force at the plate", ranges: FORCES, every: 2, draw: |mix| draw(mix, forces, true) },
     Kind {
+        name: "drops, force, contact seen",
+        ranges: "as before; contact of 0.1 to 5 ms, of which nothing is said",
+        every: 2,
+        draw: |mix| draw(mix, forces, false),
+    },
+    Kind {
         name: "drops, sound",
         ranges: "as before; each impact rings at 0.8 to 4 kHz, ζ 0.01 to 0.1, found by its envelope",
         every: 2,
@@ -61,7 +67,8 @@ fn draw(mix: &mut Mix, timed: Timed, stated: bool) -> Record {
     let height_std = mix.log(1e-4, 2e-3);
     let from_times = std::ptr::fn_addr_eq(timed, times as Timed);
     let shortest = if from_times { 1e-5 } else { 1e-4 };
-    let contact = mix.log(shortest, 1e-3);
+    let longest = if from_times || stated { 1e-3 } else { 5e-3 };
+    let contact = mix.log(shortest, longest);
     mix.note("contact in ms", 1e3 * contact);
     let drops = mix.random.between(1.0, if from_times { 9.0 } else { 6.0 }) as usize;
     let impacts = mix.random.between(if from_times { 2.0 } else { 4.0 }, 13.0) as usize;

@@ -2,7 +2,7 @@
 //! only their generator knows.
 //!
 //! `cargo run --release --example coverage [-- RECORDS]` takes RECORDS records of each kind, 1000 unless stated, and writes
-//! `docs/coverage.md`. `-- RECORDS --worst KIND` prints the kind's worst records with what was done to them, and its coverage with and
+//! `docs/coverage.md`. `-- RECORDS --rows KIND` prints its rows alone. `-- RECORDS --worst KIND` prints the kind's worst records with what was done to them, and its coverage with and
 //! without each disturbance, and writes nothing. Record number n is the same in every run.
 
 mod decays;
@@ -29,10 +29,16 @@ use vibroimpact::units::Unit;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let count = arguments.first().map_or(Ok(1000), |n| n.parse())?;
-    if let Some(name) = arguments.iter().position(|a| a == "--worst").and_then(|i| arguments.get(i + 1)) {
-        for kind in kinds().into_iter().filter(|k| k.name.starts_with(name)) {
-            print!("{}", worst(kind, &draw(kind, count)));
-        }
+    let named = |option: &str| {
+        let name = arguments.iter().position(|a| a == option).and_then(|i| arguments.get(i + 1))?;
+        Some(kinds().into_iter().filter(|k| k.name.starts_with(name)).collect::<Vec<_>>())
+    };
+    if let Some(kinds) = named("--worst") {
+        kinds.into_iter().for_each(|kind| print!("{}", worst(kind, &draw(kind, count))));
+        return Ok(());
+    }
+    if let Some(kinds) = named("--rows") {
+        kinds.into_iter().for_each(|kind| print!("{}", rows(kind, &draw(kind, count))));
         return Ok(());
     }
     let mut table = String::from(TABLE);

@@ -334,11 +334,11 @@ impl Analysis for Keys {
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         let mut all: Vec<(Option<&String>, String, Series)> = Vec::new();
-        for (i, entry) in entries.iter().enumerate() {
+        for entry in entries {
             // Files without a name are no series, even where one folder has the same file name as another.
             let stated = entry.name.as_ref();
             let at = all.iter().position(|s| stated.is_some() && s.0 == stated).unwrap_or_else(|| {
-                all.push((stated, name_of(entry, i + 1), Series::new(&entry.keys)));
+                all.push((stated, name_of(entry), Series::new(&entry.keys)));
                 all.len() - 1
             });
             let Some((_, name, series)) = all.get_mut(at) else { continue };

@@ -206,9 +206,10 @@ impl Keys {
         let why =
             format!("{name} is a sine of {frequency} Hz alone, and a function needs power at all lines");
         let (folder, file) = (shown(folder), shown(source.path));
-        Err(Error::refused(why).hint(format!(
-            "vibro response {folder} for steps of a sweep, or vibro spectrum {file} --channel \"{response}\" --tones 1"
-        )))
+        Err(Error::refused(format!(
+            "{why}; `vibro response` takes the folder {folder}, where it holds the steps of a sweep"
+        ))
+        .hint(format!("vibro spectrum {file:?} --channel {response:?} --tones 1")))
     }
 
     /// The modes of a function, with figures, tables and files.

@@ -205,8 +205,8 @@ impl<'a> Job<'a> {
         measure: impl Fn(&Entry<K>, &Source<'_>) -> Result<Vec<Answer>>,
     ) -> Result<()> {
         let mut records: Vec<Record> = Vec::new();
-        for (i, entry) in entries.iter().enumerate() {
-            let name = name_of(entry, i + 1);
+        for entry in entries {
+            let name = name_of(entry);
             let Some(mut files) = self.found(&name, K::files(self.campaign, entry)) else { continue };
             // Numbers alone have no file.
             let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();

@@ -76,8 +76,8 @@ pub fn file_name(path: &Path) -> String {
     shown(path.file_name().map_or(path, Path::new))
 }
 
-/// Name of a table for people: that stated, else the file's, else that of its section with this number.
-pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>, number: usize) -> String {
+/// Name of a table for people: that stated, else the file's, else that of its section with its number.
+pub(crate) fn name_of<K: Analysis>(entry: &Entry<K>) -> String {
     let own = K::stated_name(entry).or_else(|| entry.file.as_deref().map(file_name));
-    own.unwrap_or_else(|| format!("{} {number}", K::SECTION))
+    own.unwrap_or_else(|| format!("{} {}", K::SECTION, entry.number))
 }

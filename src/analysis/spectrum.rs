@@ -7,11 +7,12 @@ use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
 use crate::read::Recording;
-use crate::record::{Record, Scaling, Traces, Window, shown};
+use crate::record::{Record, Scaling, Trace, Traces, Window, shown};
 use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
+use crate::units::notation::significant;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -116,7 +117,7 @@ impl Keys {
             Ok(traces) => traces,
             // A base band is that of the lines then.
             Err(why) => match source.reader()?.from_path(source.path) {
-                Ok(all) if all.records.iter().any(|record| matches!(record, Record::Spectrum(_))) => {
+                Ok(all) if is_of_spectra(&all, source.channel.channel.as_deref()) => {
                     return self.stored(source, &all, &options);
                 }
                 Err(other) if source.reading.base_band.is_some() => return Err(other),
@@ -146,6 +147,14 @@ impl Keys {
     }
 }
 
+/// Whether a file holds spectra and no traces, or a channel by its name is a spectrum.
+fn is_of_spectra(recording: &Recording, channel: Option<&str>) -> bool {
+    let traces = recording.records.iter().any(|record| matches!(record, Record::Trace(_)));
+    recording.spectrum(channel).is_ok()
+        && (!traces || channel.is_some_and(|name| name.parse::<usize>().is_err()))
+        || !traces && recording.records.iter().any(|record| matches!(record, Record::Spectrum(_)))
+}
+
 impl Keys {
     /// The channel of a record, behind its reference where there is one; that may lie in a file of its own.
     ///
@@ -160,13 +169,25 @@ impl Keys {
             let (named, factor) = (channel.channel.as_deref(), channel.calibration);
             return reader.stream_chosen(source.path, reference, named, factor);
         };
-        let force = reader.from_path(&file)?.trace(Some(name), None)?;
+        let of_force = reader.from_path(&file)?;
+        let force = of_force.trace(Some(name), None)?;
         let recording = reader.from_path(source.path)?;
         let response = source.trace(&recording)?;
-        let traces = Traces::of_file(source.path.to_owned(), recording.findings, vec![force, response]);
+        let begins = |trace: &Trace| trace.meta.origin + trace.axis.start();
+        let apart = begins(&response) - begins(&force);
+        if apart.abs() * response.sampling_rate()? > APART {
+            let found =
+                format!("{} begins {} s after its reference", shown(source.path), significant(apart, 6));
+            return Err(Error::usage(found, "channels that were sampled together").setting("reference"));
+        }
+        let findings = [of_force.findings, recording.findings].concat();
+        let traces = Traces::of_file(source.path.to_owned(), findings, vec![force, response]);
         traces.map_err(|error| error.aside(format!("reference in {}", shown(&file))))
     }
 }
+
+/// How far two files of one record may begin apart, in sampling intervals.
+const APART: f64 = 0.01;
 
 /// A reference that lies in a file of its own: `FILE#CHANNEL`.
 fn in_other_file(reference: &str) -> Option<(&Path, &str)> {

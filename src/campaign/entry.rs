@@ -23,6 +23,8 @@ pub struct Entry<K> {
     pub reading: Reading,
     /// Keys of the analysis.
     pub keys: K,
+    /// Its place among the tables of its section, from 1.
+    pub number: usize,
     head: Range<usize>,
     places: Vec<(String, Range<usize>)>,
 }
@@ -69,11 +71,15 @@ impl Campaign {
         };
         let span = all.span();
         let DeValue::Array(all) = all.into_inner() else { return Err(several(span)) };
-        let one = |table: Spanned<DeValue<'_>>| match (table.span(), table.into_inner()) {
-            (head, DeValue::Table(rows)) => self.entry(rows, head, of_a_file),
+        let one = |(number, table): (usize, Spanned<DeValue<'_>>)| match (table.span(), table.into_inner()) {
+            (head, DeValue::Table(rows)) => {
+                let (mut entry, checked) = self.entry(rows, head, of_a_file)?;
+                entry.number = number;
+                Ok((entry, checked))
+            }
             (span, _) => Err(several(span)),
         };
-        all.into_iter().map(one).collect()
+        (1..).zip(all).map(one).collect()
     }
 
     /// The tables of a section as they are written: keys and values.
@@ -117,7 +123,7 @@ impl Campaign {
         let Named { name, file } = locate::keys(named, head.clone()).map_err(complaint)?;
         let channel = locate::keys(channel, head.clone()).map_err(complaint)?;
         let reading = locate::keys(reading, head.clone()).map_err(complaint)?;
-        Ok((Entry { name, file, channel, reading, keys, head, places }, in_range))
+        Ok((Entry { name, file, channel, reading, keys, number: 1, head, places }, in_range))
     }
 
     /// What a table states, word by word.

@@ -29,7 +29,9 @@ const ROWS: &[Row] = &[
     (ABOVE, LONGEST, SHORTEST, "s", &["smoothing", "interval", "intervals", "force_window"]),
     (ABOVE, LONGEST, SHORTEST, "s", &["time_to_peak", "duration"]),
     (ZERO, LONGEST, SHORTEST, "s", &["refractory", "interval_std", "contact_time", "longest_dropout", "std"]),
-    (ANY, LONGEST, SHORTEST, "s", &["delay", "span"]),
+    (ANY, LONGEST, SHORTEST, "s", &["delay"]),
+    // Times since 1970, in ns at most.
+    (ANY, 4e18, SHORTEST, "s", &["span"]),
     // A drill compares them with its turn.
     (ABOVE, f64::MAX, SHORTEST, "s", &["contact", "fit_duration"]),
     (ABOVE, LARGEST, LEAST, "kg", &["mass", "struck_mass", "masses"]),

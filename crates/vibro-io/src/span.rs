@@ -44,9 +44,10 @@ pub fn cut(mut contents: Contents, span: Option<(f64, f64)>) -> Result<Contents>
         if matches!(&trace.axis.grid, Grid::Uneven(instants) if !rises(instants)) {
             trace.sampling_rate()?;
         }
-        let counted = [span.0, span.1].into_iter().any(|t| t.is_finite() && epoch(t).is_some());
-        let from = if counted { trace.meta.origin } else { 0.0 };
-        let part = within(&trace.axis, (span.0 - from, span.1 - from))?;
+        // Since 1970 in the unit of the file, or since its first row in s.
+        let counted = [span.0, span.1].into_iter().find_map(|t| if t.is_finite() { epoch(t) } else { None });
+        let (from, factor) = counted.map_or((0.0, 1.0), |(_, factor)| (trace.meta.origin, factor));
+        let part = within(&trace.axis, (span.0 * factor - from, span.1 * factor - from))?;
         if part.len() < trace.values.len() {
             let mut axis = trace.axis.part(part.clone());
             if let Grid::Uneven(instants) = axis.grid {

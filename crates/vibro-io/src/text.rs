@@ -28,7 +28,7 @@ mod wrapped;
 
 use crate::held::{Contents, Held};
 use crate::reader::Options;
-use crate::{Format, Limit, Source, missing, number};
+use crate::{Format, Limit, Source, level, missing, number};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
@@ -179,11 +179,10 @@ pub(crate) fn stream(
         let Read { columns, findings, clean } = read_rows(text, &dialect, options, true)?;
         let Some((shape, end)) = clean.filter(|_| text.source.in_memory().is_none()) else { return Ok(None) };
         let handed = columns.iter().map(|column| (column.at, column.factor)).collect();
-        let trace = |column| match column {
-            records::Built { record: Record::Trace(trace), .. } => Some(trace),
-            _ => None,
-        };
-        let traces: Option<Vec<Trace>> = columns.into_iter().map(trace).collect();
+        let contents = Contents::of(columns.into_iter().map(|column| column.record), findings);
+        let Contents { records, findings } = level::settle(contents, format, options)?;
+        let trace = |(record, _)| if let Record::Trace(trace) = record { Some(trace) } else { None };
+        let traces: Option<Vec<Trace>> = records.into_iter().map(trace).collect();
         let Some(traces) = traces else { return Ok(None) };
         Ok(Some((traces, findings, stream::Columns::open(source, shape, end, handed)?)))
     })

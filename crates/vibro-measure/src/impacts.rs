@@ -23,7 +23,8 @@ pub use hum::Hum;
 pub use interval::{Interval, interval};
 
 use super::Estimate;
-use super::mean::scatter;
+use super::mean::{average, scatter};
+use crate::swings::Swings;
 pub use background::median;
 use echoes::echoes;
 use interval::{Counted, count, evened, pattern};
@@ -104,6 +105,12 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
 
 /// The impacts of the octave in which they repeat best.
 fn ringing(trace: &Trace, options: &ImpactsOptions) -> Option<Impacts> {
+    // An envelope shows no swings, and that of two modes that beat looks like impacts.
+    let (rate, level) = (trace.sampling_rate().ok()?, average(&trace.values));
+    let values: Vec<f64> = trace.values.iter().map(|v| v - level).collect();
+    if Swings::of(&values, rate, &[], 0.0).is_some() {
+        return None;
+    }
     let inside = |band: (f64, f64)| {
         if !bands::is_impulsive(trace, band) {
             return None;

@@ -15,14 +15,18 @@ pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-/// The files in the order of their frequencies, where the order of their names turns more than once. An order that turns once is that of
-/// a sweep up and down.
+/// Steps a turn, where the order of names is lost: drawn at random they turn at two steps of three, and a sweep that goes up and down several times
+/// has branches of many steps.
+const STEPS_A_TURN: usize = 4;
+
+/// The files in the order of their frequencies, where the order of their names turns at more than one step of four.
 pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> Option<Vec<PathBuf>> {
     let frequency = |k: usize| response.points[k].excitation;
     let mut order: Vec<usize> = (0..response.points.len()).collect();
     let steps = order.windows(2).map(|w| (frequency(w[0]), frequency(w[1])));
     let rises: Vec<bool> = steps.filter(|(a, b)| !same(*a, *b)).map(|(a, b)| b > a).collect();
-    if rises.windows(2).filter(|w| w[0] != w[1]).count() < 2 {
+    let turns = rises.windows(2).filter(|w| w[0] != w[1]).count();
+    if turns < 2 || STEPS_A_TURN * turns <= rises.len() {
         return None;
     }
     order.sort_by(|a, b| frequency(*a).total_cmp(&frequency(*b)));

@@ -48,7 +48,7 @@ const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequenc
                     messfrequenz|samplingrate|sampling speed|output data rate|odr|acquisition rate|logging rate|\
                     frequenza di campionamento|frecuencia de muestreo|frequência de amostragem";
 const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
-                    interval|time interval|tinc|sample period|sampling time|sample time|ts|scan interval|logging interval|abtastzeit|messintervall|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
+                    interval|time interval|tinc|sample period|scan interval|logging interval|abtastzeit|messintervall|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
                     x delta|xdelta|abtastintervall";
 /// Keys of what the abscissa is, or of its unit.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
@@ -160,8 +160,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             (stated.step, stated.of_one_series) = (step, true);
         }
         "rate" | "data rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval"
-        | "time interval" | "odr" | "ts" | "sampling time" | "sample time" | "scan interval"
-        | "logging interval" | "messintervall"
+        | "time interval" | "odr" | "scan interval" | "logging interval" | "messintervall"
             if bare => {}
         "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {

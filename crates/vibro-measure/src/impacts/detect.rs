@@ -11,6 +11,7 @@ use crate::swings::Swings;
 use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
+use vibro_record::units::Quantity;
 use vibro_record::units::notation::{counted, quantity, shortest};
 use vibro_record::{Error, Finding, Result, Trace};
 use vibro_signal::envelope::envelope;
@@ -75,6 +76,8 @@ pub(crate) fn detect_among(
 ) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
+    // Other signals of one sign, such as levels of sound, last longer than a contact.
+    let is_force = trace.meta.quantity == Quantity::Force && !options.envelope;
     let mut values = banded(trace, options, rate)?;
     let mut findings = Vec::new();
     let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), &mut findings) };
@@ -162,7 +165,7 @@ pub(crate) fn detect_among(
         heights: each.iter().map(|o| o.height).collect(),
         onset_std: Some(std).filter(|s| s.is_finite()),
         hum,
-        contact: if options.envelope { None } else { contact(&values, &bursts, &quiet, rate) },
+        contact: if is_force { contact(&values, &bursts, &quiet, rate) } else { None },
         findings,
         method,
         resolution: sharp.then_some(1.0 / rate),
