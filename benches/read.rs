@@ -1,6 +1,7 @@
 //! Reading measurement files of other people's instruments, from path to records.
 //!
-//! `cargo bench -p vibro-bench --bench read` needs `../shared/data` beside the project; without it the groups are skipped.
+//! `cargo bench -p vibro-bench --bench read` needs `../shared/data` beside the project; without it the groups
+//! are skipped.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;

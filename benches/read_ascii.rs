@@ -1,6 +1,7 @@
 //! Reading text of numbers, against reading its bytes.
 //!
-//! `cargo bench -p vibro-bench --bench read_ascii` makes a 5-million-line file in the temporary folder and removes it again.
+//! `cargo bench -p vibro-bench --bench read_ascii` makes a 5-million-line file in the temporary folder and
+//! removes it again.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::fmt::Write as _;

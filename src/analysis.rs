@@ -1,7 +1,7 @@
 //! Analyses, one folder a kind of record: its keys, its run, its figures, its tables.
 //!
-//! A table of a campaign and a command line fill the same keys: `[[impacts]] refractory = 0.005` and `vibro impacts --refractory 0.005`
-//! run one function. A new kind of record is a folder here and a row in `KINDS`.
+//! A table of a campaign and a command line fill the same keys: `[[impacts]] refractory = 0.005` and `vibro
+//! impacts --refractory 0.005` run one function. A new kind of record is a folder here and a row in `KINDS`.
 
 pub(crate) mod answer;
 pub(crate) mod decay;
@@ -78,7 +78,8 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
     /// Other sections that tables without a file name.
     const RESTS_ON: &'static [&'static str] = &[];
 
-    /// Whether a table can be, after those before it and before anything is measured. An error names the key at fault as its setting.
+    /// Whether a table can be, after those before it and before anything is measured. An error names the key
+    /// at fault as its setting.
     ///
     /// # Errors
     /// If keys contradict each other, are impossible, or one is missing.
@@ -168,15 +169,18 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|kind| kind.section)
 }
 
-/// Reads a campaign and checks all its records. A table with a value that cannot be is left out: [`Campaign::faults`].
+/// Reads a campaign and checks all its records. A table with a value that cannot be is left out:
+/// [`Campaign::faults`].
 ///
 /// # Errors
-/// If it is not TOML, has an unknown key, or a value that cannot be outside of the tables of records; each points at its line.
+/// If it is not TOML, has an unknown key, or a value that cannot be outside of the tables of records; each
+/// points at its line.
 pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
     open_in(&Folder::default(), path.as_ref())
 }
 
-/// As [`open`], of a disk or a memory; names may lead outside the folder of the campaign where `within` allows it.
+/// As [`open`], of a disk or a memory; names may lead outside the folder of the campaign where `within`
+/// allows it.
 ///
 /// # Errors
 /// As [`open`].
@@ -208,8 +212,8 @@ fn faults(campaign: &Campaign) -> Result<Vec<Fault>> {
         .collect())
 }
 
-/// All that is wrong with the tables of a campaign: values that cannot be, files that do not exist or cannot be read, channels that a file
-/// does not have.
+/// All that is wrong with the tables of a campaign: values that cannot be, files that do not exist or cannot
+/// be read, channels that a file does not have.
 ///
 /// # Errors
 /// As [`open`].
@@ -219,7 +223,8 @@ pub fn errors(campaign: &Campaign) -> Result<Vec<Error>> {
     Ok(of_tables.chain(of_files?.into_iter().flatten()).collect())
 }
 
-/// The recordings that the tables of a campaign name, but for those of a table that names one that is outside its folder or does not exist.
+/// The recordings that the tables of a campaign name, but for those of a table that names one that is outside
+/// its folder or does not exist.
 ///
 /// # Errors
 /// As [`open`].
@@ -228,7 +233,8 @@ pub fn files(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     Ok(files?.concat())
 }
 
-/// The tables of a kind of record as they are written, one of each file that a pattern matches, with what is wrong with the table.
+/// The tables of a kind of record as they are written, one of each file that a pattern matches, with what is
+/// wrong with the table.
 fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>)>> {
     let folder = campaign.within();
     let each = |(entry, checked): (Entry<A>, Result<()>)| {
@@ -255,7 +261,8 @@ fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>
     Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(each).collect())
 }
 
-/// The tables of a kind of record that can be; one whose file is a pattern stands for one of each file that it matches.
+/// The tables of a kind of record that can be; one whose file is a pattern stands for one of each file that
+/// it matches.
 ///
 /// # Errors
 /// As [`Campaign::entries`].

@@ -53,7 +53,8 @@ use toml::de::DeTable;
 /// Folder for results where none is named.
 const RESULTS: &str = "results";
 
-/// A campaign as its file has it: what holds for all records. [`crate::analysis`] reads the records themselves.
+/// A campaign as its file has it: what holds for all records. [`crate::analysis`] reads the records
+/// themselves.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Campaign {

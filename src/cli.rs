@@ -24,7 +24,8 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
 use std::any::TypeId;
 use std::path::PathBuf;
 
-/// All commands by what they are for, in the order of the help: what is typed behind `vibro`, for example, and what it does. A new one is a row.
+/// All commands by what they are for, in the order of the help: what is typed behind `vibro`, for example,
+/// and what it does. A new one is a row.
 const GROUPS: &[(&str, &[Row])] = &[
     (
         "Begin with a folder of recordings",
@@ -222,8 +223,8 @@ fn command() -> Typed {
     options(all.subcommands(commands))
 }
 
-/// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong usage or
-/// unreadable input.
+/// Parses the command line, does what it says, and gives the exit code: 0 done, 1 no answer possible, 2 wrong
+/// usage or unreadable input.
 pub fn main() -> u8 {
     let typed = match command().try_get_matches_from(respelt::args()) {
         Ok(typed) => typed,
@@ -273,8 +274,9 @@ fn numbers(typed: &ArgMatches) -> Result<()> {
     Ok(())
 }
 
-/// Makes options of the fields of all keys, in their order: each has the name of its field and, where it names no other, a value of the kind
-/// that its type says. A negative number is taken: whether it makes sense, its check says better than a complaint about an unknown option.
+/// Makes options of the fields of all keys, in their order: each has the name of its field and, where it
+/// names no other, a value of the kind that its type says. A negative number is taken: whether it makes
+/// sense, its check says better than a complaint about an unknown option.
 fn options(command: Typed) -> Typed {
     let mut order = 0;
     let option = |arg: Arg| {

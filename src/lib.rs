@@ -1,13 +1,14 @@
 //! Measurements of impacting machines: from instrument files to answers, each with its uncertainty.
 //!
 //! # Flow
-//! Data flows one way: [`read`] → [`signal`] → [`measure`] → [`model`] → [`compare`] → [`analysis`]; [`mod@write`] turns records into files
-//! again. An analysis takes its keys from a [`campaign`] or a command line, and shows what it found by [`report`].
-//! [`record`], [`units`], [`error`] and [`math`] lie below all of them.
+//! Data flows one way: [`read`] → [`signal`] → [`measure`] → [`model`] → [`compare`] → [`analysis`];
+//! [`mod@write`] turns records into files again. An analysis takes its keys from a [`campaign`] or a command
+//! line, and shows what it found by [`report`]. [`record`], [`units`], [`error`] and [`math`] lie below all
+//! of them.
 //!
 //! # Units and scaling
-//! SI throughout: m, m/s, m/s², N, kg, s; frequencies in Hz unless a name says ω (rad/s). Spectra are one-sided, and
-//! every [`record::Spectrum`] names its [`record::Scaling`].
+//! SI throughout: m, m/s, m/s², N, kg, s; frequencies in Hz unless a name says ω (rad/s). Spectra are
+//! one-sided, and every [`record::Spectrum`] names its [`record::Scaling`].
 //!
 //! # Example
 //! The response of mass 1 in the example campaign, taken from velocity to displacement:
@@ -16,7 +17,8 @@
 //! use vibroimpact::measure::response::ResponseOptions;
 //! let campaign = open("examples/two_mass_rig/campaign.toml")?;
 //! let (_, found) = named(&campaign, Some("mass 1, up"))?.taken(&ResponseOptions::default())?;
-//! let largest = found.points.iter().map(|p| &p.amplitude).max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
+//! let amplitudes = found.points.iter().map(|p| &p.amplitude);
+//! let largest = amplitudes.max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
 //! assert!((largest.value - 14.19e-3).abs() < 0.02e-3); // m
 //! assert!(largest.std.unwrap() < 1e-6);
 //! # Ok::<(), vibroimpact::Error>(())

@@ -1,4 +1,5 @@
-//! What the recordings of a folder can be measured for: a campaign that is proposed, with what was found, guessed and is missing.
+//! What the recordings of a folder can be measured for: a campaign that is proposed, with what was found,
+//! guessed and is missing.
 //!
 //! A record of unknown kind is tried: the first analysis that answers without a doubt is proposed.
 
@@ -215,7 +216,8 @@ impl Proposal {
     /// Name of the file of a campaign in a folder.
     pub const FILE: &str = analysis::OWN;
 
-    /// A campaign for what lies in a folder and up to two levels below it, and is not named by one that is `known`.
+    /// A campaign for what lies in a folder and up to two levels below it, and is not named by one that is
+    /// `known`.
     ///
     /// # Errors
     /// If it is no folder, cannot be listed, or holds no recording.
@@ -268,7 +270,8 @@ impl Proposal {
         Ok(proposal)
     }
 
-    /// Gives a table what the campaign states of a file whose name differs in a number alone, and a sweep a name of its own.
+    /// Gives a table what the campaign states of a file whose name differs in a number alone, and a sweep a
+    /// name of its own.
     fn join(&mut self, known: &Campaign) -> Result<()> {
         let of = |rows: &[(String, String)], key: &str| {
             rows.iter().find(|row| row.0 == key).map_or_else(String::new, |row| bare(&row.1).to_owned())

@@ -1,4 +1,5 @@
-//! What a person reads: tables, figures, files, one page, and the words for findings. Nothing here knows an analysis.
+//! What a person reads: tables, figures, files, one page, and the words for findings. Nothing here knows an
+//! analysis.
 
 pub(crate) mod files;
 pub(crate) mod layout;

@@ -31,7 +31,8 @@ impl Mix {
         size
     }
 
-    /// A disturbance that this share of the records has, of a size between two numbers on a logarithmic scale; 0 in the others.
+    /// A disturbance that this share of the records has, of a size between two numbers on a logarithmic
+    /// scale; 0 in the others.
     pub fn some(&mut self, share: f64, name: &'static str, low: f64, high: f64) -> f64 {
         if self.chance(share) {
             let size = self.log(low, high);
@@ -41,8 +42,9 @@ impl Mix {
         }
     }
 
-    /// Draws a chain: white noise of a root mean square between two parts of the peak, and in half of the records each 1/f noise up to
-    /// ten times as strong, hum of 50 or 60 Hz up to 2 %, and a converter of 12 bits whose range is 1.05 to 4 times the peak.
+    /// Draws a chain: white noise of a root mean square between two parts of the peak, and in half of the
+    /// records each 1/f noise up to ten times as strong, hum of 50 or 60 Hz up to 2 %, and a converter of
+    /// 12 bits whose range is 1.05 to 4 times the peak.
     pub fn chain(&mut self, (low, high): (f64, f64)) -> Chain {
         let white = self.log(low, high);
         self.note("white noise", white);
@@ -64,8 +66,8 @@ impl Mix {
         }
     }
 
-    /// Noise of a power density that falls as 1/f from the length of the record to a third of the sampling rate: first-order processes
-    /// an octave apart.
+    /// Noise of a power density that falls as 1/f from the length of the record to a third of the sampling
+    /// rate: first-order processes an octave apart.
     pub fn add_pink(&mut self, values: &mut [f64], rms: f64) {
         let octaves = (values.len() as f64).log2().ceil() as i32;
         let keep: Vec<f64> = (0..octaves).map(|k| (-2.0 * 2f64.powi(-k)).exp()).collect();

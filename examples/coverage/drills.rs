@@ -26,7 +26,8 @@ fn draw(mix: &mut Mix) -> Record {
     let (phase_scatter, turn_scatter) = (mix.some(1.0, "scatter of phase", 1e-4, 0.01), mix.log(1e-4, 0.01));
     let contact = mix.some(1.0, "contact in ms", 0.02, 0.15) * 1e-3;
     let bend = mix.random.between(-0.3, 0.3) * before;
-    // Edges of the reference, and impacts with their velocities; some before the first turn and behind the last.
+    // Edges of the reference, and impacts with their velocities; some before the first turn and behind the
+    // last.
     let mut edges = vec![0.003];
     for _ in 0..turns + 4 {
         edges.push(edges[edges.len() - 1] + (1.0 + turn_scatter * mix.random.normal()) / speed);
@@ -94,8 +95,8 @@ fn draw(mix: &mut Mix) -> Record {
     record
 }
 
-/// Velocity of a striker that comes back to the same place every turn: a straight line between impacts with as much of a half sine as its
-/// mean needs, and a full sine.
+/// Velocity of a striker that comes back to the same place every turn: a straight line between impacts with
+/// as much of a half sine as its mean needs, and a full sine.
 fn velocity(impacts: &[[f64; 3]], t: f64, contact: f64, bend: f64) -> f64 {
     let next = impacts.partition_point(|i| i[0] <= t).clamp(1, impacts.len() - 1);
     let ([from, before, v0], [to, v1, after]) = (impacts[next - 1], impacts[next]);

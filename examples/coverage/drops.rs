@@ -49,8 +49,8 @@ const TIMES: &str = "R 0.5 to 0.95, 0.05 to 2 % of scatter from bounce to bounce
 const FORCES: &str = "as before, one to five drops with at least four impacts as half sines of the contact of 0.1 to 1 ms at 10 to 30 kHz; \
     noise 0.0003 to 0.01 of the peak, 1/f noise, hum, 12 bits";
 
-/// What a drop is: its impacts with their velocities, the duration of a contact, and how far impacts that are not recorded are
-/// detected off.
+/// What a drop is: its impacts with their velocities, the duration of a contact, and how far impacts that are
+/// not recorded are detected off.
 struct Bounces {
     onsets: Vec<(f64, f64)>,
     contact: f64,

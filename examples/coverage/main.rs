@@ -1,9 +1,10 @@
-//! How often the truth lies within the uncertainties that are stated: records of every kind with random disturbances, and a truth that
-//! only their generator knows.
+//! How often the truth lies within the uncertainties that are stated: records of every kind with random
+//! disturbances, and a truth that only their generator knows.
 //!
-//! `cargo run --release --example coverage [-- RECORDS]` takes RECORDS records of each kind, 1000 unless stated, and writes
-//! `docs/coverage.md`. `-- RECORDS --rows KIND` prints its rows alone. `-- RECORDS --worst KIND` prints the kind's worst records with what was done to them, and its coverage with and
-//! without each disturbance, and writes nothing. Record number n is the same in every run.
+//! `cargo run --release --example coverage [-- RECORDS]` takes RECORDS records of each kind, 1000 unless
+//! stated, and writes `docs/coverage.md`. `-- RECORDS --rows KIND` prints its rows alone. `-- RECORDS --worst
+//! KIND` prints the kind's worst records with what was done to them, and its coverage with and without each
+//! disturbance, and writes nothing. Record number n is the same in every run.
 
 mod decays;
 mod disturbance;

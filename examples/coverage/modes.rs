@@ -118,7 +118,8 @@ fn averaged(mix: &mut Mix, count: usize) -> Record {
     let zeta = mix.note("ζ", (wide / (2.0 * centre)).min(0.1));
     let poles = modes(mix, count, zeta, centre);
     let (_, power, unit) = kind(mix);
-    // A force that repeats after twice the record or later: exact steady motion, whose lines lie too close together to be seen.
+    // A force that repeats after twice the record or later: exact steady motion, whose lines lie too close
+    // together to be seen.
     let (rate, n) = (segment as f64, (segments + 1) * segment / 2);
     let half = n.next_power_of_two();
     let transform = Transform::new(2 * half);

@@ -63,7 +63,8 @@ impl Law {
     }
 }
 
-/// A contact met at velocity 1: force over time at steps of `step`, its duration and the velocity at which it is left.
+/// A contact met at velocity 1: force over time at steps of `step`, its duration and the velocity at which it
+/// is left.
 struct Contact {
     step: f64,
     force: Vec<f64>,
@@ -208,7 +209,8 @@ struct Section {
 }
 
 impl Section {
-    /// What the section shows a step later, by the trapezoidal rule; the input is that in the middle of the step.
+    /// What the section shows a step later, by the trapezoidal rule; the input is that in the middle of the
+    /// step.
     fn pass(&mut self, input: f64, step: f64) -> f64 {
         let h = 0.5 * step * self.omega;
         let before = self.x;

@@ -44,7 +44,8 @@ impl Answer {
     }
 }
 
-/// For each truth the index of the value found that is its own: pairs within their `reach`, the nearest (as a part of it) first.
+/// For each truth the index of the value found that is its own: pairs within their `reach`, the nearest (as a
+/// part of it) first.
 pub fn pairs(truths: &[f64], reach: &[f64], found: &[f64]) -> Vec<Option<usize>> {
     let mut near: Vec<(f64, usize, usize)> = Vec::new();
     for (i, (truth, reach)) in truths.iter().zip(reach).enumerate() {

@@ -56,8 +56,8 @@ struct Root {
     impulse: f64,
 }
 
-/// Roots of the conditions y(τ) = Δ + JC, ẏ(τ) = JP where y, the response to the impulses, is continued beyond its cycle, as the equations
-/// with sin λ(t + τ) do that ask for no 0 < τ < T.
+/// Roots of the conditions y(τ) = Δ + JC, ẏ(τ) = JP where y, the response to the impulses, is continued
+/// beyond its cycle, as the equations with sin λ(t + τ) do that ask for no 0 < τ < T.
 fn continued(rig: &Rig, nu: f64, from: f64, to: f64) -> Result<Vec<Root>> {
     let period = 1.0 / hertz(nu);
     let [first, second] = rig.oscillators();

@@ -1,5 +1,6 @@
 //! Makes the figures of `docs/thesis.md` and prints what stands there:
-//! `cargo run --release --example thesis_figures [-- FOLDER]`; FOLDER is `docs/thesis` of this project where it is left out.
+//! `cargo run --release --example thesis_figures [-- FOLDER]`; FOLDER is `docs/thesis` of this project where
+//! it is left out.
 
 mod impulse;
 mod motions;
@@ -58,7 +59,8 @@ mod tests {
     use super::*;
     use std::fs;
 
-    /// What is printed, to the last digit shown, is what the document says; it has no other row, and its pictures are there.
+    /// What is printed, to the last digit shown, is what the document says; it has no other row, and its
+    /// pictures are there.
     #[test]
     fn the_document_says_what_is_computed() {
         let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");

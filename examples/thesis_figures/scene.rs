@@ -1,4 +1,5 @@
-//! What the figures of the closed form have in common: the rig, the frequency ratio, and how orbits become curves.
+//! What the figures of the closed form have in common: the rig, the frequency ratio, and how orbits become
+//! curves.
 
 use vibroimpact::figure::{AxisSpec, Ink, Plot, Series, Stroke};
 use vibroimpact::model::{Excitation, Impulses, Orbit, Rig, orbits, orbits_of};
@@ -84,8 +85,8 @@ impl Lines {
     }
 }
 
-/// Adds a value of all orbits with J > 0 over ν, each followed from one ν to the next: real ones solid in the colour `nth`, the others
-/// thin and grey.
+/// Adds a value of all orbits with J > 0 over ν, each followed from one ν to the next: real ones solid in the
+/// colour `nth`, the others thin and grey.
 pub fn add_orbits(
     plot: Plot,
     name: &str,

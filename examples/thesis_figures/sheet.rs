@@ -61,7 +61,8 @@ impl Claim {
         Claim { what: what.into(), thesis: thesis.into(), here: here.into(), verdict }
     }
 
-    /// A number of the thesis, with which `here` agrees within `tolerance`; shown in `unit` with so many decimals.
+    /// A number of the thesis, with which `here` agrees within `tolerance`; shown in `unit` with so many
+    /// decimals.
     pub fn number(
         what: impl Into<String>,
         thesis: &str,
@@ -76,7 +77,8 @@ impl Claim {
         Claim::told(what, with(thesis), with(&format!("{here:.decimals$}")), agrees, why)
     }
 
-    /// The number is not the thesis' own but that of an independent computation of the same case: it stands in parentheses.
+    /// The number is not the thesis' own but that of an independent computation of the same case: it stands
+    /// in parentheses.
     pub fn recomputed(mut self) -> Claim {
         self.thesis = format!("({})", self.thesis);
         self

@@ -1,4 +1,5 @@
-//! Simulated sweeps as in the thesis: 0.02 Hz/s, running RMS, contact of 1e5 N/m with a damper of 0.1 N s/m, gap 1 mm.
+//! Simulated sweeps as in the thesis: 0.02 Hz/s, running RMS, contact of 1e5 N/m with a damper of 0.1 N s/m,
+//! gap 1 mm.
 
 use crate::scene::{self, hertz, peak};
 use crate::sheet::{Claim, Sheet};
@@ -199,8 +200,8 @@ fn pulse() -> Result<Sheet> {
         let pulses = Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency });
         Compliant::new(&rig, &pulses, CONTACT, State::REST, 0.0)
     };
-    // The thesis' range, and a sweep of its own below it: between 6 and 7.5 Hz the motion is irregular, and the start decides whether it
-    // leaves that with impacts.
+    // The thesis' range, and a sweep of its own below it: between 6 and 7.5 Hz the motion is irregular, and
+    // the start decides whether it leaves that with impacts.
     let mut swept = swept(&plan(3.0, 14.0), 0.5, make)?;
     let below = plan(1.5, 3.0).frequency(&mut make(1.5)?, 0.5, Direction::Up)?;
     swept.up.splice(0..0, below);

@@ -1,4 +1,5 @@
-//! Where the energy rule of the thesis accepts what is unstable or impossible, and what real motions look like.
+//! Where the energy rule of the thesis accepts what is unstable or impossible, and what real motions look
+//! like.
 
 use crate::scene::{accepted, grid, ratio, real, rig, under_sine};
 use crate::sheet::{Claim, Sheet};
@@ -154,7 +155,8 @@ fn class(orbits: &[Orbit]) -> f64 {
         (true, Some(Loss::Flip)) => 2.0,
         (true, Some(Loss::NeimarkSacker)) => 3.0,
         (true, None) => 4.0,
-        // One multiplier beyond +1 breaks the energy rule, so here are two: what a Neimark–Sacker pair can become.
+        // One multiplier beyond +1 breaks the energy rule, so here are two: what a Neimark–Sacker pair can
+        // become.
         (true, Some(Loss::Fold)) => 5.0,
         (true, Some(Loss::Grazing)) => f64::NAN,
     }

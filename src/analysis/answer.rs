@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::borrow::Borrow;
 
-/// What an analysis found, for programs and for people. Names of figures and files are those of a record alone, `impacts`; a campaign
-/// adds a number or a name.
+/// What an analysis found, for programs and for people. Names of figures and files are those of a record
+/// alone, `impacts`; a campaign adds a number or a name.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Answer {
     /// All numbers by their keys.

@@ -14,7 +14,8 @@ use crate::report::layout::{pair, table, titled};
 use crate::report::{Cell, Table};
 use serde::Deserialize;
 
-/// Memory that the search works in, as a multiple of the trace: of ten million samples, 8.8 traces were measured in all.
+/// Memory that the search works in, as a multiple of the trace: of ten million samples, 8.8 traces were
+/// measured in all.
 const BESIDE: f64 = 8.0;
 
 /// How modes of a decay are found.

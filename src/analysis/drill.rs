@@ -31,7 +31,8 @@ pub struct Keys {
     /// Channel with the pulses of the crank [default: none, the turns come from the impacts]
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
-    /// Velocity along the beam in m/s for one unit of the channel [default: 1 where the file says it is a velocity]
+    /// Velocity along the beam in m/s for one unit of the channel [default: 1 where the file says it is a
+    /// velocity]
     pub sensitivity: Option<f64>,
     /// Angle of the beam in degrees
     pub beam_angle: Option<f64>,
@@ -61,8 +62,8 @@ pub struct Keys {
     pub delay: Option<f64>,
     /// Points of the average turn [default: 720]
     pub points: Option<usize>,
-    /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: the highest frequency that the
-    /// points of the average turn resolve]
+    /// Corner in Hz of the zero-phase low-pass for average and displacement, or `none` [default: the highest
+    /// frequency that the points of the average turn resolve]
     #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Time constant in s of exponential smoothing instead of the low-pass
@@ -136,7 +137,8 @@ fn own_channels(channel: &Channel) -> Result<()> {
 }
 
 impl Keys {
-    /// Whether no key is missing that has no default, of a file with these channels: where none is chosen yet, one of several may be a reference.
+    /// Whether no key is missing that has no default, of a file with these channels: where none is chosen
+    /// yet, one of several may be a reference.
     fn complete(&self, channels: &[Header]) -> Result<()> {
         let (pulses, edge) = (self.pulses_per_turn.is_some(), self.edge.is_some());
         let reference = self.reference.is_some();
@@ -199,7 +201,8 @@ impl Keys {
         })
     }
 
-    /// The drill of a record, with its figures and tables; `each` turn of the average is handed out as it comes.
+    /// The drill of a record, with its figures and tables; `each` turn of the average is handed out as it
+    /// comes.
     ///
     /// # Errors
     /// If a file cannot be read, the record allows no answer, or `each` fails.

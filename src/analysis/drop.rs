@@ -33,7 +33,8 @@ pub struct Keys {
     /// Times between successive impacts of one train of bounces, in s
     #[cfg_attr(feature = "cli", arg(long, value_name = "A,B,C", value_delimiter = ','))]
     pub intervals: Vec<f64>,
-    /// How long an impact lasts, in s: taken off each interval, which runs from beginning to beginning [default: as a force shows it, else 0]
+    /// How long an impact lasts, in s: taken off each interval, which runs from beginning to beginning
+    /// [default: as a force shows it, else 0]
     pub contact_time: Option<f64>,
     /// Acceleration of free fall in m/s² [default: 9.80665]
     pub gravity: Option<f64>,

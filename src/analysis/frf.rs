@@ -24,8 +24,8 @@ use crate::units::notation::significant;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Part of the power of a reference that its strongest sine has, at least, where it is alone: 20 dB above all else. Noise and blows spread
-/// their power over all lines.
+/// Part of the power of a reference that its strongest sine has, at least, where it is alone: 20 dB above all
+/// else. Noise and blows spread their power over all lines.
 const ALONE: f64 = 0.99;
 /// Samples of a reference that are looked at first.
 const HEAD: usize = 1 << 16;
@@ -50,13 +50,16 @@ pub struct Keys {
     pub coherence: Option<PathBuf>,
     /// Lines with a lower coherence are left out [default: 0.5]
     pub least_coherence: Option<f64>,
-    /// Channel of the excitation in a time record, or FILE#CHANNEL: the frequency response function is computed first
+    /// Channel of the excitation in a time record, or FILE#CHANNEL: the frequency response function is
+    /// computed first
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
-    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both
+    /// [default: h1]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
-    /// Samples of a segment [default: 8192, or the whole of a shorter record; for blows, set by their ringing and spacing]
+    /// Samples of a segment [default: 8192, or the whole of a shorter record; for blows, set by their
+    /// ringing and spacing]
     pub segment: Option<usize>,
     /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
@@ -128,8 +131,8 @@ impl Keys {
         Err(Error::usage(format!("{key} without a reference"), expected).setting(key).set("reference", "1"))
     }
 
-    /// The functions of a file with their modes, figures, tables and files; the one that is taken from two of its channels, where a
-    /// reference is named.
+    /// The functions of a file with their modes, figures, tables and files; the one that is taken from two of
+    /// its channels, where a reference is named.
     ///
     /// # Errors
     /// If a file cannot be read, or no function is there.
@@ -183,7 +186,8 @@ impl Keys {
         all.into_iter().map(function).collect()
     }
 
-    /// Refuses a reference that is one sine: a function of it is known in one line, and noise over noise in all others.
+    /// Refuses a reference that is one sine: a function of it is known in one line, and noise over noise in
+    /// all others.
     fn refuse_sine(&self, source: &Source<'_>) -> Result<()> {
         let mut traces = self.taken().traces(source)?;
         let names: Vec<String> = traces.channels().iter().map(|meta| meta.name.clone()).collect();

@@ -15,7 +15,8 @@ use crate::units::notation::quantity;
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// Memory that the search works in, as a multiple of the trace: of ten million samples, 3.6 traces were measured in all.
+/// Memory that the search works in, as a multiple of the trace: of ten million samples, 3.6 traces were
+/// measured in all.
 const BESIDE: f64 = 3.0;
 
 /// How impacts are found, and what is known of them.

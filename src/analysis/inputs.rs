@@ -9,7 +9,8 @@ use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
 
-/// A line for the program, the campaign and `all` of its recordings, as `sha256sum` writes them; names are relative to the folder of the campaign.
+/// A line for the program, the campaign and `all` of its recordings, as `sha256sum` writes them; names are
+/// relative to the folder of the campaign.
 pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &Kept) -> String {
     all.sort();
     all.dedup();

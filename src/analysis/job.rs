@@ -91,7 +91,8 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record behind their name.
+    /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record
+    /// behind their name.
     pub fn answer(&mut self, kind: &str, records: Vec<Record>) {
         self.answers += records.len();
         let mut list = Vec::new();
@@ -173,7 +174,8 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// All that records of these sections rest on: their files, and what the campaign states but for other records.
+    /// All that records of these sections rest on: their files, and what the campaign states but for other
+    /// records.
     fn rests_on(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
         let (these, others): (Vec<&Kind>, Vec<&Kind>) =
             KINDS.iter().partition(|kind| sections.contains(&kind.section));
@@ -194,7 +196,8 @@ impl<'a> Job<'a> {
         digest(words.chain(files))
     }
 
-    /// Measures the record of each table by itself. One whose file is not there or cannot be read loses only itself.
+    /// Measures the record of each table by itself. One whose file is not there or cannot be read loses only
+    /// itself.
     ///
     /// # Errors
     /// If the campaign cannot be read.
@@ -296,7 +299,8 @@ pub struct Record {
     pub answer: Answer,
 }
 
-/// What one kind of record adds to the report: its heading, and which tables, figures, long tables and findings.
+/// What one kind of record adds to the report: its heading, and which tables, figures, long tables and
+/// findings.
 pub(super) type Part = (&'static str, [Range<usize>; 4]);
 
 /// How many tables, figures, long tables and findings an answer has.
@@ -343,8 +347,8 @@ pub struct Ran {
 /// Does all that a campaign asks for, and writes it to `output`.
 ///
 /// # Errors
-/// If no record was answered and one of them could not be read; if a file cannot be found or written; if a file that is not vibro's stands in
-/// the way.
+/// If no record was answered and one of them could not be read; if a file cannot be found or written; if a
+/// file that is not vibro's stands in the way.
 pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn Progress) -> Result<Ran> {
     // What an earlier run has read and kept is an input, too.
     let files = files_of(campaign)?;

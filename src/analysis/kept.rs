@@ -1,4 +1,5 @@
-//! Answers and pictures that are kept for the next run: asked again is only what rests on other words, other files or another program.
+//! Answers and pictures that are kept for the next run: asked again is only what rests on other words, other
+//! files or another program.
 
 use crate::error::Result;
 use crate::read::{Digest, Folder};
@@ -54,7 +55,8 @@ impl Kept {
         self.old.contains_key(on)
     }
 
-    /// What rests on this, as it was kept; else it is made, and kept unless one of the files changed meanwhile.
+    /// What rests on this, as it was kept; else it is made, and kept unless one of the files changed
+    /// meanwhile.
     ///
     /// # Errors
     /// Those of making it; they are not kept.

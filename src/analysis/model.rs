@@ -1,4 +1,5 @@
-//! The model of a rig: `vibro model`, one file a question; figures of its orbits, motions, sweeps, maps, and of the choice of a model.
+//! The model of a rig: `vibro model`, one file a question; figures of its orbits, motions, sweeps, maps, and
+//! of the choice of a model.
 
 pub mod branch;
 pub mod choose;
@@ -22,7 +23,8 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct SceneKeys {
-    /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, tables excitation, contact, buffer [default: the thesis' rig]
+    /// Rig as a TOML file: m1 m2 k1 k2 c1 c2 gap restitution, tables excitation, contact, buffer [default:
+    /// the thesis' rig]
     #[cfg_attr(feature = "cli", arg(index = 1))]
     pub rig: Option<PathBuf>,
     /// Set a key of the rig, tables with a dot: gap=0.5e-3, contact.stiffness=1e5
@@ -46,7 +48,8 @@ struct Driven {
 }
 
 impl SceneKeys {
-    /// The scene: the file, then what is set, then the keys of the excitation. `frequency` in Hz replaces that of the excitation.
+    /// The scene: the file, then what is set, then the keys of the excitation. `frequency` in Hz replaces
+    /// that of the excitation.
     fn driven(&self, frequency: Option<f64>) -> Result<Driven> {
         let mut draft = self.rig.as_ref().map_or_else(|| Ok(Draft::default()), Draft::from_path)?;
         let missing = if self.rig.is_some() { draft.left_out() } else { Vec::new() };

@@ -32,7 +32,8 @@ pub(crate) struct Named {
 }
 
 impl Named {
-    /// Whether two tables of one file count one record twice: it is the same of the same kind, or a step of a sweep and a record of its own.
+    /// Whether two tables of one file count one record twice: it is the same of the same kind, or a step of a
+    /// sweep and a record of its own.
     fn is_again(&self, first: &Named) -> bool {
         let steps = [first, self].map(|named| named.section == sweep::Keys::SECTION);
         steps[0] != steps[1] || self.section == first.section && self.record == first.record

@@ -13,7 +13,8 @@ use crate::units::notation::{counted, shortest};
 use serde_json::json;
 use std::fmt::Write as _;
 
-/// Lays out all that is shown, with the pictures of its figures: answers first, then kind by kind, then where they come from.
+/// Lays out all that is shown, with the pictures of its figures: answers first, then kind by kind, then where
+/// they come from.
 pub fn page(
     job: &Job<'_>,
     version: &str,

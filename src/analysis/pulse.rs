@@ -32,7 +32,8 @@ pub struct Keys {
     pub std: Option<f64>,
     /// Decelerated mass in kg, for stiffness and damping
     pub mass: Option<f64>,
-    /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no uncertainty]
+    /// Corner (-3 dB) of the instrument's Butterworth low-pass, in Hz, or none [default: not known, and no
+    /// uncertainty]
     #[cfg_attr(feature = "cli", arg(value_name = "HZ", value_parser = LowPass::typed))]
     pub low_pass: Option<LowPass>,
     /// Order of that low-pass, 1 to 10

@@ -56,8 +56,8 @@ pub fn in_order(files: &mut [PathBuf]) {
     files.sort_by(|a, b| natord::compare(&with_decimals(a), &with_decimals(b)));
 }
 
-/// A path in which all numbers have decimals of one length, so that they are in order as whole numbers are; the ending is no decimal, nor are parts
-/// of a date or a version.
+/// A path in which all numbers have decimals of one length, so that they are in order as whole numbers are;
+/// the ending is no decimal, nor are parts of a date or a version.
 fn with_decimals(path: &Path) -> String {
     let text = path.to_string_lossy();
     let dot = text.rfind('.').filter(|dot| !text[*dot..].contains(['/', '\\'])).unwrap_or(text.len());
@@ -84,7 +84,8 @@ pub fn is_pattern(folder: &Folder, name: &Path) -> bool {
     name.to_string_lossy().contains(['*', '?']) && !folder.exists(&folder.root().join(name))
 }
 
-/// The names of files in a folder that a name or a pattern with `*`, `?` or `[…]` means, numbers in them by value.
+/// The names of files in a folder that a name or a pattern with `*`, `?` or `[…]` means, numbers in them by
+/// value.
 ///
 /// # Errors
 /// If it is no pattern, no file has such a name, or one that has must not be read.
@@ -168,7 +169,8 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(all.iter().filter(new).cloned().collect())
 }
 
-/// What is said of files in the folder of a campaign that it does not name, and of what could not be looked at, where it is the folder's own.
+/// What is said of files in the folder of a campaign that it does not name, and of what could not be looked
+/// at, where it is the folder's own.
 ///
 /// # Errors
 /// As [`files`].

@@ -43,8 +43,8 @@ impl Source<'_> {
         self.reader()?.rate_of_base_band().from_path(self.path)
     }
 
-    /// As [`Source::recording`], with values at least of the channel that is meant and of those `also` named, of which what is made takes
-    /// `beside` times their memory.
+    /// As [`Source::recording`], with values at least of the channel that is meant and of those `also` named,
+    /// of which what is made takes `beside` times their memory.
     ///
     /// # Errors
     /// If the file cannot be read, or would take more memory than is allowed.

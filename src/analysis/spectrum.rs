@@ -21,12 +21,15 @@ use std::path::{Path, PathBuf};
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Keys {
-    /// One transform of the whole record, fft, or the average over segments, welch [default: welch; fft with tones]
+    /// One transform of the whole record, fft, or the average over segments, welch [default: welch; fft with
+    /// tones]
     #[cfg_attr(feature = "cli", arg(value_name = "METHOD", value_parser = crate::campaign::word::<Method>))]
     pub method: Option<Method>,
-    /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their uncertainties
+    /// Fit the N strongest sines of the whole record, 1 to 10: frequency, amplitude and phase with their
+    /// uncertainties
     pub tones: Option<usize>,
-    /// Samples of a segment [default: 8192, or the whole of a shorter record; for blows, set by their ringing and spacing]
+    /// Samples of a segment [default: 8192, or the whole of a shorter record; for blows, set by their
+    /// ringing and spacing]
     pub segment: Option<usize>,
     /// Overlap of the segments, 0 to below 1 [default: 0.5]
     pub overlap: Option<f64>,
@@ -46,7 +49,8 @@ pub struct Keys {
     /// Channel of the excitation, or FILE#CHANNEL, for the frequency response function
     #[serde(deserialize_with = "channel")]
     pub reference: Option<String>,
-    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both [default: h1]
+    /// FRF estimator: h1 for noise in the response, h2 for noise in the excitation, hv for noise in both
+    /// [default: h1]
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Estimator>))]
     pub estimator: Option<Estimator>,
     /// Hammer test: one segment for each blow; the level before the blow is removed

@@ -53,8 +53,8 @@ impl<K> Entry<K> {
 }
 
 impl Campaign {
-    /// The tables of a section in their order, each with the error of a number that lies outside of its range; those of a record in a file have
-    /// the keys of `Reading` and `Channel`, too.
+    /// The tables of a section in their order, each with the error of a number that lies outside of its
+    /// range; those of a record in a file have the keys of `Reading` and `Channel`, too.
     ///
     /// # Errors
     /// If one has an unknown key, or a value of the wrong kind.
@@ -132,7 +132,8 @@ impl Campaign {
         words.collect::<Vec<&str>>().join("\n")
     }
 
-    /// An error about a table: it points at the line of the key that the error names as its setting, else at the table.
+    /// An error about a table: it points at the line of the key that the error names as its setting, else at
+    /// the table.
     pub(crate) fn fault<K>(&self, entry: &Entry<K>, error: Error) -> Error {
         let place = |key| entry.places.iter().find(|(name, _)| name == key);
         let span = error.settings().find_map(place).map_or(&entry.head, |(_, span)| span).clone();

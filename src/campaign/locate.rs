@@ -61,7 +61,8 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
     }
 }
 
-/// A line that is no TOML, or has a value of another kind: its key, what was to stand there, and the value that is meant.
+/// A line that is no TOML, or has a value of another kind: its key, what was to stand there, and the value
+/// that is meant.
 fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, String)> {
     let (key, value) = line.split_once('=').or_else(|| line.split_once(':'))?;
     let stated = uncommented(value).trim();

@@ -1,11 +1,12 @@
-//! Ranges of the numbers that options of the command line and keys of a campaign take: the one table that both are checked with.
-//! A model checks the values of a rig, its excitation and what is asked of them itself: [`crate::model::Parameter`].
+//! Ranges of the numbers that options of the command line and keys of a campaign take: the one table that
+//! both are checked with. A model checks the values of a rig, its excitation and what is asked of them
+//! itself: [`crate::model::Parameter`].
 
 use crate::error::{Error, Result};
 use toml::de::DeValue;
 
-/// Largest value of any quantity, and least one that is not 0: estimators multiply at most six values of a person, and such products
-/// stay within 10^±308.
+/// Largest value of any quantity, and least one that is not 0: estimators multiply at most six values of a
+/// person, and such products stay within 10^±308.
 const LARGEST: f64 = 1e50;
 const LEAST: f64 = 1e-50;
 /// Longest and shortest time in s: thirty years, and less than any contact or sampling interval.

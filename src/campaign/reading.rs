@@ -1,4 +1,5 @@
-//! What a person knows of a file that the file does not say: keys of a campaign and options of the command line alike.
+//! What a person knows of a file that the file does not say: keys of a campaign and options of the command
+//! line alike.
 
 use super::value::channel;
 use crate::error::{Error, Result};

@@ -1,4 +1,5 @@
-//! Tables of a campaign that hold for all sweeps: what drives the rig, how it is predicted, what is computed and what is fitted.
+//! Tables of a campaign that hold for all sweeps: what drives the rig, how it is predicted, what is computed
+//! and what is fitted.
 
 use crate::error::Error;
 use crate::model::Parameter;
@@ -148,11 +149,12 @@ pub struct FitEntry {
     pub bounds: BTreeMap<Parameter, [f64; 2]>,
     /// Starting points. Default 8.
     pub starts: Option<usize>,
-    /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of them, and as much again as a slope
-    /// from the lowest to the highest frequency; and of the factor of the force, where that is not fitted. Default 0.01, which is said.
+    /// Relative standard uncertainty of the calibration of each mass' amplitudes: one factor for all of
+    /// them, and as much again as a slope from the lowest to the highest frequency; and of the factor of
+    /// the force, where that is not fitted. Default 0.01, which is said.
     pub calibration: Option<f64>,
-    /// Relative standard uncertainty of each amplitude for itself, beside the noise in its spectrum: how far a measurement that is repeated
-    /// strays. Default 0.
+    /// Relative standard uncertainty of each amplitude for itself, beside the noise in its spectrum: how far
+    /// a measurement that is repeated strays. Default 0.
     pub scatter: Option<f64>,
 }
 

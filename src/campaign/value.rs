@@ -22,7 +22,8 @@ pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
     Ok((number(a)?, number(b)?))
 }
 
-/// A part of a record between two times in s, `FROM:TO`; without one of them to its end or from its beginning.
+/// A part of a record between two times in s, `FROM:TO`; without one of them to its end or from its
+/// beginning.
 ///
 /// # Errors
 /// With what stands there.

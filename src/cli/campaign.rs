@@ -42,8 +42,8 @@ pub struct Compare {
     campaign: PathBuf,
     /// Allow files outside the folder of the campaign
     allow_outside: bool,
-    /// Parameters to fit, separated by commas: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a prior in
-    /// [fit] [default: those of [fit] in the campaign]
+    /// Parameters to fit, separated by commas: force, restitution, c1, c2, gap, k1, k2, and m1, m2 with a
+    /// prior in [fit] [default: those of [fit] in the campaign]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     fit: Vec<String>,
     /// Folder for the overlay and the fit as SVG, PNG and CSV
@@ -133,7 +133,8 @@ impl Run {
         all.map(|path| (path.clone(), within.stamp(&path))).collect()
     }
 
-    /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be answered.
+    /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be
+    /// answered.
     fn once(&self, json: bool) -> Result<u8> {
         let campaign = opened(&self.within(), &self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());

@@ -43,8 +43,8 @@ pub fn nothing(commands: &str, json: bool) -> u8 {
     2
 }
 
-/// Prints what clap has to say: help and version are no error, anything else is wrong usage, with `json` as an object on standard
-/// output as well.
+/// Prints what clap has to say: help and version are no error, anything else is wrong usage, with `json` as
+/// an object on standard output as well.
 pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     if !complaint.use_stderr() {
         // A closed pipe behind --help is no reason to complain.

@@ -35,7 +35,8 @@ pub struct Convert {
     reading: Reading,
 }
 
-/// Memory that a file takes while it is written, as a multiple of the values; measured of ten million samples with twenty digits.
+/// Memory that a file takes while it is written, as a multiple of the values; measured of ten million samples
+/// with twenty digits.
 const BESIDE: [(Target, f64); 5] =
     [(Target::Uff, 3.0), (Target::Csv, 4.5), (Target::Tsv, 4.5), (Target::Npy, 2.2), (Target::Wav, 1.2)];
 
@@ -104,7 +105,8 @@ struct Change {
     /// Integrations in time: 1 takes velocity to displacement, −1 to acceleration
     #[arg(default_value_t = 0, value_parser = clap::value_parser!(i8).range(-2..=2))]
     integrate: i8,
-    /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a differentiation
+    /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a
+    /// differentiation
     #[arg(requires = "integrate")]
     fmin: Option<f64>,
     /// Excitation frequency in Hz: the mean over whole periods is removed
@@ -206,7 +208,8 @@ impl Change {
     }
 }
 
-/// A channel that is named after its quantity takes the name of the new one: no displacement is called velocity.
+/// A channel that is named after its quantity takes the name of the new one: no displacement is called
+/// velocity.
 fn renamed(mut made: Trace, from: &Trace) -> Trace {
     let (before, after) = (from.meta.quantity, made.meta.quantity);
     if Quantity::from_name(&made.meta.name) == Some(before) && after != Quantity::Other {

@@ -94,7 +94,8 @@ impl super::Run for Init {
     }
 }
 
-/// The error of a campaign that cannot be read, with another advice where the file has no table of one: another program has made it.
+/// The error of a campaign that cannot be read, with another advice where the file has no table of one:
+/// another program has made it.
 fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
     let bytes = within.read(path).unwrap_or_default();
     let text = String::from_utf8_lossy(&bytes);

@@ -17,13 +17,15 @@ pub struct Model {
 
 #[derive(Debug, Subcommand)]
 enum Question {
-    /// All motions with one impact a period at one frequency, or those found with several, with existence and stability
+    /// All motions with one impact a period at one frequency, or those found with several, with existence and
+    /// stability
     Orbit(Asked<orbit::Keys>),
     /// Simulated motion: regime, traces, phase plane, Poincaré section
     Simulate(Asked<simulate::Keys>),
     /// All motions with one impact a period over frequency, with folds and stability limits
     Response(Asked<response::Keys>),
-    /// Motions with P impacts in Q cycles followed over frequency, force, gap or restitution, through folds, flips and grazing
+    /// Motions with P impacts in Q cycles followed over frequency, force, gap or restitution, through folds,
+    /// flips and grazing
     Continue(Asked<branch::Keys>),
     /// Simulated sweep of frequency or force; the state carries over from step to step
     Sweep(Asked<sweep::Keys>),

@@ -17,16 +17,18 @@ pub struct Precision {
     /// Only the methods of this kind: models or estimators [default: both]
     #[arg(value_name = "KIND", value_parser = crate::campaign::word::<Family>)]
     family: Option<Family>,
-    /// Show also the outcome of each method at its limits: right, refused, wrong, stalled, crashed, not asked
+    /// Show also the outcome of each method at its limits: right, refused, wrong, stalled, crashed, not
+    /// asked
     failures: bool,
     /// Use the results that `vibro precision --json` wrote to this file
     #[arg(conflicts_with = "quick")]
     results: Option<PathBuf>,
     /// Add results of another program from this file
     ///
-    /// The file is a JSON list with an object for each method and setting: scene (its name as printed here), method
-    /// (program, version and method), error (in what the scene's "Error:" names; null where it failed), `time_ns` (ns
-    /// of one answer), and, where wanted, setting and why (the reason of a failure). For example:
+    /// The file is a JSON list with an object for each method and setting: scene (its name as printed here),
+    /// method (program, version and method), error (in what the scene's "Error:" names; null where it
+    /// failed), `time_ns` (ns of one answer), and, where wanted, setting and why (the reason of a
+    /// failure). For example:
     ///
     /// `[{"scene": "scene C", "method": "Peer 1.0", "error": 2e-4, "time_ns": 7e5}]`
     ///

@@ -17,7 +17,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// Writes the figures and files of an answer where there is a folder for them, and prints it: as JSON, or its tables. Gives the exit code.
+/// Writes the figures and files of an answer where there is a folder for them, and prints it: as JSON, or its
+/// tables. Gives the exit code.
 ///
 /// # Errors
 /// If a file or standard output cannot be written.
@@ -49,8 +50,8 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     Ok(0)
 }
 
-/// A folder to write into, with figures in the style that was asked for, and what to type where something is in
-/// the way.
+/// A folder to write into, with figures in the style that was asked for, and what to type where something is
+/// in the way.
 ///
 /// # Errors
 /// As [`Output::new`].
@@ -69,7 +70,8 @@ pub fn unused(path: &Path) -> PathBuf {
     names.find(|path| !path.exists()).unwrap_or_default()
 }
 
-/// The folder for the results of a command, if one is named: nothing of a person's may stand there under the names of its files.
+/// The folder for the results of a command, if one is named: nothing of a person's may stand there under the
+/// names of its files.
 ///
 /// # Errors
 /// As [`Output::new`] and [`Output::expect`].

@@ -1,5 +1,5 @@
-//! What was typed, as the commands take it: patterns of file names become names where no shell did that, and options that once had the
-//! name of another one get their own, with a note.
+//! What was typed, as the commands take it: patterns of file names become names where no shell did that, and
+//! options that once had the name of another one get their own, with a note.
 
 use super::complain;
 use crate::analysis::matching;
@@ -20,11 +20,12 @@ const OLD: [(&str, &str, &str); 8] = [
     ("model choose", "--noise", "--noise-floor"),
 ];
 
-/// Commands that take several files: a pattern may mean many of them, elsewhere it means one. A file to write is never meant by a pattern.
+/// Commands that take several files: a pattern may mean many of them, elsewhere it means one. A file to write
+/// is never meant by a pattern.
 const SEVERAL: [&str; 2] = ["info", "restitution"];
 
-/// The files that a pattern stands for, in the order of their numbers; a word that means none as it is. As in a shell, a hidden file is meant
-/// by its dot only.
+/// The files that a pattern stands for, in the order of their numbers; a word that means none as it is. As in
+/// a shell, a hidden file is meant by its dot only.
 fn named(word: OsString, command: &str) -> Vec<OsString> {
     let pattern =
         word.to_str().filter(|w| w.contains(['*', '?']) && !w.starts_with('-') && !Path::new(w).exists());
@@ -40,7 +41,8 @@ pub fn pipes() -> bool {
     std::env::args_os().filter(|word| word == "-").count() > 1
 }
 
-/// Numbers of options with the unit that stands behind them as a word of its own, so that it is seen where it belongs: `--height 0.4 m`.
+/// Numbers of options with the unit that stands behind them as a word of its own, so that it is seen where it
+/// belongs: `--height 0.4 m`.
 fn with_units(mut typed: Vec<OsString>) -> Vec<OsString> {
     let is_unit =
         |unit: &str| without_unit("mass", &format!("1{unit}")).is_some() && !Path::new(unit).exists();

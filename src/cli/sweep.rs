@@ -22,7 +22,8 @@ use std::path::{Path, PathBuf};
 /// A stepped-sine sweep, and what its analyser stored.
 #[derive(Debug, clap::Args)]
 pub struct Source {
-    /// List file, hand-over file, campaign.toml#name, a folder, or time traces: one file a step, or a pattern
+    /// List file, hand-over file, campaign.toml#name, a folder, or time traces: one file a step, or a
+    /// pattern
     #[arg(index = 1, value_name = "SWEEP", required = true)]
     paths: Vec<String>,
     /// Repeat the thesis' script with its mistakes
@@ -40,7 +41,8 @@ pub struct Source {
 pub struct Taken {
     #[command(flatten)]
     sweep: Source,
-    /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity to displacement]
+    /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity
+    /// to displacement]
     #[arg(value_parser = clap::value_parser!(i8).range(-2..=2))]
     integrate: Option<i8>,
     /// Lines on both sides of the excitation that are searched for the peak

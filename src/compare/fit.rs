@@ -1,10 +1,12 @@
 //! Parameters of the rig from measured responses.
 //!
-//! Amplitudes of both masses and directions are compared with what a spectrum shows of the closed-form motions (one impact a cycle, or
-//! none). Which motion a step shows, a simulated sweep with the parameters found so far decides; parameters and motions are found in turn
-//! until both stay. Steps of any other pattern are left out and counted.
+//! Amplitudes of both masses and directions are compared with what a spectrum shows of the closed-form
+//! motions (one impact a cycle, or none). Which motion a step shows, a simulated sweep with the parameters
+//! found so far decides; parameters and motions are found in turn until both stay. Steps of any other pattern
+//! are left out and counted.
 //!
-//! [`data`] → [`problem`] (weighted residuals) → [`search`] (starting points) → [`converge`] (motions and parameters in turn) → [`answer`].
+//! [`data`] → [`problem`] (weighted residuals) → [`search`] (starting points) → [`converge`] (motions and
+//! parameters in turn) → [`answer`].
 
 mod answer;
 mod compliance;
@@ -47,12 +49,13 @@ const TURNS: usize = 6;
 const IDLE: usize = 2;
 /// One point more within one κ is better.
 const BETTER: f64 = 1.0;
-/// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes do not show it, and all that grows
-/// with them (gap, force, masses) is as uncertain.
+/// Relative standard uncertainty of calibrations where none is stated: that of a good sensor. Amplitudes do
+/// not show it, and all that grows with them (gap, force, masses) is as uncertain.
 const ASSUMED: f64 = 0.01;
 
-/// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the stated `force` (N; `None`: each
-/// point its measured one). With the stiffness of the `contact` (N/m) its compliance is taken out of the points.
+/// Finds the parameters that `entry` asks for from displacement responses, beginning with `rig` and the
+/// stated `force` (N; `None`: each point its measured one). With the stiffness of the `contact` (N/m) its
+/// compliance is taken out of the points.
 ///
 /// # Errors
 /// If nothing can be fitted, the entry is impossible, or there are fewer usable points than parameters.
@@ -96,7 +99,8 @@ fn found(
 /// The best answer of several starts, and where each start ended.
 fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Converged<'a>, Vec<End>)> {
     problem.enough(problem.data.clear())?;
-    // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start reached.
+    // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start
+    // reached.
     let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
     let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();
     let found: Vec<Result<Converged<'a>>> = reached.par_iter().map(|end| problem.converge(&end.u)).collect();

@@ -8,14 +8,15 @@ use crate::units::notation::significant;
 /// Force amplitude over excitation frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forcing {
-    /// Frequency in Hz and force in N of each point, rising in frequency; a single one where the force is the same for all points.
+    /// Frequency in Hz and force in N of each point, rising in frequency; a single one where the force is
+    /// the same for all points.
     points: Vec<(f64, f64)>,
     /// Whether it was measured at each point.
     measured: bool,
 }
 
-/// Neighbouring forces within this ratio are one level: a shaker's force drops by less at a resonance, and levels that are chosen differ by
-/// more.
+/// Neighbouring forces within this ratio are one level: a shaker's force drops by less at a resonance, and
+/// levels that are chosen differ by more.
 const LEVEL: f64 = 1.2;
 /// Part by which the measured force may differ from the stated one: a load cell is calibrated to 1 or 2 %.
 const DIFFERS: f64 = 0.05;
@@ -34,8 +35,8 @@ impl Forcing {
         (!points.is_empty()).then_some(Forcing { points, measured: true })
     }
 
-    /// The force of each of these responses, with findings: the stated one for all, else each its own. A sweep without one takes the median
-    /// of the others.
+    /// The force of each of these responses, with findings: the stated one for all, else each its own. A
+    /// sweep without one takes the median of the others.
     ///
     /// # Errors
     /// If no force is stated and none was measured.
@@ -96,7 +97,8 @@ impl Forcing {
         }
     }
 
-    /// Force in N of a point of the sweep, and its standard uncertainty: 0 where it is stated, taken from other points, or not known.
+    /// Force in N of a point of the sweep, and its standard uncertainty: 0 where it is stated, taken from
+    /// other points, or not known.
     pub(super) fn of(&self, point: &ResponsePoint) -> (f64, f64) {
         match point.force {
             Some(force) if self.measured => (force, point.force_std.unwrap_or(0.0)),
@@ -124,10 +126,11 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// Levels of force in order of their first sweep: indices into `forces`, the median of each sweep where known.
+/// Levels of force in order of their first sweep: indices into `forces`, the median of each sweep where
+/// known.
 ///
-/// Forces in order of size are split where one is more than 1.2 times that before it, so the order of the sweeps
-/// does not matter. A sweep of unknown force belongs to the first level.
+/// Forces in order of size are split where one is more than 1.2 times that before it, so the order of the
+/// sweeps does not matter. A sweep of unknown force belongs to the first level.
 pub fn levels(forces: &[Option<f64>]) -> Vec<Vec<usize>> {
     let mut known: Vec<(f64, usize)> =
         forces.iter().enumerate().filter_map(|(i, force)| Some(((*force)?, i))).collect();

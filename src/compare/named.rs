@@ -20,7 +20,8 @@ pub struct Named<T> {
 
 /// Resonances and jumps of a sweep of the frequency, both masses and directions together.
 ///
-/// The scatter from cycle to cycle counts as the uncertainty of a point, so that irregular stretches are not full of peaks.
+/// The scatter from cycle to cycle counts as the uncertainty of a point, so that irregular stretches are not
+/// full of peaks.
 pub fn named(swept: &Swept) -> (Vec<Named<Resonance>>, Vec<Named<Jump>>) {
     let sides = [(&swept.up, Direction::Up), (&swept.down, Direction::Down)];
     let mut curves: Vec<NamedCurve> = sides
@@ -54,7 +55,8 @@ mod tests {
     use crate::model::sweep::{Observable, Pace, Plan, apart};
     use crate::model::{Rig, Simulation, Sine};
 
-    /// The sweep of the thesis up has a peak of each kind: 5.58 Hz where the masses begin to meet, 10.59 Hz where they clap.
+    /// The sweep of the thesis up has a peak of each kind: 5.58 Hz where the masses begin to meet, 10.59 Hz
+    /// where they clap.
     #[test]
     fn the_peaks_of_the_thesis_are_named() {
         let pace = Pace::Rate { rate: 0.02, points: 2200 };

@@ -18,7 +18,8 @@ pub struct Level {
     pub force: f64,
     /// Sweeps.
     pub sweeps: Vec<String>,
-    /// The curve for figures: for the stated force, else for the mean of the measured forces of these sweeps.
+    /// The curve for figures: for the stated force, else for the mean of the measured forces of these
+    /// sweeps.
     #[serde(skip)]
     pub curve: Prediction,
 }
@@ -45,16 +46,18 @@ pub struct Overlay {
 /// Frequencies of the predicted curve: nearer to each other than the width of a line in a figure.
 const CURVE: usize = 1200;
 
-/// Overlays measured displacement responses (fundamentals of spectra) on the motions of the rig. `force` in N; where it is `None` each
-/// point is predicted for its own measured force, and the curve between points for the force between theirs.
+/// Overlays measured displacement responses (fundamentals of spectra) on the motions of the rig. `force` in
+/// N; where it is `None` each point is predicted for its own measured force, and the curve between points for
+/// the force between theirs.
 ///
-/// Each point is predicted by a simulated sweep through the points in their order: of coexisting solutions, history decides as in the
-/// measurement. Where contacts are rigid and the sweep reaches a motion of the closed form, that gives the amplitude. The ladder of models
-/// decides whether contacts are rigid, unless a model is named.
+/// Each point is predicted by a simulated sweep through the points in their order: of coexisting solutions,
+/// history decides as in the measurement. Where contacts are rigid and the sweep reaches a motion of the
+/// closed form, that gives the amplitude. The ladder of models decides whether contacts are rigid, unless a
+/// model is named.
 ///
 /// # Errors
-/// If no response names its mass and direction, no force is known, or the rig is impossible; if the model named needs what is not known
-/// of the contact.
+/// If no response names its mass and direction, no force is known, or the rig is impossible; if the model
+/// named needs what is not known of the contact.
 pub fn overlay(
     rig: &Rig,
     force: Option<f64>,
@@ -139,8 +142,8 @@ mod tests {
     use crate::measure::response::ResponsePoint;
     use crate::model::ladder::Model;
 
-    /// A sweep of mass 1 whose force rises from `force` by half a thousandth a step, with the amplitudes of the closed form
-    /// without impacts, F/|k − ω²m + iωc|.
+    /// A sweep of mass 1 whose force rises from `force` by half a thousandth a step, with the amplitudes of
+    /// the closed form without impacts, F/|k − ω²m + iωc|.
     fn free(name: &str, rig: &Rig, force: f64) -> Response {
         let point = |i: i32| {
             let (excitation, force) = (20.0 + 0.5 * f64::from(i), force * (1.0 + 5e-4 * f64::from(i)));
@@ -228,7 +231,8 @@ mod tests {
 
     #[test]
     fn a_mass_that_rings_on_rests_in_the_closed_form() {
-        // From impacts at 5 Hz up over the fold at 10.66 Hz (0.1 N, R 0.98): behind it the masses part and the struck one rings on.
+        // From impacts at 5 Hz up over the fold at 10.66 Hz (0.1 N, R 0.98): behind it the masses part and
+        // the struck one rings on.
         let rig = Rig { restitution: 0.98, ..Rig::thesis() };
         let mut sweep = free("m", &rig, 0.1);
         sweep.direction = Some(Direction::Up);

@@ -38,7 +38,8 @@ pub struct Pair {
     pub motion: Option<Kind>,
     /// Impacts/cycles of its pattern, or a word.
     pub regime: Option<String>,
-    /// What predicted the amplitude: the closed form where it has the motion of the simulated sweep, else the model that was simulated.
+    /// What predicted the amplitude: the closed form where it has the motion of the simulated sweep, else
+    /// the model that was simulated.
     pub model: Model,
     /// Stable motions of the closed form at this point: with more than one, history decides.
     pub choices: usize,
@@ -81,8 +82,8 @@ impl Course<'_> {
     }
 }
 
-/// A simulated motion is one of the closed form where both amplitudes agree to this part: what 300 cycles leave of the start near a border
-/// of stability.
+/// A simulated motion is one of the closed form where both amplitudes agree to this part: what 300 cycles
+/// leave of the start near a border of stability.
 const SETTLED: f64 = 0.02;
 
 /// The motion of the closed form that a simulation reached.
@@ -120,7 +121,8 @@ pub struct PeakPair {
     pub amplitude_difference: Option<f64>,
 }
 
-/// A predicted peak belongs to a measured one within this ratio of frequencies: a stiffness is known to a fifth.
+/// A predicted peak belongs to a measured one within this ratio of frequencies: a stiffness is known to a
+/// fifth.
 const NEAR: f64 = 1.1;
 
 /// Each measured resonance of a sweep with the predicted one nearest to it.
@@ -154,7 +156,8 @@ pub(super) fn peaks(sweep: &Swept<'_>, curve: &[Followed]) -> Vec<PeakPair> {
     response.resonances.iter().filter(|r| r.kind.is_maximum()).map(one).collect()
 }
 
-/// Top of a predicted curve at its grid point `i`: the vertex, or the point itself where the branch ends beside it.
+/// Top of a predicted curve at its grid point `i`: the vertex, or the point itself where the branch ends
+/// beside it.
 fn top(curve: &[Followed], closed: &[f64], i: usize) -> (f64, f64) {
     let near = [i - 1, i, i + 1];
     let heights = near.map(|k| closed[k]);
@@ -174,7 +177,8 @@ pub struct Score {
     pub without: usize,
     /// Predicted points with nothing to compare: both amplitudes are below the noise floor.
     pub faint: usize,
-    /// Median of |measured − predicted| over the larger of both, at points that are not faint; `None` without such points.
+    /// Median of |measured − predicted| over the larger of both, at points that are not faint; `None`
+    /// without such points.
     pub median_relative: Option<f64>,
     /// The largest of them.
     pub max_relative: Option<f64>,
@@ -185,8 +189,8 @@ pub struct Score {
 }
 
 impl Pair {
-    /// |measured − predicted| over the larger of both: twice or half as much as predicted is 50 %. `None` without a
-    /// prediction, and where both lie within the noise.
+    /// |measured − predicted| over the larger of both: twice or half as much as predicted is 50 %. `None`
+    /// without a prediction, and where both lie within the noise.
     fn deviation(&self) -> Option<f64> {
         let (predicted, residual) = (self.predicted?, self.residual?);
         let larger = predicted.max(self.measured.value);
@@ -213,7 +217,8 @@ pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
     }
 }
 
-/// A point is an outlier beyond this part of the larger amplitude: a sensor's calibration and its mounting stay below …
+/// A point is an outlier beyond this part of the larger amplitude: a sensor's calibration and its mounting
+/// stay below …
 const FAR: f64 = 0.05;
 /// … where it is also beyond so many standard uncertainties: chance takes one point of 1.7 million there.
 const SIGMAS: f64 = 5.0;

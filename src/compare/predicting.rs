@@ -20,7 +20,8 @@ pub(super) struct Swept<'a> {
 }
 
 impl<'a> Swept<'a> {
-    /// All displacement responses that name their mass and direction, with findings of their force, of which `stated` is in N.
+    /// All displacement responses that name their mass and direction, with findings of their force, of which
+    /// `stated` is in N.
     ///
     /// # Errors
     /// If there is no such response, or no force is known.
@@ -72,7 +73,8 @@ pub(super) struct Followed {
 }
 
 impl Course<'_> {
-    /// The curve that a sweep follows, in order of rising frequency: of the closed form where impacts take no time, else simulated.
+    /// The curve that a sweep follows, in order of rising frequency: of the closed form where impacts take no
+    /// time, else simulated.
     pub fn followed(&self, sweep: &Swept<'_>, curve: &Prediction) -> Vec<Followed> {
         let point = |frequency: f64, motion: Option<(Kind, [f64; 2])>| Followed {
             frequency,
@@ -122,7 +124,8 @@ pub struct Rungs {
 /// Frequencies at which the ladder is asked: two a Hz over both resonances of the thesis' rig.
 const ASKED: usize = 24;
 
-/// Asks the ladder at evenly spaced frequencies (Hz) of a sweep whether a model is good enough for the fundamental of the displacement.
+/// Asks the ladder at evenly spaced frequencies (Hz) of a sweep whether a model is good enough for the
+/// fundamental of the displacement.
 ///
 /// # Errors
 /// As [`choose_over`].
@@ -163,8 +166,8 @@ impl Predicting {
         Scene { rig: *rig, excitation, contact: self.contact, buffer: None }
     }
 
-    /// The model of all sweeps: the one named, else the highest one chosen for any stretch; rigid contacts for the rungs below and where none
-    /// can be chosen.
+    /// The model of all sweeps: the one named, else the highest one chosen for any stretch; rigid contacts
+    /// for the rungs below and where none can be chosen.
     pub fn model(&self, choices: &[Rungs]) -> Model {
         if let Some(named) = self.model.name {
             return named.model();
@@ -213,8 +216,9 @@ mod tests {
 
     #[test]
     fn history_goes_past_a_stretch_where_the_impacting_motion_is_unstable() {
-        // Between 7.0 and 7.3 Hz the motion with one impact a cycle has lost its stability and the one without impacts is possible, but a
-        // sweep up goes on with impacts to the fold at 10.66 Hz; a sweep down comes without.
+        // Between 7.0 and 7.3 Hz the motion with one impact a cycle has lost its stability and the one
+        // without impacts is possible, but a sweep up goes on with impacts to the fold at 10.66 Hz; a
+        // sweep down comes without.
         let rig = Rig { restitution: 0.98, ..Rig::thesis() };
         let contact = Some(ContactKeys { stiffness: Some(1e9), ..ContactKeys::default() });
         let predicting = Predicting { contact, ..Predicting::default() };
@@ -231,7 +235,8 @@ mod tests {
         let rig = Rig::thesis();
         let found = rungs(&rig, &Predicting::default(), 0.5, Direction::Up, (10.0, 10.6)).unwrap();
         assert_eq!(found.open.as_deref(), Some("contact.stiffness"));
-        // Between 1e4 N/m, in contact for 7 % of the cycle, and 1e9 N/m the answer moves by more than the 2 % that do not matter.
+        // Between 1e4 N/m, in contact for 7 % of the cycle, and 1e9 N/m the answer moves by more than the 2 %
+        // that do not matter.
         assert!(found.finding.as_ref().is_some_and(|f| f.get("part").unwrap() > 0.02), "{found:?}");
         assert_eq!(Predicting::default().model(&[found]), Model::Restitution);
         let model = ModelEntry { name: Some(Follows::KelvinVoigt), ..ModelEntry::default() };

@@ -88,9 +88,10 @@ impl Prediction {
 
     /// The motion a slow sweep in `direction` would show at each frequency, in order of rising frequency.
     ///
-    /// A sweep starts at rest, so without impacts where that is possible. Free motion lasts until it is no longer clear of
-    /// the other mass; impacts last until no orbit with impacts exists. `None` where impacts go on but no orbit with one
-    /// impact a cycle can be seen: the motion there has another pattern (after a flip, say) and is not predicted here.
+    /// A sweep starts at rest, so without impacts where that is possible. Free motion lasts until it is no
+    /// longer clear of the other mass; impacts last until no orbit with impacts exists. `None` where
+    /// impacts go on but no orbit with one impact a cycle can be seen: the motion there has another
+    /// pattern (after a flip, say) and is not predicted here.
     pub fn followed(&self, direction: Direction) -> Vec<Option<Motion>> {
         let mut kind = Kind::Free;
         let follow = |motions: &Vec<Motion>| {

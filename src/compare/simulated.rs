@@ -26,11 +26,12 @@ pub struct Simulated {
     pub regime: Regime,
 }
 
-/// A rig through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the first; state and phase of the force go on
-/// from point to point. Its contact follows `law`, or is rigid with the rig's restitution.
+/// A rig through `points` (frequency in Hz, force amplitude in N) in this order, from rest at the first;
+/// state and phase of the force go on from point to point. Its contact follows `law`, or is rigid with the
+/// rig's restitution.
 ///
-/// Each point has its own answer: an error where a parameter is impossible or the motion needs more events than can be followed, behind
-/// which the rig starts from rest again.
+/// Each point has its own answer: an error where a parameter is impossible or the motion needs more events
+/// than can be followed, behind which the rig starts from rest again.
 pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
     let Some(law) = law else { return swept(rig, points, |motion| read(motion, pace), rigid) };
@@ -38,8 +39,8 @@ pub fn simulated(rig: &Rig, law: Option<Law>, points: &[(f64, f64)], pace: Pace)
     swept(rig, points, |motion| read(motion, pace), soft)
 }
 
-/// As [`simulated`] with rigid contacts, but a point with more impacts than a plain pattern has is given up: a rig of wrong parameters could
-/// take minutes.
+/// As [`simulated`] with rigid contacts, but a point with more impacts than a plain pattern has is given up:
+/// a rig of wrong parameters could take minutes.
 pub(super) fn simulated_briefly(rig: &Rig, points: &[(f64, f64)], pace: Pace) -> Vec<Result<Simulated>> {
     let rigid = |sine: Sine, state, phase| Simulation::from_state(rig, &sine, state, phase);
     swept(rig, points, |motion| plain(motion).and_then(|()| read(motion, pace)), rigid)
@@ -124,8 +125,8 @@ mod tests {
             let Some(orbit) = real else { continue };
             assert_eq!(at.regime, Regime::Periodic { impacts: 1, cycles: 1 }, "{point:?}");
             for mass in 0..2 {
-                // After 300 cycles what is left of the start is below 0.95^300 = 2e-7 (multipliers up to 0.97 near a flip leave 1e-4);
-                // the gauge errs by 3e-6.
+                // After 300 cycles what is left of the start is below 0.95^300 = 2e-7 (multipliers up to 0.97
+                // near a flip leave 1e-4); the gauge errs by 3e-6.
                 let radius = orbit.spectral_radius().unwrap();
                 let left = radius.powi(300) + 2e-5;
                 let expected = orbit.fundamental[mass].norm();
@@ -142,8 +143,8 @@ mod tests {
         let law = Law::kelvin_voigt(1e9, rig.restitution, rig.reduced_mass()).unwrap();
         let [hard, stiff] = [None, Some(law)].map(|law| simulated(&rig, law, &points, PACE));
         for (a, b) in hard.iter().flatten().zip(stiff.iter().flatten()) {
-            // The contact lasts π√(M/k) = 2.3e-5 s, 2.5e-4 of the cycle; near the clapping resonance that counts some thirty times over
-            // (0.74 % of the cycle moves the impact speed by 21 %).
+            // The contact lasts π√(M/k) = 2.3e-5 s, 2.5e-4 of the cycle; near the clapping resonance that
+            // counts some thirty times over (0.74 % of the cycle moves the impact speed by 21 %).
             assert!((a.amplitude[0] / b.amplitude[0] - 1.0).abs() < 30.0 * 2.5e-4, "{a:?} {b:?}");
         }
     }

@@ -20,7 +20,8 @@ const MOST: usize = 256;
 /// Files of one kind in a row, at least, on average: in a mixture of two kinds by chance there are two.
 const IN_A_ROW: usize = 8;
 
-/// Values that are tried side by side at most, 80 bytes each in memory: larger files are tried one after the other.
+/// Values that are tried side by side at most, 80 bytes each in memory: larger files are tried one after the
+/// other.
 const TOGETHER: usize = 1 << 25;
 
 /// How many files of so many values one core tries before another begins.
@@ -83,9 +84,9 @@ pub(super) fn spread(n: usize, few: usize) -> Vec<usize> {
     if n <= few { (0..n).collect() } else { (0..few).map(|k| k * (n - 1) / (few - 1)).collect() }
 }
 
-/// Tries a few of `n` files. Where they do not agree it tries many, and where kinds stand in rows, their ends by
-/// halving. Files between two that agree are like them; in a mixture nothing is known of them. Gives the number of
-/// tries, too. What it tries does not depend on the number of cores.
+/// Tries a few of `n` files. Where they do not agree it tries many, and where kinds stand in rows, their ends
+/// by halving. Files between two that agree are like them; in a mixture nothing is known of them. Gives the
+/// number of tries, too. What it tries does not depend on the number of cores.
 fn tried<T: Clone + Send + Sync>(
     (n, share): (usize, usize),
     agree: impl Fn(&T, &T) -> bool,
@@ -155,7 +156,8 @@ impl Series {
         self.headers.iter().take(CHANNELS).map(|header| header.n).sum()
     }
 
-    /// What files have in common that are probably of one kind: names but for numbers, channels, and about as many values.
+    /// What files have in common that are probably of one kind: names but for numbers, channels, and about as
+    /// many values.
     fn kin(&self) -> String {
         let channel =
             |h: &Header| format!("\n{}|{}|{}|{:?}|{}", h.name, h.unit, h.kind, h.rate, h.n.max(1).ilog2());

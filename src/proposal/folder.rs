@@ -42,7 +42,8 @@ pub struct Series {
 type Member = (PathBuf, Vec<Header>);
 
 impl Inventory {
-    /// Lists and sorts the files of a folder that no table of `known` names; a sampling rate that is stated is that of files without one.
+    /// Lists and sorts the files of a folder that no table of `known` names; a sampling rate that is stated
+    /// is that of files without one.
     ///
     /// # Errors
     /// If a folder cannot be listed.
@@ -240,8 +241,8 @@ fn numbers(names: &[String]) -> Numbers {
     numbers
 }
 
-/// What stands before and behind the number by which a name differs from others that are like it but for one number; else behind the last. A
-/// name without a number is all before.
+/// What stands before and behind the number by which a name differs from others that are like it but for one
+/// number; else behind the last. A name without a number is all before.
 fn apart(name: &str, numbers: &Numbers) -> [String; 2] {
     let mut runs = runs(name);
     let varies = |run: &[String; 2]| numbers.get(run).is_some_and(|n| *n > 1);
@@ -270,7 +271,8 @@ fn signature(headers: &[Header]) -> String {
     headers.iter().map(one).collect::<Vec<_>>().join("\n")
 }
 
-/// Channels and sampling rates of files that are alike. Rates that are counted from times differ in their sixth digit.
+/// Channels and sampling rates of files that are alike. Rates that are counted from times differ in their
+/// sixth digit.
 pub(super) fn columns(headers: &[Header]) -> String {
     let rate = |h: &Header| h.rate.map_or_else(String::new, |rate| format!("{rate:.4e}"));
     headers.iter().map(rate).chain([signature(headers)]).collect::<Vec<_>>().join("\n")

@@ -28,7 +28,8 @@ impl Found {
         self.left.extend(more.left);
     }
 
-    /// The same of another file or of a pattern: its name, with which names of tables begin, how a table names it, and how a person is told.
+    /// The same of another file or of a pattern: its name, with which names of tables begin, how a table
+    /// names it, and how a person is told.
     pub fn renamed(&self, from: &str, [name, file, words]: [&str; 3]) -> Found {
         let table = |table: &Table| {
             let mut table = Table { files: words.to_owned(), ..table.clone() };

@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 
 /// Part by which steps of one sweep differ in length, at most: a step is stopped by hand, or by a clock.
 const LENGTH: f64 = 0.01;
-/// Part of the power of a force that its strongest sine has, at least, in a step of a sweep: a shaker that is driven through a resonance
-/// distorts, but its sine stays the larger part.
+/// Part of the power of a force that its strongest sine has, at least, in a step of a sweep: a shaker that is
+/// driven through a resonance distorts, but its sine stays the larger part.
 const SINE: f64 = 0.5;
 /// Files that tell whether to look at all.
 const FEW: usize = 8;
@@ -54,8 +54,9 @@ pub(super) fn all(series: Vec<Series>, folder: &Folder, kept: &Kept) -> Vec<Seri
     all.into_iter().flatten().collect()
 }
 
-/// Sweeps that are made of several of these series of steps. Frequencies tell which: a series that goes through those of a sweep once more
-/// is another sweep, and one of other frequencies, or of a few, belongs to it.
+/// Sweeps that are made of several of these series of steps. Frequencies tell which: a series that goes
+/// through those of a sweep once more is another sweep, and one of other frequencies, or of a few, belongs to
+/// it.
 fn sweeps(trial: &Trial<'_>, members: &[&Series], force: usize) -> Vec<(Vec<usize>, Series)> {
     let n = |k: usize| members[k].files.len();
     let Some(base) = (0..members.len()).rev().max_by_key(|k| n(*k)) else { return Vec::new() };
@@ -100,7 +101,8 @@ fn sweeps(trial: &Trial<'_>, members: &[&Series], force: usize) -> Vec<(Vec<usiz
     several.filter(|(_, one)| one.files.len() >= STEPS).collect()
 }
 
-/// A series of drops and the drops under other names that agree with it. Where two series have numbers in their names, names tell them apart.
+/// A series of drops and the drops under other names that agree with it. Where two series have numbers in
+/// their names, names tell them apart.
 fn drops(trial: &Trial<'_>, members: &[&Series]) -> Option<(Vec<usize>, Series)> {
     let (several, alone): (Vec<usize>, Vec<usize>) =
         (0..members.len()).partition(|k| members[*k].files.len() > 1);
@@ -137,7 +139,8 @@ impl Trial<'_> {
 }
 
 impl Series {
-    /// What files have in common that may be one series, however they are called: folder, columns and sampling rate.
+    /// What files have in common that may be one series, however they are called: folder, columns and
+    /// sampling rate.
     fn family(&self) -> String {
         let folder = Path::new(&self.files[0]).parent();
         format!("{folder:?}\n{:?}\n{}", self.reading.stated(), columns(&self.headers))

@@ -1,4 +1,5 @@
-//! What a person wrote down beside the recordings: lines that state a height, a mass or a sensitivity. They are shown, and never used.
+//! What a person wrote down beside the recordings: lines that state a height, a mass or a sensitivity. They
+//! are shown, and never used.
 
 use crate::read::Folder;
 use crate::record::shown;

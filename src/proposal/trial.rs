@@ -28,7 +28,8 @@ const FRICTION: [&str; 2] = ["decay-unexplained", "decay-changes"];
 const AVERAGES: usize = 4;
 const LONG: usize = 8192;
 
-/// Share of a record from the beginning of its decay on that is the decay, at least, where impacts in a row are possible too.
+/// Share of a record from the beginning of its decay on that is the decay, at least, where impacts in a row
+/// are possible too.
 const MOSTLY: f64 = 0.2;
 
 /// Part of a record before a decay that begins at once.
@@ -46,7 +47,8 @@ const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
 /// Files that may be steps of a sweep.
 pub(super) const STEPS: usize = 5;
 
-/// Values of a file that are tried: five minutes of eight channels at 51.2 kHz are 123 million, some minutes' work and 80 bytes each in memory.
+/// Values of a file that are tried: five minutes of eight channels at 51.2 kHz are 123 million, some minutes'
+/// work and 80 bytes each in memory.
 const VALUES: usize = 1 << 27;
 
 /// The table of a channel of a series, under a name.
@@ -344,7 +346,8 @@ impl Series {
     }
 }
 
-/// Whether this share of the steps of each sweep or more have an uncertainty, and one at least: one that is clipped makes no other kind of the rest.
+/// Whether this share of the steps of each sweep or more have an uncertainty, and one at least: one that is
+/// clipped makes no other kind of the rest.
 fn settled(heard: &Answer, share: f64) -> bool {
     let most = |of: &Evidence| match of {
         Evidence::Sweep { steps, sure, .. } => *sure as f64 >= share * *steps as f64 && *sure > 0,
@@ -359,13 +362,14 @@ fn begins(heard: &Answer) -> Option<f64> {
     Some(start / last)
 }
 
-/// Whether the answer is a decay that takes a small part of its record: where impacts in a row ring down, one of them is a decay, too.
+/// Whether the answer is a decay that takes a small part of its record: where impacts in a row ring down, one
+/// of them is a decay, too.
 fn is_brief(heard: &Answer) -> bool {
     matches!(heard.evidence.first(), Some(Evidence::Decay { start, end, last }) if end - start < MOSTLY * (last - start))
 }
 
-/// Whether impacts are as their tables have them: three or more in a row, few of them missed; two in a fall with one rebound; and none that return with
-/// the speed with which they came.
+/// Whether impacts are as their tables have them: three or more in a row, few of them missed; two in a fall
+/// with one rebound; and none that return with the speed with which they came.
 fn sensible(tables: &[Table], heard: &Answer) -> bool {
     let rebound = tables.iter().any(Table::lacks);
     match heard.evidence.first() {

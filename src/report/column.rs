@@ -27,8 +27,8 @@ pub(super) struct Formatted {
 pub(super) fn power(column: &Column, cells: &[&Cell]) -> i32 {
     let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
     let largest = values.map(f64::abs).fold(0.0, f64::max);
-    // A degree, a radian and a per cent are scaled already. Counts and other bare numbers are not rescaled, as no unit would say so; a
-    // power of ten stands with the number instead.
+    // A degree, a radian and a per cent are scaled already. Counts and other bare numbers are not rescaled,
+    // as no unit would say so; a power of ten stands with the number instead.
     let bare = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
     if bare { 0 } else { engineering(largest) }
 }
@@ -82,7 +82,8 @@ impl Formatted {
     }
 }
 
-/// Significant digits for measured values of unknown uncertainty: three, or as many up to five as tell them apart.
+/// Significant digits for measured values of unknown uncertainty: three, or as many up to five as tell them
+/// apart.
 fn told_apart(values: &[f64]) -> usize {
     let different = |digits| values.iter().map(|v| significant(*v, digits)).collect::<BTreeSet<_>>().len();
     (3..5).find(|digits| different(*digits) == different(5)).unwrap_or(5)

@@ -52,7 +52,8 @@ pub fn figures(
     Ok(drawn)
 }
 
-/// Matrix as CSV: a column of line frequencies, then one column a spectrum, headed by its excitation frequency.
+/// Matrix as CSV: a column of line frequencies, then one column a spectrum, headed by its excitation
+/// frequency.
 pub(crate) fn matrix_csv(matrix: &Waterfall) -> String {
     let mut text = String::from("frequency [Hz]");
     for excitation in &matrix.excitation {
@@ -75,8 +76,8 @@ pub(crate) fn matrix_csv(matrix: &Waterfall) -> String {
 /// Files that an analysis makes: name and content.
 pub type Files = Vec<(String, Vec<u8>)>;
 
-/// Records as CSV and UFF: binary where the text of data set 58 has too few digits for the abscissa. A finding says why there is no UFF
-/// where that has too few, too.
+/// Records as CSV and UFF: binary where the text of data set 58 has too few digits for the abscissa. A
+/// finding says why there is no UFF where that has too few, too.
 ///
 /// # Errors
 /// If there is nothing to write, or it cannot be written.
@@ -99,8 +100,8 @@ pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>
     Ok((files, None))
 }
 
-/// Names of the figures and tables of one kind of record, without endings. Behind them a campaign marks the files
-/// of each record.
+/// Names of the figures and tables of one kind of record, without endings. Behind them a campaign marks the
+/// files of each record.
 #[derive(Debug, Clone, Copy)]
 pub enum Names {
     /// By the numbers of the records, from 1.
@@ -132,7 +133,8 @@ const GREEK: [&str; 25] = [
     "nu", "xi", "omicron", "pi", "rho", "sigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
 ];
 
-/// A name as part of a file name that every system takes: ASCII letters and digits, Greek letters by their names, everything else one `_`.
+/// A name as part of a file name that every system takes: ASCII letters and digits, Greek letters by their
+/// names, everything else one `_`.
 pub(crate) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars().flat_map(char::to_lowercase) {

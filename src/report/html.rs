@@ -13,8 +13,8 @@ use std::fmt::Write;
 use std::io::Write as _;
 use vibro_figure::{Figure, Matrices, escaped};
 
-/// A report in the order in which it is read. Figures are drawn by a script, so that they can be searched and turned; a reader without
-/// scripts sees them as they are printed.
+/// A report in the order in which it is read. Figures are drawn by a script, so that they can be searched and
+/// turned; a reader without scripts sees them as they are printed.
 ///
 /// ```
 /// use vibroimpact::report::{Page, Table};
@@ -97,8 +97,8 @@ impl Page {
         self.element(&format!("<details><summary>{title}: {n} rows</summary>\n{html}</details>"))
     }
 
-    /// Adds a figure with its title and a caption below, as drawn for print and as data for the script; `files` are names of files beside
-    /// the page that hold the same picture.
+    /// Adds a figure with its title and a caption below, as drawn for print and as data for the script;
+    /// `files` are names of files beside the page that hold the same picture.
     pub fn figure(mut self, figure: &Figure, picture: &Picture, files: &[&str]) -> Page {
         let title = escaped(figure.title.trim_end_matches('.'));
         let mut below = escaped(&figure.caption);
@@ -129,9 +129,10 @@ impl Page {
         format!("<div class=\"panels\" data-figure=\"{number}\"></div>\n<noscript>\n{without}</noscript>\n")
     }
 
-    /// Adds sliders for the parameters of a rig, with the curves and the motion that it would have. `start` holds `rig` with its keys in SI units,
-    /// `force` in N, `stiffness` of the contact in N/m (0: rigid), `frequency` of the motion, `from` and `to` in Hz, `low` and `high` of
-    /// amplitudes in mm, and `measured`: `name`, `mass`, `down`, lists `x` in Hz and `y` in mm.
+    /// Adds sliders for the parameters of a rig, with the curves and the motion that it would have. `start`
+    /// holds `rig` with its keys in SI units, `force` in N, `stiffness` of the contact in N/m (0: rigid),
+    /// `frequency` of the motion, `from` and `to` in Hz, `low` and `high` of amplitudes in mm, and
+    /// `measured`: `name`, `mass`, `down`, lists `x` in Hz and `y` in mm.
     pub fn what_if(mut self, start: Value) -> Page {
         self.whatif = Some(start);
         self.element("<div id=\"what-if\"></div>\n<noscript><p>This part needs scripts.</p></noscript>")

@@ -1,4 +1,5 @@
-//! The one writer: a folder whose files appear together or not at all, and in which nothing of a person's is replaced.
+//! The one writer: a folder whose files appear together or not at all, and in which nothing of a person's is
+//! replaced.
 
 use super::Medium;
 use crate::error::{Error, Place, Result};
@@ -9,12 +10,14 @@ use std::path::{Component, Path, PathBuf};
 
 /// Folder into which files are written.
 ///
-/// Files are written beside their places under temporary names, and get their names together in [`Output::commit`]. A program that is
-/// killed before leaves the old results as they were; one that is killed in between leaves the file [`Output::INCOMPLETE`]. Nothing is
-/// forced to the disk: a power failure in the seconds after may still lose the new content.
+/// Files are written beside their places under temporary names, and get their names together in
+/// [`Output::commit`]. A program that is killed before leaves the old results as they were; one that is
+/// killed in between leaves the file [`Output::INCOMPLETE`]. Nothing is forced to the disk: a power failure
+/// in the seconds after may still lose the new content.
 ///
-/// A file that this run has opened as a measurement is never replaced. One that vibro did not write there, or that was changed since, is
-/// replaced only where [`Output::replace`] says so. The folder's [`Manifest`] tells them apart.
+/// A file that this run has opened as a measurement is never replaced. One that vibro did not write there, or
+/// that was changed since, is replaced only where [`Output::replace`] says so. The folder's [`Manifest`]
+/// tells them apart.
 #[derive(Debug)]
 pub struct Output {
     /// What its figures are drawn for.
@@ -54,7 +57,8 @@ impl Output {
     /// The file in which answers are kept for the next run.
     pub const KEPT: &str = ".vibro.kept";
 
-    /// A folder, made with its parents when the first file is written, so that a job that fails before leaves nothing.
+    /// A folder, made with its parents when the first file is written, so that a job that fails before leaves
+    /// nothing.
     ///
     /// # Errors
     /// If a file has its name.
@@ -104,7 +108,8 @@ impl Output {
         self.files.iter().map(|file| file.name.as_str())
     }
 
-    /// Looks, before anything is computed, whether a file stands in the way that has a name which may be written.
+    /// Looks, before anything is computed, whether a file stands in the way that has a name which may be
+    /// written.
     ///
     /// # Errors
     /// If one must not be replaced.
@@ -125,8 +130,8 @@ impl Output {
     /// Writes a file, or writes it anew.
     ///
     /// # Errors
-    /// If `name` is no plain name of a file, or that of a folder; if another program writes there, or the system
-    /// refuses.
+    /// If `name` is no plain name of a file, or that of a folder; if another program writes there, or the
+    /// system refuses.
     pub fn write(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
         let (path, bytes) = (self.path(name)?, bytes.as_ref());
         self.occupant(name)?;
@@ -142,8 +147,8 @@ impl Output {
         Ok(())
     }
 
-    /// Adds text at the end of a file that a person keeps and that held `before` when it was read. Nothing else is
-    /// written with it.
+    /// Adds text at the end of a file that a person keeps and that held `before` when it was read. Nothing
+    /// else is written with it.
     ///
     /// # Errors
     /// As [`Output::write`]; if the file changed meanwhile.
@@ -208,12 +213,12 @@ impl Output {
         Ok(Present::Replaceable)
     }
 
-    /// Gives the files their names, which it returns in the order in which they were written. Of a campaign, what the last run wrote and this
-    /// one did not goes.
+    /// Gives the files their names, which it returns in the order in which they were written. Of a campaign,
+    /// what the last run wrote and this one did not goes.
     ///
     /// # Errors
-    /// If what has a name must not be replaced; nothing is changed then. If the system refuses; the folder is then
-    /// marked as incomplete.
+    /// If what has a name must not be replaced; nothing is changed then. If the system refuses; the folder is
+    /// then marked as incomplete.
     pub fn commit(mut self) -> Result<Vec<String>> {
         let names: Vec<String> = self.written().map(str::to_owned).collect();
         if names.is_empty() {

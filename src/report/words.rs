@@ -1,6 +1,7 @@
 //! The only place where findings become sentences.
 //!
-//! One sentence a code, in the tables of `docs/findings.md`. A sentence is a template; in braces stands a fact of the finding:
+//! One sentence a code, in the tables of `docs/findings.md`. A sentence is a template; in braces stands a
+//! fact of the finding:
 //!
 //! | written | shown |
 //! |---|---|
@@ -77,7 +78,8 @@ pub fn sentence(finding: &Finding, voice: Voice) -> String {
 /// A finding, and the record that it is about: empty for all of them.
 pub type About = (String, Finding);
 
-/// The sentences of findings about records, doubts first. One that holds for several records stands once, behind their names.
+/// The sentences of findings about records, doubts first. One that holds for several records stands once,
+/// behind their names.
 pub fn sentences(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
     let all =
         graded(findings, voice).into_iter().filter(|(severity, _)| notes || *severity != Severity::Note);
@@ -119,8 +121,8 @@ struct Said<'a> {
 }
 
 impl Said<'_> {
-    /// Whether another sentence of the same code can stand with this one: it is the same, or differs in numbers and is about other records. A
-    /// doubt stands for itself.
+    /// Whether another sentence of the same code can stand with this one: it is the same, or differs in
+    /// numbers and is about other records. A doubt stands for itself.
     fn takes(&self, other: &Said<'_>) -> bool {
         let (a, b) = (self.finding, other.finding);
         let about = |record: &&str| record.is_empty() || self.of.contains(record);
@@ -165,8 +167,8 @@ fn differing(from: &Finding, finding: &Finding) -> Vec<String> {
     shown.collect()
 }
 
-/// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none itself, and the sentences
-/// of those that are not notes.
+/// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none
+/// itself, and the sentences of those that are not notes.
 pub fn put(answer: &mut Map<String, Value>, findings: &[About], voice: Voice) {
     let subjects = findings.iter().cloned().map(|(record, finding)| {
         if record.is_empty() || finding.subject.is_some() { finding } else { finding.about(record) }

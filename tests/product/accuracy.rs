@@ -1,6 +1,6 @@
-//! Estimators against truths: how near they come to the Cramér–Rao bound, and how often the truth lies in their intervals.
-//! Random cases with fixed seeds: a few in the quick tests, all in those that `cargo test --release -- --ignored` runs;
-//! `--nocapture` shows the figures.
+//! Estimators against truths: how near they come to the Cramér–Rao bound, and how often the truth lies in
+//! their intervals. Random cases with fixed seeds: a few in the quick tests, all in those that `cargo test
+//! --release -- --ignored` runs; `--nocapture` shows the figures.
 
 mod bounces;
 mod contact;

@@ -8,7 +8,8 @@ const DRAWS: u64 = 120;
 /// Standard deviation in s of a step.
 const WANDER: f64 = 1e-6;
 
-/// A sine at 12 Hz, sampled by a telephone whose every step is off, and its frequency with what is stated of it.
+/// A sine at 12 Hz, sampled by a telephone whose every step is off, and its frequency with what is stated of
+/// it.
 fn found(seed: u64) -> (f64, f64, f64) {
     let mut noise = Noise::new(seed);
     let mut t = 0.0;
@@ -39,7 +40,8 @@ fn the_uncertainty_of_a_frequency_holds_the_truth_where_the_clock_wanders() {
     assert!((mean.sqrt() / expected - 1.0).abs() < 0.15, "{} of {expected}", mean.sqrt());
 }
 
-/// A sine whose times are printed in whole milliseconds, at rates that no millisecond divides, once with a sample lost.
+/// A sine whose times are printed in whole milliseconds, at rates that no millisecond divides, once with a
+/// sample lost.
 #[test]
 fn a_tone_lies_within_its_uncertainty_where_times_have_few_digits() {
     for seed in 1..=DRAWS / 2 {

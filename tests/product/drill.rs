@@ -1,4 +1,5 @@
-//! `vibro drill` from the command line: the example's record against its truth, and input that allows no answer.
+//! `vibro drill` from the command line: the example's record against its truth, and input that allows no
+//! answer.
 
 #[allow(dead_code)]
 #[path = "../../crates/vibro-demo/src/hammer_drill/noise.rs"]
@@ -223,8 +224,9 @@ fn what_allows_no_answer_says_why() {
     for found in [&plain, &smooth] {
         assert_eq!((&found["bandwidth"], &found["impacts"]), (&off["bandwidth"], &off["impacts"]));
     }
-    // A low-pass at 500 Hz takes (47.7/500)⁴ = 8e-5 of a sine of 47.7 Hz; where 200 samples cut its 209.4, the ends of turns
-    // are no turning points, and smoothing there is of the whole record, not of the turn.
+    // A low-pass at 500 Hz takes (47.7/500)⁴ = 8e-5 of a sine of 47.7 Hz; where 200 samples cut its 209.4,
+    // the ends of turns are no turning points, and smoothing there is of the whole record, not of the
+    // turn.
     let stroke = |d: &Value| d["displacement"]["stroke"]["value"].as_f64().unwrap();
     for found in [&plain, &smooth] {
         assert!((stroke(found) / stroke(&off) - 1.0).abs() < 2e-3, "{} {}", stroke(found), stroke(&off));
@@ -292,7 +294,8 @@ fn a_mean_velocity_that_is_taken_off_is_told() {
         |mean: f64| json(&with(&csv(folder.path(), "mean.csv", |i| (tooth(i) + mean, pulse(i))), &[]));
     let [plain, moved] = [found(0.0), found(0.05)];
     assert!(finding(&plain, "drill-mean-removed").is_null());
-    // 0.2 m/s; half a turn at either end of a turn is of another tooth, 2 % higher at most: a quarter of that of 4 m/s.
+    // 0.2 m/s; half a turn at either end of a turn is of another tooth, 2 % higher at most: a quarter of that
+    // of 4 m/s.
     let mean = finding(&moved, "drill-mean-removed")["numbers"]["mean"].as_f64().unwrap();
     assert!((mean - 0.2).abs() < 0.02, "{mean}");
     // What is said to be taken off was taken off.
@@ -438,7 +441,8 @@ fn times_and_pulses_that_no_turn_can_hold_are_refused() {
 fn a_front_impact_and_a_rear_catch_are_two_groups() {
     let folder = tempfile::tempdir().unwrap();
     let mut noise = noise::Noise::new(5);
-    // 50 turns of 1024 samples. In front, at phase 0.3, from 6.5 to −1.5 m/s; behind, at 0.8, from −6 to 1 m/s; all vary by 2 %.
+    // 50 turns of 1024 samples. In front, at phase 0.3, from 6.5 to −1.5 m/s; behind, at 0.8, from −6 to 1
+    // m/s; all vary by 2 %.
     let turn = record::RATE / 50.0;
     let mut vary = |v: f64| v * (1.0 + 0.02 * noise.normal());
     let speeds: Vec<[f64; 4]> = (0..52).map(|_| [6.5, -1.5, -6.0, 1.0].map(&mut vary)).collect();
@@ -486,8 +490,8 @@ fn a_front_impact_and_a_rear_catch_are_two_groups() {
         assert_eq!(group["n"].as_u64().unwrap(), 49, "{group}");
         for (key, truth) in ["phase", "before", "after", "restitution"].into_iter().zip(truth) {
             let part = |what: &str| group[key][what].as_f64().unwrap();
-            // Five standard uncertainties of six degrees of freedom; a velocity that the half sine of a contact and a phase that
-            // samples hold to a part in 500.
+            // Five standard uncertainties of six degrees of freedom; a velocity that the half sine of a
+            // contact and a phase that samples hold to a part in 500.
             assert!((part("value") - truth).abs() < 5.0 * part("std") + 0.002 * truth.abs(), "{key} {group}");
         }
         let energy = 0.5 * 0.14 * truth[1].powi(2);
@@ -540,7 +544,8 @@ fn impacts_beyond_the_range_are_in_no_mean() {
             &["--mass", "0.14", "--struck-mass", "0.43"],
         ))
     };
-    // Speeds of 7.5 ± 0.15 m/s: a quarter of them is above 7.6 m/s, the standard uncertainty of the mean is a seventh of 0.15.
+    // Speeds of 7.5 ± 0.15 m/s: a quarter of them is above 7.6 m/s, the standard uncertainty of the mean is a
+    // seventh of 0.15.
     let some = limited(7.6);
     let impacts = some["impacts"].as_array().unwrap();
     let clipped = |i: &&Value| i["clipped"].as_bool().unwrap();
@@ -550,8 +555,9 @@ fn impacts_beyond_the_range_are_in_no_mean() {
     for impact in impacts {
         let number = |key: &str| impact[key].as_f64().unwrap();
         let truth = made.impacts.iter().find(|t| (t.time - number("time")).abs() < 5e-5).unwrap();
-        // The speed rises by 0.012 m/s a sample up to the contact, which takes three samples before its middle, and two samples
-        // at the limit are needed: 0.046 m/s, and four times 12 mm/s of noise.
+        // The speed rises by 0.012 m/s a sample up to the contact, which takes three samples before its
+        // middle, and two samples at the limit are needed: 0.046 m/s, and four times 12 mm/s of
+        // noise.
         if truth.before > 7.7 {
             assert!(clipped(&impact), "{impact} {}", truth.before);
         } else if truth.before < 7.55 {

@@ -1,4 +1,5 @@
-//! The example campaign's data are what its generator makes, byte for byte, and what is measured in them is what the rig did.
+//! The example campaign's data are what its generator makes, byte for byte, and what is measured in them is
+//! what the rig did.
 
 #[path = "../../crates/vibro-demo/src/two_mass_rig/analyser.rs"]
 mod analyser;
@@ -20,8 +21,8 @@ fn committed(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// The whole upward sweep is simulated; spectra are made where something happens: at its start, at both resonances, at the
-/// antiresonance between them, and just after the jump.
+/// The whole upward sweep is simulated; spectra are made where something happens: at its start, at both
+/// resonances, at the antiresonance between them, and just after the jump.
 #[test]
 fn the_upward_sweep_comes_out_again() {
     let shown = [1, 11, 22, 35, 36];
@@ -30,8 +31,8 @@ fn the_upward_sweep_comes_out_again() {
     measure(Direction::Up, usize::MAX, |point| {
         number += 1;
         let row = point.truth();
-        // An irregular motion doubles a difference in the last digit of a sine every few cycles: it need not come out
-        // again on a machine with another mathematics library.
+        // An irregular motion doubles a difference in the last digit of a sine every few cycles: it need not
+        // come out again on a machine with another mathematics library.
         if !row.contains("irregular") {
             assert!(truth.contains(&row), "TRUTH.csv lacks {row}");
         }
@@ -91,7 +92,8 @@ fn the_rig_is_found_again_in_its_spectra() {
         ];
         println!("{}: {resonance:?}, off by {off:.1?} standard deviations", response.name);
         assert!(off.iter().all(|z| z.abs() < 2.0), "{}: {off:?}", response.name);
-        // A thousandth of the frequency and half a hundredth of the height: covered, and not by stating nothing.
+        // A thousandth of the frequency and half a hundredth of the height: covered, and not by stating
+        // nothing.
         assert!(resonance.frequency_std.unwrap() < 2e-3 && resonance.amplitude_std.unwrap() < 5e-3 * height);
 
         let rows = truth.lines().map(|l| l.split(',').collect::<Vec<&str>>()).filter(|r| r[0] == direction);
@@ -123,7 +125,8 @@ fn the_rig_is_found_again_in_its_spectra() {
     assert_eq!((at_rest, limited), (25, 25));
 }
 
-/// The whole campaign measured again with the noise of these draws, and all that can be found of the rig fitted to each.
+/// The whole campaign measured again with the noise of these draws, and all that can be found of the rig
+/// fitted to each.
 fn fitted_again(draws: std::ops::RangeInclusive<u64>) -> Vec<Fit> {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig");
     let folder = tempfile::tempdir().unwrap();
@@ -173,8 +176,9 @@ fn apart(fit: &Fit) -> f64 {
 /// χ² of 7 degrees of freedom that is exceeded in 5 % of cases (Abramowitz & Stegun, table 26.8).
 const SEVEN: f64 = 14.067;
 
-/// Through files, spectra, integration, and sweeps: the fit begins at the truth, which is the rig of the campaign. Noise is another in each
-/// draw; what the converter's averaging takes off is the same in all and shifts them together, within what `calibration` allows.
+/// Through files, spectra, integration, and sweeps: the fit begins at the truth, which is the rig of the
+/// campaign. Noise is another in each draw; what the converter's averaging takes off is the same in all and
+/// shifts them together, within what `calibration` allows.
 #[test]
 fn the_truth_lies_within_the_joint_region_of_the_fit() {
     let apart = apart(&fitted_again(1..=1)[0]);

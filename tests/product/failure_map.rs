@@ -1,5 +1,5 @@
-//! At the borders of what they can, the library's own methods are right or refuse with a reason: none is wrong without a word,
-//! stalls or crashes.
+//! At the borders of what they can, the library's own methods are right or refuse with a reason: none is
+//! wrong without a word, stalls or crashes.
 
 use std::collections::HashSet;
 use vibroimpact::precision::{Cell, FailureMap, Outcome, estimators, models};
@@ -28,13 +28,14 @@ fn no_model_is_wrong_or_stalls_at_its_borders() {
     check(&map);
 }
 
-/// Scenes on the near side of a border, which a method must answer rightly: a map of refusals would be no use.
+/// Scenes on the near side of a border, which a method must answer rightly: a map of refusals would be no
+/// use.
 struct Near {
     method: &'static str,
     border: &'static str,
     scenes: &'static [&'static str],
-    /// Why they are answerable: from how the records are made, not from what came out. Scenes at the border itself, which are not
-    /// listed, may be right or refused.
+    /// Why they are answerable: from how the records are made, not from what came out. Scenes at the border
+    /// itself, which are not listed, may be right or refused.
     why: &'static str,
 }
 
@@ -256,25 +257,29 @@ fn estimators_are_right_or_refuse_at_their_borders() {
         |c: &Cell| NEAR.iter().any(|n| n.method == c.method && quantity(n.border) == quantity(&c.border));
     assert!(map.cells.iter().filter(|c| c.ours).all(listed));
     assert!(map.cells.iter().filter(|c| !c.ours && c.outcome == Outcome::Wrong).count() > 60);
-    // What is written by hand may crash on what it did not expect, but it is given records that a person would give it.
+    // What is written by hand may crash on what it did not expect, but it is given records that a person
+    // would give it.
     assert!(map.cells.iter().all(|c| c.outcome != Outcome::Crashed));
 }
 
-/// Share of errors further off than three standard uncertainties where these come from 30 free residuals (Student's distribution).
+/// Share of errors further off than three standard uncertainties where these come from 30 free residuals
+/// (Student's distribution).
 const ALLOWED: f64 = 5.39e-3;
 /// Chance that any method of such errors is said to be too often off.
 const CHANCE: f64 = 0.01;
 /// Methods of this library, for which that chance is made.
 const METHODS: usize = 8;
 
-/// How many of so many answers at all borders of a method may lie beyond three of the uncertainties that they state: the least number that chance
-/// exceeds for any of eight methods in fewer than one map of a hundred, where 0.54 % of answers do. That is the share of a standard
-/// uncertainty from 30 free residuals; a perfectly known one has 0.27 %.
+/// How many of so many answers at all borders of a method may lie beyond three of the uncertainties that they
+/// state: the least number that chance exceeds for any of eight methods in fewer than one map of a hundred,
+/// where 0.54 % of answers do. That is the share of a standard uncertainty from 30 free residuals; a
+/// perfectly known one has 0.27 %.
 fn limit(judged: usize) -> usize {
     exceeded(judged, ALLOWED, CHANCE / METHODS as f64)
 }
 
-/// The least number that more of `trials` independent events of probability `share` exceed with less than `chance` (binomial distribution).
+/// The least number that more of `trials` independent events of probability `share` exceed with less than
+/// `chance` (binomial distribution).
 fn exceeded(trials: usize, share: f64, chance: f64) -> usize {
     let odds = share / (1.0 - share);
     let mut term = (1.0 - share).powf(trials as f64);
@@ -305,7 +310,8 @@ fn the_number_that_chance_exceeds_is_that_of_the_binomial_distribution() {
     }
 }
 
-/// Student's density for 30 degrees of freedom, whose constant is 14.5·13.5·…·0.5/14!/√30 (Γ(15.5)/(Γ(15)√(30π))), by the midpoint rule.
+/// Student's density for 30 degrees of freedom, whose constant is 14.5·13.5·…·0.5/14!/√30
+/// (Γ(15.5)/(Γ(15)√(30π))), by the midpoint rule.
 #[test]
 fn the_share_that_is_allowed_is_that_of_thirty_free_residuals() {
     let gammas = (0..14).map(|i| (f64::from(i) + 1.5) / (f64::from(i) + 1.0)).product::<f64>() * 0.5;

@@ -1,4 +1,5 @@
-//! Records that were once answered wrongly, or not at all, with their truth. They were drawn by others, and are no part of the project.
+//! Records that were once answered wrongly, or not at all, with their truth. They were drawn by others, and
+//! are no part of the project.
 
 use crate::others_files::folder;
 use serde_json::Value;
@@ -76,7 +77,8 @@ fn blows_of_a_few_samples_have_a_mode() {
     }
 }
 
-/// Echoes of a room, 5 % after 4.1 ms and 3 % after 9.7 ms, are no bounces: R of four drops, of the usual three, and of one.
+/// Echoes of a room, 5 % after 4.1 ms and 3 % after 9.7 ms, are no bounces: R of four drops, of the usual
+/// three, and of one.
 #[test]
 fn drops_with_echoes_have_their_restitution() {
     let Some((_root, path)) = unpacked("drops_echo") else { return };

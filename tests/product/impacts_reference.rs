@@ -59,13 +59,15 @@ fn legacy_gives_what_the_script_printed() {
     }
 }
 
-/// Checks that found and true times belong together one by one, and gives the standard deviation of what is between them.
+/// Checks that found and true times belong together one by one, and gives the standard deviation of what is
+/// between them.
 fn matches(case: &str, found: &Impacts) -> f64 {
     let truth = truth(case);
     assert_eq!(found.n, truth.len(), "{case}: {:?}", found.findings);
     let off: Vec<f64> = found.times.iter().zip(&truth).map(|(a, b)| a - b).collect();
     let mean = off.iter().sum::<f64>() / off.len() as f64;
-    // The truth counts the first sample as one interval and names the middle of a pulse; onsets lie up to two samples earlier.
+    // The truth counts the first sample as one interval and names the middle of a pulse; onsets lie up to two
+    // samples earlier.
     assert!((-3.0 / RATE..0.0).contains(&mean), "{case}: {mean}");
     let worst = off.iter().map(|o| (o - mean).abs()).fold(0.0, f64::max);
     // No onset is further than a sample from where it belongs.

@@ -1,4 +1,5 @@
-//! Data flows one way: a folder of `src` uses only folders to its left. The compiler holds the direction of the crates below.
+//! Data flows one way: a folder of `src` uses only folders to its left. The compiler holds the direction of
+//! the crates below.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,8 +17,8 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Top-level modules that a text of code names behind `crate::` with their line numbers, lists over several lines
-/// included. Comments do not count.
+/// Top-level modules that a text of code names behind `crate::` with their line numbers, lists over several
+/// lines included. Comments do not count.
 fn used(code: &str) -> Vec<(usize, String)> {
     let code: String =
         code.lines().map(|l| l.find("//").map_or(l, |at| &l[..at])).collect::<Vec<_>>().join("\n");
@@ -89,4 +90,23 @@ fn the_test_sees_an_arrow() {
     assert_eq!(targets("let x = crate::cli::main();"), ["cli"]);
     assert_eq!(targets("use crate::{\n    read::{A, B},\n    report,\n};"), ["read", "report"]);
     assert!(targets("/// See [`crate::report`].").is_empty());
+}
+
+/// Comments are read beside code, which `rustfmt.toml` holds to as many columns.
+#[test]
+fn comments_fit_the_width_of_code() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    for folder in ["src", "crates", "tests", "examples"] {
+        sources(&root.join(folder), &mut files);
+    }
+    let mut wide = Vec::new();
+    for file in &files {
+        let text = std::fs::read_to_string(file).unwrap();
+        let lines = (1..).zip(text.lines());
+        let long =
+            lines.filter(|(_, line)| line.trim_start().starts_with("//") && line.chars().count() > 110);
+        wide.extend(long.map(|(number, _)| format!("{}:{number}", file.display())));
+    }
+    assert!(files.len() > 400 && wide.is_empty(), "{} files; longer: {wide:#?}", files.len());
 }

@@ -41,7 +41,8 @@ fn rows(text: &str) -> Vec<Row> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// How the equation amplifies roundings of its coefficients, large at a fold: size of its roots over the distance of the nearest other.
+/// How the equation amplifies roundings of its coefficients, large at a fold: size of its roots over the
+/// distance of the nearest other.
 fn condition(all: &[Orbit], orbit: &Orbit) -> f64 {
     let nearest = all
         .iter()
@@ -101,8 +102,8 @@ fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
     if row.radius.is_nan() {
         assert!(radius.is_nan() && v.stable == Some(false) && !row.stable, "{place}: radius {radius}");
     } else {
-        // Elements of the monodromy grow like accelerations over the approach speed; a double multiplier feels the root of
-        // that rounding.
+        // Elements of the monodromy grow like accelerations over the approach speed; a double multiplier
+        // feels the root of that rounding.
         let size = 1.0 + 40.0 / orbit.approach_velocity;
         let simple = (radius - row.radius).abs() < 1e-10 * size;
         let double = (radius - row.radius).abs() < (1e-15 * size).sqrt() * 10.0;
@@ -125,7 +126,8 @@ fn check_verdicts(row: &Row, orbit: &Orbit, place: &str) -> usize {
 /// Sampled quantities: exact ones here reach at least as far, and no further than a sample's distance allows.
 fn check_samples(row: &Row, orbit: &Orbit, place: &str) {
     let step = orbit.period() / SAMPLES;
-    // Slopes at the kinks of impact and impulse, and curvature elsewhere (harmonics of no more than ω and the natural frequencies).
+    // Slopes at the kinks of impact and impulse, and curvature elsewhere (harmonics of no more than ω and the
+    // natural frequencies).
     let mut slope = [0.0_f64; 2];
     for i in 0..=2000 {
         let state = orbit.state(orbit.period() * f64::from(i) / 2000.0);

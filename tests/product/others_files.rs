@@ -3,8 +3,8 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The folder of this name under `../shared/data`. Where it is absent a line says so past the capture of the test harness, which
-/// would swallow `eprintln!`: `.ci/run` counts these lines.
+/// The folder of this name under `../shared/data`. Where it is absent a line says so past the capture of the
+/// test harness, which would swallow `eprintln!`: `.ci/run` counts these lines.
 pub fn folder(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
     if path.is_dir() {

@@ -50,7 +50,8 @@ fn resonances_of_a_hammer_test() {
     for f in [62.0, 81.5, 96.5, 125.0, 140.5, 175.0] {
         assert!(near(&found, 0, f, 0.5), "{f}: {:?}", found["frf"][0]["findings"]);
     }
-    // Beside the peak at 41 Hz lies a dip that no single mode explains: it is named, and no mode is made of it.
+    // Beside the peak at 41 Hz lies a dip that no single mode explains: it is named, and no mode is made of
+    // it.
     let warnings = found["warnings"].to_string();
     let mut findings = found["findings"].as_array().unwrap().iter();
     let unexplained =
@@ -78,7 +79,8 @@ fn resonances_of_measured_accelerances() {
     }
 }
 
-/// Where a peak has enough lines, circle and half-power agree with the fit: the frequency within a line, the damping within a fifth.
+/// Where a peak has enough lines, circle and half-power agree with the fit: the frequency within a line, the
+/// damping within a fifth.
 #[test]
 fn three_methods_agree_on_measured_modes() {
     let Some(data) = data() else { return };
@@ -95,7 +97,8 @@ fn three_methods_agree_on_measured_modes() {
         };
         for method in ["circle fit", "half power"] {
             let Some(by) = of(method) else { continue };
-            // The peak at 81.5 Hz has no uncertainty, since two modes explain it better; the methods agree on its one.
+            // The peak at 81.5 Hz has no uncertainty, since two modes explain it better; the methods agree on
+            // its one.
             let (f, zeta) = (number(&mode["frequency"]["value"]), number(&mode["zeta"]["value"]));
             let std = mode["zeta"]["std"].as_f64().unwrap_or(0.0);
             if std > 0.1 * zeta {

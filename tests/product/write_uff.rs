@@ -112,7 +112,8 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Steps of two and one times a number of two digits in turn: few enough digits for text and single precision.
+/// Steps of two and one times a number of two digits in turn: few enough digits for text and single
+/// precision.
 fn uneven(first: u32, n: usize) -> Vec<f64> {
     (0..n).map(|i| f64::from(first) * (i + i.div_ceil(2)) as f64).collect()
 }

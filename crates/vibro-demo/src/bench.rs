@@ -39,7 +39,8 @@ fn bench(noise: &mut Noise) -> String {
         let shown = v + 1e-4 * noise.next();
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{:.10},{force:.6},{shown:.7}", f64::from(i) / 1024.0);
-        // The mean of two: noise mostly below a quarter of the rate, so that little of it lies between the samples.
+        // The mean of two: noise mostly below a quarter of the rate, so that little of it lies between the
+        // samples.
         let raw = 2.0 * noise.next();
         let next = 0.5 * (raw + before);
         before = raw;

@@ -1,5 +1,5 @@
-//! What the instruments of the drop test write: a ball that falls down a tube onto a plate, an accelerometer on the plate, and a contact trace of
-//! the shaken rig.
+//! What the instruments of the drop test write: a ball that falls down a tube onto a plate, an accelerometer
+//! on the plate, and a contact trace of the shaken rig.
 //!
 //! - `DROP01.CSV` … `DROP05.CSV`: drops from 0.57 m, recorded until after the second impact;
 //! - `BOUNCE.CSV`: one longer record with a train of bounces;
@@ -23,8 +23,8 @@ const GRAVITY: f64 = 9.806_65;
 /// Samples a second of the accelerometer: coarse, so that the files stay small.
 const RATE: f64 = 5000.0;
 
-/// Noise with a seed: splitmix64 (Steele, Lea and Flood 2014), and the sum of twelve uniform numbers less six, which is close to
-/// normal and needs no function of a mathematics library.
+/// Noise with a seed: splitmix64 (Steele, Lea and Flood 2014), and the sum of twelve uniform numbers less
+/// six, which is close to normal and needs no function of a mathematics library.
 struct Noise(u64);
 
 impl Noise {

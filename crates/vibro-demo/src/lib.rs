@@ -1,5 +1,6 @@
-//! Example campaigns with their recordings: the same every time, since the noise has fixed seeds and nothing depends on the clock. (Where the rig
-//! moves irregularly, at one step of the sweeps, the last bit of a sine decides, and with it the compiler.)
+//! Example campaigns with their recordings: the same every time, since the noise has fixed seeds and nothing
+//! depends on the clock. (Where the rig moves irregularly, at one step of the sweeps, the last bit of a sine
+//! decides, and with it the compiler.)
 //!
 //! ```
 //! let demo = vibro_demo::DEMOS.iter().find(|demo| demo.name == "bench").unwrap();

@@ -123,8 +123,8 @@ pub(super) enum Room {
     Tight,
     /// Some at both ends, for markers.
     Margin,
-    /// None, and the lower limit is a floor on which magnitudes stand: zero, or 60 dB under the largest, since
-    /// noise on a hundred spectra behind each other would hide all else.
+    /// None, and the lower limit is a floor on which magnitudes stand: zero, or 60 dB under the largest,
+    /// since noise on a hundred spectra behind each other would hide all else.
     Floor,
     /// This much above; below some, or none if the axis can begin at zero, which it does where the data come
     /// near.

@@ -161,7 +161,8 @@ impl Canvas {
     }
 }
 
-/// The whole document, laid out for `width` by `height` mm and so many times larger, with a name for readers that cannot see it.
+/// The whole document, laid out for `width` by `height` mm and so many times larger, with a name for readers
+/// that cannot see it.
 pub(super) fn document(
     (width, height): (f64, f64),
     scale: f64,
@@ -193,7 +194,8 @@ pub(super) fn document(
     svg
 }
 
-/// Text for use between tags and in attributes; characters that XML 1.0 forbids (2.2), and those that steer, become `\u{FFFD}`.
+/// Text for use between tags and in attributes; characters that XML 1.0 forbids (2.2), and those that steer,
+/// become `\u{FFFD}`.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -26,7 +26,8 @@ impl Drawing {
 const EDGE: f64 = 3.0;
 
 impl Figure {
-    /// Draws the figure: lays out the panels and draws them. Nothing outside is needed, so figures can be drawn at once.
+    /// Draws the figure: lays out the panels and draws them. Nothing outside is needed, so figures can be
+    /// drawn at once.
     pub fn draw(&self) -> Drawing {
         // A size that is no size becomes the nearest that is.
         let millimetres = |v: f64| if v.is_nan() { 86.0 } else { v.clamp(20.0, 1000.0) };
@@ -73,7 +74,8 @@ fn sheets<'a>(figure: &'a Figure, columns: usize) -> Vec<Option<Sheet<'a>>> {
     figure.panels.iter().enumerate().map(sheet).collect()
 }
 
-/// Frames in rows and columns, all of one size, with the room that the neediest panel of a row or column takes.
+/// Frames in rows and columns, all of one size, with the room that the neediest panel of a row or column
+/// takes.
 struct Layout {
     page: Rect,
     columns: Vec<Insets>,
@@ -90,7 +92,8 @@ impl Layout {
         let rows = sheets.len().div_ceil(columns).max(1);
         let bare = |n: usize| vec![Insets::default(); n];
         let mut layout = Layout::filling(page, bare(columns), bare(rows));
-        // Ticks, hence the room for their numbers, and that of a legend depend on the size of the frame: thrice is enough.
+        // Ticks, hence the room for their numbers, and that of a legend depend on the size of the frame:
+        // thrice is enough.
         for _ in 0..3 {
             let (mut across, mut down) = (bare(columns), bare(rows));
             for (i, sheet) in sheets.iter().enumerate() {

@@ -62,7 +62,8 @@ pub struct Plot {
     pub notes: Vec<Note>,
     /// Where the names of the series stand.
     pub legend: Legend,
-    /// Whether it shows a panel before it once more, as on a logarithmic axis: a page that can change its axes leaves it out.
+    /// Whether it shows a panel before it once more, as on a logarithmic axis: a page that can change its
+    /// axes leaves it out.
     pub again: bool,
 }
 

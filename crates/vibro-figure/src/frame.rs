@@ -179,8 +179,8 @@ pub(super) fn draw(canvas: &mut Canvas, place: &Place<'_>, named_x: bool, outsid
     }
 }
 
-/// A name turned to read upwards, its baseline at `x`, beside the middle of `frame` and no longer than fits from
-/// a little above it to `below` its lower edge.
+/// A name turned to read upwards, its baseline at `x`, beside the middle of `frame` and no longer than fits
+/// from a little above it to `below` its lower edge.
 pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below: f64) {
     const ABOVE: f64 = 4.0;
     let (name, size) = fitted(name, LARGE, frame.h + ABOVE + below);

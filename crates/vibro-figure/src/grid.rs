@@ -48,7 +48,8 @@ impl Grid {
         Grid { columns, kinds, rows: Vec::new() }
     }
 
-    /// Adds a row below: the group that it stands in with its neighbours, its name, the kind of each cell by its index.
+    /// Adds a row below: the group that it stands in with its neighbours, its name, the kind of each cell by
+    /// its index.
     pub fn row(mut self, group: &str, name: &str, cells: Vec<Option<usize>>) -> Grid {
         self.rows.push(Row { group: group.to_owned(), name: name.to_owned(), cells });
         self

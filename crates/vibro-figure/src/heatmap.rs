@@ -9,7 +9,8 @@ use vibro_record::{Error, Result};
 
 /// Values over a grid, row by row, such as magnitudes over excitation (rows) and frequency (columns).
 ///
-/// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. A missing value (NaN) stays white.
+/// The cell of a value reaches half way to its neighbours, so that rows and columns may be uneven. A missing
+/// value (NaN) stays white.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Heatmap {
     pub(super) x: Vec<f64>,
@@ -79,8 +80,8 @@ impl Heatmap {
     }
 
     /// Colours of so many cells across and down between the limits of two axes, from the top; none where
-    /// nothing was measured. Where several values fall in a cell it has the largest, so that no narrow line is
-    /// lost, or for classes the one in its middle.
+    /// nothing was measured. Where several values fall in a cell it has the largest, so that no narrow line
+    /// is lost, or for classes the one in its middle.
     pub(super) fn cells(&self, x: &Axis, y: &Axis, across: usize, down: usize) -> Array2<Option<Rgb>> {
         let (columns, rows) = (cover(&self.x, x, across), cover(&self.y, y, down));
         let bar = self.colour_axis();
@@ -152,7 +153,8 @@ pub(super) fn ascending(positions: &[f64], of: &str) -> Result<()> {
     }
 }
 
-/// From where to where each position has its cell: half way to its neighbours, and as far beyond the outer ones.
+/// From where to where each position has its cell: half way to its neighbours, and as far beyond the outer
+/// ones.
 fn spans(positions: &[f64]) -> Vec<(f64, f64)> {
     let steps: Vec<f64> = positions.windows(2).map(|w| w[1] - w[0]).collect();
     if steps.is_empty() {

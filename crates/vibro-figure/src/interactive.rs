@@ -8,9 +8,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 impl Figure {
-    /// The figure for a page: panels with axes, series and matrices, all values as the axes show them. Lists are base64 of 32-bit floats,
-    /// least significant byte first; matrices are put into those of the page, which the figure numbers. A panel that shows another once more is
-    /// left out. `None` where a page cannot draw a panel, as a table of classes.
+    /// The figure for a page: panels with axes, series and matrices, all values as the axes show them. Lists
+    /// are base64 of 32-bit floats, least significant byte first; matrices are put into those of the
+    /// page, which the figure numbers. A panel that shows another once more is left out. `None` where a
+    /// page cannot draw a panel, as a table of classes.
     pub fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let again = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
         let shown: Vec<&Panel> = self.panels.iter().filter(|panel| !again(panel)).collect();
@@ -31,8 +32,8 @@ impl Figure {
     }
 }
 
-/// The matrices of a page, each once: a waterfall and a map show the same. Base64 of 16-bit levels between `low` and `high` of the panel that
-/// shows it, logarithmic for magnitudes; 0 is a gap.
+/// The matrices of a page, each once: a waterfall and a map show the same. Base64 of 16-bit levels between
+/// `low` and `high` of the panel that shows it, logarithmic for magnitudes; 0 is a gap.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Matrices(Vec<String>);
 
@@ -195,8 +196,8 @@ fn floats(values: impl Iterator<Item = f64>) -> Value {
 /// Decades below the largest magnitude that levels reach.
 const DECADES: f64 = 8.0;
 
-/// 16-bit levels from 1 to 65535 between `low` and `high`: of log₁₀ where all are magnitudes, 8 decades at most, in steps of
-/// 0.03 %; what lies deeper is at the lowest level.
+/// 16-bit levels from 1 to 65535 between `low` and `high`: of log₁₀ where all are magnitudes, 8 decades at
+/// most, in steps of 0.03 %; what lies deeper is at the lowest level.
 fn levels(values: impl Iterator<Item = f64> + Clone, quantity: bool, matrices: &mut Matrices) -> Value {
     let finite = values.clone().filter(|v| v.is_finite());
     let magnitudes = quantity && finite.clone().all(|v| v >= 0.0) && finite.clone().any(|v| v > 0.0);

@@ -27,7 +27,8 @@ struct Entry {
 }
 
 impl KeyList {
-    /// Entries of all named series and classes; reference lines carry their names themselves. Headings have no sample.
+    /// Entries of all named series and classes; reference lines carry their names themselves. Headings have
+    /// no sample.
     pub fn new(series: &[Series], looks: &[Look], map: Option<&Heatmap>) -> KeyList {
         let mut entries: Vec<Entry> = Vec::new();
         for (series, look) in series.iter().zip(looks) {

@@ -35,7 +35,8 @@ impl Figure {
         }
     }
 
-    /// The figure in a column: panels under one another, each with the proportions that it had but no lower than three quarters of its width.
+    /// The figure in a column: panels under one another, each with the proportions that it had but no lower
+    /// than three quarters of its width.
     fn in_column(&self) -> Figure {
         if self.width <= COLUMN {
             return self.clone();
@@ -48,7 +49,8 @@ impl Figure {
 }
 
 impl Drawing {
-    /// The drawing in grey: the maps' colours are as light as their values, series and classes differ in level.
+    /// The drawing in grey: the maps' colours are as light as their values, series and classes differ in
+    /// level.
     fn grey(mut self) -> Drawing {
         let coloured = |part: &str| {
             let rgb = u32::from_str_radix(part.get(..6)?, 16).ok()?.to_be_bytes();

@@ -179,7 +179,8 @@ mod tests {
     const FRAME: Rect = Rect { x: 0.0, y: 0.0, w: 300.0, h: 200.0 };
 
     proptest! {
-        /// Four notes anywhere have room in a frame of this size, so none may cover another or leave the frame.
+        /// Four notes anywhere have room in a frame of this size, so none may cover another or leave the
+        /// frame.
         #[test]
         fn notes_stand_clear_of_each_other(points in prop::collection::vec((0.0..300.0f64, 0.0..200.0f64), 1..=4)) {
             let mut clutter = Clutter::default();

@@ -50,7 +50,8 @@ impl Drawing {
     }
 }
 
-/// Pixels of the largest picture: four times a double column as high as wide at 1200 dots per inch, in memory 1.1 GB.
+/// Pixels of the largest picture: four times a double column as high as wide at 1200 dots per inch, in memory
+/// 1.1 GB.
 const MOST: u64 = 280_000_000;
 
 /// Pixels that are opaque or not there, as a file with its resolution where one is stated.

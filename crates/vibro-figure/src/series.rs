@@ -23,8 +23,8 @@ pub struct Series {
     pub high: Vec<f64>,
     /// Colour.
     pub ink: Ink,
-    /// Dashes and width of a line: those that belong to the colour where there are none here. Points are joined
-    /// by a line where there are.
+    /// Dashes and width of a line: those that belong to the colour where there are none here. Points are
+    /// joined by a line where there are.
     pub stroke: Option<Stroke>,
     /// Form of markers: that which belongs to the colour where there is none here.
     pub marker: Option<Marker>,

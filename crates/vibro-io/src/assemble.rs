@@ -20,8 +20,8 @@ pub struct Spectral {
     pub doubt: Option<Finding>,
 }
 
-/// The record of values in SI units: a trace unless they stand over frequency, and a frequency response function where they
-/// are complex and their unit is a ratio of response to force.
+/// The record of values in SI units: a trace unless they stand over frequency, and a frequency response
+/// function where they are complex and their unit is a ratio of response to force.
 ///
 /// # Errors
 /// If complex values stand over time.
@@ -108,8 +108,8 @@ pub struct Judged {
     pub found: Option<Finding>,
 }
 
-/// Judges `values` (SI), of which half a unit in the last digit is `resolution`; `what` names them, e.g. `column "t"`. Instants that jitter stay as
-/// they are where they are `resampled`.
+/// Judges `values` (SI), of which half a unit in the last digit is `resolution`; `what` names them, e.g.
+/// `column "t"`. Instants that jitter stay as they are where they are `resampled`.
 pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str, resampled: bool) -> Judged {
     let n = values.len();
     let mean = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
@@ -162,7 +162,8 @@ fn between_gaps(instants: &[f64], resolution: f64, code: &'static str) -> Option
     Some(if all.len() <= LISTED { found.numbers("durations", durations) } else { found })
 }
 
-/// Part of half a printed digit by which equal steps may differ: binary numbers of s since 1970 are off by 1e-7 s.
+/// Part of half a printed digit by which equal steps may differ: binary numbers of s since 1970 are off by
+/// 1e-7 s.
 const EQUAL: f64 = 1e-2;
 
 /// Relative difference between the rate that a logger or a telephone was set to and that of its clock.
@@ -199,8 +200,8 @@ impl Abscissa {
         }
     }
 
-    /// The axis of `n` values. A stated rate wins, then a step, then what is stored. A step that is no step leaves numbered values, and so
-    /// does a file that says nothing.
+    /// The axis of `n` values. A stated rate wins, then a step, then what is stored. A step that is no step
+    /// leaves numbered values, and so does a file that says nothing.
     pub fn axis(self, n: usize, options: &Options, meta: &mut Meta) -> Axis {
         let Abscissa { kind, even, stored, resolution } = self;
         let silent = even.is_none() && stored.len() != n;
@@ -253,7 +254,8 @@ impl Abscissa {
     }
 }
 
-/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴, those of 64 to 2⁻⁵³.
+/// Sums of steps drift by rounding: a millionth of a step is no unevenness. Floats of 32 bits round to 2⁻²⁴,
+/// those of 64 to 2⁻⁵³.
 pub fn drift(values: &[f64], single: bool) -> f64 {
     let (first, last) = (values[0], values[values.len() - 1]);
     let drift = 0.5e-6 * (last - first) / (values.len() - 1).max(1) as f64;
@@ -261,7 +263,8 @@ pub fn drift(values: &[f64], single: bool) -> f64 {
     drift.max(first.abs().max(last.abs()) * digits / 2.0)
 }
 
-/// The kind of abscissa that a unit is of. Revolutions have the dimension of a frequency, yet are no frequency axis.
+/// The kind of abscissa that a unit is of. Revolutions have the dimension of a frequency, yet are no
+/// frequency axis.
 pub fn kind_of(unit: &Unit) -> Option<AxisKind> {
     match unit.quantity() {
         Quantity::Time => Some(AxisKind::Time),
@@ -296,7 +299,8 @@ mod tests {
         for n in [34, 65, 1003] {
             let printed = (0..n).map(|i| (0.7 + 0.1 * f64::from(i)).floor()).collect();
             let Judged { axis, found, .. } = from_values(AxisKind::Time, printed, 0.5, "column \"t\"", false);
-            // 0.7 + 0.1 i meets a whole second or just misses it by rounding: one sample in all that lie between.
+            // 0.7 + 0.1 i meets a whole second or just misses it by rounding: one sample in all that lie
+            // between.
             assert!((axis.step().unwrap() - 0.1).abs() < 0.1 / f64::from(n - 20), "{n}: {:?}", axis.step());
             assert_eq!(found.unwrap().code, "axis-rounded");
         }

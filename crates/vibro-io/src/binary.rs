@@ -26,7 +26,8 @@ pub enum Kind {
 const NUMBERS: [Kind; 10] = [I8, I16, I32, I64, U8, U16, U32, U64, F32, F64];
 
 impl Kind {
-    /// The number of this code; `codes` are those of signed integers of 1, 2, 4 and 8 bytes, of unsigned ones, and of floats of 4 and 8.
+    /// The number of this code; `codes` are those of signed integers of 1, 2, 4 and 8 bytes, of unsigned
+    /// ones, and of floats of 4 and 8.
     pub fn coded(code: u32, codes: [u32; 10]) -> Option<Kind> {
         codes.iter().position(|known| *known == code).map(|at| NUMBERS[at])
     }
@@ -43,7 +44,8 @@ impl Kind {
         }
     }
 
-    /// Adds the number that begins at byte `offset` of each row of `width` bytes to `out`; integers beyond 2⁵³ are rounded.
+    /// Adds the number that begins at byte `offset` of each row of `width` bytes to `out`; integers beyond
+    /// 2⁵³ are rounded.
     pub fn take(self, rows: &[u8], offset: usize, width: usize, big_endian: bool, out: &mut Vec<f64>) {
         let at = (rows, offset, width, big_endian);
         match self {

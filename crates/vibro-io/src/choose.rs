@@ -6,20 +6,23 @@ use crate::wav::Wave;
 use std::path::Path;
 use vibro_record::{Error, Meta, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel};
 
-/// Texts of fewer bytes are held, which saves reading them twice: their values take less than 256 MB, for a value takes two bytes with what ends it.
+/// Texts of fewer bytes are held, which saves reading them twice: their values take less than 256 MB, for a
+/// value takes two bytes with what ends it.
 const LONG: u64 = 64 << 20;
 
 impl Reader {
     /// Opens all time traces of a file to be read block by block.
     ///
     /// # Errors
-    /// As [`Reader::from_path`]; if the file holds no trace, or its traces have no sampling rate, or different rates,
-    /// lengths or start times: [`Reader::stream_channels`] takes those that belong together.
+    /// As [`Reader::from_path`]; if the file holds no trace, or its traces have no sampling rate, or
+    /// different rates, lengths or start times: [`Reader::stream_channels`] takes those that belong
+    /// together.
     pub fn stream(&self, path: impl AsRef<Path>) -> Result<Traces> {
         self.stream_channels(path, &[])
     }
 
-    /// As [`Reader::stream`] for some channels, by name or number from 1, in the order given; all where none is named.
+    /// As [`Reader::stream`] for some channels, by name or number from 1, in the order given; all where none
+    /// is named.
     ///
     /// # Errors
     /// As [`Reader::stream`]; if there is no such channel.
@@ -62,8 +65,8 @@ impl Reader {
         Traces::of_file(path, recording.findings, traces)
     }
 
-    /// One channel to be read block by block, behind the channel `reference` where there is one; a `calibration` multiplies it. Where
-    /// none is named it is the only one, or the only other one.
+    /// One channel to be read block by block, behind the channel `reference` where there is one; a
+    /// `calibration` multiplies it. Where none is named it is the only one, or the only other one.
     ///
     /// # Errors
     /// As [`Reader::stream_channels`]; if there are several channels and none was named.
@@ -103,7 +106,8 @@ impl Reader {
     }
 }
 
-/// The complaint that none of several channels, each with its place in the file, was chosen; one whose name is not its own goes by its number.
+/// The complaint that none of several channels, each with its place in the file, was chosen; one whose name
+/// is not its own goes by its number.
 fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
     let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
     let found = format!("{} channels, and none was chosen", names.len());
@@ -131,8 +135,8 @@ pub(crate) fn named<'a>(
 }
 
 impl Recording {
-    /// The trace that `channel` names, or by its number among the traces from 1; the only one where it is `None`. A
-    /// `calibration` multiplies the values.
+    /// The trace that `channel` names, or by its number among the traces from 1; the only one where it is
+    /// `None`. A `calibration` multiplies the values.
     ///
     /// ```
     /// use vibro_io::Reader;
@@ -145,8 +149,8 @@ impl Recording {
     /// ```
     ///
     /// # Errors
-    /// If there is no such trace, or several and none was named; if a calibration is not a number other than 0, or is given
-    /// for fractions of full scale without a unit.
+    /// If there is no such trace, or several and none was named; if a calibration is not a number other than
+    /// 0, or is given for fractions of full scale without a unit.
     pub fn trace(&self, channel: Option<&str>, calibration: Option<f64>) -> Result<Trace> {
         calibrated(self.chosen(channel)?.1.clone(), calibration)
     }
@@ -162,7 +166,8 @@ impl Recording {
         calibrated(Trace { values, ..trace.clone() }, calibration)
     }
 
-    /// The stored spectrum that `channel` names, or by its number among the spectra from 1; the only one where it is `None`.
+    /// The stored spectrum that `channel` names, or by its number among the spectra from 1; the only one
+    /// where it is `None`.
     ///
     /// # Errors
     /// If there is no such spectrum, or several and none was named.

@@ -23,7 +23,8 @@ use vibro_record::{Error, Place, Result};
 /// A SHA-256.
 pub type Digest = [u8; 32];
 
-/// The only way of a run to names and bytes. Paths are those that a person sees: the folder's own path and a name in it.
+/// The only way of a run to names and bytes. Paths are those that a person sees: the folder's own path and a
+/// name in it.
 ///
 /// ```
 /// use std::path::Path;
@@ -105,7 +106,8 @@ impl Folder {
         &self.root
     }
 
-    /// The path of a name in it; refused where it leads outside, by `..`, as an absolute name or through a link, unless that is allowed.
+    /// The path of a name in it; refused where it leads outside, by `..`, as an absolute name or through a
+    /// link, unless that is allowed.
     ///
     /// # Errors
     /// As said.
@@ -135,7 +137,8 @@ impl Folder {
             .setting("allow_outside"))
     }
 
-    /// Where a path leads through links, if that is outside. A file that is yet to be written lies where its folder does.
+    /// Where a path leads through links, if that is outside. A file that is yet to be written lies where its
+    /// folder does.
     fn leads_outside(&self, path: &Path) -> Option<PathBuf> {
         let (Side::Disk, false) = (&self.side, self.outside) else { return None };
         let root = real(&self.root)?;
@@ -182,7 +185,8 @@ impl Folder {
         self.occupant_by(path, |path| fs::metadata(path)) == Occupant::Folder
     }
 
-    /// The names of all that lies in the folder itself, hidden files too, in order; none where it cannot be listed.
+    /// The names of all that lies in the folder itself, hidden files too, in order; none where it cannot be
+    /// listed.
     pub fn names(&self) -> Vec<String> {
         let mut names: Vec<String> = match &self.side {
             Side::Disk => {
@@ -284,8 +288,8 @@ impl Folder {
         self.identity(path).is_some_and(|file| locked(&self.opened).contains(&file))
     }
 
-    /// What tells a file apart whatever its names are; nothing where there is none. `-` is the file that standard
-    /// input comes from.
+    /// What tells a file apart whatever its names are; nothing where there is none. `-` is the file that
+    /// standard input comes from.
     fn identity(&self, path: &Path) -> Option<PathBuf> {
         if matches!(self.side, Side::Memory(_)) {
             return Some(plain(path));

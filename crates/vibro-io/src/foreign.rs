@@ -81,7 +81,8 @@ pub fn complaint(source: &Source) -> Option<Error> {
         Named(endings, begins) => head.starts_with(begins) && endings.split(' ').any(|e| e == ending),
         Bytes(at, begins) => head.get(*at..).is_some_and(|head| head.starts_with(begins)),
     };
-    // MAT-files of version 7.3 are HDF5 and have a complaint of their own; one matrix of Octave reads as text.
+    // MAT-files of version 7.3 are HDF5 and have a complaint of their own; one matrix of Octave reads as
+    // text.
     let fine = |by: &By| match by {
         Bytes(_, OCTAVE) => encoding::decode(head).matches("# name:").count() < 2,
         _ => ending == "mat",

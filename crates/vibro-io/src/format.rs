@@ -34,7 +34,8 @@ pub(super) struct Entry {
     pub name: &'static str,
     /// Whether the first bytes are of this format.
     pub sniff: fn(head: &[u8], source: &Source) -> bool,
-    /// Reads the records of a source; for a `survey` the ends of their values are enough where the format can tell them in less memory.
+    /// Reads the records of a source; for a `survey` the ends of their values are enough where the format
+    /// can tell them in less memory.
     pub read: fn(&Source, &Options, survey: bool) -> Result<Contents>,
 }
 

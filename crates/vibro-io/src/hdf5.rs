@@ -5,9 +5,10 @@
 //!   run1           attributes fs = 51200
 //!   run1/velocity  dataset of n values or n × channels, attributes unit = "mm/s"
 //! ```
-//! The crate hdf5-reader reads the bytes. Datasets, the fields of tables and attributes become [`variables`]: numeric datasets are records, and so
-//! are the columns of those with two dimensions, of which the longer one is the samples unless an abscissa says otherwise. What MATLAB writes
-//! becomes variables ([`matlab`]) as in its other MAT-files. Links to other files are not followed.
+//! The crate hdf5-reader reads the bytes. Datasets, the fields of tables and attributes become [`variables`]:
+//! numeric datasets are records, and so are the columns of those with two dimensions, of which the longer one
+//! is the samples unless an abscissa says otherwise. What MATLAB writes becomes variables ([`matlab`]) as in
+//! its other MAT-files. Links to other files are not followed.
 
 mod file;
 mod lzf;
@@ -27,8 +28,8 @@ use vibro_record::{Finding, Result, Values};
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// What programs write for themselves, as [`Dialect::word`] gives it.
 const INTERNAL: &[&str] = &["class", "name", "dimensionlist", "dimensionlabels", "referencelist"];
-/// Names of what makes values of stored numbers: factor, offset and reference of the integers of an oscilloscope, factor and offset of
-/// any number, and the number that stands for a missing value.
+/// Names of what makes values of stored numbers: factor, offset and reference of the integers of an
+/// oscilloscope, factor and offset of any number, and the number that stands for a missing value.
 const SCALE: [&[&str]; 6] = [
     &["yinc", "yincrement"],
     &["yorg", "yorigin"],

@@ -5,7 +5,8 @@ use crate::assemble::{self, NOMINAL, Spectral};
 use vibro_record::lanes::Extremes;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
 
-/// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing is to be said of any of them.
+/// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing
+/// is to be said of any of them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Held {
     Values(Values),

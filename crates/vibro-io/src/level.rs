@@ -1,4 +1,5 @@
-//! Spectra that pass for something else: levels in decibels that pass for amplitudes, lines that pass for samples over time.
+//! Spectra that pass for something else: levels in decibels that pass for amplitudes, lines that pass for
+//! samples over time.
 
 use crate::assemble::{short, to_si};
 use crate::held::Contents;
@@ -98,7 +99,8 @@ fn levels(found: String) -> Error {
     Error::usage(found, "amplitudes, or levels with their reference").hint(hint).setting("unit")
 }
 
-/// The words by which a file says that its values are levels: their unit, or a header line that states unit, scale or level.
+/// The words by which a file says that its values are levels: their unit, or a header line that states unit,
+/// scale or level.
 pub fn decibels(meta: &Meta) -> Option<String> {
     if meta.unit.is_level() {
         return Some(meta.unit.symbol().to_owned());

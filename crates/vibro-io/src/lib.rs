@@ -6,7 +6,8 @@
 //! fn main() -> vibro_io::record::Result<()> {
 //!     let recording = vibro_io::Reader::new().from_path("bench.tdms")?;
 //!     let velocity = recording.trace(Some("velocity"), None)?; // by its name, or its number from 1
-//!     println!("{:?} Hz, {} values in {}", velocity.rate(), velocity.values.len(), velocity.meta.unit.symbol());
+//!     let unit = velocity.meta.unit.symbol();
+//!     println!("{:?} Hz, {} values in {unit}", velocity.rate(), velocity.values.len());
 //!     Ok(())
 //! }
 //! ```
@@ -36,8 +37,8 @@
 //! | `uff` | `uff`, `uff58` | Universal File Format, data sets 58 and 58b |
 //! | `csv`, `ascii` | `text` | tables with names; columns of numbers |
 //!
-//! Long time traces come block by block from [`Reader::stream`], a sweep of spectra from [`SweepReader`]. [`mod@write`] turns
-//! records into files again.
+//! Long time traces come block by block from [`Reader::stream`], a sweep of spectra from [`SweepReader`].
+//! [`mod@write`] turns records into files again.
 
 mod assemble;
 mod binary;

@@ -149,7 +149,8 @@ mod tests {
 
     #[test]
     fn the_part_of_a_hint_is_read() {
-        // 3.2e8 bytes a sample of two channels, more than any machine has: 3125 of 48 kHz are within the limit.
+        // 3.2e8 bytes a sample of two channels, more than any machine has: 3125 of 48 kHz are within the
+        // limit.
         let bytes = wave(4800);
         let reader = || Reader::new().max_memory(Limit(1e12)).beside(2e7 - 1.0);
         let said = reader().from_reader("x.wav", bytes.as_slice()).unwrap_err();
@@ -166,7 +167,8 @@ mod tests {
             let _ = writeln!(text, "{i},{}", 2 * i);
         }
         let read = |limit| Reader::new().max_memory(Limit(limit)).from_reader("x.csv", text.as_bytes());
-        // 20 000 rows of two columns and 3/4 beside them take 560 kB, as the first 64 KiB tell within their shorter rows: a quarter more.
+        // 20 000 rows of two columns and 3/4 beside them take 560 kB, as the first 64 KiB tell within their
+        // shorter rows: a quarter more.
         assert!(read(420_000.0).is_err());
         assert_eq!(read(840_000.0).unwrap().records[0].len(), 20_000);
     }

@@ -13,8 +13,9 @@
 //! X_Value         Force     Response   Comment
 //!                 0.914018  1.204792
 //! ```
-//! Source: National Instruments, "Specification for the LabVIEW Measurement File". A later segment begins with a head of its own behind a
-//! blank line; its channels are records of their own. What stands between `***Start_Special***` and `***End_Special***` is passed over.
+//! Source: National Instruments, "Specification for the LabVIEW Measurement File". A later segment begins
+//! with a head of its own behind a blank line; its channels are records of their own. What stands between
+//! `***Start_Special***` and `***End_Special***` is passed over.
 
 use super::missing::{self, Missing};
 use super::reader::Options;
@@ -233,7 +234,8 @@ impl<'h, 'a> Segment<'h, 'a> {
         Ok(Segment { general, head, columns, channels, comments })
     }
 
-    /// One record a channel that has values; those of a segment behind the first have its number behind their names.
+    /// One record a channel that has values; those of a segment behind the first have its number behind their
+    /// names.
     fn records(
         self,
         source: &Source,

@@ -1,14 +1,16 @@
-//! MATLAB's MAT-file: level 5 (`save -v6` and `-v7`), which scipy writes too, and level 4 (`save -v4`), which `PicoScope` writes.
+//! MATLAB's MAT-file: level 5 (`save -v6` and `-v7`), which scipy writes too, and level 4 (`save -v4`), which
+//! `PicoScope` writes.
 //!
 //! ```text
 //! level 5   124 bytes of text, version 0x0100, IM (little endian) or MI (big endian)
 //!           variable: kind 14, size, then elements: flags, dimensions, name, real part, imaginary part
 //!           variable: kind 15, size, then the same packed by zlib
-//! level 4   variable: type, rows, columns, complex or not, length of the name, name, real part, imaginary part
+//! level 4   variable: type, rows, columns, complex or not, length of the name, name, real and imaginary part
 //! ```
-//! A numeric vector is a record, and so is each column of a matrix; what stands in structs and cell arrays is named as MATLAB writes it:
-//! `bearing.gs`, `run(2).v`, `data{1}.x`. Scalars and texts are notes on the records of their struct. The abscissa comes from a vector
-//! `t` or `time` (`f`, `freq` or `frequency`) of the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and
+//! A numeric vector is a record, and so is each column of a matrix; what stands in structs and cell arrays is
+//! named as MATLAB writes it: `bearing.gs`, `run(2).v`, `data{1}.x`. Scalars and texts are notes on the
+//! records of their struct. The abscissa comes from a vector `t` or `time` (`f`, `freq` or `frequency`) of
+//! the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and
 //! `Tstart` ([`variables`]). The file knows no units, but a struct may state that of its vector (`Unit`).
 
 mod level4;
@@ -36,7 +38,8 @@ pub static DIALECT: Dialect = Dialect {
 /// What gives the variables of a file.
 type Parse = fn(&[u8], &Options) -> Result<Vec<(String, Content)>>;
 
-/// What reads a MAT-file, or which one it is that is not read here; `None` for other files. Level 4 has no signature: it is found only in a `named` file.
+/// What reads a MAT-file, or which one it is that is not read here; `None` for other files. Level 4 has no
+/// signature: it is found only in a `named` file.
 fn level(head: &[u8], named: bool) -> Option<std::result::Result<Parse, &'static str>> {
     const LEVEL_7: &str = "a MAT-file of version 7.3, which is HDF5";
     match head.get(124..128) {

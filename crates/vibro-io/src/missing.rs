@@ -36,7 +36,8 @@ pub(super) fn mark(values: &mut Values) -> Vec<usize> {
     }
 }
 
-/// Makes values of records that are not finite missing; where they are not `allowed`, their names and numbers are in the refusal.
+/// Makes values of records that are not finite missing; where they are not `allowed`, their names and numbers
+/// are in the refusal.
 ///
 /// # Errors
 /// If there are any and they are not `allowed`.

@@ -1,11 +1,12 @@
 //! Numbers as instruments print them.
 //!
-//! Beside what Rust's own parser reads: Fortran's `1.0D+03`, exponents without a letter (`1.234-101`), three-digit
-//! exponents, a decimal comma, blanks around and between sign and digits of a fixed-width field.
+//! Beside what Rust's own parser reads: Fortran's `1.0D+03`, exponents without a letter (`1.234-101`),
+//! three-digit exponents, a decimal comma, blanks around and between sign and digits of a fixed-width field.
 //!
-//! Results are correctly rounded: up to 19 digits are gathered in a 64-bit integer; where that integer is below 2⁵³ and
-//! the power of ten at most 10²², one multiplication or division of exact numbers gives the nearest double (Clinger,
-//! "How to read floating point numbers accurately", 1990, section 4); otherwise the digits go to the standard library.
+//! Results are correctly rounded: up to 19 digits are gathered in a 64-bit integer; where that integer is
+//! below 2⁵³ and the power of ten at most 10²², one multiplication or division of exact numbers gives the
+//! nearest double (Clinger, "How to read floating point numbers accurately", 1990, section 4); otherwise the
+//! digits go to the standard library.
 
 /// 10⁰ … 10²², all exact in a double.
 const POWERS: [f64; 23] = [
@@ -19,7 +20,8 @@ const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over
 /// What instruments print for infinity and for no number (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
 
-/// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives `None`.
+/// Parses one number with a decimal point. Blanks around it are allowed; anything else left over gives
+/// `None`.
 pub fn parse(text: &[u8]) -> Option<f64> {
     parse_with(text, b'.')
 }
@@ -39,12 +41,14 @@ pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     }
 }
 
-/// As [`parse_with`], where a person stated the decimal mark: then the other mark groups digits, also of whole numbers.
+/// As [`parse_with`], where a person stated the decimal mark: then the other mark groups digits, also of
+/// whole numbers.
 pub(crate) fn parse_stated(text: &[u8], decimal: u8) -> Option<f64> {
     parse_with(text, decimal).or_else(|| ungrouped(text.trim_ascii(), decimal, true))
 }
 
-/// Whether `text` is a whole number in groups of three digits between the marks that decimals have, too: `1,000`.
+/// Whether `text` is a whole number in groups of three digits between the marks that decimals have, too:
+/// `1,000`.
 pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     [b'.', b','].iter().any(|decimal| {
         !text.contains(decimal)
@@ -53,8 +57,8 @@ pub(crate) fn may_be_grouped(text: &[u8]) -> bool {
     })
 }
 
-/// A number whose digits stand in groups of three: between apostrophes or narrow blanks, or between the other mark where its own mark
-/// shows that it is the other or a person `stated` that.
+/// A number whose digits stand in groups of three: between apostrophes or narrow blanks, or between the other
+/// mark where its own mark shows that it is the other or a person `stated` that.
 #[cold]
 fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     let text = std::str::from_utf8(text).ok()?;
@@ -73,7 +77,8 @@ fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
     if threes { parse_with(text.replace(group, "").as_bytes(), decimal) } else { None }
 }
 
-/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `--.--`, `NA`, `1.#QNAN`, `***`, `OVER`, `9.9E+37`, …
+/// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `--.--`, `NA`, `1.#QNAN`,
+/// `***`, `OVER`, `9.9E+37`, …
 pub(crate) fn is_missing(text: &[u8]) -> bool {
     let text = text.trim_ascii();
     let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);
@@ -140,8 +145,9 @@ pub fn prefix(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     Some((if negative { -magnitude } else { magnitude }, at))
 }
 
-/// Parses a field of `W` characters as Fortran's `1PEw.d` and C's `%w.de` print it: a blank, a sign or blank, a digit, the
-/// point, `W` − 8 digits, `E`, a sign, two digits. `None` for every other field, which [`prefix`] may still read.
+/// Parses a field of `W` characters as Fortran's `1PEw.d` and C's `%w.de` print it: a blank, a sign or blank,
+/// a digit, the point, `W` − 8 digits, `E`, a sign, two digits. `None` for every other field, which
+/// [`prefix`] may still read.
 #[inline]
 pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
     if field[0] != b' ' || !matches!(field[1], b' ' | b'-') {
@@ -151,9 +157,11 @@ pub fn scientific<const W: usize>(field: &[u8; W]) -> Option<f64> {
     Some(if field[1] == b'-' { -magnitude } else { magnitude })
 }
 
-/// Parses all of `field` as a digit, the point, digits, `E`, a sign and two digits; `None` for everything else.
+/// Parses all of `field` as a digit, the point, digits, `E`, a sign and two digits; `None` for everything
+/// else.
 ///
-/// The loop over the digits has no branch: where the length of the field is known to the compiler it is unrolled.
+/// The loop over the digits has no branch: where the length of the field is known to the compiler it is
+/// unrolled.
 #[inline(always)]
 #[allow(clippy::inline_always)] // the length must be known to the compiler
 pub fn exponential(field: &[u8]) -> Option<f64> {
@@ -208,7 +216,8 @@ fn eight_digits(text: [u8; 8]) -> Option<u64> {
 /// A parser of fields of one length, made for that length.
 pub type Exponential = fn(&[u8]) -> Option<f64>;
 
-/// [`exponential`] for fields of `width` characters, made for that width; `None` for widths that instruments do not print.
+/// [`exponential`] for fields of `width` characters, made for that width; `None` for widths that instruments
+/// do not print.
 pub(crate) fn exponential_of(width: usize) -> Option<Exponential> {
     fn of<const W: usize>(field: &[u8]) -> Option<f64> {
         field.first_chunk::<W>().and_then(|field| exponential(field))
@@ -238,8 +247,8 @@ fn exponent_part(text: &[u8]) -> Option<(i32, usize)> {
         value = value.saturating_mul(10).saturating_add(i32::from(d));
         at += 1;
     }
-    // A letterless exponent has three digits: Fortran drops the letter only where the exponent needs the room.
-    // Without this rule `1.5-2` in a file of touching numbers would be read as one number.
+    // A letterless exponent has three digits: Fortran drops the letter only where the exponent needs the
+    // room. Without this rule `1.5-2` in a file of touching numbers would be read as one number.
     let enough = if lettered { at > from } else { at - from == 3 };
     enough.then_some((if negative { -value } else { value }, at))
 }

@@ -12,11 +12,12 @@ use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result};
 
-/// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and positive.
+/// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and
+/// positive.
 pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
 
-/// What a person knows of a file that the file does not say. A statement here that contradicts the file wins, with a
-/// finding in the record.
+/// What a person knows of a file that the file does not say. A statement here that contradicts the file wins,
+/// with a finding in the record.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Options {
     /// Keep NaN, Inf, over-range and blank values as missing (NaN) instead of refusing them.
@@ -107,7 +108,8 @@ impl Reader {
         self
     }
 
-    /// Keeps NaN, Inf, over-range words and blanks as missing values. Default: they are refused with their line numbers.
+    /// Keeps NaN, Inf, over-range words and blanks as missing values. Default: they are refused with their
+    /// line numbers.
     pub fn allow_missing(mut self, allow: bool) -> Reader {
         self.options.allow_missing = allow;
         self
@@ -125,7 +127,8 @@ impl Reader {
         self
     }
 
-    /// Takes a stated base band for that of a time trace, which analysers sample at 2.56 times their base band. Default: it is that of a spectrum.
+    /// Takes a stated base band for that of a time trace, which analysers sample at 2.56 times their base
+    /// band. Default: it is that of a spectrum.
     pub fn rate_of_base_band(mut self) -> Reader {
         self.options.rate_of_band = self.options.rate.is_none();
         self.options.rate = self.options.rate.or(self.options.base_band.take().map(|band| 2.56 * band));
@@ -150,20 +153,22 @@ impl Reader {
         self
     }
 
-    /// States whether rows of several columns continue each other as one series. Default: the header says it; where it does not and they look
-    /// so, it is asked.
+    /// States whether rows of several columns continue each other as one series. Default: the header says it;
+    /// where it does not and they look so, it is asked.
     pub fn wrapped(mut self, wrapped: Option<bool>) -> Reader {
         self.options.wrapped = wrapped;
         self
     }
 
-    /// States the part of time traces that is read, in s: from the first value on and before the second. Default: all.
+    /// States the part of time traces that is read, in s: from the first value on and before the second.
+    /// Default: all.
     pub fn span(mut self, span: Option<(f64, f64)>) -> Reader {
         self.options.span = span;
         self
     }
 
-    /// Takes, of traces whose samples have gaps, the stretch of this number from 1. Default: all samples, which have no rate then.
+    /// Takes, of traces whose samples have gaps, the stretch of this number from 1. Default: all samples,
+    /// which have no rate then.
     pub fn stretch(mut self, stretch: Option<usize>) -> Reader {
         self.options.stretch = stretch;
         self
@@ -181,13 +186,15 @@ impl Reader {
         self
     }
 
-    /// What is held beside the values by what is made of them, in their size: it counts for the memory that may be filled. Default: 0.
+    /// What is held beside the values by what is made of them, in their size: it counts for the memory that
+    /// may be filled. Default: 0.
     pub fn beside(mut self, times: f64) -> Reader {
         self.options.beside = times;
         self
     }
 
-    /// Asks for the values of these channels, by name or number from 1: others may come without. Default: all.
+    /// Asks for the values of these channels, by name or number from 1: others may come without. Default:
+    /// all.
     pub fn only(mut self, channels: impl IntoIterator<Item = String>) -> Reader {
         self.options.only = channels.into_iter().collect();
         self
@@ -204,7 +211,8 @@ impl Reader {
     /// Reads many files, in parallel, in the order given.
     ///
     /// # Errors
-    /// As [`Reader::from_path`], for the first file at fault; where its content is at fault, the others are named too.
+    /// As [`Reader::from_path`], for the first file at fault; where its content is at fault, the others are
+    /// named too.
     pub fn from_paths<P: AsRef<Path> + Sync>(&self, paths: &[P]) -> Result<Vec<Recording>> {
         let results: Vec<Result<Recording>> = paths.par_iter().map(|p| self.from_path(p)).collect();
         let failed = paths.iter().zip(&results).filter(|(_, result)| result.is_err());
@@ -241,7 +249,8 @@ impl Reader {
         Ok(Recording { path: source.path().to_owned(), format, records, findings })
     }
 
-    /// The records of a file without their values; memory does not grow with the file where the format allows.
+    /// The records of a file without their values; memory does not grow with the file where the format
+    /// allows.
     ///
     /// # Errors
     /// As [`Reader::from_path`].
@@ -304,7 +313,8 @@ impl Reader {
 /// Bytes of a list of a sweep: ten thousand points.
 const LONGEST_LIST: u64 = 1 << 20;
 
-/// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a measurement.
+/// What to say where reading failed with `error`: a list of a sweep is a likely thing to be taken for a
+/// measurement.
 fn no_list(source: &Source, error: Error) -> Error {
     let short = source.len() <= LONGEST_LIST;
     let Some(list) = short.then(|| SweepList::of(source)).flatten() else { return error };
@@ -349,7 +359,8 @@ pub struct Header {
     pub max_abs: Option<f64>,
     /// Abscissa of the largest magnitude.
     pub max_at: Option<f64>,
-    /// Header lines that were kept and not understood, and what the text was read as: encoding, decimal mark.
+    /// Header lines that were kept and not understood, and what the text was read as: encoding, decimal
+    /// mark.
     pub notes: Vec<String>,
     /// What a person must know before trusting the values.
     pub findings: Vec<Finding>,

@@ -5,7 +5,8 @@ use crate::held::Contents;
 use std::ops::Range;
 use vibro_record::{Axis, AxisKind, Error, Grid, Meta, Record, Result};
 
-/// Indices of the samples of `axis` that lie within a `span` in s: from its first value on and before its second.
+/// Indices of the samples of `axis` that lie within a `span` in s: from its first value on and before its
+/// second.
 ///
 /// # Errors
 /// If there are none.

@@ -20,8 +20,9 @@ pub struct Steps {
 }
 
 impl SweepReader {
-    /// Reads force and response of all steps, in SI units: calibrated where that is stated, a response of unknown unit in the unit that is stated. A step
-    /// has an error of its own if its file cannot be read or has no such channel; if its force is not one, or its response is no motion.
+    /// Reads force and response of all steps, in SI units: calibrated where that is stated, a response of
+    /// unknown unit in the unit that is stated. A step has an error of its own if its file cannot be read
+    /// or has no such channel; if its force is not one, or its response is no motion.
     ///
     /// # Errors
     /// If several files come with several channels.

@@ -7,8 +7,8 @@ use vibro_record::{
     Values, Window,
 };
 
-/// What the analyser stored. What its files state themselves is believed where nothing is stated here; where both are and
-/// differ, the statement here is used, with a finding.
+/// What the analyser stored. What its files state themselves is believed where nothing is stated here; where
+/// both are and differ, the statement here is used, with a finding.
 #[derive(Debug, Clone, Default)]
 pub struct SweepReader {
     /// Name of the sweep.
@@ -17,8 +17,8 @@ pub struct SweepReader {
     pub direction: Option<Direction>,
     /// Mass, if stated.
     pub mass: Option<u8>,
-    /// Unit in which responses are stored, if stated; else that of the files, else the SI unit of `quantity` is assumed, with
-    /// a doubt.
+    /// Unit in which responses are stored, if stated; else that of the files, else the SI unit of `quantity`
+    /// is assumed, with a doubt.
     pub unit: Option<Unit>,
     /// What was stored, if stated; else what the unit says, else a displacement is assumed.
     pub quantity: Option<Quantity>,
@@ -26,7 +26,8 @@ pub struct SweepReader {
     pub calibration: Option<f64>,
     /// Factor on stored forces, if stated: newtons per stored number, even where the files say volts.
     pub force_calibration: Option<f64>,
-    /// Window, if stated: `Some(None)` says that it is unknown. Else that of the files, else Hann is assumed.
+    /// Window, if stated: `Some(None)` says that it is unknown. Else that of the files, else Hann is
+    /// assumed.
     pub window: Option<Option<Window>>,
     /// Peak or RMS, if stated; else that of the files, else peak is assumed.
     pub scaling: Option<Scaling>,
@@ -42,7 +43,8 @@ impl SweepReader {
     /// Reads all spectra of a list.
     ///
     /// # Errors
-    /// If files are missing (all are named), cannot be read, or hold another number of lines than the list says.
+    /// If files are missing (all are named), cannot be read, or hold another number of lines than the list
+    /// says.
     pub fn read(&self, list: &SweepList) -> Result<Sweep> {
         let reader = Reader::new().within(&self.folder).base_band(Some(list.base_band)).format(self.format);
         // One batch, so that all missing files are named at once.
@@ -90,7 +92,8 @@ impl SweepReader {
         })
     }
 
-    /// Peak amplitudes of responses or of a `force` in SI units, with what is known of them: by what the file states and what was stated for it.
+    /// Peak amplitudes of responses or of a `force` in SI units, with what is known of them: by what the file
+    /// states and what was stated for it.
     fn peaks(
         &self,
         recording: &Recording,

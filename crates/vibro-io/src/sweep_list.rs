@@ -28,7 +28,8 @@ pub struct SweepList {
     pub excitation: Vec<f64>,
     /// Response files.
     pub response: Vec<PathBuf>,
-    /// Where the names stand, of the force files and then of the response files; none where they were not read from a list.
+    /// Where the names stand, of the force files and then of the response files; none where they were not
+    /// read from a list.
     pub places: Vec<Place>,
 }
 
@@ -43,7 +44,8 @@ impl SweepList {
     /// Reads a list file or a hand-over file. Names are taken relative to the folder in which it lies.
     ///
     /// # Errors
-    /// If a number or a name is missing or out of range, or a name leads outside that folder and `within` does not allow it.
+    /// If a number or a name is missing or out of range, or a name leads outside that folder and `within`
+    /// does not allow it.
     pub fn from_path(path: impl AsRef<Path>, within: &Folder) -> Result<SweepList> {
         let path = path.as_ref();
         let several = within.is_folder(path) || !within.exists(path) && path.to_string_lossy().contains('*');
@@ -68,13 +70,15 @@ impl SweepList {
         Ok(list)
     }
 
-    /// The list that a source holds; `None` where it is anything else, or larger than a list of ten thousand points.
+    /// The list that a source holds; `None` where it is anything else, or larger than a list of ten thousand
+    /// points.
     pub(super) fn of(source: &Source) -> Option<SweepList> {
         let bytes = source.all().ok().filter(|_| source.len() < 1 << 20)?;
         parse(source.path(), &encoding::decode(&bytes)).ok()
     }
 
-    /// A complaint about all files that do not exist, each with the line that names it; `None` where all exist.
+    /// A complaint about all files that do not exist, each with the line that names it; `None` where all
+    /// exist.
     pub(super) fn missing(&self, folder: &Folder) -> Option<Error> {
         let files: Vec<&PathBuf> = self.force.iter().chain(&self.response).collect();
         let missing: Vec<usize> = (0..files.len()).filter(|i| !folder.exists(files[*i])).collect();

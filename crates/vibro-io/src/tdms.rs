@@ -5,9 +5,10 @@
 //!   objects: path /'group'/'channel', layout of its raw data, properties
 //!   raw data: channel after channel, sample after sample of all, or DAQmx buffers
 //! ```
-//! Source: National Instruments, "TDMS File Format Internal Structure". Every numeric channel is a record: a trace, or a spectrum where its
-//! abscissa is in Hz. Raw values are taken through the channel's scales ([`scale`]); one whose scale is not known is left out, for its raw
-//! values are no measurement. The file `_index` beside it is not needed.
+//! Source: National Instruments, "TDMS File Format Internal Structure". Every numeric channel is a record: a
+//! trace, or a spectrum where its abscissa is in Hz. Raw values are taken through the channel's scales
+//! ([`scale`]); one whose scale is not known is left out, for its raw values are no measurement. The file
+//! `_index` beside it is not needed.
 
 mod axes;
 mod description;
@@ -36,7 +37,8 @@ use vibro_record::{Error, Finding, Meta, Result, Values};
 
 /// Bytes that are read at a time.
 const BLOCK: usize = if cfg!(test) { 64 } else { 1 << 20 };
-/// Values of a channel that are looked at together: taking a few at a time through its scales would take long.
+/// Values of a channel that are looked at together: taking a few at a time through its scales would take
+/// long.
 const LOOK: usize = if cfg!(test) { 4 } else { 1 << 16 };
 
 pub(super) fn sniff(head: &[u8], _: &Source) -> bool {

@@ -1,9 +1,10 @@
 //! Text of analysers, loggers and spreadsheets: dialect → rows → records.
 //!
-//! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut. It is found out from the first
-//! bytes: [`table`] knows tables with names above their columns or behind the keys of a [`preamble`], [`numbers`] plain columns
-//! of numbers; both know a [`clock`]. The dialect of another instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others one by
-//! one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
+//! A [`dialect`] says, as data, where names, units and abscissa stand and how a row is cut. It is found out
+//! from the first bytes: [`table`] knows tables with names above their columns or behind the keys of a
+//! [`preamble`], [`numbers`] plain columns of numbers; both know a [`clock`]. The dialect of another
+//! instrument is one more function beside these two. Clean rows are read in parallel ([`fast`]), all others
+//! one by one ([`rows`]), so that a complaint names line and column. Columns become records in [`records`].
 
 mod axis;
 mod clock;
@@ -139,7 +140,8 @@ fn without((source, found): (Source, Finding), options: &Options) -> Result<Cont
     Ok(contents)
 }
 
-/// What a column that rises takes while it is looked whether it is an even axis, beside itself and in its size.
+/// What a column that rises takes while it is looked whether it is an even axis, beside itself and in its
+/// size.
 const ABSCISSA: f64 = 1.5;
 
 /// What was read of a text.
@@ -156,8 +158,8 @@ fn read(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Resu
     Ok(Contents { records, findings })
 }
 
-/// The traces of a text without their values, which are read again block by block, and what is said of the text; `None` of a text that must be
-/// held, for it is in memory, has rows that are not clean, or no traces.
+/// The traces of a text without their values, which are read again block by block, and what is said of the
+/// text; `None` of a text that must be held, for it is in memory, has rows that are not clean, or no traces.
 ///
 /// # Errors
 /// As reading the text.
@@ -239,7 +241,8 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
     Ok(Read { clean, ..read })
 }
 
-/// The columns whose values are held: all, or, where a `survey` asks for the ends of traces, what may be an abscissa.
+/// The columns whose values are held: all, or, where a `survey` asks for the ends of traces, what may be an
+/// abscissa.
 fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> Vec<bool> {
     let names = dialect.names.iter().flatten();
     let complex = options.complex || stated.complex || names.clone().any(|name| name.part().is_some());

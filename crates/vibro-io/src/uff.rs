@@ -10,8 +10,8 @@
 //! …
 //!     -1
 //! ```
-//! Data sets 58 and 58b become records, data set 164 gives the unit system of those behind it, and every other set is
-//! passed over by name.
+//! Data sets 58 and 58b become records, data set 164 gives the unit system of those behind it, and every
+//! other set is passed over by name.
 
 pub mod stream;
 
@@ -25,8 +25,9 @@ use vibro_record::{Finding, Place, Record, Result};
 /// Endings under which text may stand before the first data set.
 const ENDINGS: [&str; 6] = ["uff", "unv", "ufb", "bunv", "uf", "58"];
 
-/// A delimiter with the number of a data set behind it. These must be the first lines that are not blank and stand in
-/// their very columns, for `-1` and `58` may also be two values; under a usual ending any two lines will do.
+/// A delimiter with the number of a data set behind it. These must be the first lines that are not blank and
+/// stand in their very columns, for `-1` and `58` may also be two values; under a usual ending any two lines
+/// will do.
 pub(super) fn sniff(head: &[u8], source: &Source) -> bool {
     let known = ENDINGS.contains(&source.extension().as_str());
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);

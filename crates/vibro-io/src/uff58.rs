@@ -15,8 +15,8 @@
 //!          0    0    0    0 NONE                 NONE
 //!  -1.47553E-02 -1.72957E-02 -1.66101E-02 …
 //! ```
-//! Source: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats for Modal Analysis
-//! Testing", data sets 58 and 58b.
+//! Source: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats for
+//! Modal Analysis Testing", data sets 58 and 58b.
 
 pub mod codes;
 mod heading;
@@ -34,8 +34,8 @@ pub use heading::LINES;
 pub use ordinate::System;
 pub(crate) use values::Layout;
 
-/// Reads the data set whose number `line` was taken last, with its closing delimiter. Where the header is cut short: the
-/// number of its lines, and a complaint.
+/// Reads the data set whose number `line` was taken last, with its closing delimiter. Where the header is cut
+/// short: the number of its lines, and a complaint.
 ///
 /// # Errors
 /// If header or values cannot be read as what they should be.

@@ -1,7 +1,7 @@
 //! Named variables to records, however a file stores them.
 //!
-//! A numeric vector is a record, and so is each column of a matrix; scalars and texts are notes on the records of their struct or group, and say
-//! abscissa and unit ([`names`], [`axes`]).
+//! A numeric vector is a record, and so is each column of a matrix; scalars and texts are notes on the
+//! records of their struct or group, and say abscissa and unit ([`names`], [`axes`]).
 
 mod axes;
 pub mod names;
@@ -17,7 +17,8 @@ use rayon::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Fact, Finding, Meta, Result, Values};
 
-/// A matrix of more rows than this and than columns stands upright, whatever length the abscissa beside it has.
+/// A matrix of more rows than this and than columns stands upright, whatever length the abscissa beside it
+/// has.
 const MOST_ROWS: u64 = 1000;
 /// Longest text that is kept.
 pub const MOST_TEXT: usize = 4096;
@@ -45,7 +46,8 @@ pub struct Array {
     pub single: bool,
 }
 
-/// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are those of the file.
+/// Records of the vectors and matrices among `variables`, with what they say of each other; `findings` are
+/// those of the file.
 pub fn contents(
     source: &Source,
     dialect: &'static Dialect,
@@ -133,8 +135,8 @@ pub fn contents(
     Ok(Contents { records, findings })
 }
 
-/// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the abscissa. Where complex values
-/// were stated, two columns are one record.
+/// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the
+/// abscissa. Where complex values were stated, two columns are one record.
 fn split(
     name: &str,
     Array { dimensions, values, .. }: Array,

@@ -6,9 +6,9 @@
 //! LIST size  INFO ICMT …       any other chunks, passed over; the texts of INFO are kept as notes
 //! data size  frames: one sample of each channel after the other, little endian
 //! ```
-//! Integers of 8 (unsigned), 16, 24 and 32 bits and floats of 32 and 64 bits. Values are fractions of full scale, ±1, in
-//! the opaque unit `FS`, until [`vibro_record::Trace::calibrate`] gives them a unit. A file written by `write::wav`
-//! carries its calibration in a comment (see [`Scales`]), which is applied.
+//! Integers of 8 (unsigned), 16, 24 and 32 bits and floats of 32 and 64 bits. Values are fractions of full
+//! scale, ±1, in the opaque unit `FS`, until [`vibro_record::Trace::calibrate`] gives them a unit. A file
+//! written by `write::wav` carries its calibration in a comment (see [`Scales`]), which is applied.
 
 mod layout;
 mod scales;
@@ -67,7 +67,8 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     Ok(Contents { records: records.collect(), findings: wave.layout.findings })
 }
 
-/// Some channels of a wave file, read block by block in their units, so that memory does not grow with its length.
+/// Some channels of a wave file, read block by block in their units, so that memory does not grow with its
+/// length.
 pub(crate) struct Wave {
     pub layout: Layout,
     reader: Box<dyn ReadSeek>,
@@ -132,7 +133,8 @@ impl Wave {
         Ok(wave)
     }
 
-    /// A channel without its values, and the factor that takes these to SI: what a person states or what the file carries.
+    /// A channel without its values, and the factor that takes these to SI: what a person states or what the
+    /// file carries.
     fn describe(&self, source: &Source, options: &Options, channel: usize) -> Result<(Trace, f64)> {
         let layout = &self.layout;
         let scale = layout.scales.as_ref().and_then(|s| s.channels.get(channel));

@@ -1,7 +1,7 @@
 //! Records to files that other programs read.
 //!
-//! Values are written in the SI units that the records hold. What a format has no place for is lost or refused: see each
-//! writer. History, notes and doubts are written by none of them.
+//! Values are written in the SI units that the records hold. What a format has no place for is lost or
+//! refused: see each writer. History, notes and doubts are written by none of them.
 //!
 //! ```
 //! use vibro_io::Reader;
@@ -75,7 +75,8 @@ impl Target {
         TARGETS.iter().find(|row| row.0 == self).map_or("", |row| row.2)
     }
 
-    /// Writes records in this format; `storage` says how a universal file keeps its numbers, and how exact a wave file is.
+    /// Writes records in this format; `storage` says how a universal file keeps its numbers, and how exact a
+    /// wave file is.
     ///
     /// # Errors
     /// If the format cannot hold the records together, with the reason, or the output cannot be written.

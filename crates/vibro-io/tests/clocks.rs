@@ -1,5 +1,6 @@
-//! Time columns as telephones and loggers write them, drawn with seeds: they jitter, wander, lose samples, or are uneven. Each is read with the rate that
-//! it was drawn with, or refused with what reads it; values and instants are compared one by one.
+//! Time columns as telephones and loggers write them, drawn with seeds: they jitter, wander, lose samples, or
+//! are uneven. Each is read with the rate that it was drawn with, or refused with what reads it; values and
+//! instants are compared one by one.
 
 use vibro_io::{Reader, Recording};
 use vibro_math::Noise;
@@ -391,7 +392,8 @@ fn a_short_last_row_of_a_series_loses_no_value() {
     }
 }
 
-/// Heads of loggers and oscilloscopes that state a rate, between semicolons and commas, with units of their own.
+/// Heads of loggers and oscilloscopes that state a rate, between semicolons and commas, with units of their
+/// own.
 #[test]
 fn rates_in_units_of_samples_a_second_are_used() {
     let row = |i| format!("{:.5};{:.5}\n", (0.1 * f64::from(i)).sin(), (0.3 * f64::from(i)).cos());
@@ -477,7 +479,8 @@ fn jittering_samples_are_interpolated_from_their_own_times() {
             made.all_findings().iter().find_map(|f| f.get("error").filter(|_| f.code == "resampled"));
         let (own, grid) = (off(&made), off(&even));
         assert!(own <= stated.expect("an error"), "{seed}: {own} of {stated:?}");
-        // Twenty samples a period: cubics are wrong by 0.023·(2π/20)⁴ of it, the grid by 2π/20 of the jitter, 1 % of a step at least.
+        // Twenty samples a period: cubics are wrong by 0.023·(2π/20)⁴ of it, the grid by 2π/20 of the jitter,
+        // 1 % of a step at least.
         assert!(own < 0.3 * grid, "{seed}: {own} and {grid}");
         assert!(read(Reader::new().rate(Some(125.4)).resample(Some(130.0))).is_ok(), "{seed}");
         let why = read(Reader::new().rate(Some(250.0)).resample(Some(130.0))).expect_err("another rate");
@@ -485,7 +488,8 @@ fn jittering_samples_are_interpolated_from_their_own_times() {
     }
 }
 
-/// A sine of 3 Hz beside white noise, 1000 samples at uneven steps of 4 to 12 ms. Noise cannot be interpolated; a sine of 40 samples a period can.
+/// A sine of 3 Hz beside white noise, 1000 samples at uneven steps of 4 to 12 ms. Noise cannot be
+/// interpolated; a sine of 40 samples a period can.
 #[test]
 fn a_channel_that_cannot_be_interpolated_loses_only_itself() {
     let (mut noise, mut t) = (Noise::new(7), 0.0);
@@ -511,7 +515,8 @@ fn a_channel_that_cannot_be_interpolated_loses_only_itself() {
     assert!(read("blank").unwrap_err().to_string().contains("without missing values"));
 }
 
-/// A sensor of 100 Hz that is polled at 120 Hz: every sixth row repeats the one before. One that rests, or whose digits are coarse, repeats many.
+/// A sensor of 100 Hz that is polled at 120 Hz: every sixth row repeats the one before. One that rests, or
+/// whose digits are coarse, repeats many.
 #[test]
 fn rows_that_repeat_are_told() {
     let text = |row: &dyn Fn(usize) -> (f64, f64)| {

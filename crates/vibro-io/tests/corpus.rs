@@ -1,4 +1,5 @@
-//! Two thousand exports in the manner of loggers and telephones, drawn from one seed with known truth: none is read wrong in silence.
+//! Two thousand exports in the manner of loggers and telephones, drawn from one seed with known truth: none
+//! is read wrong in silence.
 
 use std::fmt::Write;
 use vibro_io::{Reader, Recording};

@@ -1,4 +1,5 @@
-//! Times that were printed with few digits, rounded or cut off, drawn with seeds: the rate lies within its uncertainty, and lost samples are seen.
+//! Times that were printed with few digits, rounded or cut off, drawn with seeds: the rate lies within its
+//! uncertainty, and lost samples are seen.
 
 use vibro_io::Reader;
 use vibro_math::Noise;
@@ -83,7 +84,8 @@ fn the_rate_of_a_printed_clock_lies_within_its_uncertainty() {
         if trace.rate().is_none() {
             wrong.push(format!("{seed}: {}: {found:?}", drawn.short()));
         } else if drawn.off(&trace) > 1.01 * 3f64.sqrt() {
-            // All that rounding can hide is equally likely: nothing lies beyond √3. Decimals of binary numbers are off by a part in 10⁶ of a digit.
+            // All that rounding can hide is equally likely: nothing lies beyond √3. Decimals of binary
+            // numbers are off by a part in 10⁶ of a digit.
             wrong.push(format!("{seed}: {}: off by {:.2}", drawn.short(), drawn.off(&trace)));
         }
     }
@@ -97,7 +99,8 @@ fn the_rate_of_a_printed_clock_that_jitters_lies_within_its_uncertainty() {
         let drawn = Drawn::new(seed, true, 0);
         let (trace, found) = drawn.read(&Reader::new());
         if trace.rate().is_none() {
-            // A digit as long as a sample, a multiple of which it nearly is, drifts by one as if a sample were lost.
+            // A digit as long as a sample, a multiple of which it nearly is, drifts by one as if a sample
+            // were lost.
             let close = drawn.digit * drawn.rate > 0.5;
             doubted += 1;
             if !close {

@@ -1,8 +1,9 @@
 //! Sine and cosine together, without a branch, fast enough for the inside of a root search.
 //!
-//! The argument is reduced by π/2 in two parts (W. J. Cody and W. Waite, *Software Manual for the Elementary Functions*, 1980),
-//! the rest lies in ±π/4, where the polynomials of fdlibm (`k_sin.c` and `k_cos.c`, Sun Microsystems, 1993) err by less than
-//! 2⁻⁵⁸. Together with the roundings the absolute error of either value is below 2ε/3 = 1.5e-16.
+//! The argument is reduced by π/2 in two parts (W. J. Cody and W. Waite, *Software Manual for the Elementary
+//! Functions*, 1980), the rest lies in ±π/4, where the polynomials of fdlibm (`k_sin.c` and `k_cos.c`, Sun
+//! Microsystems, 1993) err by less than 2⁻⁵⁸. Together with the roundings the absolute error of either value
+//! is below 2ε/3 = 1.5e-16.
 
 /// 2/π.
 const PER_QUARTER: f64 = std::f64::consts::FRAC_2_PI;

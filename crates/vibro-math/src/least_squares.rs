@@ -1,5 +1,6 @@
-//! Nonlinear least squares: the MINPACK algorithm of the crate `levenberg-marquardt`, with what it leaves to its caller:
-//! a Jacobian by central differences, the covariance of the parameters, and the direction that the data do not determine.
+//! Nonlinear least squares: the MINPACK algorithm of the crate `levenberg-marquardt`, with what it leaves to
+//! its caller: a Jacobian by central differences, the covariance of the parameters, and the direction that
+//! the data do not determine.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
@@ -38,7 +39,8 @@ impl Fit {
         }
     }
 
-    /// Covariance of parameters `i` and `j`, s²(JᵀJ)⁻¹ᵢⱼ: for residuals of one unknown variance, uncorrelated.
+    /// Covariance of parameters `i` and `j`, s²(JᵀJ)⁻¹ᵢⱼ: for residuals of one unknown variance,
+    /// uncorrelated.
     ///
     /// # Panics
     /// If `i` or `j` is no parameter.
@@ -55,8 +57,8 @@ impl Fit {
     }
 }
 
-/// Minimises Σrᵢ(p)². `residuals(p, r)` fills `r`, of length `n`; `start` holds the first guess, `scale` the size of a
-/// small but significant change of each parameter (its sign and exact size do not matter).
+/// Minimises Σrᵢ(p)². `residuals(p, r)` fills `r`, of length `n`; `start` holds the first guess, `scale` the
+/// size of a small but significant change of each parameter (its sign and exact size do not matter).
 ///
 /// ```
 /// use vibro_math::least_squares;
@@ -71,8 +73,8 @@ impl Fit {
 /// ```
 ///
 /// # Errors
-/// If there is no parameter or not one scale a parameter, a scale is 0 or not finite, there are fewer residuals than
-/// parameters, the model gives a value that is not finite at the start, or the residuals
+/// If there is no parameter or not one scale a parameter, a scale is 0 or not finite, there are fewer
+/// residuals than parameters, the model gives a value that is not finite at the start, or the residuals
 /// at the minimum do not depend on some combination of the parameters, which is named by their numbers.
 pub fn least_squares(
     residuals: impl Fn(&[f64], &mut [f64]),
@@ -97,9 +99,10 @@ pub struct Minimum {
     pub converged: bool,
 }
 
-/// As [`least_squares`], for callers that look into the Jacobian themselves: a combination of parameters on which nothing depends is no
-/// error, and stays about where it started. With a `gain`, such as a thousandth, no farther than to where a step gains less than that, over
-/// twenty evaluations a parameter at most: for searches that go on from there.
+/// As [`least_squares`], for callers that look into the Jacobian themselves: a combination of parameters on
+/// which nothing depends is no error, and stays about where it started. With a `gain`, such as a thousandth,
+/// no farther than to where a step gains less than that, over twenty evaluations a parameter at most: for
+/// searches that go on from there.
 ///
 /// # Errors
 /// As [`least_squares`], but for that.
@@ -140,7 +143,8 @@ pub fn minimise(
     })
 }
 
-/// (JᵀJ)⁻¹ by the singular values of J with its columns scaled to length 1, so that units do not decide what is small.
+/// (JᵀJ)⁻¹ by the singular values of J with its columns scaled to length 1, so that units do not decide what
+/// is small.
 fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
     let lengths: Vec<f64> = jacobian.column_iter().map(|c| c.norm()).collect();
     if lengths.iter().any(|l| !l.is_finite()) {
@@ -153,7 +157,8 @@ fn cofactor(mut jacobian: DMatrix<f64>) -> Result<DMatrix<f64>> {
         column /= *length;
     }
     let rows = jacobian.nrows() as f64;
-    // Forming JᵀJ would square the condition number. An iteration limit, since the algorithm has no bound of its own.
+    // Forming JᵀJ would square the condition number. An iteration limit, since the algorithm has no bound of
+    // its own.
     let svd = nalgebra::SVD::try_new(jacobian, false, true, f64::EPSILON, 10_000)
         .ok_or_else(|| Error::refused("the singular values of a fit were not found"))?;
     let v_t = svd.v_t.ok_or_else(|| Error::refused("the singular vectors of a fit were not found"))?;
@@ -218,7 +223,8 @@ impl<F: Fn(&[f64], &mut [f64])> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'
         let mut jacobian = DMatrix::zeros(self.n, self.parameters.len());
         for (i, mut column) in jacobian.column_iter_mut().enumerate() {
             let here = self.parameters[i];
-            // ε^(1/3) balances rounding ε/h against truncation h² of a central difference (Dennis & Schnabel 1983, 5.6).
+            // ε^(1/3) balances rounding ε/h against truncation h² of a central difference (Dennis & Schnabel
+            // 1983, 5.6).
             let step = f64::EPSILON.cbrt() * here.abs().max(self.scale[i].abs());
             let mut moved = self.parameters.clone();
             moved[i] = here + step;
@@ -251,7 +257,8 @@ mod tests {
         let (mx, my) = (x.iter().sum::<f64>() / 12.0, y.iter().sum::<f64>() / 12.0);
         let sxx: f64 = x.iter().map(|x| (x - mx).powi(2)).sum();
         let slope = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum::<f64>() / sxx;
-        // MINPACK stops at relative changes of about ε^½ in the cost, which for a linear problem is one step to rounding.
+        // MINPACK stops at relative changes of about ε^½ in the cost, which for a linear problem is one step
+        // to rounding.
         assert!((fit.parameters[1] - slope).abs() < 1e-9, "{fit:?}");
         assert!((fit.std(1) / (fit.variance() / sxx).sqrt() - 1.0).abs() < 1e-6, "{fit:?}");
         // Intercept and slope: −x̄/√(Σx²/n).

@@ -1,7 +1,7 @@
 //! Random numbers with a seed.
 
-/// Random numbers that are the same for a seed on every machine: uniform ones by splitmix64 (Steele, Lea and Flood 2014), normal
-/// ones by Box and Muller (1958).
+/// Random numbers that are the same for a seed on every machine: uniform ones by splitmix64 (Steele, Lea and
+/// Flood 2014), normal ones by Box and Muller (1958).
 ///
 /// ```
 /// use vibro_math::Noise;

@@ -44,7 +44,8 @@ impl Oscillator {
         self.b
     }
 
-    /// The slowest rate in 1/s at which its free motion dies away: b, or that of the slower of two decays above critical damping.
+    /// The slowest rate in 1/s at which its free motion dies away: b, or that of the slower of two decays
+    /// above critical damping.
     pub fn slowest(&self) -> f64 {
         self.slow
     }
@@ -54,9 +55,11 @@ impl Oscillator {
         self.omega2
     }
 
-    /// The most by which a bound of [`Oscillator::bound`] grows from a motion to its derivative, b + √(b² + Ω²) in 1/s.
+    /// The most by which a bound of [`Oscillator::bound`] grows from a motion to its derivative, b + √(b² +
+    /// Ω²) in 1/s.
     ///
-    /// In the norm √(v² + Ω²x²) the derivative is the matrix [[0, Ω], [−Ω, −2b]], whose singular values are √(b² + Ω²) ± b.
+    /// In the norm √(v² + Ω²x²) the derivative is the matrix [[0, Ω], [−Ω, −2b]], whose singular values are
+    /// √(b² + Ω²) ± b.
     #[inline]
     pub fn gain(&self) -> f64 {
         self.gain
@@ -95,18 +98,19 @@ impl Oscillator {
 
     /// A bound on |x| for ever after displacement `x` and velocity `v`.
     ///
-    /// The energy v² + Ω²x² of a free motion never grows, so x² ≤ x₀² + (v₀/Ω)². Derivatives of a free motion are free
-    /// motions too, so the same bound serves them, at any damping, with no case for λ near zero. Infinite without a
-    /// spring, where the displacement has no such bound.
+    /// The energy v² + Ω²x² of a free motion never grows, so x² ≤ x₀² + (v₀/Ω)². Derivatives of a free motion
+    /// are free motions too, so the same bound serves them, at any damping, with no case for λ near zero.
+    /// Infinite without a spring, where the displacement has no such bound.
     #[inline]
     pub fn bound(&self, x: f64, v: f64) -> f64 {
         if v == 0.0 { x.abs() } else { (x * x + v * v * self.compliance).sqrt() }
     }
 
-    /// Times in `0 < t < until` at which the free motion from displacement `x` and velocity `v` passes through zero, in their order.
+    /// Times in `0 < t < until` at which the free motion from displacement `x` and velocity `v` passes
+    /// through zero, in their order.
     ///
-    /// x₀ cos λt + (v₀ + bx₀) sin(λt)/λ = 0, so tan λt = −x₀λ/(v₀ + bx₀): equal distances π/λ below critical damping, at most one passage
-    /// from there on.
+    /// x₀ cos λt + (v₀ + bx₀) sin(λt)/λ = 0, so tan λt = −x₀λ/(v₀ + bx₀): equal distances π/λ below critical
+    /// damping, at most one passage from there on.
     pub fn passages(&self, x: f64, v: f64, until: f64) -> impl Iterator<Item = f64> + use<> {
         let (lambda, w) = (self.lambda, v + self.b * x);
         let (first, apart) = if x == 0.0 && w == 0.0 {

@@ -52,9 +52,10 @@ impl<const K: usize> Polynomial<K> {
 
     /// Where the polynomial, not negative at 0, first falls to zero. None is missed.
     ///
-    /// Steps as in [`super::root`], by the bound M on the curvature. Where value f, slope ḟ and second derivative f̈ are not negative, the
-    /// bound M₃ on the third allows any step up to the largest of ∛(6f/M₃), √(6ḟ/M₃) and 3f̈/M₃ as well: from a triple root,
-    /// which masses that part from rest leave behind them, it leads away in geometric steps.
+    /// Steps as in [`super::root`], by the bound M on the curvature. Where value f, slope ḟ and second
+    /// derivative f̈ are not negative, the bound M₃ on the third allows any step up to the largest of
+    /// ∛(6f/M₃), √(6ḟ/M₃) and 3f̈/M₃ as well: from a triple root, which masses that part from rest leave
+    /// behind them, it leads away in geometric steps.
     #[inline]
     pub fn first_fall(&self) -> Option<f64> {
         if self.terms[0] > self.reach {

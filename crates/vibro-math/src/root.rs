@@ -1,8 +1,9 @@
 //! Roots that no step can pass, found with a bound on the curvature.
 //!
-//! A function with value f ≥ 0, slope ḟ and |f̈| ≤ M for all later arguments stays above f + ḟh − Mh²/2, so the first
-//! root of that parabola, h = 2f/(√(ḟ² + 2Mf) − ḟ) for ḟ < 0 and (ḟ + √(ḟ² + 2Mf))/M otherwise, is a step that cannot
-//! pass a root of f. Near a simple root it is Newton's step, so it converges quadratically, always from one side.
+//! A function with value f ≥ 0, slope ḟ and |f̈| ≤ M for all later arguments stays above f + ḟh − Mh²/2, so
+//! the first root of that parabola, h = 2f/(√(ḟ² + 2Mf) − ḟ) for ḟ < 0 and (ḟ + √(ḟ² + 2Mf))/M otherwise, is
+//! a step that cannot pass a root of f. Near a simple root it is Newton's step, so it converges
+//! quadratically, always from one side.
 
 /// Value and slope of a function, and a bound on its curvature from here on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +17,8 @@ pub struct Bounded {
 }
 
 impl Bounded {
-    /// The longest step that cannot pass a root, for a value that is not negative (or negative by rounding only).
+    /// The longest step that cannot pass a root, for a value that is not negative (or negative by rounding
+    /// only).
     #[inline]
     pub(super) fn step(self) -> f64 {
         fall(self.value.max(0.0), self.slope, self.curvature)
@@ -52,8 +54,9 @@ pub struct Limits {
 impl Bent {
     /// A step that cannot pass a root.
     ///
-    /// Over the next H, f bends down by no more than K, the least of M₂, M₃H − f̈ and M₄H²/2 − f⃛H − f̈ (or −f̈), so the parabola with K in
-    /// place of M₂ is below f over H. Near a simple root K is nearly −f̈ and the steps converge with the third order.
+    /// Over the next H, f bends down by no more than K, the least of M₂, M₃H − f̈ and M₄H²/2 − f⃛H − f̈ (or
+    /// −f̈), so the parabola with K in place of M₂ is below f over H. Near a simple root K is nearly −f̈ and
+    /// the steps converge with the third order.
     #[inline]
     fn step(self, limits: Limits) -> f64 {
         let value = self.value.max(0.0);
@@ -101,10 +104,11 @@ fn fall(value: f64, slope: f64, bend: f64) -> f64 {
 
 /// As [`first_fall`], for a function whose derivatives are known: fewer calls, and none for the last step.
 ///
-/// Returns the last argument called for and the step from there to the root. Over twice this step a Taylor series with five derivatives
-/// errs in f's slope by less than `rounding` (that of f's values) times M₃/M₂, and in f by less than `rounding`; the step is the root of
-/// the parabola through value, slope and bend, for the caller to refine. `limits` gives bounds from an argument on, and nothing where f
-/// stays above 0 for ever.
+/// Returns the last argument called for and the step from there to the root. Over twice this step a Taylor
+/// series with five derivatives errs in f's slope by less than `rounding` (that of f's values) times M₃/M₂,
+/// and in f by less than `rounding`; the step is the root of the parabola through value, slope and bend, for
+/// the caller to refine. `limits` gives bounds from an argument on, and nothing where f stays above 0 for
+/// ever.
 #[inline]
 pub fn first_landing(
     from: f64,
@@ -154,7 +158,8 @@ pub(super) enum Look {
     Step { step: f64, falls: bool },
 }
 
-/// Goes from `from` to `to` by steps that pass no root: the last argument looked at, and how far ahead of it the root is.
+/// Goes from `from` to `to` by steps that pass no root: the last argument looked at, and how far ahead of it
+/// the root is.
 #[inline]
 pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> Look) -> Option<(f64, f64)> {
     let mut t = from;
@@ -183,8 +188,8 @@ pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> Look) -> Opt
 
 /// The first argument in `from..=to` at which `f`, not negative at `from`, falls to zero.
 ///
-/// `noise` is the rounding error of f's values: a value below it counts as zero. A touch from above that does not
-/// fall below `noise` is no root. Error of the root: that of f over its slope there.
+/// `noise` is the rounding error of f's values: a value below it counts as zero. A touch from above that does
+/// not fall below `noise` is no root. Error of the root: that of f over its slope there.
 #[inline]
 pub fn first_fall(from: f64, to: f64, noise: f64, f: impl Fn(f64) -> Bounded) -> Option<f64> {
     let look = |t| {
@@ -195,8 +200,9 @@ pub fn first_fall(from: f64, to: f64, noise: f64, f: impl Fn(f64) -> Bounded) ->
     walk(from, to, look).map(|(t, _)| t)
 }
 
-/// Root of `f` (value and slope) between `a` and `b`, where its values have opposite signs: Newton's steps, halving where one would
-/// leave the bracket or shrink it too slowly. Ends when no number lies between, or after 200 steps.
+/// Root of `f` (value and slope) between `a` and `b`, where its values have opposite signs: Newton's steps,
+/// halving where one would leave the bracket or shrink it too slowly. Ends when no number lies between, or
+/// after 200 steps.
 pub fn bracketed(mut a: f64, mut b: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let falling = f(a).0 > 0.0;
     let mut t = f64::midpoint(a, b);

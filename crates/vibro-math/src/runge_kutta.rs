@@ -1,12 +1,14 @@
 //! Embedded Runge–Kutta integrators with dense output and located events.
 //!
-//! - [`DormandPrince`]: order 5 with an error estimate of order 4 and a dense output of order 4 (Dormand & Prince 1980; dense
-//!   output of Shampine 1986);
-//! - [`Dop853`]: order 8 with error estimates of orders 5 and 3 and a dense output of order 7 (Hairer, Nørsett & Wanner 1993,
-//!   *Solving Ordinary Differential Equations I*, II.5 and II.6; coefficients of their program DOP853).
+//! - [`DormandPrince`]: order 5 with an error estimate of order 4 and a dense output of order 4 (Dormand &
+//!   Prince 1980; dense output of Shampine 1986);
+//! - [`Dop853`]: order 8 with error estimates of orders 5 and 3 and a dense output of order 7 (Hairer,
+//!   Nørsett & Wanner 1993, *Solving Ordinary Differential Equations I*, II.5 and II.6; coefficients of their
+//!   program DOP853).
 //!
-//! A step is taken again with a smaller size until its estimated error is below the tolerance; its dense output is a polynomial
-//! in time, in which the first event is found by [`super::Polynomial`] without missing one.
+//! A step is taken again with a smaller size until its estimated error is below the tolerance; its dense
+//! output is a polynomial in time, in which the first event is found by [`super::Polynomial`] without missing
+//! one.
 
 mod dop853;
 mod dormand_prince;
@@ -34,7 +36,8 @@ pub trait Scheme {
     /// One over the order of the estimated error.
     const ROOT: f64;
 
-    /// Estimated error over tolerance, from the rates at the stages, the step, and the tolerated error of each component.
+    /// Estimated error over tolerance, from the rates at the stages, the step, and the tolerated error of
+    /// each component.
     fn error<const N: usize>(rates: &[[f64; N]], step: f64, tolerated: &[f64; N]) -> f64;
 
     /// Terms of the dense output.
@@ -83,7 +86,8 @@ impl<const N: usize> Step<N> {
         y
     }
 
-    /// First time after the start of the step at which weights·y + offset, not negative at the start, falls to zero.
+    /// First time after the start of the step at which weights·y + offset, not negative at the start, falls
+    /// to zero.
     pub fn first_fall(&self, weights: &[f64; N], offset: f64) -> Option<f64> {
         let mut terms = self.terms.map(|term| term.iter().zip(weights).map(|(y, w)| w * y).sum::<f64>());
         terms[0] += offset;

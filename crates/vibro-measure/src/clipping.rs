@@ -5,9 +5,10 @@ use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Samples at either end of the range of the values. Of a sine of this period in samples, in few steps of the converter, those that it passes. Of another
-/// signal, where some stay there longer than any crest of this period stays within a step, or where more lie at the end than a crest lets lie there
-/// beside those a step away.
+/// Samples at either end of the range of the values. Of a sine of this period in samples, in few steps of the
+/// converter, those that it passes. Of another signal, where some stay there longer than any crest of this
+/// period stays within a step, or where more lie at the end than a crest lets lie there beside those a step
+/// away.
 pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
@@ -34,7 +35,8 @@ pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
         let near = |v: &&f64| (**v - end).abs() <= 1.5 * step;
         let (at, near) = (at(end) as f64, values.iter().filter(near).count() as f64);
         let beside = near - at;
-        // Under the crest of a sine of rounded values 2.4 times as many lie in the last step as in the one before, and chance adds to that.
+        // Under the crest of a sine of rounded values 2.4 times as many lie in the last step as in the one
+        // before, and chance adds to that.
         if rounded { at > 3.0 * beside + 4.0 * (at + 9.0 * beside).sqrt() } else { at > 2.0 }
     };
     let ends: Vec<f64> = repeated.into_iter().filter(|end| rests(*end) || crowds(*end)).collect();
@@ -46,12 +48,13 @@ const UNROUNDED: f64 = 0.8;
 
 /// Steps of the converter of which the residuals of a sine are noise of it.
 const NOISE: f64 = 3.0;
-/// Residuals in steps of no sine in few of them, before what is cut off is allowed for: of 2000 steps that are cut at 97 %, 20.
+/// Residuals in steps of no sine in few of them, before what is cut off is allowed for: of 2000 steps that
+/// are cut at 97 %, 20.
 const FAR: f64 = 100.0;
 /// Smallest standard deviation of the noise in steps, and of what a fit of rounded values is off by.
 const LEAST: f64 = 0.05;
-/// Phases that are told apart: errors of rounding depend on the phase, and repeat with it, but for noise, which leaves e^(−2π²σ²) of that (Widrow &
-/// Kollár, Quantization Noise, 2008).
+/// Phases that are told apart: errors of rounding depend on the phase, and repeat with it, but for noise,
+/// which leaves e^(−2π²σ²) of that (Widrow & Kollár, Quantization Noise, 2008).
 const PHASES: usize = 1024;
 /// Harmonics of half of what an end hides, in steps, move no crest past it.
 const SLIGHT: f64 = 0.25;
@@ -59,11 +62,13 @@ const SLIGHT: f64 = 0.25;
 const ROUNDS: usize = 30;
 /// Standard uncertainties of the sine by which it may be too high.
 const SURE: f64 = 3.0;
-/// A likelihood ratio above 10⁶ comes by chance in fewer than one of 10⁶ cases (Markov); a dozen values may be the end.
+/// A likelihood ratio above 10⁶ comes by chance in fewer than one of 10⁶ cases (Markov); a dozen values may
+/// be the end.
 const RATIO: f64 = 13.8;
 
-/// Ends that a sine passes: there samples would lie beyond if nothing cut them off. The sine is that of all samples, of which those at the ends say only that
-/// it was there or beyond, whether cut off or not (Tobin, Econometrica 26 (1958) 24, by expectation and maximization). `None` where the values are no sine in few
+/// Ends that a sine passes: there samples would lie beyond if nothing cut them off. The sine is that of all
+/// samples, of which those at the ends say only that it was there or beyond, whether cut off or not (Tobin,
+/// Econometrica 26 (1958) 24, by expectation and maximization). `None` where the values are no sine in few
 /// steps of noise.
 fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f64>> {
     let n = values.len();
@@ -169,7 +174,8 @@ mod tests {
         }
     }
 
-    /// A sine in steps of the converter, with noise; cut off at this part of its amplitude where there is one.
+    /// A sine in steps of the converter, with noise; cut off at this part of its amplitude where there is
+    /// one.
     fn stepped(noise: &mut Noise, amplitude: f64, cut: Option<f64>) -> (Vec<f64>, f64) {
         let periods = noise.between(8.0, 200.0);
         let exact = noise.between(0.0, 1.0) < 0.5;
@@ -189,8 +195,9 @@ mod tests {
         ((0..((periods * period) as usize).max(200)).map(value).collect(), period)
     }
 
-    /// Of so many good sines those that are called clipped, and of those that are cut off at 97 % those that are not: where the cut is no more than rounding
-    /// hides, and changes 4 % of the samples, and where 256 phases tell the amplitude to 0.29·√(3/256) = 0.03 steps.
+    /// Of so many good sines those that are called clipped, and of those that are cut off at 97 % those that
+    /// are not: where the cut is no more than rounding hides, and changes 4 % of the samples, and where
+    /// 256 phases tell the amplitude to 0.29·√(3/256) = 0.03 steps.
     fn wrong(draws: u64) -> (Vec<u64>, Vec<u64>) {
         let draw = |seed: u64, cut: Option<f64>, least: f64| {
             let mut noise = Noise::new(seed);

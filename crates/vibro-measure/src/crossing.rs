@@ -37,8 +37,9 @@ pub struct Crossing {
 /// Where two curves over frequency cross. Each is given by its points in any order;
 /// between its points it is a straight line in the logarithm, but not across a jump of its own.
 ///
-/// The uncertainty is that of the amplitudes, carried through the interpolation. Where the curves change places at a jump, the
-/// crossing is that jump: it lies anywhere between the points beside it with equal chance.
+/// The uncertainty is that of the amplitudes, carried through the interpolation. Where the curves change
+/// places at a jump, the crossing is that jump: it lies anywhere between the points beside it with equal
+/// chance.
 pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) -> Vec<Crossing> {
     first.sort_by(|a, b| a.0.total_cmp(&b.0));
     second.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -68,7 +69,8 @@ pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) 
             let (low, high) = (&w[0], &w[1]);
             let (width, turn) = (high.0 - low.0, low.1 - high.1);
             let second_above = high.1 > 0.0;
-            // A jump belongs to the stretch that holds more than half of its step: both masses seldom have quite the same frequencies.
+            // A jump belongs to the stretch that holds more than half of its step: both masses seldom have
+            // quite the same frequencies.
             let spans = jumps.iter().map(Jump::span);
             let own = spans.filter(|j| j.1.min(high.0) - j.0.max(low.0) > 0.5 * (j.1 - j.0));
             if let Some(jump) = own.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {

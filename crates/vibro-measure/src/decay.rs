@@ -1,8 +1,9 @@
 //! Free decays, behind a release or a blow: natural frequency and damping of each mode.
 //!
-//! The motion is a sum of damped sines. Each is fitted to the lines around it, with what the ends of the record do to these in the model
-//! (damped.rs); the strongest line of what is left gives the next sine, and all are fitted again (J. Li, P. Stoica, IEEE Trans.
-//! Signal Process. 44 (1996) 281, the method RELAX, for damped sines). Noise is that which is left of the lines beside a sine.
+//! The motion is a sum of damped sines. Each is fitted to the lines around it, with what the ends of the
+//! record do to these in the model (damped.rs); the strongest line of what is left gives the next sine, and
+//! all are fitted again (J. Li, P. Stoica, IEEE Trans. Signal Process. 44 (1996) 281, the method RELAX, for
+//! damped sines). Noise is that which is left of the lines beside a sine.
 
 mod damped;
 mod result;
@@ -29,8 +30,9 @@ const CHANGED: f64 = 1e-3;
 /// Modes of the free decay that a record holds.
 ///
 /// # Errors
-/// If the trace is not evenly sampled, its band is none, it holds too few periods, no mode stands out of the noise, or the strongest line does
-/// not decay: a motion that is driven, grows, or was not seen for long enough.
+/// If the trace is not evenly sampled, its band is none, it holds too few periods, no mode stands out of the
+/// noise, or the strongest line does not decay: a motion that is driven, grows, or was not seen for long
+/// enough.
 pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
     let rate = trace.sampling_rate()?;
     if let Some((low, high)) = options.band.filter(|(low, high)| !(*low >= 0.0 && low < high)) {

@@ -1,15 +1,16 @@
 //! Hammer drills: a laser on the striker or the bit, and a pulse once a turn of the crank.
 //!
-//! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and motion. Edges of the
-//! reference cut the record into turns; phases are parts of a turn after the edge, which for a pulse at the upper end of
-//! the piston's stroke is the phase after top dead centre. Without a reference the turns run from impact
-//! to impact. Beside the channels a record takes 25 bytes a sample.
+//! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and
+//! motion. Edges of the reference cut the record into turns; phases are parts of a turn after the edge, which
+//! for a pulse at the upper end of the piston's stroke is the phase after top dead centre. Without a
+//! reference the turns run from impact to impact. Beside the channels a record takes 25 bytes a sample.
 //!
 //! ```
 //! use vibro_measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
 //! let rate = 20_000.0;
 //! let turn = |i: u32| f64::from(i) / 400.0; // 50 turns a second
-//! // A volt is 2 m/s; 6 m/s before an impact that leaves −1 m/s, and back to the same place. The pulse begins a turn.
+//! // A volt is 2 m/s; 6 m/s before an impact that leaves −1 m/s, and back to the same place.
+//! // The pulse begins a turn.
 //! let speed = |s: f64| -1.0 + 7.0 * s - 5.0 * (std::f64::consts::PI * s).sin().powi(2);
 //! let volts: Vec<f64> = (0..20_000).map(|i| 0.5 * speed((turn(i) + 0.4).fract())).collect();
 //! let pulse: Vec<f64> = (0..20_000).map(|i| if turn(i).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
@@ -62,15 +63,17 @@ const PARTS: usize = 16;
 pub struct Slices<'a> {
     /// Sampling rate in Hz.
     pub rate: f64,
-    /// Velocity, reference where the turns come from one, then up to three axes of a handle, in m/s²; missing samples are NaN.
+    /// Velocity, reference where the turns come from one, then up to three axes of a handle, in m/s²;
+    /// missing samples are NaN.
     pub channels: Vec<&'a [f64]>,
 }
 
 /// Measures the turns and impacts of a drill; `still` is the velocity channel without motion.
 ///
 /// # Errors
-/// If the parameters cannot be; if the velocity is constant or missing, or the same as the reference; if the reference has no whole turn
-/// between its edges, or without a reference the impacts no common period; if a handle allows no exposure.
+/// If the parameters cannot be; if the velocity is constant or missing, or the same as the reference; if the
+/// reference has no whole turn between its edges, or without a reference the impacts no common period; if a
+/// handle allows no exposure.
 pub fn drill(record: &Slices<'_>, options: &DrillOptions, still: Option<&[f64]>) -> Result<Drill> {
     drill_each(record, options, still, &mut |_| Ok(()))
 }
@@ -190,8 +193,9 @@ pub fn drill_each(
     Ok(result)
 }
 
-/// Standard uncertainty in m of what a stroke lacks, where no velocity is beyond `reach` in m/s: what smoothing takes off, and what the mass covers between an impact, which turns it round at
-/// once, and the nearer sample.
+/// Standard uncertainty in m of what a stroke lacks, where no velocity is beyond `reach` in m/s: what
+/// smoothing takes off, and what the mass covers between an impact, which turns it round at once, and the
+/// nearer sample.
 fn lacking(blunted: &[f64], groups: &[Group], reach: f64, rate: f64) -> f64 {
     let corner = |group: &Group| {
         // Where a velocity is not known, it is no more than the largest of the record.
@@ -203,7 +207,8 @@ fn lacking(blunted: &[f64], groups: &[Group], reach: f64, rate: f64) -> f64 {
     (Mean::of(blunted).value.abs() + corners) / f64::sqrt(3.0)
 }
 
-/// The reference, where the turns come from one; if there are a rate, and a velocity and a reference that differ.
+/// The reference, where the turns come from one; if there are a rate, and a velocity and a reference that
+/// differ.
 fn check<'a>(record: &Slices<'a>, options: &DrillOptions) -> Result<Option<&'a [f64]>> {
     let rate = record.rate;
     if !(rate.is_finite() && rate > 0.0) {
@@ -274,7 +279,8 @@ impl Marks {
     }
 }
 
-/// Some turns in the middle as they were measured: their first sample, velocity and reference, which is earlier by `delay` samples.
+/// Some turns in the middle as they were measured: their first sample, velocity and reference, which is
+/// earlier by `delay` samples.
 fn excerpt(turns: &[Turn], velocity: &[f64], reference: &[f64], delay: f64) -> (usize, Vec<f64>, Vec<f64>) {
     let first = turns.len().saturating_sub(DRAWN) / 2;
     let shown = &turns[first..(first + DRAWN).min(turns.len())];
@@ -289,7 +295,8 @@ fn excerpt(turns: &[Turn], velocity: &[f64], reference: &[f64], delay: f64) -> (
 mod tests {
     use super::*;
 
-    /// v = −1.3 m/s + 5.5 m/s u^p with no mean: the displacement falls for the part (1.3/5.5)^(1/p) of a turn, and its highest point is the impact.
+    /// v = −1.3 m/s + 5.5 m/s u^p with no mean: the displacement falls for the part (1.3/5.5)^(1/p) of a
+    /// turn, and its highest point is the impact.
     #[test]
     fn the_stroke_of_a_sharp_impact_lies_within_its_uncertainty() {
         let (back, range, f, rate) = (1.3, 5.5, 44.1, 40_000.0);
@@ -305,7 +312,8 @@ mod tests {
             let found = drill(&Slices { rate, channels: vec![&volts, &pulse] }, &options, None).unwrap();
             let stroke = &found.displacement.stroke;
             let (off, std) = (stroke.value / truth - 1.0, stroke.std.unwrap() / truth);
-            // The corner lies within a sample or the smoothing of it: (1.3 · 4.2/5.5) m/s of 1/40 kHz is 0.2 % of the stroke.
+            // The corner lies within a sample or the smoothing of it: (1.3 · 4.2/5.5) m/s of 1/40 kHz is 0.2
+            // % of the stroke.
             assert!(off.abs() < 2.5 * std && std < 0.01, "{smoothing:?}: {off:.2e} ± {std:.2e}");
         }
     }
@@ -323,7 +331,8 @@ mod tests {
             let options = DrillOptions { delay, ..DrillOptions::new(2.0, beam, 1, Edge::Rising) };
             let channels = Slices { rate: 20_000.0, channels: vec![&values, &pulse] };
             let found = drill(&channels, &options, None).unwrap();
-            // The edge that begins the turns drawn, at half the height of the pulse, lies on their first samples.
+            // The edge that begins the turns drawn, at half the height of the pulse, lies on their first
+            // samples.
             assert!(found.excerpt_reference.len() == found.excerpt.len() && found.excerpt.len() > 1200);
             let edge = found.excerpt_reference.iter().position(|v| *v > 2.5);
             assert!(edge.is_some_and(|i| i <= 1), "{edge:?} with a delay of {delay} s");

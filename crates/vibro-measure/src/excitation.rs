@@ -1,4 +1,5 @@
-//! The excitation frequency of each step of a sweep, from its force spectrum (the job of the thesis' sineswpf).
+//! The excitation frequency of each step of a sweep, from its force spectrum (the job of the thesis'
+//! sineswpf).
 
 use super::line::{SubLine, deviation, interpolate};
 use super::noise;
@@ -13,7 +14,8 @@ pub struct Excitation {
     pub file: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Its standard uncertainty in Hz; `None` where it is not known, as where another line near by bends this one.
+    /// Its standard uncertainty in Hz; `None` where it is not known, as where another line near by bends
+    /// this one.
     pub std: Option<f64>,
     /// Force amplitude in N; `None` where the frequency was given.
     pub force: Option<f64>,
@@ -26,11 +28,12 @@ const ABOVE_FLOOR: f64 = 8.0;
 
 /// Excitation of every step, in the order of the sweep.
 ///
-/// The largest line of the force spectrum, interpolated below the line distance; 0 Hz, the line beside it and lines
-/// below `fmin` (Hz) are skipped, so an offset of the force does no harm.
+/// The largest line of the force spectrum, interpolated below the line distance; 0 Hz, the line beside it and
+/// lines below `fmin` (Hz) are skipped, so an offset of the force does no harm.
 ///
 /// # Errors
-/// If a force spectrum is zero, holds no line above its noise, or has its largest line at the end of the base band.
+/// If a force spectrum is zero, holds no line above its noise, or has its largest line at the end of the base
+/// band.
 pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
     each(sweep, fmin)?.into_iter().collect()
 }
@@ -71,9 +74,11 @@ pub(crate) fn each(sweep: &Sweep, fmin: f64) -> Result<Vec<Result<Excitation>>> 
     Ok(sweep.points.iter().map(one).collect())
 }
 
-/// The largest local maximum from `first` on, interpolated; what an offset spreads beside line 0 is passed over.
+/// The largest local maximum from `first` on, interpolated; what an offset spreads beside line 0 is passed
+/// over.
 fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::Result<SubLine, String> {
-    // The main lobe of an offset is as wide as the window has terms; of an unknown window the widest is feared.
+    // The main lobe of an offset is as wide as the window has terms; of an unknown window the widest is
+    // feared.
     let lobe = window.unwrap_or(Window::FlatTop).coefficients().len() + 1;
     let (cut, first) = (first > lobe, first.max(lobe));
     let n = force.len();
@@ -112,8 +117,9 @@ const BY_NOISE: f64 = 5.0;
 /// Beyond this part of the amplitude, what stands beside a sine is no small error.
 const SMALL: f64 = 0.02;
 
-/// A line around `k` that has not the shape of one steady sine, by more than noise, as where it drifts or another stands beside it: what is off tilts
-/// the three lines and lifts them by its part of their height, about; where that is much, how far they are off is not known.
+/// A line around `k` that has not the shape of one steady sine, by more than noise, as where it drifts or
+/// another stands beside it: what is off tilts the three lines and lifts them by its part of their height,
+/// about; where that is much, how far they are off is not known.
 pub(crate) fn bent(line: SubLine, magnitudes: &[f64], k: usize, seen: Option<(Window, f64)>) -> SubLine {
     let off = seen.and_then(|(window, floor)| {
         deviation(magnitudes, k, 2, window).filter(|off| *off > BY_NOISE * floor)
@@ -178,13 +184,15 @@ mod tests {
                     })
                     .collect();
                 let found = largest(&lines, Some(window), 0).unwrap();
-                // An offset falls on a line, where no window has side lobes: only rounding of the shape is left.
+                // An offset falls on a line, where no window has side lobes: only rounding of the shape is
+                // left.
                 assert!((found.position - 110.4).abs() < 1e-9, "{window:?} {offset}: {}", found.position);
             }
         }
     }
 
-    /// Lines of the ripple of a floor, a sine, and another of half its height `apart` lines beside it, in phase.
+    /// Lines of the ripple of a floor, a sine, and another of half its height `apart` lines beside it, in
+    /// phase.
     fn pair(apart: f64) -> Vec<f64> {
         (0..401)
             .map(|k| {

@@ -18,7 +18,8 @@ const TRANSITION_Q: f64 = 0.64;
 const LOWEST_RATE: f64 = 4.0 * 1258.9;
 /// Duration in s over which the scatter of the vibration is taken.
 const SPAN: f64 = 1.0;
-/// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴ in this time.
+/// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴
+/// in this time.
 const SETTLED: f64 = 0.5;
 
 /// The weighting at a frequency in Hz, by the formula of the standard.
@@ -52,8 +53,8 @@ struct Axis {
     duration: f64,
 }
 
-/// Weights accelerations. Each section of the filter is transformed bilinearly so that it is exact at its own corner. It begins as if the
-/// first value had been there for ever: an offset of the sensor is no shock.
+/// Weights accelerations. Each section of the filter is transformed bilinearly so that it is exact at its own
+/// corner. It begins as if the first value had been there for ever: an offset of the sensor is no shock.
 ///
 /// # Errors
 /// If the rate is below four times the upper corner of the weighting.
@@ -121,13 +122,14 @@ pub struct Exposure {
 
 /// Exposure from one to three axes of a handle, in m/s² at `rate` samples a second; `hours` of it a day.
 ///
-/// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are those of the scatter
-/// from second to second (Müller 2007, as for turns of a drill), for `a_hv` of the sum of squares over the axes, since they rise and fall
-/// together; there are none below four seconds. Neither calibration nor mounting are in them.
+/// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are
+/// those of the scatter from second to second (Müller 2007, as for turns of a drill), for `a_hv` of the sum
+/// of squares over the axes, since they rise and fall together; there are none below four seconds. Neither
+/// calibration nor mounting are in them.
 ///
 /// # Errors
-/// If there is no axis or there are more than three, a rate that is too low, a duration that is not above 0 and at most 24 h, a missing
-/// sample, a record in which the weighting does not settle, or no vibration.
+/// If there is no axis or there are more than three, a rate that is too low, a duration that is not above 0
+/// and at most 24 h, a missing sample, a record in which the weighting does not settle, or no vibration.
 pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exposure> {
     if handles.is_empty() || handles.len() > 3 {
         return Err(Error::usage(format!("{} axes of a handle", handles.len()), "one to three"));

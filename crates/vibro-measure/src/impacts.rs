@@ -1,8 +1,9 @@
 //! Impacts in a trace: a contact circuit, or any signal that jumps at each of them.
 //!
-//! One pipeline: [`detect`] removes mains hum and times each burst above the noise once, ringing included, below a sample;
-//! [`impacts`] numbers the impacts, missed and doubled ones allowed for, fits their mean interval, and compares them with the
-//! excitation. What was assumed and what is doubtful is in [`Impacts::findings`].
+//! One pipeline: [`detect`] removes mains hum and times each burst above the noise once, ringing included,
+//! below a sample; [`impacts`] numbers the impacts, missed and doubled ones allowed for, fits their mean
+//! interval, and compares them with the excitation. What was assumed and what is doubtful is in
+//! [`Impacts::findings`].
 
 mod background;
 mod bands;
@@ -48,9 +49,11 @@ pub struct Impacts {
     pub median_interval: f64,
     /// Standard deviation of the intervals between neighbours that miss none, in s; null for fewer than two.
     pub spread: Option<f64>,
-    /// Serial correlation of neighbouring intervals, less what a pattern repeats: −0.5 where onsets are noisy, 0 where intervals jitter.
+    /// Serial correlation of neighbouring intervals, less what a pattern repeats: −0.5 where onsets are
+    /// noisy, 0 where intervals jitter.
     pub serial_correlation: Option<f64>,
-    /// Impacts after which the intervals repeat, where they are unlike within that pattern; null where there is none.
+    /// Impacts after which the intervals repeat, where they are unlike within that pattern; null where there
+    /// is none.
     pub pattern: Option<usize>,
     /// Impacts that should stand in intervals that are several of the others.
     pub missed: usize,
@@ -60,11 +63,11 @@ pub struct Impacts {
     pub excitation: Option<f64>,
     /// Impacts per excitation cycle; null where no fraction fits or no excitation is known.
     pub per_cycle: Option<PerCycle>,
-    /// Frequency in Hz by which the impacts miss the fraction that they come near to; null where they keep it, come near none, or no
-    /// excitation is known.
+    /// Frequency in Hz by which the impacts miss the fraction that they come near to; null where they keep
+    /// it, come near none, or no excitation is known.
     pub beat: Option<Estimate>,
-    /// Whether impacts repeat: a fraction fits, or without an excitation, intervals spread by less than 5 %, or about those of a pattern. Two impacts
-    /// do not show it.
+    /// Whether impacts repeat: a fraction fits, or without an excitation, intervals spread by less than 5 %,
+    /// or about those of a pattern. Two impacts do not show it.
     pub regular: bool,
     /// Phases of the impacts of the pattern, in excitation cycles; empty where there is no pattern.
     pub phases: Vec<Phase>,
@@ -82,12 +85,13 @@ pub struct Impacts {
     pub findings: Vec<Finding>,
 }
 
-/// Finds the impacts of `trace`, their mean interval, and what they repeat. Where the whole record shows none, or loses most in its noise, and no option
-/// says how to look for them: in the envelope of the octave in which they ring.
+/// Finds the impacts of `trace`, their mean interval, and what they repeat. Where the whole record shows
+/// none, or loses most in its noise, and no option says how to look for them: in the envelope of the octave
+/// in which they ring.
 ///
 /// # Errors
-/// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the reference channel has fewer than two
-/// edges; on impossible options.
+/// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the
+/// reference channel has fewer than two edges; on impossible options.
 pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     let whole = impacts_so(trace, options);
     let lost = |f: &Finding| ["impacts-lost-in-noise", "impacts-mostly-missed"].contains(&&*f.code);
@@ -176,8 +180,9 @@ fn impacts_so(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
             .setting("threshold")
     })?;
     findings.extend(fitted.wanders.then(|| Finding::caution("intervals-drift")));
-    // First and last onset lie each anywhere within a sample. Where the interval is near a whole number of samples all lie alike between theirs:
-    // the scatter of the intervals does not show it, and no number of impacts averages it.
+    // First and last onset lie each anywhere within a sample. Where the interval is near a whole number of
+    // samples all lie alike between theirs: the scatter of the intervals does not show it, and no number
+    // of impacts averages it.
     let intervals = counted.index.last().copied().unwrap_or(0) as f64;
     let sampled = resolution.map_or(0.0, |step| step / (6f64.sqrt() * intervals));
     // The shifts of the places of a pattern are fitted with the interval.
@@ -232,14 +237,16 @@ const PAUSE: f64 = 1.2;
 /// Fewest intervals that show that they are irregular.
 const TELLING: usize = 12;
 
-/// Whether no more intervals lie near a multiple of their median than chance brings there: within 5 % on either side lies one in ten.
+/// Whether no more intervals lie near a multiple of their median than chance brings there: within 5 % on
+/// either side lies one in ten.
 fn irregular(steps: &[f64]) -> bool {
     let median = median(steps);
     let off = |step: &&f64| ((*step / median).round().max(1.0) - *step / median).abs() > REGULAR;
     steps.len() >= TELLING && steps.iter().filter(off).count() as f64 > 0.85 * steps.len() as f64
 }
 
-/// Standard deviation of the intervals between neighbours without a missed impact between them; `None` of fewer than two.
+/// Standard deviation of the intervals between neighbours without a missed impact between them; `None` of
+/// fewer than two.
 fn spread(times: &[f64], counted: &Counted) -> Option<f64> {
     let pairs = times.windows(2).zip(counted.index.windows(2));
     let single: Vec<f64> = pairs.filter(|(_, k)| k[1] - k[0] == 1).map(|(t, _)| t[1] - t[0]).collect();

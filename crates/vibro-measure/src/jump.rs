@@ -50,17 +50,19 @@ pub(super) fn differ(a: &Point, b: &Point) -> bool {
     (a.1 - b.1).abs() > SIGMA * noise[0].hypot(noise[1])
 }
 
-/// A jump turns the motion against the force by at least this angle in rad, where its amplitude alone does not tell it from a flank.
+/// A jump turns the motion against the force by at least this angle in rad, where its amplitude alone does
+/// not tell it from a flank.
 const TURN: f64 = 1.0;
 
-/// Jumps between neighbouring steps, in the order in which the sweep was run. `receptances` are those of the points; none where they are not
-/// known.
+/// Jumps between neighbouring steps, in the order in which the sweep was run. `receptances` are those of the
+/// points; none where they are not known.
 pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direction) -> Vec<Jump> {
     let step = |i: usize| (curve[i + 1].1 / curve[i].1).ln();
     let width = |i: usize| (curve[i + 1].0 - curve[i].0).abs();
     let steps = curve.len().saturating_sub(1);
-    // What the curve does on its own over the distance of a step: the steepest of two steps on each side. Without a step on both sides,
-    // and where a sharp peak stands beside the step, a jump cannot be parted from a flank.
+    // What the curve does on its own over the distance of a step: the steepest of two steps on each side.
+    // Without a step on both sides, and where a sharp peak stands beside the step, a jump cannot be
+    // parted from a flank.
     let stands_out = |i: usize, sides: usize, change: &dyn Fn(usize) -> f64| {
         let around = [i.saturating_sub(2)..i, i + 1..(i + 3).min(steps)].into_iter();
         let mut known = around.filter(|side| sides == 2 || side.len() == 2).peekable();
@@ -71,8 +73,8 @@ pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direc
                 change(i) > JUMP_AGAINST_NEIGHBOURS * usual
             })
     };
-    // Near a pole of a linear motion its inverse is a straight line over f², near a zero the motion itself: one of them is smooth, and two steps
-    // on one side tell.
+    // Near a pole of a linear motion its inverse is a straight line over f², near a zero the motion itself:
+    // one of them is smooth, and two steps on one side tell.
     let noise = |i: usize| {
         let of = |k: usize| known(curve[k].2).unwrap_or(0.0) / curve[k].1 * receptances[k].norm();
         of(i).hypot(of(i + 1))
@@ -114,11 +116,13 @@ pub(super) fn jump([before, after]: [Point; 2], direction: Direction) -> Jump {
     }
 }
 
-/// Changes beyond what a curve does beside them by more than this many standard deviations are a jump, where the other mass jumps.
+/// Changes beyond what a curve does beside them by more than this many standard deviations are a jump, where
+/// the other mass jumps.
 const SIGMA_OF_BOTH: f64 = 5.0;
 
-/// The jump of a rising curve where the other mass of the same sweep has one: the change across it lies outside what the steps on both
-/// sides predict. `None` where it does not, or where there is no step on a side.
+/// The jump of a rising curve where the other mass of the same sweep has one: the change across it lies
+/// outside what the steps on both sides predict. `None` where it does not, or where there is no step on a
+/// side.
 pub(super) fn echo(curve: &[Point], other: &Jump) -> Option<Jump> {
     let high = curve.partition_point(|p| p.0 < other.frequency);
     let [a, b, c, d]: [_; 4] = curve.get(high.checked_sub(2)?..=high + 1)?.try_into().ok()?;

@@ -1,14 +1,17 @@
-//! What the thesis' scripts sineswpf, sinesw, sinesw3 and timeav gave, mistakes included, so that old results can be checked.
+//! What the thesis' scripts sineswpf, sinesw, sinesw3 and timeav gave, mistakes included, so that old results
+//! can be checked.
 //!
-//! They are wrong in known ways: the largest line may be 0 Hz, frequencies and amplitudes are read on the line, and the
-//! first and last search windows are open on one side; timeav takes the mean interval of all that is higher than a quarter of one
-//! early peak. Use [`super::excitation`], [`super::waterfall`], [`super::response`] and [`super::impacts`] for answers.
+//! They are wrong in known ways: the largest line may be 0 Hz, frequencies and amplitudes are read on the
+//! line, and the first and last search windows are open on one side; timeav takes the mean interval of all
+//! that is higher than a quarter of one early peak. Use [`super::excitation`], [`super::waterfall`],
+//! [`super::response`] and [`super::impacts`] for answers.
 
 use std::fmt::Write as _;
 use std::path::Path;
 use vibro_record::{Error, Place, Result, Sweep, SweepPoint, Trace};
 
-/// sineswpf: the frequency of the largest line of each force spectrum, 0 Hz included; hand-over frequencies as given.
+/// sineswpf: the frequency of the largest line of each force spectrum, 0 Hz included; hand-over frequencies
+/// as given.
 ///
 /// # Errors
 /// Where two lines are equally large the script stops, and so does this.
@@ -42,8 +45,8 @@ pub fn rounded(excitation: &[f64]) -> Vec<f64> {
 /// Length of a name in a hand-over file of the script.
 const NAME: usize = 11;
 
-/// The hand-over file: number of points, lines, base band, frequencies, then all names without a separator, as the script
-/// wrote them; names that are not 11 characters long stand one a line.
+/// The hand-over file: number of points, lines, base band, frequencies, then all names without a separator,
+/// as the script wrote them; names that are not 11 characters long stand one a line.
 pub fn hand_over<P: AsRef<Path>>(lines: usize, base_band: f64, excitation: &[f64], names: &[P]) -> String {
     let mut text = String::new();
     for number in [excitation.len() as f64, lines as f64, base_band].iter().chain(excitation) {
@@ -64,8 +67,8 @@ pub fn waterfall(sweep: &Sweep) -> Vec<Vec<f64>> {
     sweep.points.iter().map(|p| p.response.values.magnitudes()).collect()
 }
 
-/// sinesw3: for each point the hand-over frequency and the largest stored line between the midpoints to its neighbours,
-/// the first window open downwards and the last upwards.
+/// sinesw3: for each point the hand-over frequency and the largest stored line between the midpoints to its
+/// neighbours, the first window open downwards and the last upwards.
 ///
 /// # Errors
 /// As [`excitation`].
@@ -96,7 +99,8 @@ pub struct ContactTimes {
 
 /// timeav: local maxima that rise from above 0 and are higher than a quarter of the first big one.
 ///
-/// Its own test of "big" is not kept with its outputs; the larger of the first two maxima reproduces all of them.
+/// Its own test of "big" is not kept with its outputs; the larger of the first two maxima reproduces all of
+/// them.
 ///
 /// # Errors
 /// Where the file has a header, the trace no sampling rate or no maximum: the script stopped there.

@@ -23,13 +23,14 @@ const LIMIT: f64 = 0.99;
 /// Frequency and amplitude of the sine whose largest line is `k`, from three magnitudes.
 ///
 /// For a window with a main lobe of four lines or more, the distance δ from line `k` solves
-/// (m₊ − m₋)/(m₋ + 2m₀ + m₊) = (W(1−δ) − W(1+δ))/(W(1+δ) + 2W(δ) + W(1−δ)), which for Hann is δ = 2(m₊ − m₋)/(m₋ + 2m₀ + m₊)
-/// (T. Grandke, IEEE Trans. Instrum. Meas. 32 (1983) 350, in its three-line form); both are exact for a clean sine in a
-/// long record. Without a window the larger neighbour alone is used, δ = m₊/(m₀ + m₊) (Rife & Vincent 1970).
-/// With `window` unknown a parabola through the log magnitudes stands in, and no uncertainty is given.
+/// (m₊ − m₋)/(m₋ + 2m₀ + m₊) = (W(1−δ) − W(1+δ))/(W(1+δ) + 2W(δ) + W(1−δ)), which for Hann is δ = 2(m₊ −
+/// m₋)/(m₋ + 2m₀ + m₊) (T. Grandke, IEEE Trans. Instrum. Meas. 32 (1983) 350, in its three-line form); both
+/// are exact for a clean sine in a long record. Without a window the larger neighbour alone is used, δ =
+/// m₊/(m₀ + m₊) (Rife & Vincent 1970). With `window` unknown a parabola through the log magnitudes stands in,
+/// and no uncertainty is given.
 ///
-/// `noise` is the standard deviation of one component of a line. `None` if `k` has no neighbour on a side or the lines
-/// there are missing or zero.
+/// `noise` is the standard deviation of one component of a line. `None` if `k` has no neighbour on a side or
+/// the lines there are missing or zero.
 pub fn interpolate(
     magnitudes: &[f64],
     k: usize,
@@ -43,8 +44,8 @@ pub fn interpolate(
     }
     let (delta, amplitude) = window.map_or_else(|| log_parabola(lines), |window| solve(lines, window));
     let known = window.zip(noise).filter(|(window, noise)| {
-        // At the limit the lines have not the shape of one sine, and slopes mean nothing. Without a window noise may choose the wrong
-        // neighbour: then no small uncertainty is true.
+        // At the limit the lines have not the shape of one sine, and slopes mean nothing. Without a window
+        // noise may choose the wrong neighbour: then no small uncertainty is true.
         delta.abs() < LIMIT && (*window != Window::Rectangular || (right - left).abs() >= 6.0 * noise)
     });
     let [position_std, amplitude_std] =
@@ -58,8 +59,9 @@ fn three(magnitudes: &[f64], k: usize) -> Option<[f64; 3]> {
     lines.iter().all(|m| m.is_finite()).then_some(lines)
 }
 
-/// The largest deviation of the lines within `reach` of line `k` from the shape of the sine that the three in the middle show: what
-/// noise, another sine near by, the sine's own image at the ends of the band or a wrong window add. `None` as in [`interpolate`].
+/// The largest deviation of the lines within `reach` of line `k` from the shape of the sine that the three in
+/// the middle show: what noise, another sine near by, the sine's own image at the ends of the band or a wrong
+/// window add. `None` as in [`interpolate`].
 pub fn deviation(magnitudes: &[f64], k: usize, reach: usize, window: Window) -> Option<f64> {
     let lines = three(magnitudes, k)?;
     let (delta, amplitude) = solve(lines, window);
@@ -72,8 +74,8 @@ pub fn deviation(magnitudes: &[f64], k: usize, reach: usize, window: Window) -> 
     (lines[1] > 0.0 && largest.is_finite()).then_some(largest)
 }
 
-/// Amplitude of a sine at a known `position` in lines, with its standard uncertainty: the three nearest lines against
-/// the window's shape there. `None` where they do not exist or are missing.
+/// Amplitude of a sine at a known `position` in lines, with its standard uncertainty: the three nearest lines
+/// against the window's shape there. `None` where they do not exist or are missing.
 pub(crate) fn amplitude_at(
     magnitudes: &[f64],
     position: f64,
@@ -92,8 +94,8 @@ pub(crate) fn amplitude_at(
     Some((dot(weights, lines) / gain, noise.map(|noise| noise * spread(weights, window) / gain)))
 }
 
-/// Magnitude of the line nearest to a known `position` in lines, and its height over the amplitude of a sine there: 1 under an
-/// unknown window. `None` where it does not exist or is missing.
+/// Magnitude of the line nearest to a known `position` in lines, and its height over the amplitude of a sine
+/// there: 1 under an unknown window. `None` where it does not exist or is missing.
 pub fn nearest(magnitudes: &[f64], position: f64, window: Option<Window>) -> Option<(f64, f64)> {
     let k = position.round();
     let line = magnitudes.get(k as usize).filter(|m| k >= 0.0 && m.is_finite())?;
@@ -157,8 +159,8 @@ fn propagate(lines: [f64; 3], window: Window, noise: f64) -> [f64; 2] {
     slopes.map(|s| noise * spread(s, window))
 }
 
-/// Vertex of the parabola through the logarithms of three lines: its distance from the middle one, at most half a line, and the height
-/// there. A flat top in noise has its vertex anywhere.
+/// Vertex of the parabola through the logarithms of three lines: its distance from the middle one, at most
+/// half a line, and the height there. A flat top in noise has its vertex anywhere.
 fn log_parabola(lines: [f64; 3]) -> (f64, f64) {
     let [l, m, r] = lines.map(f64::ln);
     let curvature = l - 2.0 * m + r;
@@ -186,8 +188,8 @@ mod tests {
                 let lines = clean(window, truth, 2.5);
                 let k = truth.round() as usize;
                 let found = interpolate(&lines, k, Some(window), None).unwrap();
-                // A handful of operations on numbers of order one; bisection and the flat top's shallow slope cost
-                // up to a factor of 1e3 in δ.
+                // A handful of operations on numbers of order one; bisection and the flat top's shallow slope
+                // cost up to a factor of 1e3 in δ.
                 assert!((found.position - truth).abs() < 1e-12, "{window:?} {truth}: {}", found.position);
                 assert!(
                     (found.amplitude / 2.5 - 1.0).abs() < 1e-12,

@@ -7,11 +7,13 @@ use std::f64::consts::PI;
 const FEWEST: usize = 4;
 /// Most cosines: more gain nothing, the uncertainty of the variance is 26 % then.
 const MOST: usize = 30;
-/// Part of the density by neighbours alone, which many values tell, that the few cosines may be below by chance.
+/// Part of the density by neighbours alone, which many values tell, that the few cosines may be below by
+/// chance.
 const LEAST: f64 = 0.6;
 /// Standard deviations that independent values are within in 99 % of cases, on one side.
 const SURE: f64 = 2.33;
-/// Where the density over the cosines is below this part of that at frequency 0, an uncertainty may be too small by a third or more.
+/// Where the density over the cosines is below this part of that at frequency 0, an uncertainty may be too
+/// small by a third or more.
 const STEEP: f64 = 0.5;
 /// Largest dependence on the value before that is reckoned with.
 const CLOSEST: f64 = 0.97;
@@ -35,8 +37,8 @@ pub(crate) fn upper_median(values: impl IntoIterator<Item = f64>) -> Option<f64>
     (!finite.is_empty()).then(|| *finite.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Mean of `estimates` (logarithm of the weight, value, variance), and its variance: the mean of their variances and the variance of
-/// their values.
+/// Mean of `estimates` (logarithm of the weight, value, variance), and its variance: the mean of their
+/// variances and the variance of their values.
 pub(crate) fn mixture(estimates: &[(f64, f64, f64)]) -> (f64, f64) {
     let highest = estimates.iter().map(|e| e.0).fold(f64::NEG_INFINITY, f64::max);
     let total: f64 = estimates.iter().map(|e| (e.0 - highest).exp()).sum();
@@ -49,19 +51,22 @@ pub(crate) fn mixture(estimates: &[(f64, f64, f64)]) -> (f64, f64) {
 
 /// A mean and its standard uncertainty.
 ///
-/// Values that follow each other are rarely independent: speed and stroke of a machine wander. The variance of their mean is
-/// taken from the slowest changes that the values show, their projections on K cosines
-/// `c_j = √(2/n) Σ x_t cos(πj(t − ½)/n)`, j = 1 to K, of t = 1 to n: each has the spectral density near zero frequency as its
-/// variance, so that `Σ c_j²/(K n)` is the variance of the mean with K degrees of freedom (U. Müller, J. Econometrics 141
-/// (2007) 1331). K is 1.2 n^0.4, from 3 to 30: few enough that the density hardly changes over them where neighbours are
-/// correlated moderately. The standard uncertainty is that of Student's distribution ([`student`]).
+/// Values that follow each other are rarely independent: speed and stroke of a machine wander. The variance
+/// of their mean is taken from the slowest changes that the values show, their projections on K cosines
+/// `c_j = √(2/n) Σ x_t cos(πj(t − ½)/n)`, j = 1 to K, of t = 1 to n: each has the spectral density near zero
+/// frequency as its variance, so that `Σ c_j²/(K n)` is the variance of the mean with K degrees of freedom
+/// (U. Müller, J. Econometrics 141 (2007) 1331). K is 1.2 n^0.4, from 3 to 30: few enough that the density
+/// hardly changes over them where neighbours are correlated moderately. The standard uncertainty is that of
+/// Student's distribution ([`student`]).
 ///
-/// Where values depend on the one before by ρ the density falls over the cosines, to the part (1 − ρ)²/(1 − 2ρ cos ω + ρ²) of that
-/// at frequency 0; the variance is divided by the mean of these parts (prewhitening with a first-order model, D. Andrews and J. Monahan,
-/// Econometrica 60 (1992) 953), ρ from the serial correlation r, whose bias −(1 + 3r)/n is added (M. Kendall, Biometrika 41 (1954) 403).
-/// The few cosines may be small by chance: unless values surely depend inversely on those beside them, the variance is no less than 0.6 of what
-/// γ₀ and a negative γ₁ give. ± 1.96 standard uncertainties hold the truth in 95 to 97 % of sequences that are independent, in 93 % of 20 values or more up to ρ = 0.6;
-/// at ρ = 0.9 in 83 % of 20, 89 % of 60 and 94 % of 300. `wanders` tells of sequences in which the uncertainty may be too small.
+/// Where values depend on the one before by ρ the density falls over the cosines, to the part (1 − ρ)²/(1 −
+/// 2ρ cos ω + ρ²) of that at frequency 0; the variance is divided by the mean of these parts (prewhitening
+/// with a first-order model, D. Andrews and J. Monahan, Econometrica 60 (1992) 953), ρ from the serial
+/// correlation r, whose bias −(1 + 3r)/n is added (M. Kendall, Biometrika 41 (1954) 403). The few cosines may
+/// be small by chance: unless values surely depend inversely on those beside them, the variance is no less
+/// than 0.6 of what γ₀ and a negative γ₁ give. ± 1.96 standard uncertainties hold the truth in 95 to 97 % of
+/// sequences that are independent, in 93 % of 20 values or more up to ρ = 0.6; at ρ = 0.9 in 83 % of 20, 89 %
+/// of 60 and 94 % of 300. `wanders` tells of sequences in which the uncertainty may be too small.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mean {
     /// Arithmetic mean; NaN where there is no value.
@@ -75,7 +80,8 @@ pub(crate) struct Mean {
 }
 
 impl Mean {
-    /// Mean of values in the order of time, as a sequence without gaps; the caller leaves out what is missing.
+    /// Mean of values in the order of time, as a sequence without gaps; the caller leaves out what is
+    /// missing.
     pub fn of(values: &[f64]) -> Mean {
         let n = values.len();
         let value = average(values);
@@ -105,8 +111,9 @@ impl Mean {
     }
 }
 
-/// Spectral density at frequency 0 of `n` values, by the sums of their squares about the mean and of the products of neighbours, where only neighbours depend on each other, γ₀ + 2γ₁, a positive γ₁ left out; 0 where they surely
-/// depend inversely, as the times between edges do.
+/// Spectral density at frequency 0 of `n` values, by the sums of their squares about the mean and of the
+/// products of neighbours, where only neighbours depend on each other, γ₀ + 2γ₁, a positive γ₁ left out; 0
+/// where they surely depend inversely, as the times between edges do.
 fn density(squares: f64, products: f64, n: f64) -> f64 {
     if products < -SURE * squares / n.sqrt() {
         return 0.0;
@@ -114,8 +121,9 @@ fn density(squares: f64, products: f64, n: f64) -> f64 {
     ((squares + 2.0 * products.min(0.0)) / n).max(0.0)
 }
 
-/// Mean density over `count` cosines as a part of that at frequency 0, of a chain as correlated as the values; at most 1. And whether
-/// independent values are as correlated in more than 1 % of cases: r of them is about −1/n ± 1/√n.
+/// Mean density over `count` cosines as a part of that at frequency 0, of a chain as correlated as the
+/// values; at most 1. And whether independent values are as correlated in more than 1 % of cases: r of them
+/// is about −1/n ± 1/√n.
 fn part(squares: f64, products: f64, n: f64, count: usize) -> (f64, bool) {
     let r = if squares > 0.0 { products / squares } else { 0.0 };
     let rho = (r + (1.0 + 3.0 * r) / n).clamp(0.0, CLOSEST);
@@ -156,7 +164,8 @@ mod tests {
         let values = [3.0, -1.0, 4.0, 1.5];
         let mean = Mean::of(&values);
         let squares: f64 = values.iter().map(|x| (x - 1.875f64).powi(2)).sum();
-        // A complete basis but for the constant: s²/n with 3 degrees of freedom, and √3 of Student's distribution.
+        // A complete basis but for the constant: s²/n with 3 degrees of freedom, and √3 of Student's
+        // distribution.
         let expected = 3f64.sqrt() * (squares / 3.0 / 4.0).sqrt();
         assert!((mean.std.unwrap() / expected - 1.0).abs() < 1e-14, "{mean:?} {expected}");
         assert!((mean.value, mean.n) == (1.875, 4));
@@ -170,7 +179,8 @@ mod tests {
         assert_eq!(Mean::of(&[0.1; 50]).std.map(|s| s < 1e-16), Some(true));
     }
 
-    /// Parts of 2000 sequences, seed `n`, of which ± 1.96 standard uncertainties hold the true mean 0, and which are said to wander, in %.
+    /// Parts of 2000 sequences, seed `n`, of which ± 1.96 standard uncertainties hold the true mean 0, and
+    /// which are said to wander, in %.
     fn coverage(n: usize, rho: f64) -> (f64, f64) {
         let mut noise = Twelve(n as u64);
         let (mut inside, mut told) = (0, 0);
@@ -203,8 +213,9 @@ mod tests {
             // Independent values seem to wander in 1 % of cases, which scatters by 0.2 %; four times that.
             assert!(rho > 0.0 || told < 1.9, "n = {n}: {told} %");
         }
-        // Where 20 or 60 values hold only one or six times what a chain of 0.9 remembers, its correlation is known too badly: that is
-        // stated, 83 % and 89 %, and most of them are said to wander. 2000 sequences scatter by 0.8 %, four times that.
+        // Where 20 or 60 values hold only one or six times what a chain of 0.9 remembers, its correlation is
+        // known too badly: that is stated, 83 % and 89 %, and most of them are said to wander. 2000
+        // sequences scatter by 0.8 %, four times that.
         for (n, stated) in [(20, 83.0), (60, 89.0)] {
             let (part, told) = coverage(n, 0.9);
             assert!((part - stated).abs() < 3.2 && told > 50.0, "n = {n}: {part} %, {told} %");

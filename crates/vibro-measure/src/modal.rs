@@ -1,8 +1,9 @@
 //! Modes of frequency response functions: natural frequency, damping ratio and modal constant.
 //!
-//! The answer is a rational fit in the complex plane, local to each peak: modes of viscous damping and two residual terms for what
-//! lies below and above, in the kind of the function itself (a receptance times iω for a mobility, −ω² for an accelerance).
-//! Beside it stand the largest line, the half-power bandwidth and the circle fit, to be compared.
+//! The answer is a rational fit in the complex plane, local to each peak: modes of viscous damping and two
+//! residual terms for what lies below and above, in the kind of the function itself (a receptance times iω
+//! for a mobility, −ω² for an accelerance). Beside it stand the largest line, the half-power bandwidth and
+//! the circle fit, to be compared.
 
 mod classical;
 mod leakage;
@@ -28,12 +29,13 @@ type Fitted = (Group, Rational);
 
 /// Finds the modes of a frequency response function.
 ///
-/// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be parted are fitted
-/// together, and modes of other groups are subtracted before the last fit of a group. The modes of a band that is given are then fitted
-/// together to all its lines, where that explains them.
+/// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be
+/// parted are fitted together, and modes of other groups are subtracted before the last fit of a group. The
+/// modes of a band that is given are then fitted together to all its lines, where that explains them.
 ///
 /// # Errors
-/// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be used.
+/// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be
+/// used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
     let least = options.least_coherence.unwrap_or(0.5);
     if !(0.0..1.0).contains(&least) {
@@ -83,7 +85,8 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
                 .hint("longer records, for five lines or more in the peak; check the sign of the phase"),
         });
     }
-    // The highest peaks that are no modes are told one by one; many more are noise, of which each says nothing.
+    // The highest peaks that are no modes are told one by one; many more are noise, of which each says
+    // nothing.
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
     let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
     let mut at: Vec<f64> = findings.iter().filter_map(odd).collect();
@@ -104,7 +107,8 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
 /// Most lines that a finding names.
 const NAMED: usize = 8;
 
-/// The modes of all groups but one. What no peak of its group supports may be a mode of the one, and is left out.
+/// The modes of all groups but one. What no peak of its group supports may be a mode of the one, and is left
+/// out.
 fn poles_beside(lines: &Measured, fits: &[Fitted], at: usize) -> Vec<Pole> {
     let sound = |(group, fit): &Fitted| {
         let modes = fit.modes.clone().into_iter().zip(fit.sound(lines, &group.peaks));
@@ -170,7 +174,8 @@ mod tests {
             let (of_k, of_f) = (k.std.unwrap() / k.value, mode.frequency.std.unwrap() / mode.frequency.value);
             assert!((of_k / (2.0 * of_f) - 1.0).abs() < 1e-9);
         }
-        // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the other mode's part.
+        // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the
+        // other mode's part.
         let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
         assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
@@ -232,7 +237,8 @@ mod tests {
         assert!(result.modes[0].zeta.std.is_some() && result.modes[0].stiffness.is_some(), "{result:?}");
     }
 
-    /// An exponential window shifts all poles: the function is taken at iω + σ, and so are the modes that are made here.
+    /// An exponential window shifts all poles: the function is taken at iω + σ, and so are the modes that are
+    /// made here.
     #[test]
     fn the_decay_of_an_exponential_window_is_taken_off() {
         let (own, zeta, decay, measured) = (500.0, 0.01, 3.0, two());

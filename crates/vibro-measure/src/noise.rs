@@ -10,19 +10,20 @@ pub const REACH: usize = 40;
 /// Lines next to the peak that are left out: they belong to it.
 const GUARD: usize = 4;
 
-/// Median of | |L + noise| − L | for a line of height L, both in units of the noise of one component: √(2 ln 2) for noise
-/// alone (Rayleigh), 0.6745 where the line is high (normal). Quantiles of the Rice distribution (S. O. Rice, Bell Syst.
-/// Tech. J. 24 (1945) 46); straight lines between these are within 1 %.
+/// Median of | |L + noise| − L | for a line of height L, both in units of the noise of one component: √(2 ln
+/// 2) for noise alone (Rayleigh), 0.6745 where the line is high (normal). Quantiles of the Rice distribution
+/// (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46); straight lines between these are within 1 %.
 const HEIGHTS: [f64; 10] = [0.0, 0.35, 0.5, 0.7, 0.8, 0.9, 1.0, 2.0, 4.0, 10.0];
 const MEDIANS: [f64; 10] = [1.1774, 0.8636, 0.7516, 0.6273, 0.5972, 0.5848, 0.5826, 0.6484, 0.669, 0.6745];
 
-/// Standard deviation of the noise in one component (real or imaginary) of a line, from the magnitudes of the lines
-/// `reach` on either side of `centre`, not nearer than four lines to it and not below line 2.
+/// Standard deviation of the noise in one component (real or imaginary) of a line, from the magnitudes of the
+/// lines `reach` on either side of `centre`, not nearer than four lines to it and not below line 2.
 ///
-/// What the sine at `centre` spreads over these lines under `window` is taken out: without a window, or under Hamming's, it is
-/// far above the noise. The median of the rest is not moved by a few further peaks. What cannot be taken out counts as
-/// noise: leakage of the sine's negative frequency and of lines elsewhere, and all leakage of an unknown window. It bends the
-/// sine's own lines as much as those beside it, so the uncertainty made of this floor is of its size.
+/// What the sine at `centre` spreads over these lines under `window` is taken out: without a window, or under
+/// Hamming's, it is far above the noise. The median of the rest is not moved by a few further peaks. What
+/// cannot be taken out counts as noise: leakage of the sine's negative frequency and of lines elsewhere, and
+/// all leakage of an unknown window. It bends the sine's own lines as much as those beside it, so the
+/// uncertainty made of this floor is of its size.
 ///
 /// `None` where fewer than eight lines are left.
 pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Window>) -> Option<f64> {
@@ -44,8 +45,9 @@ pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Wi
     }
     let mut scaled = vec![0.0; lines.len()];
     let mut noise = f64::INFINITY;
-    // What a line's rest should be depends on its height over the noise, weakly: the slope of the logarithm of the median over that of the height is at most
-    // 0.75, so each turn leaves no more than that of the error, and 40 turns 1e-5.
+    // What a line's rest should be depends on its height over the noise, weakly: the slope of the logarithm
+    // of the median over that of the height is at most 0.75, so each turn leaves no more than that of the
+    // error, and 40 turns 1e-5.
     for _ in 0..40 {
         for (scaled, (leakage, rest)) in scaled.iter_mut().zip(&lines) {
             *scaled = rest / median(leakage / noise);
@@ -79,16 +81,17 @@ fn median(height: f64) -> f64 {
 /// Chance that the true amplitude lies above the limit, at most.
 const MISSED: f64 = 0.05;
 
-/// The amplitude that a sine stays below with 95 % confidence, from the magnitude of its line and the noise of one component.
+/// The amplitude that a sine stays below with 95 % confidence, from the magnitude of its line and the noise
+/// of one component.
 ///
 /// The magnitude is Rice distributed (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46). The limit ν solves
-/// P(M ≤ m | ν) = 0.05 P(M ≤ m | 0) (A. L. Read, J. Phys. G 28 (2002) 2693): the division keeps it from falling to nothing where
-/// noise happens to be small, so it is never below 2.45 `noise`, and the true amplitude lies above it in less than 5 % of
-/// all cases.
+/// P(M ≤ m | ν) = 0.05 P(M ≤ m | 0) (A. L. Read, J. Phys. G 28 (2002) 2693): the division keeps it from
+/// falling to nothing where noise happens to be small, so it is never below 2.45 `noise`, and the true
+/// amplitude lies above it in less than 5 % of all cases.
 ///
-/// All cases are faint and strong readings together. Where only faint readings are given a limit, no more than 5 % of all
-/// readings lie above theirs; but a strong sine that noise made faint lies above its limit more often than that. `None` where one of
-/// the two is not a number or there is no noise.
+/// All cases are faint and strong readings together. Where only faint readings are given a limit, no more
+/// than 5 % of all readings lie above theirs; but a strong sine that noise made faint lies above its limit
+/// more often than that. `None` where one of the two is not a number or there is no noise.
 pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     let m = magnitude / noise;
     // Far above the noise there is nothing to limit, and the series below would be long.
@@ -102,8 +105,8 @@ pub fn upper_limit(magnitude: f64, noise: f64) -> Option<f64> {
     Some(noise * border(0.0, m + 10.0, |height| below(m, height) > wanted))
 }
 
-/// P(M ≤ m) of a Rice distributed magnitude of height ν in noise of one unit a component: a sum of gamma distributions
-/// with Poisson weights, since M² is noncentral χ² of two degrees of freedom.
+/// P(M ≤ m) of a Rice distributed magnitude of height ν in noise of one unit a component: a sum of gamma
+/// distributions with Poisson weights, since M² is noncentral χ² of two degrees of freedom.
 pub(super) fn below(m: f64, nu: f64) -> f64 {
     let (y, lambda) = (m * m / 2.0, nu * nu / 2.0);
     // Poisson probability of j at λ and of j at y, and what is left of the latter above j.
@@ -142,7 +145,8 @@ mod tests {
 
     #[test]
     fn rayleigh_noise_is_recovered_beside_a_strong_peak() {
-        // Quantiles of the Rayleigh distribution with σ = 2 as a sample without randomness, shuffled by a stride.
+        // Quantiles of the Rayleigh distribution with σ = 2 as a sample without randomness, shuffled by a
+        // stride.
         let n = 81;
         let mut lines = vec![0.0; n];
         for i in 0..n {
@@ -177,8 +181,8 @@ mod tests {
         assert_eq!(around(&[1.0; 12], 6, REACH, None), None);
     }
 
-    /// Ratios of the scatter seen to the uncertainty stated, of position and amplitude, in `draws` spectra of a sine at `truth`
-    /// and its negative frequency at `image`; `None` where not all state one.
+    /// Ratios of the scatter seen to the uncertainty stated, of position and amplitude, in `draws` spectra of
+    /// a sine at `truth` and its negative frequency at `image`; `None` where not all state one.
     fn scatter(
         window: Window,
         truth: f64,
@@ -218,7 +222,8 @@ mod tests {
         assert!(judged >= 66, "{judged} of 72");
     }
 
-    /// How many of three places under these windows at these levels state an uncertainty; all that do state the scatter.
+    /// How many of three places under these windows at these levels state an uncertainty; all that do state
+    /// the scatter.
     fn judged(windows: &[Window], decibels: &[i32]) -> u32 {
         let mut normal = Normal(0x5eed);
         let mut judged = 0;
@@ -226,14 +231,16 @@ mod tests {
             for &decibel in decibels {
                 for part in [0.12, 0.3, 0.47] {
                     let sigma = 10f64.powf(-f64::from(decibel) / 20.0);
-                    // Without a window a sine near a line states no uncertainty where noise chooses the neighbour.
+                    // Without a window a sine near a line states no uncertainty where noise chooses the
+                    // neighbour.
                     let Some(ratios) = scatter(window, 80.0 + part, None, sigma, &mut normal) else {
                         continue;
                     };
                     judged += 1;
                     for ratio in ratios {
-                        // A standard deviation from 600 draws scatters by 2.9 %, four times that; 1 % of the table of medians; and
-                        // 2 % of the mean square of a floor from 72 lines, which scatters by up to 20 % where neighbours correlate.
+                        // A standard deviation from 600 draws scatters by 2.9 %, four times that; 1 % of the
+                        // table of medians; and 2 % of the mean square of a floor
+                        // from 72 lines, which scatters by up to 20 % where neighbours correlate.
                         assert!((ratio - 1.0).abs() < 0.16, "{window:?} {decibel} dB {part}: {ratios:?}");
                     }
                 }
@@ -244,14 +251,16 @@ mod tests {
 
     #[test]
     fn the_leakage_of_the_negative_frequency_is_covered() {
-        // It bends the sine's own lines, which is no scatter of white noise; what it leaves beside the sine must make up for it. Without
-        // a window, 80 dB: its leakage 1/(160π) is twenty times the noise.
+        // It bends the sine's own lines, which is no scatter of white noise; what it leaves beside the sine
+        // must make up for it. Without a window, 80 dB: its leakage 1/(160π) is twenty times the
+        // noise.
         let mut normal = Normal(0x1a6e);
         for window in [Window::Rectangular, Window::Hamming] {
             for part in [0.3, 0.47] {
                 let ratios = scatter(window, 80.0 + part, Some(-80.0 - part), 1e-4, &mut normal).unwrap();
                 println!("{window:?} {part}: {ratios:?}");
-                // Errors no larger than stated; a standard deviation from 600 draws scatters by 2.9 %, four times that.
+                // Errors no larger than stated; a standard deviation from 600 draws scatters by 2.9 %, four
+                // times that.
                 assert!(ratios.iter().all(|r| *r < 1.12), "{window:?} {part}: {ratios:?}");
             }
         }

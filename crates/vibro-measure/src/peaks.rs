@@ -25,8 +25,8 @@ pub struct Maximum {
     pub valleys: [usize; 2],
 }
 
-/// Local maxima that rise by at least the factor `ratio` above the higher of the two valleys beside them (their
-/// prominence), in order. Ends are no maxima; missing values end a stretch.
+/// Local maxima that rise by at least the factor `ratio` above the higher of the two valleys beside them
+/// (their prominence), in order. Ends are no maxima; missing values end a stretch.
 pub fn local_maxima(values: &[f64], ratio: f64) -> Vec<Maximum> {
     let n = values.len();
     let lowest = |side: &mut dyn Iterator<Item = usize>, v: f64| {
@@ -47,11 +47,13 @@ pub fn local_maxima(values: &[f64], ratio: f64) -> Vec<Maximum> {
 
 /// Vertex through three points `f` (rising) with heights `a` and their standard uncertainties.
 ///
-/// Near a resonance of one mode 1/a² is a parabola in frequency, so that parabola gives the vertex. Its uncertainty is made of
-/// the propagated uncertainty of the heights; the distance to the vertex of a parabola through ln a, for the choice of
-/// curve; and h²/f for points h apart, the size of what a curve has beyond the parabola: a mode itself bends it by half of that,
-/// (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1, and a zero or a mode at a distance d adds h²/d. Where a neighbour is below half of the middle point, the curve is not resolved: the
-/// middle point is given with the uncertainty of its place, and no uncertainty (NaN) of its height.
+/// Near a resonance of one mode 1/a² is a parabola in frequency, so that parabola gives the vertex. Its
+/// uncertainty is made of the propagated uncertainty of the heights; the distance to the vertex of a parabola
+/// through ln a, for the choice of curve; and h²/f for points h apart, the size of what a curve has beyond
+/// the parabola: a mode itself bends it by half of that, (1 − r²)² = 4δ²(1 + δ + δ²/4) with δ = r − 1, and a
+/// zero or a mode at a distance d adds h²/d. Where a neighbour is below half of the middle point, the curve
+/// is not resolved: the middle point is given with the uncertainty of its place, and no uncertainty (NaN) of
+/// its height.
 ///
 /// `None` where the middle point is not the highest.
 pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
@@ -96,8 +98,8 @@ pub fn vertex(f: [f64; 3], a: [f64; 3], std: [f64; 3]) -> Option<Vertex> {
     Some(Vertex { frequency, frequency_std, height: height * top, height_std: height_std * top })
 }
 
-/// Where the polynomial through points (`x`, `y`) of rising `x` is lowest between `low` and `high`, and its value there. `None` unless it
-/// falls at the one and rises at the other.
+/// Where the polynomial through points (`x`, `y`) of rising `x` is lowest between `low` and `high`, and its
+/// value there. `None` unless it falls at the one and rises at the other.
 pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f64, f64)> {
     // Newton's divided differences.
     let mut c = y.to_vec();
@@ -116,15 +118,17 @@ pub(crate) fn lowest(x: &[f64], y: &[f64], (low, high): (f64, f64)) -> Option<(f
     })
 }
 
-/// Top of a curve over rising frequency near its highest point `i`, from the points around it, up to two on each side.
+/// Top of a curve over rising frequency near its highest point `i`, from the points around it, up to two on
+/// each side.
 ///
-/// 1/a² of a damped mode is a parabola in f² (its receptance squared); what further modes and contacts add bends it. So the
-/// polynomial in f² through up to two points on each side is taken: exact for one mode at any spacing. Its uncertainty is made of
-/// the propagated uncertainties of the heights, and of what the polynomial leaves open: its largest distance to those through the
-/// highest point and its neighbours and with one point less, anywhere within that with equal chance. (Contact makes a resonance
-/// lean, and what is beyond a polynomial then falls off slowly: two orders that happen to agree prove nothing.) Where the points
-/// beside `i` are below half of it, where there are three only, or where the polynomial has no single top, the answer is that
-/// of [`vertex`], with the uncertainty of a lean that three points cannot show.
+/// 1/a² of a damped mode is a parabola in f² (its receptance squared); what further modes and contacts add
+/// bends it. So the polynomial in f² through up to two points on each side is taken: exact for one mode at
+/// any spacing. Its uncertainty is made of the propagated uncertainties of the heights, and of what the
+/// polynomial leaves open: its largest distance to those through the highest point and its neighbours and
+/// with one point less, anywhere within that with equal chance. (Contact makes a resonance lean, and what is
+/// beyond a polynomial then falls off slowly: two orders that happen to agree prove nothing.) Where the
+/// points beside `i` are below half of it, where there are three only, or where the polynomial has no single
+/// top, the answer is that of [`vertex`], with the uncertainty of a lean that three points cannot show.
 pub(crate) fn apex(points: &[Point], i: usize) -> Option<Vertex> {
     let near: [Point; 3] = points.get(i.checked_sub(1)?..=i + 1)?.try_into().ok()?;
     let (f, a) = (near.map(|p| p.0), near.map(|p| p.1));
@@ -145,12 +149,12 @@ pub(crate) fn apex(points: &[Point], i: usize) -> Option<Vertex> {
     })
 }
 
-/// A lean of this many half-widths a half-width is feared where three points cannot show it: up to 1/2 to either side with equal
-/// chance (1/√12). From 1 on a resonance overhangs and ends in a jump.
+/// A lean of this many half-widths a half-width is feared where three points cannot show it: up to 1/2 to
+/// either side with equal chance (1/√12). From 1 on a resonance overhangs and ends in a jump.
 const LEAN: f64 = 0.288_675;
 
-/// The vertex with the uncertainty of a lean: a resonance 1/a = y, δ = κy ± √(y² − 1) in half-widths δ whose flanks are measured at
-/// y moves its top by κ(y − 1) against them, and its height by as much of their slope.
+/// The vertex with the uncertainty of a lean: a resonance 1/a = y, δ = κy ± √(y² − 1) in half-widths δ whose
+/// flanks are measured at y moves its top by κ(y − 1) against them, and its height by as much of their slope.
 fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
     let y = vertex.height / a[0].min(a[2]);
     // κ(y − 1) half-widths, where the half-width is the distance of the flanks over √(y² − 1).
@@ -162,7 +166,8 @@ fn leaning(vertex: Vertex, f: [f64; 3], a: [f64; 3]) -> Vertex {
     }
 }
 
-/// Place and height of the top near point `i` with their uncertainties; `None` where the polynomial through all points has no single one.
+/// Place and height of the top near point `i` with their uncertainties; `None` where the polynomial through
+/// all points has no single one.
 fn fitted(points: &[Point], i: usize) -> Option<[(f64, f64); 2]> {
     let beside = (points[i - 1].0, points[i + 1].0);
     let found = extremum(points, beside)?;
@@ -190,7 +195,8 @@ fn fitted(points: &[Point], i: usize) -> Option<[(f64, f64); 2]> {
     variance.iter().all(|v| v.is_finite()).then(|| [0, 1].map(|q| (found[q], variance[q].sqrt())))
 }
 
-/// Where the polynomial through 1/height² is lowest between the points beside the highest, and the height there.
+/// Where the polynomial through 1/height² is lowest between the points beside the highest, and the height
+/// there.
 fn extremum(points: &[Point], beside: (f64, f64)) -> Option<[f64; 2]> {
     let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.0, 1.0 / (p.1 * p.1))).unzip();
     let (place, inverse) = lowest(&x, &y, beside)?;
@@ -212,7 +218,8 @@ mod tests {
         assert!(local_maxima(&[], 1.2).is_empty());
     }
 
-    /// |1/(1 − r² + 2iζr)|, its maximum at f₀√(1−2ζ²), on grids of every offset: the stated uncertainty covers the error.
+    /// |1/(1 − r² + 2iζr)|, its maximum at f₀√(1−2ζ²), on grids of every offset: the stated uncertainty
+    /// covers the error.
     #[test]
     fn vertices_of_damped_resonances_lie_within_their_uncertainty() {
         let f0 = 5.6;
@@ -309,7 +316,8 @@ mod apices {
         let zeta = [(); 2].map(|()| 10f64.powf(between(-2.5, -1.0)));
         let width = 2.0 * zeta[0] * f0;
         if kind == Kind::Leaning {
-            // 1/a = y with δ = κy ± √(y² − 1): a stiffness that changes as 1/a, as contact over a gap makes it.
+            // 1/a = y with δ = κy ± √(y² − 1): a stiffness that changes as 1/a, as contact over a gap makes
+            // it.
             let lean = between(-0.5, 0.5);
             let height = move |f: f64| {
                 let delta = 2.0 * (f - f0) / width;
@@ -364,8 +372,8 @@ mod apices {
                 for noise in [0.0, 1e-4, 1e-3, 1e-2] {
                     let [place, height] = covered(kind, noise, points);
                     println!("{kind:?}, {points} points, noise {noise}: {place:.3} {height:.3}");
-                    // Two standard uncertainties are 95 % of a normal distribution. A share of 2000 scatters by 0.5 %, and first-order
-                    // propagation is good to a few.
+                    // Two standard uncertainties are 95 % of a normal distribution. A share of 2000 scatters
+                    // by 0.5 %, and first-order propagation is good to a few.
                     assert!(place >= 0.92 && height >= 0.92, "{kind:?} {points} {noise}: {place} {height}");
                 }
             }

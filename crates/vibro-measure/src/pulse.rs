@@ -1,6 +1,7 @@
 //! Contact pulses: damping ratio and contact frequency from two instants, or from fits to the whole pulse.
 //!
-//! The model of spring and damper (Kelvin–Voigt) gives the answer, if the record prefers no other; those of Hertz, of Hunt and Crossley, of any exponents, and of a spring that yields are fitted beside it,
+//! The model of spring and damper (Kelvin–Voigt) gives the answer, if the record prefers no other; those of
+//! Hertz, of Hunt and Crossley, of any exponents, and of a spring that yields are fitted beside it,
 //! to see whether the record prefers them. The instrument's low-pass is applied to the models in closed form.
 
 mod contact;
@@ -37,7 +38,8 @@ pub struct PulseOptions {
 /// What an instrument does to the shape of a pulse.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Instrument {
-    /// Not known. An ignored low-pass moves ξ by 0.1 and more, and fits may look right all the same: there are no uncertainties.
+    /// Not known. An ignored low-pass moves ξ by 0.1 and more, and fits may look right all the same: there
+    /// are no uncertainties.
     #[default]
     Unknown,
     /// Nothing.
@@ -73,19 +75,21 @@ impl Instrument {
     }
 }
 
-/// Fewest samples above half the height, two thirds of a half sine: five inside the pulse, whose shape has four parameters.
+/// Fewest samples above half the height, two thirds of a half sine: five inside the pulse, whose shape has
+/// four parameters.
 const FEWEST: f64 = 10.0 / 3.0;
 
 /// Fits the largest pulse of a record of acceleration (or of force).
 ///
-/// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties are enlarged by the
-/// correlation. Where the pulse begins otherwise than the model can, as behind an unstated low-pass, ξ and all that follows are
-/// null. Where the instrument is unknown, or its corner lies at half the sampling rate or above, no uncertainty is stated: in the one
-/// case another ξ may pass for this one, in the other more than one onset fits.
+/// Residuals are taken for noise of one variance. Where they are correlated, which is tested, uncertainties
+/// are enlarged by the correlation. Where the pulse begins otherwise than the model can, as behind an
+/// unstated low-pass, ξ and all that follows are null. Where the instrument is unknown, or its corner lies at
+/// half the sampling rate or above, no uncertainty is stated: in the one case another ξ may pass for this
+/// one, in the other more than one onset fits.
 ///
 /// # Errors
-/// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not determine the
-/// parameters; if the mass is not above 0.
+/// If the record is not evenly sampled in time, holds no whole pulse, or too few samples of it, or does not
+/// determine the parameters; if the mass is not above 0.
 pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let rate = trace.sampling_rate()?;
     let quantity = trace.meta.quantity;
@@ -188,7 +192,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     Ok(result)
 }
 
-/// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the others more, no exponents are fitted.
+/// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the
+/// others more, no exponents are fitted.
 fn rivals(samples: &Samples<'_>, main: Fitted) -> Vec<Fitted> {
     let mut fits = vec![main];
     for rival in ContactModel::RIVALS {

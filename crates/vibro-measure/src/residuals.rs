@@ -5,9 +5,11 @@ use vibro_record::Finding;
 /// What residuals in a row say of the model that left them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Whiteness {
-    /// Probability that white noise shows as much serial correlation (Ljung & Box 1978); `None` for fewer than 12 residuals.
+    /// Probability that white noise shows as much serial correlation (Ljung & Box 1978); `None` for fewer
+    /// than 12 residuals.
     pub p_value: Option<f64>,
-    /// Factor by which standard uncertainties that assume white noise are to be multiplied; 1 where it is not rejected.
+    /// Factor by which standard uncertainties that assume white noise are to be multiplied; 1 where it is
+    /// not rejected.
     pub inflation: f64,
 }
 
@@ -17,9 +19,10 @@ const REJECTED: f64 = 0.01;
 impl Whiteness {
     /// Looks at sequences of residuals together, such as real and imaginary parts over frequency.
     ///
-    /// Q = N(N + 2) Σ ρₖ²/(N − k) over ten lags (four below 40 residuals) is χ² distributed. A parameter on which the model
-    /// depends smoothly sees the noise density at low frequency, which is 1 + 2Σρₖ times that of white noise of the same
-    /// variance; the sum ends at the first lag that is not positive (Geyer 1992, initial positive sequence).
+    /// Q = N(N + 2) Σ ρₖ²/(N − k) over ten lags (four below 40 residuals) is χ² distributed. A parameter on
+    /// which the model depends smoothly sees the noise density at low frequency, which is 1 + 2Σρₖ times
+    /// that of white noise of the same variance; the sum ends at the first lag that is not positive
+    /// (Geyer 1992, initial positive sequence).
     pub fn of(sequences: &[&[f64]]) -> Whiteness {
         let n: usize = sequences.iter().map(|s| s.len()).sum();
         let squares: f64 = sequences.iter().flat_map(|s| s.iter()).map(|r| r * r).sum();
@@ -50,12 +53,14 @@ impl Whiteness {
         self.rejected_among(1)
     }
 
-    /// Whether white noise is rejected where so many are looked at, one of which shows as much by chance more often.
+    /// Whether white noise is rejected where so many are looked at, one of which shows as much by chance more
+    /// often.
     pub fn rejected_among(&self, many: usize) -> bool {
         self.p_value.is_some_and(|p| p * (many as f64) < REJECTED)
     }
 
-    /// That the residuals are not white, with the factor by which that enlarges uncertainties, unless it is 1.00.
+    /// That the residuals are not white, with the factor by which that enlarges uncertainties, unless it is
+    /// 1.00.
     pub fn coloured(&self, code: &'static str) -> Finding {
         let found = Finding::caution(code);
         if self.inflation < 1.005 { found } else { found.number("factor", self.inflation) }
@@ -73,21 +78,21 @@ pub(crate) fn chi_squared_above(x: f64, even: usize) -> f64 {
     (sum * (-half).exp()).clamp(0.0, 1.0)
 }
 
-/// Standard deviation of Student's distribution of `free` degrees of freedom, √(ν/(ν − 2)): what a standard uncertainty from a
-/// variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2). `None` up to two degrees of freedom, where it
-/// has none.
+/// Standard deviation of Student's distribution of `free` degrees of freedom, √(ν/(ν − 2)): what a standard
+/// uncertainty from a variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2).
+/// `None` up to two degrees of freedom, where it has none.
 pub fn student(free: usize) -> Option<f64> {
     (free > 2).then(|| (free as f64 / (free as f64 - 2.0)).sqrt())
 }
 
-/// Factor on a standard uncertainty with `free` degrees of freedom: the standard deviation of Student's distribution where it has one, otherwise its
-/// quantile of 97.5 % over that of the normal one.
+/// Factor on a standard uncertainty with `free` degrees of freedom: the standard deviation of Student's
+/// distribution where it has one, otherwise its quantile of 97.5 % over that of the normal one.
 pub fn widened(free: usize) -> f64 {
     student(free).unwrap_or(if free == 2 { 4.303 / 1.960 } else { 12.706 / 1.960 })
 }
 
-/// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values, corrected for their
-/// number (Hurvich & Tsai 1989); NaN where there are too few values.
+/// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values,
+/// corrected for their number (Hurvich & Tsai 1989); NaN where there are too few values.
 pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
     let (n, k) = (n as f64, parameters as f64 + 1.0);
     if n - k - 1.0 <= 0.0 {
@@ -96,8 +101,8 @@ pub fn aicc(sum_of_squares: f64, n: usize, parameters: usize) -> f64 {
     n * (sum_of_squares / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
 }
 
-/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model Selection and Multimodel
-/// Inference, 2002, section 2.6).
+/// A difference of Akaike's criterion that leaves no support for the worse model (Burnham & Anderson, Model
+/// Selection and Multimodel Inference, 2002, section 2.6).
 pub const NO_SUPPORT: f64 = 10.0;
 
 #[cfg(test)]
@@ -129,11 +134,13 @@ mod tests {
                 Whiteness::of(&[&r]).rejected()
             })
             .count();
-        // 1 % of 2000 with a standard deviation of 4.4, and Q has a slightly heavier tail than χ² at 100 values.
+        // 1 % of 2000 with a standard deviation of 4.4, and Q has a slightly heavier tail than χ² at 100
+        // values.
         assert!((5..=55).contains(&rejected), "{rejected}");
     }
 
-    /// y(i) = φ y(i−1) + e has a density at zero frequency of (1 + φ)/(1 − φ) that of white noise of its variance.
+    /// y(i) = φ y(i−1) + e has a density at zero frequency of (1 + φ)/(1 − φ) that of white noise of its
+    /// variance.
     #[test]
     fn the_inflation_of_a_first_order_process_is_found() {
         let mut noise = Twelve(5);

@@ -58,8 +58,9 @@ const PROMINENCE: f64 = 1.2;
 
 /// Resonances and minima of a curve of rising frequency, given its jumps, and the mass where it is known.
 ///
-/// The excited mass (1) has an antiresonance between two resonances. The response of another point may pass between them without
-/// a zero: its minimum is called an antiresonance only where it is deep (less than half of the curve half-way to its neighbours).
+/// The excited mass (1) has an antiresonance between two resonances. The response of another point may pass
+/// between them without a zero: its minimum is called an antiresonance only where it is deep (less than half
+/// of the curve half-way to its neighbours).
 pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> Vec<Resonance> {
     let inverted = |p: &Point| (p.0, 1.0 / p.1, p.2 / (p.1 * p.1));
     let inverse: Vec<Point> = points.iter().map(inverted).collect();
@@ -79,13 +80,15 @@ pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> 
     found
 }
 
-/// A minimum without a zero is less deep than this factor below the curve half-way (in f²) to the resonances beside it: where the
-/// tails A/(u − p) and B/(q − u) of two modes add, the sum there is (2r + 2/(2 + r))/(1 + r) < 2 times its minimum, with
-/// r² = A/B or its inverse. Where they cancel, it falls to what damping leaves.
+/// A minimum without a zero is less deep than this factor below the curve half-way (in f²) to the resonances
+/// beside it: where the tails A/(u − p) and B/(q − u) of two modes add, the sum there is (2r + 2/(2 + r))/(1
+/// + r) < 2 times its minimum, with r² = A/B or its inverse. Where they cancel, it falls to what damping
+/// leaves.
 const DEEP: f64 = 2.0;
 
 impl Resonance {
-    /// Whether it is a maximum that the points around the highest do not determine: the true one may lie between them, and be larger.
+    /// Whether it is a maximum that the points around the highest do not determine: the true one may lie
+    /// between them, and be larger.
     pub(crate) fn is_largest_point(&self) -> bool {
         self.kind.is_maximum()
             && !self.at_jump
@@ -110,8 +113,8 @@ const FEW: usize = 4;
 /// Points beyond this many from the highest may lie where the motion is another one.
 const REACH: usize = 4;
 
-/// Square of the divided difference of 1/a² over f² through all `points`, against its variance. Frequencies and heights are taken
-/// relative to `top`.
+/// Square of the divided difference of 1/a² over f² through all `points`, against its variance. Frequencies
+/// and heights are taken relative to `top`.
 fn squared_difference(points: &[Point], top: Point) -> f64 {
     let x = |p: &Point| (p.0 / top.0).powi(2);
     let (mut difference, mut variance) = (0.0, 0.0);
@@ -148,8 +151,8 @@ impl Curve<'_> {
         })
     }
 
-    /// The top of this curve or its inverse between the points around the highest, `i`, and up to two on each side over which it falls
-    /// without a jump; `None` where they do not determine it.
+    /// The top of this curve or its inverse between the points around the highest, `i`, and up to two on each
+    /// side over which it falls without a jump; `None` where they do not determine it.
     fn interpolated(&self, of: &[Point], i: usize) -> Option<Vertex> {
         let falls =
             |from: usize, to: usize| of[to].1 < of[from].1 && of[to].1 > 0.0 && !self.jump_between(from, to);
@@ -162,12 +165,13 @@ impl Curve<'_> {
         if rises { apex(&near, i - low) } else { None }
     }
 
-    /// How many times more the points around the highest, `i`, scatter than their uncertainties say, at least 1. A force that changes
-    /// from step to step moves points that are each right.
+    /// How many times more the points around the highest, `i`, scatter than their uncertainties say, at least
+    /// 1. A force that changes from step to step moves points that are each right.
     ///
-    /// 1/a² of one mode is a parabola in f²; what contact and other modes add is smooth. So the third and higher divided differences of
-    /// the near points above half of the highest are noise, or fall from one order to the next: the least root mean square of three orders
-    /// against what the uncertainties give.
+    /// 1/a² of one mode is a parabola in f²; what contact and other modes add is smooth. So the third and
+    /// higher divided differences of the near points above half of the highest are noise, or fall from
+    /// one order to the next: the least root mean square of three orders against what the uncertainties
+    /// give.
     fn scatter(&self, of: &[Point], i: usize) -> f64 {
         let joined = |from: usize, to: usize| 2.0 * of[to].1 > of[i].1 && !self.jump_between(from, to);
         let low = (1..=i).rev().take(REACH).take_while(|k| joined(*k, k - 1)).last().map_or(i, |k| k - 1);
@@ -217,7 +221,8 @@ impl Curve<'_> {
         Some(here.moved(Vertex { height, height_std, ..top }))
     }
 
-    /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours, on both sides.
+    /// Whether the curve stands [`DEEP`] above a minimum at the last point before half-way to its neighbours,
+    /// on both sides.
     fn is_deep(&self, minimum: &Maximum) -> bool {
         let square = |k: usize| self.points[k].0.powi(2);
         minimum.valleys.iter().all(|&end| {
@@ -229,8 +234,8 @@ impl Curve<'_> {
         })
     }
 
-    /// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it, carried on over the
-    /// distance to the point behind the jump.
+    /// Uncertainty of the height of a branch that ends in a jump beside point `i`: the slope towards it,
+    /// carried on over the distance to the point behind the jump.
     fn std_at_jump(&self, i: usize, jump: &Jump) -> Option<f64> {
         let (f, amplitude, std) = self.points[i];
         let behind = if (jump.from - f).abs() < (jump.to - f).abs() { jump.to } else { jump.from };
@@ -271,16 +276,17 @@ impl NamedCurve {
     }
 }
 
-/// The other mass must move at least this fraction of the one that resonates, or they do not resonate together.
+/// The other mass must move at least this fraction of the one that resonates, or they do not resonate
+/// together.
 const TOGETHER: f64 = 0.1;
 
-/// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is the grazing
-/// resonance (in phase), the largest above it the clapping one (out of phase).
+/// Names the resonances in which both masses move: the largest maximum below the antiresonance of mass 1 is
+/// the grazing resonance (in phase), the largest above it the clapping one (out of phase).
 ///
-/// Where one mass jumps, the motion of both has changed: a change of the other there that its slopes do not predict is entered in
-/// its jumps, and resonances are found again with the jumps of both. A maximum at which the other mass of the same sweep rests keeps
-/// its kind, as do all where the other mass was not measured. A sweep without an antiresonance of mass 1 uses that of the other
-/// direction.
+/// Where one mass jumps, the motion of both has changed: a change of the other there that its slopes do not
+/// predict is entered in its jumps, and resonances are found again with the jumps of both. A maximum at which
+/// the other mass of the same sweep rests keeps its kind, as do all where the other mass was not measured. A
+/// sweep without an antiresonance of mass 1 uses that of the other direction.
 pub fn name_modes(curves: &mut [NamedCurve]) {
     let partner = |curves: &[NamedCurve], i: usize| {
         let own = &curves[i];

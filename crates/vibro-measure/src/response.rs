@@ -20,7 +20,8 @@ use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, W
 pub struct ResponseOptions {
     /// Lines on both sides of the excitation in which its peak is looked for. Default 3.
     pub band: usize,
-    /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default: what takes it to displacement.
+    /// Integrations in frequency from the stored quantity: 1 takes velocity to displacement. Default: what
+    /// takes it to displacement.
     pub integrate: Option<i8>,
     /// Lowest frequency in Hz that is read. Default: the larger of two lines and a quarter of the lowest
     /// excitation frequency.
@@ -62,9 +63,9 @@ pub fn answerable(mut sweep: Sweep, options: &ResponseOptions) -> Result<Sweep> 
 
 /// Takes the response curve of a sweep.
 ///
-/// Lines are interpolated in the spectrum of the measured signal: where the analyser divided by (2πf)ⁿ that is undone line by
-/// line, and the amplitude is divided by (2πf)ⁿ at the frequency found. So the slope of 1/fⁿ across a line's own
-/// shape does not bend the result.
+/// Lines are interpolated in the spectrum of the measured signal: where the analyser divided by (2πf)ⁿ that
+/// is undone line by line, and the amplitude is divided by (2πf)ⁿ at the frequency found. So the slope of
+/// 1/fⁿ across a line's own shape does not bend the result.
 ///
 /// # Errors
 /// If an excitation frequency cannot be found, or the lines are not evenly spaced.
@@ -95,7 +96,8 @@ pub fn response(sweep: &Sweep, options: &ResponseOptions) -> Result<Response> {
 /// If what is stored cannot be taken to a displacement, velocity or acceleration.
 pub(crate) fn read(sweep: &Sweep, options: &ResponseOptions, excitations: &[Excitation]) -> Result<Response> {
     let df = sweep.line_width().unwrap_or(f64::NAN);
-    // A spectrum that was divided by frequency is noise below two lines, and below a quarter of the lowest excitation.
+    // A spectrum that was divided by frequency is noise below two lines, and below a quarter of the lowest
+    // excitation.
     let lowest = excitations.iter().map(|e| e.frequency).fold(f64::INFINITY, f64::min);
     let quarter = if lowest.is_finite() { lowest / 4.0 } else { 0.0 };
     let fmin = options.fmin.unwrap_or((2.0 * df).max(quarter));
@@ -168,8 +170,8 @@ impl Response {
     }
 }
 
-/// Force lines further than this part of the largest from their window's shape are not under that window: a clean sine under Hann,
-/// read as under any other window, is off by more.
+/// Force lines further than this part of the largest from their window's shape are not under that window: a
+/// clean sine under Hann, read as under any other window, is off by more.
 const WRONG_SHAPE: f64 = 0.02;
 
 /// Where the force lines, which hold one strong sine, have not the shape that the window gives them.

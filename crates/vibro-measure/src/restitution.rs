@@ -1,7 +1,7 @@
 //! Coefficient of restitution: speed of separation over speed of approach.
 //!
-//! Each method that the data allow gives its own answer. Where answers differ by more than their uncertainties, that is the result:
-//! nothing is averaged.
+//! Each method that the data allow gives its own answer. Where answers differ by more than their
+//! uncertainties, that is the result: nothing is averaged.
 
 mod drop;
 mod plausible;
@@ -36,10 +36,11 @@ pub struct Restitution {
     pub restitution: Estimate,
     /// All answers.
     pub by: Vec<Way>,
-    /// Whether the answers agree within their uncertainties; null where one that has none leaves that open. A single answer agrees.
+    /// Whether the answers agree within their uncertainties; null where one that has none leaves that open.
+    /// A single answer agrees.
     pub agree: Option<bool>,
-    /// Standard deviation of `restitution` by drops over 2000 drawings of as many drops with replacement (Efron 1979), from a fixed seed:
-    /// the scatter of the drops alone. Null for fewer than five drops.
+    /// Standard deviation of `restitution` by drops over 2000 drawings of as many drops with replacement
+    /// (Efron 1979), from a fixed seed: the scatter of the drops alone. Null for fewer than five drops.
     pub bootstrap_std: Option<f64>,
     /// Intervals between impacts in s, one list a drop or train.
     pub intervals: Vec<Vec<f64>>,
@@ -56,8 +57,9 @@ pub struct Measured {
     pub trains: Vec<Train>,
     /// Velocities before and after.
     pub velocities: Option<Velocities>,
-    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than the flights. Where `None` it is what the
-    /// records of all trains show; else none is taken off, and the uncertainties allow for up to a millisecond, longer than steel and most plastics touch.
+    /// How long an impact lasts, in s: intervals between the beginnings of impacts are so much longer than
+    /// the flights. Where `None` it is what the records of all trains show; else none is taken off, and
+    /// the uncertainties allow for up to a millisecond, longer than steel and most plastics touch.
     pub contact_time: Option<f64>,
 }
 
@@ -72,8 +74,8 @@ pub struct Measured {
 /// ```
 ///
 /// # Errors
-/// Where nothing is given from which it follows, and where what is given is impossible: a height of 0, an interval longer than the
-/// fall allows, masses that do not approach.
+/// Where nothing is given from which it follows, and where what is given is impossible: a height of 0, an
+/// interval longer than the fall allows, masses that do not approach.
 pub fn restitution(measured: &Measured) -> Result<Restitution> {
     not_negative("a contact time", measured.contact_time)?;
     let (mut by, mut findings) = (Vec::new(), Vec::new());
@@ -155,8 +157,8 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
 /// Longest contact in s that is allowed for where none is stated and none is seen.
 const LONGEST: f64 = 1e-3;
 
-/// How long an impact lasts and its standard uncertainty, in s: as stated, or as all records show it. Otherwise anywhere between nothing and the longest
-/// with equal chance, and the answer at its one end.
+/// How long an impact lasts and its standard uncertainty, in s: as stated, or as all records show it.
+/// Otherwise anywhere between nothing and the longest with equal chance, and the answer at its one end.
 fn contact(measured: &Measured) -> (f64, f64) {
     let seen: Option<Vec<&Estimate>> = measured.trains.iter().map(|train| train.contact.as_ref()).collect();
     let mean = |seen: &[&Estimate], of: &dyn Fn(&Estimate) -> f64| {
@@ -169,12 +171,12 @@ fn contact(measured: &Measured) -> (f64, f64) {
     }
 }
 
-/// Answers that differ by more than this part disagree where one has no uncertainty: the height would be wrong by twice as much. So it is with
-/// a missed flight and a height in mm.
+/// Answers that differ by more than this part disagree where one has no uncertainty: the height would be
+/// wrong by twice as much. So it is with a missed flight and a height in mm.
 const GROSS: f64 = 0.2;
 
-/// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree. Methods may share numbers, as a drop
-/// and its train do: the largest possible correlation is assumed.
+/// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree.
+/// Methods may share numbers, as a drop and its train do: the largest possible correlation is assumed.
 fn agreement(by: &[Way], findings: &mut Vec<Finding>) -> Option<bool> {
     let mut agree = Some(true);
     for (i, a) in by.iter().enumerate() {
@@ -201,8 +203,9 @@ fn agreement(by: &[Way], findings: &mut Vec<Finding>) -> Option<bool> {
     agree
 }
 
-/// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student's, from three values on) and of what is `stated` of
-/// one value. Two have one only where what is stated explains how they scatter (95 %).
+/// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student's, from three
+/// values on) and of what is `stated` of one value. Two have one only where what is stated explains how they
+/// scatter (95 %).
 fn repeated(values: &[f64], stated: Option<f64>) -> (f64, Option<f64>) {
     let (n, mean, scatter) = (values.len() as f64, average(values), scatter(values));
     let one = if values.len() > 2 {

@@ -23,15 +23,16 @@ use vibro_signal::window::line_shape;
 
 /// Samples of a segment where none is stated.
 const SEGMENT: usize = 8192;
-/// Half the span of a reference over its RMS from which on it rests but for blows: noise has 3 to 5, and the impacts of a machine at a duty of one in 200 have 10.
+/// Half the span of a reference over its RMS from which on it rests but for blows: noise has 3 to 5, and the
+/// impacts of a machine at a duty of one in 200 have 10.
 const BLOWS: f64 = 15.0;
 /// Fewest samples of a blow's record that are taken unasked.
 const SHORTEST: usize = 256;
 /// One part in so many of a hammer record stands before the blow.
 const BEFORE: usize = 50;
 
-/// The spectrum of the only channel, or with an estimator the frequency response function from the first channel to the second.
-/// `progress` gets the number of samples read.
+/// The spectrum of the only channel, or with an estimator the frequency response function from the first
+/// channel to the second. `progress` gets the number of samples read.
 ///
 /// ```
 /// use vibro_measure::spectral::{SpectralOptions, spectral};
@@ -48,7 +49,8 @@ const BEFORE: usize = 50;
 /// ```
 ///
 /// # Errors
-/// If options contradict each other ([`SpectralOptions::check`]), there are too few channels, or the record allows no answer.
+/// If options contradict each other ([`SpectralOptions::check`]), there are too few channels, or the record
+/// allows no answer.
 pub fn spectral(
     traces: &mut Traces,
     options: &SpectralOptions,
@@ -68,7 +70,8 @@ pub fn spectral(
     Ok(found)
 }
 
-/// The lines of a spectrum that an instrument took: they have no uncertainty, since a file does not say how many segments they are averages of.
+/// The lines of a spectrum that an instrument took: they have no uncertainty, since a file does not say how
+/// many segments they are averages of.
 ///
 /// # Errors
 /// If options are of how a spectrum is taken, or the values are levels without a reference.
@@ -168,7 +171,8 @@ fn lines(
     Ok(found)
 }
 
-/// Ends of the range at which channels rest. A channel that is at one half of the time is of two levels, or rests between pulses.
+/// Ends of the range at which channels rest. A channel that is at one half of the time is of two levels, or
+/// rests between pulses.
 fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
     let of = |(range, meta): (&Rails, &Meta)| {
         let ends: Vec<(f64, usize)> = range.clipped(f64::INFINITY).collect();
@@ -182,7 +186,8 @@ fn clipped(ranges: &[Rails], traces: &Traces) -> Vec<Finding> {
     ranges.iter().zip(traces.channels()).flat_map(of).collect()
 }
 
-/// Whether line `k` is of the shape that the window gives to a constant: nothing is beyond its main lobe, where a sine at `k` would still be.
+/// Whether line `k` is of the shape that the window gives to a constant: nothing is beyond its main lobe,
+/// where a sine at `k` would still be.
 fn is_of_mean(powers: &[f64], k: usize, window: Window) -> bool {
     let beyond = window.coefficients().len();
     let sine = |line: usize| line_shape(window, (line - k) as f64).powi(2) * powers[k];
@@ -257,7 +262,8 @@ fn response(
     Ok(result)
 }
 
-/// The function of blows, and the length of their records: as stated, or as long as the response rings and the next blow allows.
+/// The function of blows, and the length of their records: as stated, or as long as the response rings and
+/// the next blow allows.
 fn of_blows(
     force: &Trace,
     response: &Trace,
@@ -319,7 +325,8 @@ mod tests {
     use super::*;
     use crate::synthetic::Normal;
 
-    /// Peaks of a sine of amplitude 1 with noise of 0.002, 8 segments of 256 samples at 256 Hz: lines are 1 Hz apart.
+    /// Peaks of a sine of amplitude 1 with noise of 0.002, 8 segments of 256 samples at 256 Hz: lines are 1
+    /// Hz apart.
     fn peaks(frequency: f64, window: Window) -> Vec<f64> {
         let mut noise = Normal(5);
         let sine = |i: i32| (TAU * frequency * f64::from(i) / 256.0).sin() + 2e-3 * noise.next();

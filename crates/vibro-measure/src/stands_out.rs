@@ -1,9 +1,10 @@
 //! Whether a line of a spectrum stands out of the noise, at a stated rate of false alarms.
 //!
-//! The power of a line of noise, averaged over n independent segments, is χ² of 2n degrees of freedom. The mean of the noise at a line
-//! is that of the lines around: their median over the ratio of median to mean, (1 − 1/9n)³ (E. B. Wilson & M. M. Hilferty, PNAS 17 (1931)
-//! 684). The ratio of line and mean is F distributed; for one segment this is the detector of H. M. Finn & R. S. Johnson, RCA Review 29
-//! (1968) 414. Of all lines that are searched, noise alone shows one with a probability of [`FALSE_ALARMS`] at most.
+//! The power of a line of noise, averaged over n independent segments, is χ² of 2n degrees of freedom. The
+//! mean of the noise at a line is that of the lines around: their median over the ratio of median to mean, (1
+//! − 1/9n)³ (E. B. Wilson & M. M. Hilferty, PNAS 17 (1931) 684). The ratio of line and mean is F distributed;
+//! for one segment this is the detector of H. M. Finn & R. S. Johnson, RCA Review 29 (1968) 414. Of all lines
+//! that are searched, noise alone shows one with a probability of [`FALSE_ALARMS`] at most.
 
 use vibro_record::Window;
 
@@ -13,8 +14,9 @@ pub const FALSE_ALARMS: f64 = 1e-3;
 pub(crate) const REACH: usize = 100;
 /// Lines next to a peak that belong to it.
 const GUARD: usize = 4;
-/// The median of so many lines knows the mean as well as the mean of one does: (1/ln 2)² = 2.08 for exponential powers, times the sum of
-/// squared correlations of lines, at most 1.3 times the noise bandwidth of the window (1.94 under Hann's).
+/// The median of so many lines knows the mean as well as the mean of one does: (1/ln 2)² = 2.08 for
+/// exponential powers, times the sum of squared correlations of lines, at most 1.3 times the noise bandwidth
+/// of the window (1.94 under Hann's).
 const MEDIAN: f64 = 2.7;
 
 /// The noise at a line.
@@ -26,9 +28,10 @@ pub(crate) struct Floor {
     pub lines: usize,
 }
 
-/// Noise at line `k` from the powers of lines up to `reach` away, each an average of `averages` spectra. Lines above are raised as if noise
-/// fell as 1/f, and as many below lowered by as much: white noise keeps its median, and towards 0 Hz 1/f noise is not underestimated.
-/// `None` where fewer than eight lines are left.
+/// Noise at line `k` from the powers of lines up to `reach` away, each an average of `averages` spectra.
+/// Lines above are raised as if noise fell as 1/f, and as many below lowered by as much: white noise keeps
+/// its median, and towards 0 Hz 1/f noise is not underestimated. `None` where fewer than eight lines are
+/// left.
 pub(crate) fn floor(
     powers: &[f64],
     k: usize,
@@ -67,11 +70,12 @@ impl Floor {
     }
 }
 
-/// More independent segments, and lines that tell the noise, are counted as so many: by then the threshold is within 1 dB of the noise.
+/// More independent segments, and lines that tell the noise, are counted as so many: by then the threshold is
+/// within 1 dB of the noise.
 const MOST: [f64; 2] = [500.0, 1000.0];
 
-/// P(F > `ratio`) of 2`n` and 2`m` degrees of freedom: an incomplete beta function, for whole m a finite sum (Abramowitz & Stegun
-/// 26.6.5).
+/// P(F > `ratio`) of 2`n` and 2`m` degrees of freedom: an incomplete beta function, for whole m a finite sum
+/// (Abramowitz & Stegun 26.6.5).
 fn above(ratio: f64, n: f64, m: usize) -> f64 {
     if ratio <= 1.0 {
         return 1.0;
@@ -108,7 +112,8 @@ mod tests {
         assert!((above(30.0, 1.0 + 1e-12, 40) / above(30.0, 1.0, 40) - 1.0).abs() < 1e-5);
     }
 
-    /// Of records of noise those that show a tone, and those that show a peak of averages; `colour` is the share of 1/f noise.
+    /// Of records of noise those that show a tone, and those that show a peak of averages; `colour` is the
+    /// share of 1/f noise.
     fn false_alarms(records: u64, colour: f64) -> [u32; 2] {
         let of = |seed: u64| {
             let mut noise = Noise::new(seed);
@@ -148,7 +153,8 @@ mod tests {
     fn a_tone_3_db_above_the_threshold_is_found() {
         let known = (2.0 * REACH as f64 - 8.0) / (MEDIAN * Window::Hann.enbw());
         let ratio = noise::border(1.0, 1e3, |r| above(r, 1.0, known as usize) * 999.0 > FALSE_ALARMS);
-        // Power of a line of noise of standard deviation 1 is 4 · 1.5/n as A²; between lines Hann takes up to 1.4 dB.
+        // Power of a line of noise of standard deviation 1 is 4 · 1.5/n as A²; between lines Hann takes up to
+        // 1.4 dB.
         let amplitude = (2.0 * ratio * 6.0 / 2000.0).sqrt();
         let mut found = 0;
         for seed in 0..200 {
@@ -159,7 +165,8 @@ mod tests {
             let tones = tones(&trace(values), 1).map_or(Vec::new(), |t| t.tones);
             found += u32::from(tones.iter().any(|t| (t.frequency.value - f).abs() < 0.5));
         }
-        // √2 − 1 = 0.41 of a height of √2 · 4.3 standard deviations above the threshold: 96 %, less four times 1.4 %.
+        // √2 − 1 = 0.41 of a height of √2 · 4.3 standard deviations above the threshold: 96 %, less four
+        // times 1.4 %.
         assert!(found >= 180, "{found} of 200");
     }
 }

@@ -1,9 +1,10 @@
 //! Response to a stepped sine from traces of force and response, one pair a step.
 //!
-//! The frequency is that of the force ([`sine`]). Both traces are cut into blocks of whole periods, in each of which a sine of that
-//! frequency and a mean are fitted by least squares (IEEE Std 1057, three parameters). The phasors of the response, turned by the phase of the
-//! force in the same block, are free of its drift; those from where they stay are averaged, and their scatter is the uncertainty of amplitude, phase
-//! and receptance.
+//! The frequency is that of the force ([`sine`]). Both traces are cut into blocks of whole periods, in each
+//! of which a sine of that frequency and a mean are fitted by least squares (IEEE Std 1057, three
+//! parameters). The phasors of the response, turned by the phase of the force in the same block, are free of
+//! its drift; those from where they stay are averaged, and their scatter is the uncertainty of amplitude,
+//! phase and receptance.
 
 use super::answered::answered;
 use super::clipping::clipped;
@@ -25,7 +26,8 @@ use vibro_signal::spectrum;
 
 /// Fewest periods of a step.
 const PERIODS: f64 = 8.0;
-/// Periods of a block: subharmonics to the fourth fit in whole numbers of periods where there are enough of them.
+/// Periods of a block: subharmonics to the fourth fit in whole numbers of periods where there are enough of
+/// them.
 const BLOCK: [usize; 4] = [12, 6, 4, 2];
 /// Fewest blocks of several periods, and most.
 const BLOCKS: (usize, usize) = (12, 48);
@@ -36,9 +38,10 @@ const SETTLED: f64 = 1e-3;
 /// An amplitude below so many standard uncertainties is one of noise.
 const FAINT: f64 = 3.0;
 
-/// The sweep that traces of its steps make: amplitude, phase and receptance from the traces, harmonics and the rest from the spectra of the settled
-/// parts, which it gives, too. `named` has name, direction and mass. A step is left out, and named in a finding, where it was not read, its traces are
-/// not sampled together and evenly, or it holds no sine of force or fewer than eight periods.
+/// The sweep that traces of its steps make: amplitude, phase and receptance from the traces, harmonics and
+/// the rest from the spectra of the settled parts, which it gives, too. `named` has name, direction and mass.
+/// A step is left out, and named in a finding, where it was not read, its traces are not sampled together and
+/// evenly, or it holds no sine of force or fewer than eight periods.
 ///
 /// # Errors
 /// If no step is left, or two are not sampled at the same rate.
@@ -110,7 +113,8 @@ struct Step {
     response: Phasor,
     /// Response over force.
     ratio: Phasor,
-    /// Whether the response changes from one stretch to the next by no more than its noise, where that is known.
+    /// Whether the response changes from one stretch to the next by no more than its noise, where that is
+    /// known.
     whiteness: Option<Whiteness>,
     findings: Vec<Finding>,
 }
@@ -298,7 +302,8 @@ impl Blocks {
         ((block * self.periods) as f64 * self.period).round() as usize
     }
 
-    /// Phasors of the sine at the excitation, block by block: A e^{iφ} of A cos(ωt + φ), t from the first sample.
+    /// Phasors of the sine at the excitation, block by block: A e^{iφ} of A cos(ωt + φ), t from the first
+    /// sample.
     fn phasors(&self, trace: &Trace) -> Vec<Complex64> {
         let omega = TAU / self.period;
         let edges = (0..).map(|block| self.start(block)).take_while(|end| *end <= self.samples);
@@ -320,8 +325,9 @@ impl Blocks {
     }
 }
 
-/// The first block from which on the phasors stay, no later than half-way: where those of the first quarter of the rest differ from the others by no more
-/// than chance. A transient that noise hides there is given half as long again to die. With it the change that may be left, 0 where it is chance, and whether they
+/// The first block from which on the phasors stay, no later than half-way: where those of the first quarter
+/// of the rest differ from the others by no more than chance. A transient that noise hides there is given
+/// half as long again to die. With it the change that may be left, 0 where it is chance, and whether they
 /// stay at all.
 fn settled(all: &[Complex64]) -> (usize, f64, bool) {
     let n = all.len();

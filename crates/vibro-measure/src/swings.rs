@@ -1,7 +1,9 @@
-//! Whether the peaks of a record are contacts, or swings of a structure that rings: one judgement for impacts, bounces and pulses.
+//! Whether the peaks of a record are contacts, or swings of a structure that rings: one judgement for
+//! impacts, bounces and pulses.
 //!
-//! A free decay swings between its peaks as it does at them, and nothing drives it: the modes that are fitted behind its largest peak hold for all that
-//! follow. Of impacts each begins a motion of its own, which no decay of an earlier one explains.
+//! A free decay swings between its peaks as it does at them, and nothing drives it: the modes that are fitted
+//! behind its largest peak hold for all that follow. Of impacts each begins a motion of its own, which no
+//! decay of an earlier one explains.
 
 use crate::Estimate;
 use crate::decay::{DecayMode, DecayOptions, decay};
@@ -13,18 +15,22 @@ use vibro_record::{Axis, Error, Meta, Trace};
 
 /// Most modes: with more, a sum of sines follows even evenly spaced pulses.
 const MODES: usize = 3;
-/// A peak is a swing where the modes leave less than this part of it, or noise; so it is with the root of the mean square of all behind the largest.
+/// A peak is a swing where the modes leave less than this part of it, or noise; so it is with the root of the
+/// mean square of all behind the largest.
 const LEFT: f64 = 0.5;
-/// Samples in which a decay is judged, an eighth of them before its largest value: memory for eleven times as many.
+/// Samples in which a decay is judged, an eighth of them before its largest value: memory for eleven times as
+/// many.
 const STRETCH: usize = 1 << 20;
 
-/// Parts of a pulse that a structure swings back and forth behind it at least, of damping ratios up to a fifth.
+/// Parts of a pulse that a structure swings back and forth behind it at least, of damping ratios up to a
+/// fifth.
 const BACK_AND_FORTH: [f64; 2] = [0.5, 0.25];
 /// Largest damping ratio of what swings: it comes back by a half of its height.
 const DAMPED: f64 = 0.2;
 
-/// Why one peak of this height over a baseline, with flanks at half of it in samples, is no contact: where what follows swings back and forth as wide as
-/// the peak is. A decay of so few swings as a blow may leave cannot be fitted.
+/// Why one peak of this height over a baseline, with flanks at half of it in samples, is no contact: where
+/// what follows swings back and forth as wide as the peak is. A decay of so few swings as a blow may leave
+/// cannot be fitted.
 pub(crate) fn back_and_forth(
     values: &[f64],
     baseline: f64,
@@ -62,8 +68,9 @@ pub(crate) struct Swings {
 }
 
 impl Swings {
-    /// The free decay of `values`, whose level is 0, if it explains all peaks behind the largest value, and these are most; noise reaches up to
-    /// `reach`. `peaks` are stretches of samples; where there is none, the largest value is one.
+    /// The free decay of `values`, whose level is 0, if it explains all peaks behind the largest value, and
+    /// these are most; noise reaches up to `reach`. `peaks` are stretches of samples; where there is
+    /// none, the largest value is one.
     pub fn of(values: &[f64], rate: f64, peaks: &[Range<usize>], reach: f64) -> Option<Swings> {
         let top = (0..values.len()).max_by(|a, b| values[*a].abs().total_cmp(&values[*b].abs()))?;
         let from = top.saturating_sub(STRETCH / 8);

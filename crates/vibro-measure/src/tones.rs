@@ -1,10 +1,11 @@
 //! Frequency, amplitude and phase of sines in noise.
 //!
-//! Least squares of x(t) = C + Σ aᵢ cos ωᵢt + bᵢ sin ωᵢt over all unknowns: maximum likelihood in white noise (S. M. Kay,
-//! Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 7.8), for one sine the four-parameter fit of IEEE
-//! Std 1057, which reaches the Cramér–Rao bound var(f) ≥ 12/((2πΔt)² η N(N²−1)), η = A²/(2σ²) (Kay, eq. 3.41). Uncertainties come
-//! from the inverse of the whole normal matrix: what two close sines take from each other is in them. A sine sees the noise around its
-//! own line only: uncertainties are those of white noise as strong as there (P. Whittle, Ark. Mat. 2 (1953) 423).
+//! Least squares of x(t) = C + Σ aᵢ cos ωᵢt + bᵢ sin ωᵢt over all unknowns: maximum likelihood in white noise
+//! (S. M. Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 7.8), for one
+//! sine the four-parameter fit of IEEE Std 1057, which reaches the Cramér–Rao bound var(f) ≥ 12/((2πΔt)² η
+//! N(N²−1)), η = A²/(2σ²) (Kay, eq. 3.41). Uncertainties come from the inverse of the whole normal matrix:
+//! what two close sines take from each other is in them. A sine sees the noise around its own line only:
+//! uncertainties are those of white noise as strong as there (P. Whittle, Ark. Mat. 2 (1953) 423).
 
 mod left;
 
@@ -23,7 +24,8 @@ use vibro_signal::spectrum;
 
 /// Most sines of one record.
 pub const MOST: usize = 10;
-/// Sines nearer than this part of 1/T shake each other so much that a fit of white noise finds two where there is one.
+/// Sines nearer than this part of 1/T shake each other so much that a fit of white noise finds two where
+/// there is one.
 const NEAREST: f64 = 0.5;
 /// A frequency that is given may be off by so many lines.
 const NEAR: f64 = 2.0;
@@ -33,17 +35,18 @@ const SHORT: f64 = 4.0;
 const LEAST: f64 = 1e-9;
 /// Gauss–Newton steps.
 const STEPS: usize = 40;
-/// Part of the standard uncertainty of a frequency below which a step ends the fit: large residuals, as coloured noise leaves, slow
-/// the steps down.
+/// Part of the standard uncertainty of a frequency below which a step ends the fit: large residuals, as
+/// coloured noise leaves, slow the steps down.
 const SETTLED: f64 = 1e-4;
 /// What is left of exact sines, in parts of the largest.
 const ROUNDING: f64 = 1e-12;
-/// Nearer to half the rate than this many lines a sine and its image are half a line apart, and shake each other as two sines do.
+/// Nearer to half the rate than this many lines a sine and its image are half a line apart, and shake each
+/// other as two sines do.
 const IMAGE: f64 = 0.25;
 /// Noise around a line is coloured where it is this much stronger than white noise of its variance.
 const COLOURED: f64 = 1.5;
-/// Lines on either side that tell the noise at a sine: those within half of its frequency, between which noise steeper than
-/// the 1/f that is allowed for changes threefold, but so many at least and at most.
+/// Lines on either side that tell the noise at a sine: those within half of its frequency, between which
+/// noise steeper than the 1/f that is allowed for changes threefold, but so many at least and at most.
 const AROUND: [usize; 2] = [15, 40];
 /// From so many lines on the uncertainty in coloured noise holds what another sine does.
 const FAR: f64 = 3.5;
@@ -72,18 +75,19 @@ pub struct Tones {
     pub findings: Vec<Finding>,
 }
 
-/// The sine of the largest line, or of the largest within two lines of `near` Hz. Where what is left holds another large line within
-/// two of it, it has no uncertainty: [`tones`] fits both.
+/// The sine of the largest line, or of the largest within two lines of `near` Hz. Where what is left holds
+/// another large line within two of it, it has no uncertainty: [`tones`] fits both.
 ///
 /// # Errors
-/// If the trace has no spectrum ([`spectrum::plain`]), no line stands out of the noise, fewer than one and a half periods are there,
-/// or the sine lies within a quarter of a line of half the sampling rate.
+/// If the trace has no spectrum ([`spectrum::plain`]), no line stands out of the noise, fewer than one and a
+/// half periods are there, or the sine lies within a quarter of a line of half the sampling rate.
 pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Tones> {
     Ok(Fit::new(trace, &[Lines::of(trace)?.strongest(near)?])?.estimates(trace))
 }
 
-/// The `count` strongest sines of a trace; fewer, with a finding, where no more stand out of the noise or can be parted. The strongest
-/// line of what is left gives the next sine; all that are known are then fitted together.
+/// The `count` strongest sines of a trace; fewer, with a finding, where no more stand out of the noise or can
+/// be parted. The strongest line of what is left gives the next sine; all that are known are then fitted
+/// together.
 ///
 /// ```
 /// use vibro_measure::tones::tones;
@@ -140,8 +144,8 @@ impl Lines {
         self.magnitudes.get((frequency / self.spacing).round() as usize).copied().unwrap_or(0.0)
     }
 
-    /// How strong noise is around `frequency` as a part of white noise of standard deviation `sigma`: not below 1 unless the sine is
-    /// `alone` with noise, since other lines reach farther.
+    /// How strong noise is around `frequency` as a part of white noise of standard deviation `sigma`: not
+    /// below 1 unless the sine is `alone` with noise, since other lines reach farther.
     fn colour(&self, frequency: f64, sigma: f64, alone: bool) -> f64 {
         let centre = (frequency / self.spacing).round() as usize;
         let reach = (centre / 2).clamp(AROUND[0], AROUND[1]);
@@ -152,8 +156,8 @@ impl Lines {
         if alone { factor } else { factor.max(1.0) }
     }
 
-    /// The frequency of the strongest line that stands out of the noise, or of those within two lines of `near` Hz, interpolated
-    /// between lines.
+    /// The frequency of the strongest line that stands out of the noise, or of those within two lines of
+    /// `near` Hz, interpolated between lines.
     fn strongest(&self, near: Option<f64>) -> Result<f64> {
         let Lines { magnitudes, powers, spacing } = self;
         let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / spacing).abs() <= NEAR);
@@ -181,8 +185,8 @@ impl Lines {
     }
 }
 
-/// Sines and a mean fitted to a record. Time runs from its middle, in parts of half of it: frequency and phase are then almost
-/// uncorrelated.
+/// Sines and a mean fitted to a record. Time runs from its middle, in parts of half of it: frequency and
+/// phase are then almost uncorrelated.
 struct Fit {
     /// Angular frequencies.
     omega: Vec<f64>,
@@ -217,7 +221,8 @@ impl Fit {
             cut[i] = if trace.values[i] == low { -1.0 } else { 1.0 };
         }
         let fit = Fit::of(trace, start, cut)?;
-        // Noise lifts the highest samples of a whole record above the sines; where they lie below, they are cut off.
+        // Noise lifts the highest samples of a whole record above the sines; where they lie below, they are
+        // cut off.
         let (rest, mut cut) = (fit.rest(trace), fit.cut.clone());
         for (end, side) in [(low, -1.0), (high, 1.0)] {
             let at: Vec<usize> = (0..n).filter(|i| trace.values[*i] == end && fit.cut[*i] == 0.0).collect();
@@ -315,7 +320,8 @@ impl Fit {
             .hint("look at the spectrum: two close lines, or a frequency that drifts"))
     }
 
-    /// The fit with one more sine; `None` where no other line stands out of the noise, or it cannot be parted from the others.
+    /// The fit with one more sine; `None` where no other line stands out of the noise, or it cannot be parted
+    /// from the others.
     fn one_more(&self, trace: &Trace, spacing: f64) -> Option<Fit> {
         // What rounding leaves of exact sines has lines, too.
         if self.is_exact() {
@@ -356,13 +362,15 @@ impl Fit {
         Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values }
     }
 
-    /// The sines with first-order uncertainties, widened by the noise around each and by what is left beside it.
+    /// The sines with first-order uncertainties, widened by the noise around each and by what is left beside
+    /// it.
     fn estimates(&self, trace: &Trace) -> Tones {
         let n = trace.values.len();
         let (rest, unit) = (self.rest(trace), trace.meta.unit.quantity().symbol());
         let lines = if self.is_exact() { None } else { Lines::of(&rest).ok() };
         let other = lines.as_ref().and_then(|lines| lines.strongest(None).ok());
-        // Samples that are cut off have less noise in what is left: lines are compared with white noise of its own size.
+        // Samples that are cut off have less noise in what is left: lines are compared with white noise of
+        // its own size.
         let rms = (rest.values.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt();
         // The first sample, in the time of the fit.
         let first = time(0, n);
@@ -401,17 +409,18 @@ impl Fit {
 }
 
 impl Tone {
-    /// Widens the uncertainties where what is left holds another line beside this sine, which moves it by more than noise does; where
-    /// that line is large, how far is not known, and no uncertainty is left.
+    /// Widens the uncertainties where what is left holds another line beside this sine, which moves it by
+    /// more than noise does; where that line is large, how far is not known, and no uncertainty is left.
     ///
     /// A sine of a part r of the amplitude moves the frequency of a least-squares fit over T by up to
-    /// 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T, amplitude and phase in the middle by up to r, so the phase at the first sample by 2.3 r;
-    /// the fit may have taken up half of it.
+    /// 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T, amplitude and phase in the middle by up to r, so the phase at the
+    /// first sample by 2.3 r; the fit may have taken up half of it.
     fn widened(&mut self, left: &Lines, strongest: Option<f64>) -> Option<Finding> {
         let at = self.frequency.value;
         let other = left.strongest(Some(at)).ok()?;
         let strongest = strongest.unwrap_or(other);
-        // A sine so far off that was not fitted, which the noise around this one holds, leaves a line here of up to that part of itself.
+        // A sine so far off that was not fitted, which the noise around this one holds, leaves a line here of
+        // up to that part of itself.
         let away = (strongest - at).abs() / left.spacing;
         if away >= FAR && left.height(other) * away < left.height(strongest) {
             return None;

@@ -26,8 +26,9 @@ pub struct Waterfall {
     pub findings: Vec<Finding>,
 }
 
-/// Gathers the matrix of a sweep whose response is known. Where the spectra were or are integrated, lines below the response's cut-off hold noise
-/// divided by frequency and are left out; otherwise all lines are kept unless the options give a cut-off.
+/// Gathers the matrix of a sweep whose response is known. Where the spectra were or are integrated, lines
+/// below the response's cut-off hold noise divided by frequency and are left out; otherwise all lines are
+/// kept unless the options give a cut-off.
 pub fn waterfall(sweep: &Sweep, options: &ResponseOptions, response: &Response) -> Waterfall {
     let times = options.times(sweep);
     let integrated = times > 0 || sweep.analyser_integrated > 0;

@@ -6,8 +6,9 @@ use vibro_record::{Error, Result};
 
 /// A sweep at a constant rate.
 ///
-/// The frequency goes in steps of duration h, each at the frequency of its middle; the phase is right at both ends of a step and
-/// deviates by no more than π|rate|h²/4 within it, so a sine force deviates by that fraction of its amplitude.
+/// The frequency goes in steps of duration h, each at the frequency of its middle; the phase is right at both
+/// ends of a step and deviates by no more than π|rate|h²/4 within it, so a sine force deviates by that
+/// fraction of its amplitude.
 ///
 /// ```
 /// use vibro_model::{Chirp, Motion, Rig, Simulation, Sine};
@@ -35,12 +36,12 @@ impl Chirp {
         (4.0 * self.deviation / (PI * self.rate.abs())).sqrt()
     }
 
-    /// Sweeps a motion from its present frequency to the time `until` (s); shows each piece, the last of each step with
-    /// [`super::Event::Reached`].
+    /// Sweeps a motion from its present frequency to the time `until` (s); shows each piece, the last of each
+    /// step with [`super::Event::Reached`].
     ///
     /// # Errors
-    /// If rate or deviation is impossible, more than 20 million steps are needed, the frequency does not stay above 0, or as
-    /// [`Motion::advance`].
+    /// If rate or deviation is impossible, more than 20 million steps are needed, the frequency does not stay
+    /// above 0, or as [`Motion::advance`].
     pub fn advance(
         &self,
         motion: &mut dyn Motion,
@@ -101,7 +102,8 @@ mod tests {
             motion.state()
         };
         let (coarse, fine) = (state(1e-3), state(1e-7));
-        // A force that deviates by F₀·1e-3 for ever moves mass 1 by no more than at resonance, F₀·1e-3/(c₁Ω₁).
+        // A force that deviates by F₀·1e-3 for ever moves mass 1 by no more than at resonance,
+        // F₀·1e-3/(c₁Ω₁).
         let rig = Rig::thesis();
         let bound = 0.1 * 1e-3 / (rig.c1 * (rig.k1 / rig.m1).sqrt());
         assert!((coarse.x1 - fine.x1).abs() < bound, "{coarse:?} {fine:?}");

@@ -1,4 +1,5 @@
-//! Branches of periodic motions over frequency, force, or a value of the rig, followed through folds, with every border of stability marked.
+//! Branches of periodic motions over frequency, force, or a value of the rig, followed through folds, with
+//! every border of stability marked.
 
 mod walk;
 
@@ -11,8 +12,9 @@ use walk::Walk;
 /// A marked motion on a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// What happens there: the branch turns back at a fold (a multiplier passes +1), motions of twice the period branch off at a flip (−1) and turn back there, a
-    /// pair of complex multipliers leaves or enters the unit circle, or an impact fades to a touch or a further contact appears (grazing).
+    /// What happens there: the branch turns back at a fold (a multiplier passes +1), motions of twice the
+    /// period branch off at a flip (−1) and turn back there, a pair of complex multipliers leaves or
+    /// enters the unit circle, or an impact fades to a touch or a further contact appears (grazing).
     pub kind: Loss,
     /// The motion there.
     pub orbit: PeriodicOrbit,
@@ -47,18 +49,20 @@ pub struct Branch {
     pub ends: [End; 2],
 }
 
-/// Swings of a mass in a period up to which a motion is followed: each of thousands of steps searches all of them.
+/// Swings of a mass in a period up to which a motion is followed: each of thousands of steps searches all of
+/// them.
 const MOST_SWINGS: f64 = 1000.0;
 
-/// Follows the branch of `start` both ways while the value of `over` lies in `low..=high` (SI units): the frequency, the force, or a value of
-/// the rig.
+/// Follows the branch of `start` both ways while the value of `over` lies in `low..=high` (SI units): the
+/// frequency, the force, or a value of the rig.
 ///
-/// Steps along the branch have at most the length `step` (0.05 is fine), measured in phases (rad), impulses (shares of the gap or
-/// amplitude times ω) and what is varied together (pseudo-arclength; H. B. Keller 1977): the logarithm of its value, a gap in units of
-/// the amplitude, a restitution itself.
+/// Steps along the branch have at most the length `step` (0.05 is fine), measured in phases (rad), impulses
+/// (shares of the gap or amplitude times ω) and what is varied together (pseudo-arclength; H. B. Keller
+/// 1977): the logarithm of its value, a gap in units of the amplitude, a restitution itself.
 ///
 /// # Errors
-/// If the range or the step is impossible or does not hold the start; if a mass swings more than 1000 times in a period.
+/// If the range or the step is impossible or does not hold the start; if a mass swings more than 1000 times
+/// in a period.
 pub fn follow(start: &PeriodicOrbit, over: Parameter, low: f64, high: f64, step: f64) -> Result<Branch> {
     let value = over.of(&start.rig, &start.sine);
     check_range(over, low, high, value)?;

@@ -13,7 +13,8 @@ struct Line {
     /// F L₁(iω), of mass 1 alone, in m, and its modulus.
     alone: Complex64,
     amplitude: f64,
-    /// F L(iω) of both masses together, in m; not finite where they are driven at their undamped resonance. Against a wall, F in N.
+    /// F L(iω) of both masses together, in m; not finite where they are driven at their undamped resonance.
+    /// Against a wall, F in N.
     together: Complex64,
 }
 
@@ -25,7 +26,8 @@ pub(super) struct Drive {
 }
 
 impl Drive {
-    /// Excitation of `rig` at `phase` of its cycle; each of several sines has its own phase at phase 0 and has gone on since.
+    /// Excitation of `rig` at `phase` of its cycle; each of several sines has its own phase at phase 0 and
+    /// has gone on since.
     pub fn new(rig: &Rig, excitation: &Excitation, phase: f64) -> Result<Drive> {
         scales::check(rig, excitation)?;
         Drive::with(rig, Forcing::new(excitation, phase)?)

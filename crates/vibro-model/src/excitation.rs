@@ -85,8 +85,9 @@ pub struct Part {
 }
 
 impl Excitation {
-    /// Checks that the numbers can belong to an excitation: all finite, frequencies above 0, amplitudes of sines not negative (impulses and
-    /// pulses may pull), a width above 0 and below the cycle, and one to `MOST_SINES` sines.
+    /// Checks that the numbers can belong to an excitation: all finite, frequencies above 0, amplitudes of
+    /// sines not negative (impulses and pulses may pull), a width above 0 and below the cycle, and one to
+    /// `MOST_SINES` sines.
     ///
     /// # Errors
     /// If it is not so; it names the key as a setting.
@@ -144,7 +145,8 @@ impl Excitation {
         }
     }
 
-    /// The same excitation at another frequency in Hz; of several sines, the ratios of their frequencies stay.
+    /// The same excitation at another frequency in Hz; of several sines, the ratios of their frequencies
+    /// stay.
     pub fn at_frequency(&self, frequency: f64) -> Excitation {
         let ratio = frequency / self.frequency();
         self.changed(frequency, self.size(), |part| part.frequency *= ratio)
@@ -168,8 +170,8 @@ impl Excitation {
         changed
     }
 
-    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), the cycle being at `phase` (rad) at time 0; not a number for
-    /// several sines, which need have none.
+    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), the cycle being at `phase` (rad) at
+    /// time 0; not a number for several sines, which need have none.
     ///
     /// Impulses F have 2F/T in every harmonic; pulses (2f/T)(1 − e^{−inωw})/(inω).
     pub(super) fn harmonic(&self, n: u32, phase: f64) -> Complex64 {

@@ -6,8 +6,8 @@ use nalgebra::{Matrix2, Matrix4, RowVector4, SVD, Schur, Vector4};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂); the force moves every neighbour alike and does not enter. A wall has no
-/// neighbouring motions: its part is 0.
+/// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂); the force moves every neighbour alike and does not
+/// enter. A wall has no neighbouring motions: its part is 0.
 fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
     let mut phi = Matrix4::zeros();
     let moving = if rig.has_wall() { 1 } else { 2 };
@@ -18,8 +18,8 @@ fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
     phi
 }
 
-/// Saltation matrix S = D + (f⁺ − D f⁻)nᵀ/(nᵀf⁻) of an impact, with n = ∇g, D the change of velocities, f the rate of
-/// the state just before and just after (Müller 1995; Leine and Nijmeijer 2004).
+/// Saltation matrix S = D + (f⁺ − D f⁻)nᵀ/(nᵀf⁻) of an impact, with n = ∇g, D the change of velocities, f the
+/// rate of the state just before and just after (Müller 1995; Leine and Nijmeijer 2004).
 ///
 /// Its determinant is R². Its elements grow like 1/vᵣ when the impact grazes.
 fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
@@ -34,12 +34,13 @@ fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
     jump + (after - jump * before) * normal / (normal * before)[0]
 }
 
-/// Monodromy Φ(T)S of a motion with one impact a period, from just before one impact to just before the next, and a bound on its rounding
-/// in the Frobenius norm, for relative errors of ε in the arguments.
+/// Monodromy Φ(T)S of a motion with one impact a period, from just before one impact to just before the next,
+/// and a bound on its rounding in the Frobenius norm, for relative errors of ε in the arguments.
 ///
-/// `before` and `after` are rates of change of the state (v₁, a₁, v₂, a₂) on both sides of the impact. The kernels err by ε times their
-/// phase ΩT, sums and products of four by 4ε each, the quotient of the saltation by the four terms of each acceleration; the Schur form by
-/// a few ε of the product. Together below 64 (1 + ΩT) ε of both norms.
+/// `before` and `after` are rates of change of the state (v₁, a₁, v₂, a₂) on both sides of the impact. The
+/// kernels err by ε times their phase ΩT, sums and products of four by 4ε each, the quotient of the saltation
+/// by the four terms of each acceleration; the Schur form by a few ε of the product. Together below 64 (1 +
+/// ΩT) ε of both norms.
 pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64; 4]) -> (Matrix4<f64>, f64) {
     let (flow, saltation) = (flow(rig, period), saltation(rig, before, after));
     let phase = rig.oscillators().iter().map(|o| o.omega2().sqrt() * period).fold(0.0, f64::max);
@@ -62,11 +63,12 @@ pub(super) fn product(rig: &Rig, courses: &[Course]) -> (Matrix4<f64>, f64) {
     (whole, norms * relative)
 }
 
-/// Whether all multipliers lie inside the unit circle; `None` where an error of norm `rounding` in the monodromy could move
-/// one onto it, and none lies outside for certain.
+/// Whether all multipliers lie inside the unit circle; `None` where an error of norm `rounding` in the
+/// monodromy could move one onto it, and none lies outside for certain.
 ///
-/// A matrix within `rounding` has the eigenvalue z exactly where the smallest singular value of M − z does not exceed it (L. N.
-/// Trefethen and M. Embree, *Spectra and Pseudospectra* (2005), §2), however ill-conditioned a double multiplier is.
+/// A matrix within `rounding` has the eigenvalue z exactly where the smallest singular value of M − z does
+/// not exceed it (L. N. Trefethen and M. Embree, *Spectra and Pseudospectra* (2005), §2), however
+/// ill-conditioned a double multiplier is.
 pub(super) fn inside(monodromy: &Matrix4<f64>, multipliers: &[Complex64; 4], rounding: f64) -> Option<bool> {
     let open = |z: &Complex64| {
         let nearest = z / z.norm();
@@ -89,8 +91,9 @@ pub(super) fn inside(monodromy: &Matrix4<f64>, multipliers: &[Complex64; 4], rou
     (!multipliers.iter().any(open)).then_some(true)
 }
 
-/// A bound from below on the smallest singular value of a 4 × 4 matrix by its determinant and the square of its Frobenius norm,
-/// |det| ((n − 1)/‖·‖²)^((n − 1)/2) (Y. Yu and D. Gu, *Linear Algebra Appl.* 253 (1997) 25).
+/// A bound from below on the smallest singular value of a 4 × 4 matrix by its determinant and the square of
+/// its Frobenius norm, |det| ((n − 1)/‖·‖²)^((n − 1)/2) (Y. Yu and D. Gu, *Linear Algebra Appl.* 253 (1997)
+/// 25).
 fn singular_floor(determinant: f64, norm_squared: f64) -> f64 {
     let share = 3.0 / norm_squared;
     determinant * share * share.sqrt()

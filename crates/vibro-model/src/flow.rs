@@ -81,8 +81,8 @@ pub(super) struct Landing {
 
 /// Motion of both masses without contact, in closed form; time counts from the flight's start.
 ///
-/// x₁ = P/k₁ + Σ Re(Xe^{iωt}) + free motion, x₂ = free motion, under a constant force P and sine forces. No step size: any time is
-/// evaluated at once.
+/// x₁ = P/k₁ + Σ Re(Xe^{iωt}) + free motion, x₂ = free motion, under a constant force P and sine forces. No
+/// step size: any time is evaluated at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flight {
     /// Forced displacement of mass 1.
@@ -109,7 +109,8 @@ impl Flight {
         Flight::of(oscillators, waves, rest, gap, [(state.x1 - x - rest, state.v1 - v), (state.x2, state.v2)])
     }
 
-    /// Flight with these free parts, displacement and velocity, on top of the forced motion about `rest` (m) of mass 1.
+    /// Flight with these free parts, displacement and velocity, on top of the forced motion about `rest` (m)
+    /// of mass 1.
     pub(super) fn of(
         oscillators: [Oscillator; 2],
         waves: Waves,
@@ -121,10 +122,11 @@ impl Flight {
         Flight { waves, rest, gap, free: [part(0), part(1)], open: 0.0 }
     }
 
-    /// The same flight of masses that part from rest against each other: no contact is sought where the gap can but open.
+    /// The same flight of masses that part from rest against each other: no contact is sought where the gap
+    /// can but open.
     ///
-    /// With g = ġ = 0 at the start, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24, which is above 0 up to its root. After a release g̈ is 0 as well,
-    /// the gap opens like t³, and is long smaller than its rounding.
+    /// With g = ġ = 0 at the start, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24, which is above 0 up to its root. After a
+    /// release g̈ is 0 as well, the gap opens like t³, and is long smaller than its rounding.
     pub(super) fn parting(mut self) -> Flight {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = self.series(0.0);
         let bound = |i: usize| {
@@ -175,7 +177,8 @@ impl Flight {
         2.0 * f64::EPSILON * (self.gap.abs() + self.rest.abs() + self.reach())
     }
 
-    /// First contact in `0..=duration`, with the state there: the gap falls to zero. No contact can be missed (see [`vibro_math::root`]).
+    /// First contact in `0..=duration`, with the state there: the gap falls to zero. No contact can be missed
+    /// (see [`vibro_math::root`]).
     #[inline]
     pub(super) fn land(&self, duration: f64) -> Option<Landing> {
         if self.open > duration {

@@ -1,4 +1,5 @@
-//! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse or step is due.
+//! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse
+//! or step is due.
 
 use super::excitation::MOST_SINES;
 use super::linear::{ORDER, Terms};
@@ -53,8 +54,9 @@ impl Tone {
 
 /// The exciting force from now on.
 ///
-/// At phase 0, and only there, the cycle's impulse or pulse is still to come; once it has come the phase is above 0, if only by the
-/// least number there is. So a phase tells whether it is to come, and a motion that starts again from its phase has it once.
+/// At phase 0, and only there, the cycle's impulse or pulse is still to come; once it has come the phase is
+/// above 0, if only by the least number there is. So a phase tells whether it is to come, and a motion that
+/// starts again from its phase has it once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],
@@ -68,8 +70,9 @@ pub(super) struct Forcing {
 }
 
 impl Forcing {
-    /// The excitation in a cycle of which `phase` rad are past: a sine is F₀ cos(phase), an impulse falls on phase 0, a
-    /// pulse begins there, and of several sines each is ahead by its own part of the time that the phase stands for.
+    /// The excitation in a cycle of which `phase` rad are past: a sine is F₀ cos(phase), an impulse falls on
+    /// phase 0, a pulse begins there, and of several sines each is ahead by its own part of the time that
+    /// the phase stands for.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         excitation.check()?;
         number("phase", phase, "rad", Least::Any)?;
@@ -124,7 +127,8 @@ impl Forcing {
         Ok(())
     }
 
-    /// Goes on under another excitation of the same kind, whose phases are those of this one; a pulse under way keeps its width.
+    /// Goes on under another excitation of the same kind, whose phases are those of this one; a pulse under
+    /// way keeps its width.
     pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
         let mut next = Forcing { phase: self.phase, left: self.left, ..Forcing::new(excitation, 0.0)? };
         if discriminant(&self.train) != discriminant(&next.train)
@@ -178,9 +182,11 @@ impl Forcing {
         terms
     }
 
-    /// Seconds to the next tick in a motion of `span` seconds up to the time `end`, and what it does; infinite where there is none.
+    /// Seconds to the next tick in a motion of `span` seconds up to the time `end`, and what it does;
+    /// infinite where there is none.
     ///
-    /// What falls on the end, as closely as time and phase are known, is left to what follows: a cycle begins with its impulse.
+    /// What falls on the end, as closely as time and phase are known, is left to what follows: a cycle begins
+    /// with its impulse.
     #[inline]
     pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
         let begin = match self.train {

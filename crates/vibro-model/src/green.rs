@@ -3,11 +3,13 @@
 use vibro_math::Oscillator;
 use vibro_record::{Error, Result};
 
-/// χ(t) = e^{−bt}[sin λt + e^{−bT} sin λ(T − t)] / (mλ(1 + e^{−2bT} − 2e^{−bT} cos λT)), 0 ≤ t ≤ T, in m/(N s).
+/// χ(t) = e^{−bt}[sin λt + e^{−bT} sin λ(T − t)] / (mλ(1 + e^{−2bT} − 2e^{−bT} cos λT)), 0 ≤ t ≤ T, in m/(N
+/// s).
 ///
-/// Babitsky, *Theory of Vibro-Impact Systems* (1998); Rosenwasser (1969). Written here as the free motion that returns
-/// to its own start after T with its velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m). This form holds at any
-/// damping. Relative error about ε/(ΩT)² where the period is short against the natural one.
+/// Babitsky, *Theory of Vibro-Impact Systems* (1998); Rosenwasser (1969). Written here as the free motion
+/// that returns to its own start after T with its velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m).
+/// This form holds at any damping. Relative error about ε/(ΩT)² where the period is short against the natural
+/// one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Green {
     pub(crate) oscillator: Oscillator,
@@ -22,7 +24,8 @@ pub struct Green {
 }
 
 impl Green {
-    /// Periodic response of the oscillator of mass `m` (none where it is infinite) to a unit impulse every `period` seconds.
+    /// Periodic response of the oscillator of mass `m` (none where it is infinite) to a unit impulse every
+    /// `period` seconds.
     ///
     /// # Errors
     /// If the oscillator is undamped and a harmonic of the impulses meets its natural frequency.
@@ -44,7 +47,8 @@ impl Green {
         }
         let b = oscillator.decay();
         let scale = 1.0 / (m * determinant);
-        // 1 − C and 1 − e^{−2bT} are taken whole, because near a lightly damped resonance C and e^{−bT} are both near 1.
+        // 1 − C and 1 − e^{−2bT} are taken whole, because near a lightly damped resonance C and e^{−bT} are
+        // both near 1.
         let lost_twice = -(-2.0 * b * period).exp_m1();
         Ok(Green {
             oscillator,
@@ -65,7 +69,8 @@ impl Green {
 mod tests {
     use super::*;
 
-    /// The slow oracle: impulse responses S(t + nT)/m of all impulses so far, summed until they have died out.
+    /// The slow oracle: impulse responses S(t + nT)/m of all impulses so far, summed until they have died
+    /// out.
     fn sum(m: f64, oscillator: Oscillator, period: f64, t: f64) -> (f64, f64) {
         let mut total = (0.0, 0.0);
         for n in (0..40_000).rev() {
@@ -83,7 +88,8 @@ mod tests {
             let oscillator = Oscillator::new(m, c, k);
             for period in [0.05, 0.1911, 0.6] {
                 let green = Green::new(m, oscillator, period).unwrap();
-                // About 1/(bT) impulses count, each rounded to ε of 1/m (velocity), and t itself is rounded to ε.
+                // About 1/(bT) impulses count, each rounded to ε of 1/m (velocity), and t itself is rounded
+                // to ε.
                 let count = 1.0 + 1.0 / (oscillator.decay() * period);
                 let tolerance = 32.0 * f64::EPSILON * count * count / m;
                 for part in [0.0, 0.3, 0.5, 0.99] {

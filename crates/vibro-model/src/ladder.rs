@@ -1,11 +1,12 @@
 //! The ladder: no more model than a scene needs.
 //!
-//! From the simplest model to the richest: the motion without impacts, one impact a cycle in closed form, the same corrected for the
-//! duration of the contact, exact flights between impacts at once, exact flights with a contact of spring and damper, contacts of curved
-//! bodies, a mass that is loose on its spring. Each rung is checked by what its own theory says of it, and by how far its answer moves at
-//! the next rung and at the next one that follows the motion; the lowest that passes is chosen. Time is not the argument, all rungs take
-//! µs to ms: parameters that nobody can identify are. Where one is needed and not known nothing is chosen, and the answer over its range is
-//! given instead.
+//! From the simplest model to the richest: the motion without impacts, one impact a cycle in closed form, the
+//! same corrected for the duration of the contact, exact flights between impacts at once, exact flights with
+//! a contact of spring and damper, contacts of curved bodies, a mass that is loose on its spring. Each rung
+//! is checked by what its own theory says of it, and by how far its answer moves at the next rung and at the
+//! next one that follows the motion; the lowest that passes is chosen. Time is not the argument, all rungs
+//! take µs to ms: parameters that nobody can identify are. Where one is needed and not known nothing is
+//! chosen, and the answer over its range is given instead.
 //!
 //! ```
 //! use vibro_model::ladder::{Model, Question, choose};
@@ -53,12 +54,14 @@ pub struct Choice {
     pub needs: Vec<Need>,
     /// The change of the chosen answer at the next rung that follows the motion.
     pub audit: Option<Change>,
-    /// What curved bodies (exponent 1.5) that meet for as long and rebound alike would change, where a spring and a damper were chosen, or the
-    /// correction for them, and their law was not stated.
+    /// What curved bodies (exponent 1.5) that meet for as long and rebound alike would change, where a
+    /// spring and a damper were chosen, or the correction for them, and their law was not stated.
     pub law: Option<Change>,
-    /// The changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where there is then no such answer.
+    /// The changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where
+    /// there is then no such answer.
     pub gap: Vec<Option<Change>>,
-    /// The answer over the contact's stiffness, where that is not known and matters; empty where that cannot be computed.
+    /// The answer over the contact's stiffness, where that is not known and matters; empty where that cannot
+    /// be computed.
     pub sensitivity: Vec<Sensitivity>,
     /// Motions that the rig can be in, as far as they are known.
     pub motions: Vec<Known>,
@@ -128,17 +131,18 @@ pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
 /// Swings of a mass in a cycle of the excitation up to which motions are followed.
 const MOST_SWINGS: f64 = 1000.0;
 
-/// The lowest rung that answers `question` for `scene` at `frequency` (Hz), which replaces that of the excitation.
+/// The lowest rung that answers `question` for `scene` at `frequency` (Hz), which replaces that of the
+/// excitation.
 ///
 /// # Errors
-/// If a parameter or the question is impossible, nothing drives the rig, an undamped mass is driven at resonance, or the excitation is so
-/// slow that the masses swing more than 1000 times in a cycle.
+/// If a parameter or the question is impossible, nothing drives the rig, an undamped mass is driven at
+/// resonance, or the excitation is so slow that the masses swing more than 1000 times in a cycle.
 pub fn choose(scene: &Scene, frequency: f64, question: &Question) -> Result<Choice> {
     chosen(scene, frequency, question, true)
 }
 
-/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is compared with curved bodies, and the answer with
-/// those at both ends of the gap's uncertainty.
+/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is compared with curved
+/// bodies, and the answer with those at both ends of the gap's uncertainty.
 fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Result<Choice> {
     question.check()?;
     let Some(excitation) = &scene.excitation else {

@@ -1,9 +1,9 @@
 //! Models of the two-mass rig: what its motion should be.
 //!
-//! Two oscillators, each on its own spring and damper, face each other across a gap g = Δ + x₂ − x₁ ≥ 0; x₁ (excited)
-//! and x₂ (passive) are displacements from their own rest. Contact is instantaneous: with the reduced mass
-//! M = m₁m₂/(m₁ + m₂) and the approach speed vᵣ = v₁ − v₂, an impact takes J = M(1 + R)vᵣ from the momentum of mass 1
-//! and gives it to mass 2.
+//! Two oscillators, each on its own spring and damper, face each other across a gap g = Δ + x₂ − x₁ ≥ 0; x₁
+//! (excited) and x₂ (passive) are displacements from their own rest. Contact is instantaneous: with the
+//! reduced mass M = m₁m₂/(m₁ + m₂) and the approach speed vᵣ = v₁ − v₂, an impact takes J = M(1 + R)vᵣ from
+//! the momentum of mass 1 and gives it to mass 2.
 //!
 //! - [`orbits`]: every periodic motion with one impact a period in closed form, each with its verdicts;
 //! - [`Simulation`]: any motion, event by event, on exact flights between guaranteed contacts;

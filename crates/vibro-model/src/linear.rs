@@ -1,10 +1,12 @@
-//! One linear mode of the rig, flown in pieces of Taylor series: exact to rounding at any damping, whatever its matrix.
+//! One linear mode of the rig, flown in pieces of Taylor series: exact to rounding at any damping, whatever
+//! its matrix.
 //!
-//! In a mode both accelerations are linear in the state: a = A(x₁, v₁, x₂, v₂) + constant + gain·F(t). The series of the
-//! motion follows from it term by term (xₖ₊₁ = vₖ/(k + 1), vₖ₊₁ = aₖ/(k + 1)), for a matrix without a full set of
-//! eigenvectors (critical damping) like for any other. In the norm max(s|xᵢ|, |vᵢ|) with s² = Cs + K, K and C being
-//! the largest row sums of stiffness and damping over mass, ‖A‖ ≤ s. A piece lasts at most 1/s and 1/ω, so that the
-//! series, cut after [`ORDER`] terms, leaves out less than e/(ORDER + 1)! = 2.3e-17 of the norm: below rounding.
+//! In a mode both accelerations are linear in the state: a = A(x₁, v₁, x₂, v₂) + constant + gain·F(t). The
+//! series of the motion follows from it term by term (xₖ₊₁ = vₖ/(k + 1), vₖ₊₁ = aₖ/(k + 1)), for a matrix
+//! without a full set of eigenvectors (critical damping) like for any other. In the norm max(s|xᵢ|, |vᵢ|)
+//! with s² = Cs + K, K and C being the largest row sums of stiffness and damping over mass, ‖A‖ ≤ s. A piece
+//! lasts at most 1/s and 1/ω, so that the series, cut after [`ORDER`] terms, leaves out less than e/(ORDER +
+//! 1)! = 2.3e-17 of the norm: below rounding.
 
 use super::State;
 use super::motion::Path;
@@ -30,8 +32,8 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// Mode of these accelerations for each of x₁, v₁, x₂, v₂, these constant ones, and these for each newton of the
-    /// exciting force.
+    /// Mode of these accelerations for each of x₁, v₁, x₂, v₂, these constant ones, and these for each newton
+    /// of the exciting force.
     pub fn new(matrix: [[f64; 4]; 2], constant: [f64; 2], gain: [f64; 2]) -> Linear {
         let row_sum = |i: usize| matrix.iter().map(|row| row[i].abs() + row[i + 2].abs()).fold(0.0, f64::max);
         let (stiffness, damping) = (row_sum(0), row_sum(1));

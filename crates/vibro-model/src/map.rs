@@ -68,8 +68,8 @@ pub struct Plan {
     pub x: Axis,
     /// Parameter upwards.
     pub y: Axis,
-    /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, or where it is within 1e-3 of a stable motion and draws
-    /// nearer.
+    /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, or where it is within
+    /// 1e-3 of a stable motion and draws nearer.
     pub cycles: u32,
 }
 
@@ -78,7 +78,8 @@ pub struct Plan {
 pub struct Cell {
     /// The regime; `None` where the rig cannot be computed there (an undamped mass at its resonance).
     pub regime: Option<Regime>,
-    /// Largest modulus of the Floquet multipliers over the period of the pattern (of one cycle without impacts); `None` without one.
+    /// Largest modulus of the Floquet multipliers over the period of the pattern (of one cycle without
+    /// impacts); `None` without one.
     pub spectral_radius: Option<f64>,
 }
 
@@ -93,7 +94,8 @@ impl Plan {
     /// Checks the plan.
     ///
     /// # Errors
-    /// If both axes vary the same parameter, a corner of the map is impossible, or there are more than 1e8 cycles in all.
+    /// If both axes vary the same parameter, a corner of the map is impossible, or there are more than 1e8
+    /// cycles in all.
     pub fn check(&self) -> Result<()> {
         if self.x.key == self.y.key {
             return Err(Error::usage(format!("both axes vary {}", self.x.key.name()), "two parameters"));
@@ -194,8 +196,8 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     })
 }
 
-/// The cell of a pattern. Under a sine the motion that the pattern is, or settles on, must be there, must not be unstable, and says
-/// what its shortest period is.
+/// The cell of a pattern. Under a sine the motion that the pattern is, or settles on, must be there, must not
+/// be unstable, and says what its shortest period is.
 fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell> {
     let Regime::Periodic { cycles, .. } = found.regime else { return None };
     let seen = |settled: bool| {
@@ -214,7 +216,8 @@ fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell>
     }
 }
 
-/// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the phase of one.
+/// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the
+/// phase of one.
 fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -> Option<f64> {
     if matches!(excitation, Excitation::Sines(_)) {
         return None;

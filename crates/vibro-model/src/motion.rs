@@ -8,7 +8,8 @@ use vibro_record::Result;
 pub enum Event {
     /// The time asked for.
     Reached,
-    /// The masses have met. A compliant contact reports it once, at its end, with the approach speed at its beginning.
+    /// The masses have met. A compliant contact reports it once, at its end, with the approach speed at its
+    /// beginning.
     Impact(Impact),
     /// An impulse of the excitation.
     Kick,
@@ -54,9 +55,10 @@ pub trait Motion {
     /// State now; after an event, if one happens now.
     fn state(&self) -> State;
 
-    /// Phase in 0..2π of the excitation's cycle: a sine force is F₀ cos(phase), an impulse falls on phase 0 and a pulse begins there.
-    /// Once they have come it is above 0, so that a motion that starts from this state and phase goes on as this one: but for a pulse
-    /// under way at a frequency that was changed within it, and for several sines whose frequencies are no multiples of the first.
+    /// Phase in 0..2π of the excitation's cycle: a sine force is F₀ cos(phase), an impulse falls on phase 0
+    /// and a pulse begins there. Once they have come it is above 0, so that a motion that starts from
+    /// this state and phase goes on as this one: but for a pulse under way at a frequency that was
+    /// changed within it, and for several sines whose frequencies are no multiples of the first.
     fn phase(&self) -> f64;
 
     /// Frequency of the excitation in Hz.
@@ -68,18 +70,19 @@ pub trait Motion {
     /// If the excitation cannot have this frequency on this rig.
     fn set_frequency(&mut self, hz: f64) -> Result<()>;
 
-    /// Goes on under an excitation of another size or frequency and of the same kind; phases, state and time go on without a step,
-    /// and a pulse under way keeps its width.
+    /// Goes on under an excitation of another size or frequency and of the same kind; phases, state and time
+    /// go on without a step, and a pulse under way keeps its width.
     ///
     /// # Errors
     /// If the excitation is of another kind, has another number of sines, or is impossible on this rig.
     fn set_excitation(&mut self, excitation: &Excitation) -> Result<()>;
 
-    /// Follows the motion to the time `until` (s) and shows each piece in order, the last with [`Event::Reached`]. An impulse or a
-    /// step of force at `until` itself is left to what follows.
+    /// Follows the motion to the time `until` (s) and shows each piece in order, the last with
+    /// [`Event::Reached`]. An impulse or a step of force at `until` itself is left to what follows.
     ///
     /// # Errors
-    /// If `until` is not finite or in the past, or the motion needs more events than can be computed in bounded time.
+    /// If `until` is not finite or in the past, or the motion needs more events than can be computed in
+    /// bounded time.
     fn advance(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<()>;
 
     /// Law of its contact; `None` where impacts take no time.

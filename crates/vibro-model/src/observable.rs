@@ -1,8 +1,8 @@
 //! What an instrument shows of a motion.
 //!
-//! A measured displacement spectrum is compared with the complex fundamental |X| of the predicted motion, a displacement
-//! trace with half its peak-to-peak. The two differ by all harmonics that impacts make; one is never compared with the
-//! other.
+//! A measured displacement spectrum is compared with the complex fundamental |X| of the predicted motion, a
+//! displacement trace with half its peak-to-peak. The two differ by all harmonics that impacts make; one is
+//! never compared with the other.
 
 use super::{NoImpact, Orbit, Softened};
 use num_complex::Complex64;
@@ -17,8 +17,8 @@ pub enum Observable {
     /// Half the peak-to-peak of a displacement trace in m.
     #[serde(rename = "peak")]
     HalfPeakToPeak,
-    /// Speed in m/s with which the masses meet: of several impacts in a cycle the fastest, the mean over the cycles that have one; 0
-    /// without impacts.
+    /// Speed in m/s with which the masses meet: of several impacts in a cycle the fastest, the mean over the
+    /// cycles that have one; 0 without impacts.
     ImpactSpeed,
     /// Impulse in N s of that impact.
     Impulse,
@@ -44,7 +44,8 @@ impl Observable {
         matches!(self, Observable::ImpactSpeed | Observable::Impulse)
     }
 
-    /// What it shows of an orbit: x₁ and x₂ in m; of its impacts, which both masses share, the same number twice.
+    /// What it shows of an orbit: x₁ and x₂ in m; of its impacts, which both masses share, the same number
+    /// twice.
     pub fn of_orbit(self, orbit: &Orbit) -> [f64; 2] {
         let fundamental = orbit.fundamental.map(Complex64::norm);
         self.of(fundamental, orbit.peak_to_peak, orbit.approach_velocity, orbit.impulse)
@@ -79,7 +80,8 @@ mod tests {
 
     #[test]
     fn an_impacting_motion_shows_more_in_a_trace_than_in_its_fundamental() {
-        // Harmonics of an impact train add in phase at the impact, so half the peak-to-peak is the larger one here.
+        // Harmonics of an impact train add in phase at the impact, so half the peak-to-peak is the larger one
+        // here.
         let found = orbits(&Rig::thesis(), 0.5, 11.0).unwrap();
         let [line, _] = Observable::Fundamental.of_orbit(&found.orbits[0]);
         let [trace, _] = Observable::HalfPeakToPeak.of_orbit(&found.orbits[0]);

@@ -33,15 +33,15 @@ pub struct Orbit {
     pub cycles: u32,
     /// Impulse J in N s.
     pub impulse: f64,
-    /// Under a sine force φ in 0..2π of the forced part A cos(ωt + φ) of x₁; under impulses or pulses the time τ in s from the
-    /// beginning of the last one to the impact.
+    /// Under a sine force φ in 0..2π of the forced part A cos(ωt + φ) of x₁; under impulses or pulses the
+    /// time τ in s from the beginning of the last one to the impact.
     pub timing: f64,
     /// Phase in 0..2π of the excitation's cycle at the impact: of the force F₀ cos(ωt + θ), or 2πτ/T.
     pub force_phase: f64,
     /// Approach speed vᵣ in m/s.
     pub approach_velocity: f64,
-    /// Complex amplitudes X₁, X₂ in m at the excitation frequency: what a spectrum shows of x₁ and x₂, its phase counted
-    /// from the impact.
+    /// Complex amplitudes X₁, X₂ in m at the excitation frequency: what a spectrum shows of x₁ and x₂, its
+    /// phase counted from the impact.
     pub fundamental: [Complex64; 2],
     /// Largest minus smallest x₁ and x₂ in m: what a displacement trace shows.
     pub peak_to_peak: [f64; 2],
@@ -49,7 +49,8 @@ pub struct Orbit {
     pub multipliers: Option<[Complex64; 4]>,
     /// Is it real?
     pub validity: Validity,
-    /// Whether it lies on that side of the fold where a larger impulse would take more energy than the force then gives.
+    /// Whether it lies on that side of the fold where a larger impulse would take more energy than the force
+    /// then gives.
     pub(crate) upper: bool,
     rig: Rig,
     excitation: Option<Excitation>,
@@ -95,8 +96,8 @@ impl Orbit {
         self.course.state(self.course.period)
     }
 
-    /// Complex amplitudes X₁, X₂ in m of the line at `n`/T, n ≥ 1, T being the time from impact to impact: the line n = `cycles` lies
-    /// at the excitation frequency.
+    /// Complex amplitudes X₁, X₂ in m of the line at `n`/T, n ≥ 1, T being the time from impact to impact:
+    /// the line n = `cycles` lies at the excitation frequency.
     ///
     /// X₁ = (F − 2J/T)L₁(iω), X₂ = (2J/T)L₂(iω), F the force's own line.
     pub fn line(&self, n: u32) -> [Complex64; 2] {
@@ -111,8 +112,8 @@ impl Orbit {
         [(force - train) * l1, l2 * train]
     }
 
-    /// The orbit among `others`, of the same excitation at a frequency (or with a contact) nearby, that this one goes over into: on the
-    /// same side of the fold, and within a sixth of a cycle in timing.
+    /// The orbit among `others`, of the same excitation at a frequency (or with a contact) nearby, that this
+    /// one goes over into: on the same side of the fold, and within a sixth of a cycle in timing.
     pub fn continued<'a>(&self, others: &'a [Orbit]) -> Option<&'a Orbit> {
         let same = others.iter().filter(|other| other.upper == self.upper);
         if self.timing_unit() == "rad" {
@@ -126,8 +127,9 @@ impl Orbit {
         same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
     }
 
-    /// Whether the motion is real, and stays so where the gap differs by up to `gap_uncertainty` (m): farther from grazing than that by
-    /// [`Validity::grazing_distance`], and real when solved again at the ends and half-way to them.
+    /// Whether the motion is real, and stays so where the gap differs by up to `gap_uncertainty` (m): farther
+    /// from grazing than that by [`Validity::grazing_distance`], and real when solved again at the ends
+    /// and half-way to them.
     pub fn robust(&self, gap_uncertainty: f64) -> bool {
         if !self.validity.real() || self.validity.grazing_distance <= gap_uncertainty {
             return false;
@@ -164,7 +166,8 @@ pub struct Orbits {
     pub no_impact: NoImpact,
 }
 
-/// All motions with one impact each cycle of the force `force` cos ωt (N) at `frequency` (Hz), and the one without impacts.
+/// All motions with one impact each cycle of the force `force` cos ωt (N) at `frequency` (Hz), and the one
+/// without impacts.
 ///
 /// # Errors
 /// If a parameter is impossible, or an undamped mass is driven at resonance.
@@ -177,8 +180,8 @@ pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
 /// Under a sine force the larger impulse comes first, under impulses and pulses the earlier impact.
 ///
 /// # Errors
-/// If a parameter is impossible, an undamped mass is driven at resonance, there is no excitation to speak of, or it is a sum of several
-/// sines, for which there is no closed form.
+/// If a parameter is impossible, an undamped mass is driven at resonance, there is no excitation to speak of,
+/// or it is a sum of several sines, for which there is no closed form.
 pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbits> {
     solve(rig, excitation, cycles, 0.0)
 }

@@ -5,7 +5,8 @@ use super::{Excitation, Rig, Sine};
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
-/// A value of the rig or of its excitation: what a map varies and, of those that can be read from a campaign, a fit finds.
+/// A value of the rig or of its excitation: what a map varies and, of those that can be read from a campaign,
+/// a fit finds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -39,7 +40,8 @@ pub enum Parameter {
     Width,
 }
 
-/// A parameter's name, unit, least value, the mass that it belongs to (0 or 1; none of the contact and the excitation), and its place in a rig.
+/// A parameter's name, unit, least value, the mass that it belongs to (0 or 1; none of the contact and the
+/// excitation), and its place in a rig.
 type Row = (Parameter, &'static str, &'static str, Least, Option<u8>, Option<fn(&mut Rig) -> &mut f64>);
 
 /// One row for each, in the order of the names.

@@ -1,7 +1,8 @@
 //! Periodic motions with any number of impacts p in any number of cycles q under a sine force, stable or not.
 //!
-//! Phases and impulses of the impacts are found by Newton's method with the exact Jacobian; between the impacts everything is closed
-//! form. Each motion comes with the verdicts of those with one impact ([`Validity`]).
+//! Phases and impulses of the impacts are found by Newton's method with the exact Jacobian; between the
+//! impacts everything is closed form. Each motion comes with the verdicts of those with one impact
+//! ([`Validity`]).
 
 mod search;
 mod system;
@@ -48,7 +49,8 @@ pub struct PeriodicOrbit {
     pub fundamental: [Complex64; 2],
     /// Largest minus smallest x₁ and x₂ in m.
     pub peak_to_peak: [f64; 2],
-    /// Floquet multipliers over the whole period, largest first; `None` where an impact grazes or does not exist.
+    /// Floquet multipliers over the whole period, largest first; `None` where an impact grazes or does not
+    /// exist.
     pub multipliers: Option<[Complex64; 4]>,
     /// Is it real? Each verdict covers all impacts and all flights.
     pub validity: Validity,
@@ -228,7 +230,8 @@ fn newton(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
         if !size.is_finite() {
             return None;
         }
-        // No more than a fifth of a radian or of an impulse at once, so that far guesses do not leap onto other motions.
+        // No more than a fifth of a radian or of an impulse at once, so that far guesses do not leap onto
+        // other motions.
         if size > 0.2 {
             step *= 0.2 / size;
         }

@@ -1,4 +1,5 @@
-//! What is seen of a motion over some cycles: its impacts, its pattern, its traces, and where it is once a cycle.
+//! What is seen of a motion over some cycles: its impacts, its pattern, its traces, and where it is once a
+//! cycle.
 
 use super::regime::{Pattern, Watch};
 use super::{Event, Impact, Motion, Piece, Reaction, State, Tally};
@@ -173,7 +174,8 @@ mod tests {
         assert!(!portrait.jumps.is_empty());
         for ((time, before, after), impact) in portrait.jumps.iter().zip(&portrait.impacts) {
             assert!((time - impact.time).abs() < 1e-12);
-            // One place, to the rounding with which an impact is found, and the momentum that the impulse moves.
+            // One place, to the rounding with which an impact is found, and the momentum that the impulse
+            // moves.
             for mass in [before.x1 - after.x1, before.x2 - after.x2, before.x1 - before.x2 - rig.gap] {
                 assert!(mass.abs() < 1e-15, "{before:?} {after:?}");
             }

@@ -12,16 +12,16 @@ pub struct Reaction {
     pub peak: Option<f64>,
     /// Root mean square in N over all the time; `None` where impacts take no time.
     pub rms: Option<f64>,
-    /// Impulse in N s a cycle of the excitation, forces of masses that rest against each other included; `None` where they rest against a
-    /// wall.
+    /// Impulse in N s a cycle of the excitation, forces of masses that rest against each other included;
+    /// `None` where they rest against a wall.
     pub impulse: Option<f64>,
 }
 
 /// Nodes and weights of Gauss' rule of three points on 0..1.
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-/// Parts of a piece in contact, which lasts at most a radian of its fastest motion: the rule errs by h⁷/2016000 of the sixth derivative
-/// a part, 2⁶ times that for the square: 5e-8 of either.
+/// Parts of a piece in contact, which lasts at most a radian of its fastest motion: the rule errs by
+/// h⁷/2016000 of the sixth derivative a part, 2⁶ times that for the square: 5e-8 of either.
 const PARTS: u32 = 4;
 /// Steps of the golden section: they shorten half a part to 1e-6 of itself, where a peak is flat to 1e-13.
 const STEPS: u32 = 30;
@@ -190,8 +190,9 @@ mod tests {
 
     #[test]
     fn a_hard_contact_has_the_force_of_a_free_rebound() {
-        // Undamped spring: half a sine of the height v√(kM) and the length π√(M/k), so its mean square is half the square of its height over
-        // that time. Beside the contact force of some 100 N, 0.5 N and the springs' 1 N press and pull over a thousandth of a second.
+        // Undamped spring: half a sine of the height v√(kM) and the length π√(M/k), so its mean square is
+        // half the square of its height over that time. Beside the contact force of some 100 N, 0.5 N
+        // and the springs' 1 N press and pull over a thousandth of a second.
         let rig = Rig { restitution: 1.0, ..Rig::thesis() };
         let k = 1e8;
         let law = Law::KelvinVoigt { stiffness: k, damping: 0.0 };

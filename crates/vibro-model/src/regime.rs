@@ -1,7 +1,8 @@
 //! Regime of a motion: how many impacts in how many cycles its repeating pattern has.
 //!
-//! Patterns are found by comparing states: p impacts repeat if each impact meets the masses where, and at the phase at which, the
-//! p-th impact before it did. Counting impacts would call two impacts in two cycles a pattern of one.
+//! Patterns are found by comparing states: p impacts repeat if each impact meets the masses where, and at the
+//! phase at which, the p-th impact before it did. Counting impacts would call two impacts in two cycles a
+//! pattern of one.
 
 use super::{Event, Motion, Piece, State};
 use serde::{Serialize, Serializer};
@@ -14,7 +15,8 @@ use vibro_record::Result;
 
 /// Longest pattern looked for, in impacts and in cycles.
 pub const LONGEST: u32 = 32;
-/// Two impacts are the same where phases (in cycles) and states (in units of the largest speed, displacements times ω) differ by less.
+/// Two impacts are the same where phases (in cycles) and states (in units of the largest speed, displacements
+/// times ω) differ by less.
 pub const SAME: f64 = 1e-6;
 /// Differences that still fall count as a pattern that settles, once they are below this.
 const NEAR: f64 = 1e-2;
@@ -84,7 +86,8 @@ pub struct Strike {
 }
 
 impl Strike {
-    /// Distance to another: the largest difference of phase in cycles, and of speeds and ω × displacements in units of `speed`.
+    /// Distance to another: the largest difference of phase in cycles, and of speeds and ω × displacements in
+    /// units of `speed`.
     fn distance(&self, other: &Strike, omega: f64, speed: f64) -> f64 {
         let turn = (self.phase - other.phase + PI).rem_euclid(TAU) - PI;
         let (a, b) = (&self.before, &other.before);
@@ -98,8 +101,8 @@ impl Strike {
 pub struct Pattern {
     /// The regime.
     pub regime: Regime,
-    /// Whether the pattern repeats within [`SAME`]. A pattern whose differences are below 1e-2 and still fall is named before it
-    /// has settled: near the border of stability this takes thousands of cycles.
+    /// Whether the pattern repeats within [`SAME`]. A pattern whose differences are below 1e-2 and still
+    /// fall is named before it has settled: near the border of stability this takes thousands of cycles.
     pub settled: bool,
     /// Largest difference between the last two repetitions; `None` without a pattern.
     pub distance: Option<f64>,
@@ -198,7 +201,8 @@ impl Compared<'_> {
         range.map(far).fold(0.0, f64::max)
     }
 
-    /// The last `p` impacts against those before; `None` where they differ by more than [`NEAR`], do not take whole cycles, or too many.
+    /// The last `p` impacts against those before; `None` where they differ by more than [`NEAR`], do not take
+    /// whole cycles, or too many.
     fn last(&self, p: usize) -> Option<Repeated> {
         let n = self.strikes.len();
         // Most patterns are turned down by the last impact alone.
@@ -211,7 +215,8 @@ impl Compared<'_> {
         counts.then_some(Repeated { impacts: p, cycles: cycles as u32, distance })
     }
 
-    /// Whether the differences over `p` impacts fall: the largest in each third of what was watched, so that complex multipliers do no harm.
+    /// Whether the differences over `p` impacts fall: the largest in each third of what was watched, so that
+    /// complex multipliers do no harm.
     fn falls(&self, p: usize) -> bool {
         let n = self.strikes.len();
         let third = (n - p) / 3;

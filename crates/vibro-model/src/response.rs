@@ -70,8 +70,9 @@ pub struct Change {
     pub amplitude: [f64; 2],
 }
 
-/// Motions of the `rig` under the `excitation` at `points` equidistant frequencies from `from` to `to` (Hz), with one impact in `cycles`
-/// cycles; changes are located between the points to a millionth of their distance.
+/// Motions of the `rig` under the `excitation` at `points` equidistant frequencies from `from` to `to` (Hz),
+/// with one impact in `cycles` cycles; changes are located between the points to a millionth of their
+/// distance.
 ///
 /// A frequency at which an undamped mass resonates gives a point without motions that says so.
 ///
@@ -159,7 +160,8 @@ fn standing(orbit: Option<&Orbit>) -> Standing {
 /// Changes between two neighbouring points.
 fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> ResponsePoint) -> Vec<Change> {
     let mut changes = Vec::new();
-    // From the left, then what appears from the right; of a fold both motions are gone, the upper one tells it.
+    // From the left, then what appears from the right; of a fold both motions are gone, the upper one tells
+    // it.
     for (here, there) in [(a, b), (b, a)] {
         for orbit in &here.orbits {
             let next = orbit.continued(&there.orbits);
@@ -224,7 +226,8 @@ fn locate(
     Some(Change { frequency, kind, amplitude: here.peak_to_peak.map(|p| p / 2.0) })
 }
 
-/// Where between `near` and `far` it ceases to be the `same`, to a millionth of the way; `None` where that cannot be told on the way.
+/// Where between `near` and `far` it ceases to be the `same`, to a millionth of the way; `None` where that
+/// cannot be told on the way.
 fn halved(mut near: f64, mut far: f64, mut same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
     for _ in 0..20 {
         let middle = f64::midpoint(near, far);

@@ -19,7 +19,8 @@ use vibro_record::{Error, Result};
 pub struct Rig {
     /// Excited mass in kg.
     pub m1: f64,
-    /// Passive mass in kg. Infinite for a wall: the rig is then an impact oscillator, and `k2` and `c2` do not count.
+    /// Passive mass in kg. Infinite for a wall: the rig is then an impact oscillator, and `k2` and `c2` do
+    /// not count.
     pub m2: f64,
     /// Stiffness of the excited mass' spring in N/m.
     pub k1: f64,
@@ -50,8 +51,8 @@ impl Rig {
     /// Checks that the numbers can belong to a rig.
     ///
     /// # Errors
-    /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a value is
-    /// not finite; `m2` may be infinite.
+    /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a
+    /// value is not finite; `m2` may be infinite.
     pub fn check(&self) -> Result<()> {
         self.fault().map_or(Ok(()), |(_, error)| Err(error))
     }

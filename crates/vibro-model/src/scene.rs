@@ -10,8 +10,8 @@ use vibro_record::Result;
 
 /// All that a computation of the rig's motion starts from.
 ///
-/// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind, `[contact]` with `stiffness`,
-/// `damping`, `exponent`, and `[buffer]` with `gap`
+/// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind,
+/// `[contact]` with `stiffness`, `damping`, `exponent`, and `[buffer]` with `gap`
 /// and `damper_always`. Keys of the rig that are left out take the values of [`Rig::thesis`].
 ///
 /// ```
@@ -89,7 +89,8 @@ impl Scene {
         Draft::from_toml(text)?.scene()
     }
 
-    /// Spring and damper of this stiffness (N/m) between the masses: the damper stated, or that which gives the rig's restitution.
+    /// Spring and damper of this stiffness (N/m) between the masses: the damper stated, or that which gives
+    /// the rig's restitution.
     ///
     /// # Errors
     /// As [`Law::kelvin_voigt`] and [`Law::check`].

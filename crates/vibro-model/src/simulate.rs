@@ -1,10 +1,10 @@
 //! Any motion of the rig, event by event: exact flights between guaranteed contacts.
 //!
-//! Nothing is integrated in steps. Each flight is a closed form; it ends at the first root of the gap; the impact
-//! changes the velocities; the next flight starts from the state found there, so errors do not grow with a flight's
-//! length. Where impacts accumulate, their end is computed; from there both masses move together, again in
-//! closed form, up to the first root of the force between them. The phase is kept within 2π and runs on when the frequency is
-//! changed.
+//! Nothing is integrated in steps. Each flight is a closed form; it ends at the first root of the gap; the
+//! impact changes the velocities; the next flight starts from the state found there, so errors do not grow
+//! with a flight's length. Where impacts accumulate, their end is computed; from there both masses move
+//! together, again in closed form, up to the first root of the force between them. The phase is kept within
+//! 2π and runs on when the frequency is changed.
 
 mod meet;
 
@@ -17,8 +17,8 @@ use vibro_math::Oscillator;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
 
-/// Approach speed in m/s below which an impact after which the masses part by themselves is counted as grazing, unless
-/// [`Simulation::grazing_below`] says otherwise.
+/// Approach speed in m/s below which an impact after which the masses part by themselves is counted as
+/// grazing, unless [`Simulation::grazing_below`] says otherwise.
 pub const GRAZING_SPEED: f64 = 1e-3;
 
 /// The most legs that one call follows: some ten seconds of work.
@@ -90,8 +90,8 @@ impl Leg {
 pub struct Counts {
     /// Stretches of motion in closed form.
     pub flights: u64,
-    /// Impacts below the grazing speed after which the masses part by themselves: a little more gap and there is none. What
-    /// follows depends on them more than on anything else.
+    /// Impacts below the grazing speed after which the masses part by themselves: a little more gap and
+    /// there is none. What follows depends on them more than on anything else.
     pub grazing: u64,
     /// Times the masses came to rest against each other.
     pub sticks: u64,
@@ -136,11 +136,13 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Both masses at rest at time 0 and phase 0 of the excitation: the crest of a sine, the instant of an impulse, the beginning of a
-    /// pulse. With a negative gap they rest pressed together, at x₁ = k₂Δ/(k₁ + k₂), or at x₁ = Δ against a wall.
+    /// Both masses at rest at time 0 and phase 0 of the excitation: the crest of a sine, the instant of an
+    /// impulse, the beginning of a pulse. With a negative gap they rest pressed together, at x₁ = k₂Δ/(k₁
+    /// + k₂), or at x₁ = Δ against a wall.
     ///
     /// # Errors
-    /// If a parameter is impossible, there are more than four sines, or mass 1 is undamped and driven at resonance.
+    /// If a parameter is impossible, there are more than four sines, or mass 1 is undamped and driven at
+    /// resonance.
     pub fn new(rig: &Rig, excitation: &(impl Clone + Into<Excitation>)) -> Result<Simulation> {
         Simulation::from_state(rig, excitation, Simulation::at_rest(rig), 0.0)
     }
@@ -155,8 +157,9 @@ impl Simulation {
         State { x1, x2: x1 - rig.gap, ..State::REST }
     }
 
-    /// A motion that starts from `state` at time 0 and at `phase` (rad) of the excitation's cycle: a sine force is F₀ cos(ωt + phase),
-    /// each of several sines has its own phase at phase 0, an impulse falls on phase 0 and a pulse begins there.
+    /// A motion that starts from `state` at time 0 and at `phase` (rad) of the excitation's cycle: a sine
+    /// force is F₀ cos(ωt + phase), each of several sines has its own phase at phase 0, an impulse falls
+    /// on phase 0 and a pulse begins there.
     ///
     /// # Errors
     /// As [`Simulation::new`], and if the state is not finite, the masses overlap in it or it moves a wall.
@@ -209,8 +212,8 @@ impl Simulation {
         self.counts
     }
 
-    /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at `until` itself is left to
-    /// what follows. Does not allocate.
+    /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at
+    /// `until` itself is left to what follows. Does not allocate.
     ///
     /// # Errors
     /// If `until` is not finite or in the past, or the motion grows beyond all numbers.
@@ -311,7 +314,8 @@ impl Simulation {
     /// Follows the motion to the time `until`, showing each leg, the last with [`Event::Reached`].
     ///
     /// # Errors
-    /// As [`Simulation::fly`]; if more than 1e8 cycles are asked for, or more than 10 000 legs a cycle or 20 million legs are needed.
+    /// As [`Simulation::fly`]; if more than 1e8 cycles are asked for, or more than 10 000 legs a cycle or 20
+    /// million legs are needed.
     pub fn run(&mut self, until: f64, mut visit: impl FnMut(&Leg)) -> Result<()> {
         let cycles = (until - self.time) * self.frequency();
         check_work(cycles)?;

@@ -8,10 +8,12 @@ use vibro_math::root::{Bounded, first_fall};
 
 /// Motion of both masses in contact, in closed form; time counts from its start.
 ///
-/// One oscillator of m₁ + m₂, c₁ + c₂ and K = k₁ + k₂: x₁ = (P + k₂Δ)/K + Σ Re(Ye^{iωt}) + free motion under a constant force P and
-/// sine forces, x₂ = x₁ − Δ. The contact force on mass 2 is N = m₂ẍ₂ + c₂ẋ₂ + k₂x₂; the masses part where it vanishes.
+/// One oscillator of m₁ + m₂, c₁ + c₂ and K = k₁ + k₂: x₁ = (P + k₂Δ)/K + Σ Re(Ye^{iωt}) + free motion under
+/// a constant force P and sine forces, x₂ = x₁ − Δ. The contact force on mass 2 is N = m₂ẍ₂ + c₂ẋ₂ + k₂x₂;
+/// the masses part where it vanishes.
 ///
-/// Against a wall (m₂ infinite) mass 1 stays at x₁ = Δ, and N = P + Σ Re(Fe^{iωt}) − k₁Δ is what the forces press with.
+/// Against a wall (m₂ infinite) mass 1 stays at x₁ = Δ, and N = P + Σ Re(Fe^{iωt}) − k₁Δ is what the forces
+/// press with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// Forced motion in m, or the sine forces in N on a wall.
@@ -39,8 +41,8 @@ enum Course {
 }
 
 impl Pair {
-    /// Motion from displacement `x1` (m) of mass 1 and the common velocity `v` (m/s), under a constant force (N) and with forced
-    /// motion `waves` of the pair (m; against a wall, the sine forces in N).
+    /// Motion from displacement `x1` (m) of mass 1 and the common velocity `v` (m/s), under a constant force
+    /// (N) and with forced motion `waves` of the pair (m; against a wall, the sine forces in N).
     pub(super) fn new(rig: &Rig, waves: Waves, force: f64, x1: f64, v: f64) -> Pair {
         let [first, passive] = rig.bodies();
         let Some(both) = rig.joined() else {
@@ -151,13 +153,15 @@ impl Press {
         w * w <= 8.0 * self.acceleration * self.noise
     }
 
-    /// Seconds in which the impacts that follow a separation with speed `w` (m/s) accumulate; `None` where that cannot be told closely.
+    /// Seconds in which the impacts that follow a separation with speed `w` (m/s) accumulate; `None` where
+    /// that cannot be told closely.
     ///
-    /// With a flight of 2w/a + 4jw²/3a³, an approach at w − 2jw²/3a², and a pressing acceleration that changes by −2jw/a over the
-    /// flight and by κ(1 + R) times the approach at the impact, where κ = 2M(b₁/m₁ + b₂/m₂), the sum over all flights is
-    /// T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² + O(w³), j being the rate of the gap's acceleration. The second term has
-    /// to be below a ten thousandth of the first, and the first below a ten thousandth of the rig's time scale; then what is left
-    /// out is below 1e-8 T.
+    /// With a flight of 2w/a + 4jw²/3a³, an approach at w − 2jw²/3a², and a pressing acceleration that
+    /// changes by −2jw/a over the flight and by κ(1 + R) times the approach at the impact, where κ =
+    /// 2M(b₁/m₁ + b₂/m₂), the sum over all flights is T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² +
+    /// O(w³), j being the rate of the gap's acceleration. The second term has to be below a ten
+    /// thousandth of the first, and the first below a ten thousandth of the rig's time scale; then what is
+    /// left out is below 1e-8 T.
     pub(crate) fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
         let (a, r) = (self.acceleration, rig.restitution);
         let lost = 1.0 - r;

@@ -1,4 +1,5 @@
-//! Sweeps: a motion whose excitation changes in steps or slowly, up and down, its state carried on all the way.
+//! Sweeps: a motion whose excitation changes in steps or slowly, up and down, its state carried on all the
+//! way.
 
 mod gauge;
 
@@ -12,8 +13,9 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
 
-/// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its ends and errs by at
-/// most 2πrh²/8 inside, r being the rate in Hz/s and h the step in s: 7e-6 rad at 3 Hz and 0.02 Hz/s.
+/// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its
+/// ends and errs by at most 2πrh²/8 inside, r being the rate in Hz/s and h the step in s: 7e-6 rad at 3 Hz
+/// and 0.02 Hz/s.
 const STEPS: u32 = 16;
 
 /// How a sweep passes from one value to the next.
@@ -69,14 +71,16 @@ pub struct Point {
     pub reaction: Reaction,
 }
 
-/// Swings of a mass in a cycle up to which a sweep is followed: a hundred cycles at each of a hundred points are then a minute.
+/// Swings of a mass in a cycle up to which a sweep is followed: a hundred cycles at each of a hundred points
+/// are then a minute.
 const MOST_SWINGS: f64 = 1e4;
 
 impl Plan {
     /// Checks the plan.
     ///
     /// # Errors
-    /// If an end is not a value that can be swept, no points or cycles are asked for, or more than 1e8 cycles.
+    /// If an end is not a value that can be swept, no points or cycles are asked for, or more than 1e8
+    /// cycles.
     pub fn check(&self) -> Result<()> {
         let Plan { from, to, .. } = *self;
         if !(from.is_finite() && to.is_finite() && from >= 0.0 && to > from) {
@@ -104,8 +108,8 @@ impl Plan {
         scales::check_work(cycles)
     }
 
-    /// Sweeps the frequency of `motion` (driven with `force`) from one end to the other; with a rate, each cycle in several
-    /// steps of constant frequency.
+    /// Sweeps the frequency of `motion` (driven with `force`) from one end to the other; with a rate, each
+    /// cycle in several steps of constant frequency.
     ///
     /// # Errors
     /// As [`Plan::check`] and [`Motion::advance`].
@@ -153,7 +157,8 @@ impl Plan {
         Ok(found)
     }
 
-    /// Sweeps anything in steps: `set` changes it and says the frequency (Hz) and the force (N) that then hold.
+    /// Sweeps anything in steps: `set` changes it and says the frequency (Hz) and the force (N) that then
+    /// hold.
     ///
     /// # Errors
     /// As [`Plan::check`] and [`Motion::advance`], if the pace is a rate, and what `set` complains of.

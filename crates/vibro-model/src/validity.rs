@@ -7,31 +7,34 @@ use num_complex::Complex64;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`; how far it is from
-/// losing one of them is in `grazing_distance`.
+/// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`; how far it
+/// is from losing one of them is in `grazing_distance`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Validity {
     /// The impulse pushes and the masses approach: J > 0.
     pub exists: bool,
-    /// The masses do not pass through each other between the impacts, found by a search that misses no contact.
+    /// The masses do not pass through each other between the impacts, found by a search that misses no
+    /// contact.
     pub admissible: bool,
-    /// Every Floquet multiplier lies inside the unit circle; `None` where rounding cannot tell the largest from 1. False
-    /// where there are no multipliers.
+    /// Every Floquet multiplier lies inside the unit circle; `None` where rounding cannot tell the largest
+    /// from 1. False where there are no multipliers.
     pub stable: Option<bool>,
     /// How an unstable motion has lost its stability; `None` for any other.
     pub instability: Option<Loss>,
-    /// The energy rule: a larger impulse would take more energy than the force then gives. "The positive root is stable" is this rule for
-    /// a sine force. It sees only the loss through a multiplier +1, so a motion that breaks it is unstable, and one that keeps it need
-    /// not be stable.
+    /// The energy rule: a larger impulse would take more energy than the force then gives. "The positive
+    /// root is stable" is this rule for a sine force. It sees only the loss through a multiplier +1, so
+    /// a motion that breaks it is unstable, and one that keeps it need not be stable.
     pub energy_rule: bool,
-    /// Smallest gap over the period in m: 0, that of the impact itself, or the depth by which the masses would pass
-    /// through each other, as a negative number.
+    /// Smallest gap over the period in m: 0, that of the impact itself, or the depth by which the masses
+    /// would pass through each other, as a negative number.
     pub min_gap: f64,
-    /// Gap in m at the closest approach that is not the impact; `None` where the masses part and return without one.
+    /// Gap in m at the closest approach that is not the impact; `None` where the masses part and return
+    /// without one.
     pub clearance: Option<f64>,
-    /// Change of the rest gap in m, to first order, by which the impact would graze, the orbit fold, or a second contact
-    /// appear; the motion may lose its stability before. Where this is not larger than the uncertainty of the gap, the verdicts and the
-    /// multipliers are not to be relied on: near grazing the multipliers grow like the reciprocal of the approach speed.
+    /// Change of the rest gap in m, to first order, by which the impact would graze, the orbit fold, or a
+    /// second contact appear; the motion may lose its stability before. Where this is not larger than
+    /// the uncertainty of the gap, the verdicts and the multipliers are not to be relied on: near
+    /// grazing the multipliers grow like the reciprocal of the approach speed.
     pub grazing_distance: f64,
 }
 
@@ -39,7 +42,8 @@ pub struct Validity {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Loss {
-    /// A real one beyond +1: disturbances grow to one side. Where one passes +1 the motion meets another one and both vanish.
+    /// A real one beyond +1: disturbances grow to one side. Where one passes +1 the motion meets another one
+    /// and both vanish.
     Fold,
     /// A real one beyond −1: the period doubles.
     Flip,
@@ -82,8 +86,8 @@ impl Validity {
         ]
     }
 
-    /// Whether disturbances die away (`stable`), grow (`unstable`), or neither, as in a rig without losses or at the border of
-    /// stability (`neutral`).
+    /// Whether disturbances die away (`stable`), grow (`unstable`), or neither, as in a rig without losses or
+    /// at the border of stability (`neutral`).
     pub fn stability(&self) -> &'static str {
         match self.stable {
             Some(true) => "stable",
@@ -109,8 +113,9 @@ pub(super) struct Judged {
 }
 
 impl Judged {
-    /// Verdicts on a motion along `courses`, each from an impact to the next: whether its impacts push, the energy rule where it is known, the
-    /// change of the gap in m at which an impact itself grazes (`own`), and by how much roundings are `amplified`; nothing for a free motion.
+    /// Verdicts on a motion along `courses`, each from an impact to the next: whether its impacts push, the
+    /// energy rule where it is known, the change of the gap in m at which an impact itself grazes
+    /// (`own`), and by how much roundings are `amplified`; nothing for a free motion.
     pub fn new(
         rig: &Rig,
         courses: &[Course],
@@ -129,7 +134,8 @@ impl Judged {
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
             monodromy = Some(whole);
         }
-        // The energy rule of one impact is that the multipliers beyond +1 are even in number. So it is taken of several.
+        // The energy rule of one impact is that the multipliers beyond +1 are even in number. So it is taken
+        // of several.
         let even = || monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0);
         let surveys: Vec<_> = courses.iter().map(Course::survey).collect();
         let clearance = surveys.iter().filter_map(|s| s.closest).reduce(f64::min);

@@ -75,7 +75,8 @@ impl Waves {
         self.terms.iter().take(self.count).fold(0.0, |most, wave| most.max(wave.omega))
     }
 
-    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; gives a bound on the next derivative.
+    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; gives a bound on the next
+    /// derivative.
     #[inline]
     pub fn terms<const N: usize>(&self, weights: &[f64; N], terms: &mut [f64; N]) -> f64 {
         for wave in self.terms.iter().take(self.count) {

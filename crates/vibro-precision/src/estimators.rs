@@ -1,7 +1,8 @@
 //! Estimators of what is measured, on records with a known truth.
 //!
-//! What people write by hand stands beside the toolkit's own methods, over the same random records of fixed seeds. Errors are root mean
-//! squares, so that they compare with the Cramér–Rao bound of the standard deviation.
+//! What people write by hand stands beside the toolkit's own methods, over the same random records of fixed
+//! seeds. Errors are root mean squares, so that they compare with the Cramér–Rao bound of the standard
+//! deviation.
 
 mod damping;
 mod impacts;
@@ -30,11 +31,13 @@ pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> 
 
 /// What the estimators do at their borders; `quick` takes fewer records.
 ///
-/// An answer is right within three of its standard uncertainties; one without an uncertainty within what is the same for all methods of a
-/// border: half a line for a frequency, 5 % for an amplitude, 10 % for a damping ratio, 1 % for an impact frequency, 0.02 for ξ. It is
-/// refused where it is withheld, where a doubt takes its uncertainty away, and where its uncertainty is more than what is allowed. No doubt excuses
-/// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by more than 5.2 standard uncertainties: limits that methods
-/// whose errors are as they state them pass in fewer than one of a hundred full maps.
+/// An answer is right within three of its standard uncertainties; one without an uncertainty within what is
+/// the same for all methods of a border: half a line for a frequency, 5 % for an amplitude, 10 % for a
+/// damping ratio, 1 % for an impact frequency, 0.02 for ξ. It is refused where it is withheld, where a doubt
+/// takes its uncertainty away, and where its uncertainty is more than what is allowed. No doubt excuses
+/// an uncertainty that is stated. A method is wrong where more answers are off than chance allows, or one by
+/// more than 5.2 standard uncertainties: limits that methods whose errors are as they state them pass in
+/// fewer than one of a hundred full maps.
 pub fn failures(quick: bool) -> FailureMap {
     FailureMap::answered(Family::Estimators, questions(quick))
 }
@@ -50,9 +53,10 @@ fn scene(texts: [&str; 4], bound: f64, methods: Vec<Measured>) -> Scene {
     Scene { bound: Some(bound), methods, ..Scene::new(Family::Estimators, texts) }
 }
 
-/// Cramér–Rao bounds: standard deviations of unbiased estimates of the parameters `p` from the values of `model` with independent
-/// normal noise of standard deviation `noise`: roots of the diagonal of the inverse of Fisher's information (Kay 1993, eq. 3.33), whose slopes
-/// are central differences of `steps`. NaN where the information is singular.
+/// Cramér–Rao bounds: standard deviations of unbiased estimates of the parameters `p` from the values of
+/// `model` with independent normal noise of standard deviation `noise`: roots of the diagonal of the inverse
+/// of Fisher's information (Kay 1993, eq. 3.33), whose slopes are central differences of `steps`. NaN where
+/// the information is singular.
 fn bounds(p: &[f64], steps: &[f64], noise: f64, model: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let slopes: Vec<Vec<f64>> = (0..p.len())
         .map(|i| {
@@ -73,7 +77,8 @@ fn bounds(p: &[f64], steps: &[f64], noise: f64, model: impl Fn(&[f64]) -> Vec<f6
     (0..p.len()).map(|i| inverse.as_ref().map_or(f64::NAN, |m| m[(i, i)].sqrt() / size[i])).collect()
 }
 
-/// A sweep of one point, with the magnitudes of its force's lines where it was measured, or a known frequency in Hz.
+/// A sweep of one point, with the magnitudes of its force's lines where it was measured, or a known frequency
+/// in Hz.
 fn one_point(response: Spectrum, force: Option<Vec<f64>>, given: Option<f64>) -> Sweep {
     Sweep {
         name: String::new(),

@@ -50,7 +50,8 @@ pub struct Cell {
     pub outcome: Outcome,
     /// By what that was decided, in a sentence.
     pub why: String,
-    /// Of estimators the answers that were held to the uncertainty that they state, and those that lie beyond three of it.
+    /// Of estimators the answers that were held to the uncertainty that they state, and those that lie
+    /// beyond three of it.
     #[serde(skip)]
     pub stated: [usize; 2],
 }
@@ -126,7 +127,8 @@ impl FailureMap {
         FailureMap { cells: self.cells.iter().filter(|c| c.family == family).cloned().collect() }
     }
 
-    /// The map of each quantity, which its borders name before a colon, with that name; the whole where none does.
+    /// The map of each quantity, which its borders name before a colon, with that name; the whole where none
+    /// does.
     pub fn parts(&self) -> Vec<(&str, FailureMap)> {
         fn split(cell: &Cell) -> (&str, &str) {
             cell.border.split_once(": ").unwrap_or(("", &cell.border))

@@ -1,8 +1,9 @@
 //! Speed against accuracy, and where methods break.
 //!
-//! A [`Scene`] has a known truth; every method answers it with each of its settings, and error and time are measured
-//! together. A [`FailureMap`] tells what the methods do at the borders of what they can: right, refused with a reason, wrong
-//! without a word, stalled, crashed. Two families: models of the motion, and estimators of what is measured of it.
+//! A [`Scene`] has a known truth; every method answers it with each of its settings, and error and time are
+//! measured together. A [`FailureMap`] tells what the methods do at the borders of what they can: right,
+//! refused with a reason, wrong without a word, stalled, crashed. Two families: models of the motion, and
+//! estimators of what is measured of it.
 //!
 //! ```no_run
 //! use vibro_precision::{Family, Results};

@@ -31,7 +31,8 @@ struct Added {
 }
 
 impl Results {
-    /// Measures the scenes of a family, and its borders where `failures`; `quick` takes fewer settings, repeats, records and cycles.
+    /// Measures the scenes of a family, and its borders where `failures`; `quick` takes fewer settings,
+    /// repeats, records and cycles.
     ///
     /// # Errors
     /// If a scene cannot be built.
@@ -74,12 +75,13 @@ impl Results {
         Ok(results)
     }
 
-    /// Adds the lines of a JSON file, a list of objects with `scene`, `method`, `setting`, `error`, `time_ns` and `why`, to the
-    /// scenes that they name, and marks the fronts anew. Gives the scenes of lines that were not measured: those are left out.
+    /// Adds the lines of a JSON file, a list of objects with `scene`, `method`, `setting`, `error`, `time_ns`
+    /// and `why`, to the scenes that they name, and marks the fronts anew. Gives the scenes of lines that
+    /// were not measured: those are left out.
     ///
     /// # Errors
-    /// If the file cannot be read, is not such a list, has a time or an error that is none, or gives a method the name of one of
-    /// this library's, whose line it would become.
+    /// If the file cannot be read, is not such a list, has a time or an error that is none, or gives a method
+    /// the name of one of this library's, whose line it would become.
     pub fn add(&mut self, path: &Path) -> Result<Vec<String>> {
         let lines: Vec<Added> = read(path, "a list of lines, each with scene, method, error and time_ns")?;
         let ours = |m: &Measured| m.ours.then(|| m.method.clone());

@@ -28,15 +28,17 @@ impl Family {
 pub struct Measured {
     /// Name of the method.
     pub method: String,
-    /// A model's setting: step, tolerance, …; empty where it has none. Of an estimator the record it was given.
+    /// A model's setting: step, tolerance, …; empty where it has none. Of an estimator the record it was
+    /// given.
     pub setting: String,
     /// Whether it is one of this library's.
     pub ours: bool,
-    /// Whether another program or library computes it; else it is code of this project, be it a method that is common elsewhere.
+    /// Whether another program or library computes it; else it is code of this project, be it a method that
+    /// is common elsewhere.
     #[serde(default)]
     pub other_program: bool,
-    /// Error, relative or in the unit that the scene names; the root mean square of an estimator's over all records. None where
-    /// it gave no answer.
+    /// Error, relative or in the unit that the scene names; the root mean square of an estimator's over all
+    /// records. None where it gave no answer.
     pub error: Option<f64>,
     /// Median time of one answer in ns.
     pub time_ns: f64,
@@ -85,7 +87,8 @@ pub struct Scene {
 const TIE: f64 = 1e-3;
 
 impl Scene {
-    /// A scene that no method has been run on: its name, what it is, what the error is, where the truth comes from.
+    /// A scene that no method has been run on: its name, what it is, what the error is, where the truth comes
+    /// from.
     pub(crate) fn new<S: Into<String>>(family: Family, texts: [S; 4]) -> Scene {
         let [name, says, error_of, truth] = texts.map(Into::into);
         Scene { name, family, says, error_of, truth, bound: None, methods: Vec::new() }
@@ -93,8 +96,9 @@ impl Scene {
 
     /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
     ///
-    /// Errors within a thousandth of each other are the same, and the faster of two is on the front. A setting of a model is the
-    /// model's own choice; that of an estimator is the record, and only answers to the same record compete.
+    /// Errors within a thousandth of each other are the same, and the faster of two is on the front. A
+    /// setting of a model is the model's own choice; that of an estimator is the record, and only answers
+    /// to the same record compete.
     pub(crate) fn mark_front(&mut self) {
         let beats = |a: &Measured, b: &Measured| match (a.error, b.error) {
             (Some(e), Some(error)) => {
@@ -118,8 +122,8 @@ const READABLE: f64 = 20_000.0;
 /// Most time spent on the repeats of one method on one scene, in ns: in full, and quick.
 const SPENT: [f64; 2] = [400e6, 30e6];
 
-/// The answer of `f` and the median time of one run in ns over up to `repeats`, after a first run that warms the caches and counts
-/// only where nothing is left for another.
+/// The answer of `f` and the median time of one run in ns over up to `repeats`, after a first run that warms
+/// the caches and counts only where nothing is left for another.
 pub(crate) fn timed<T>(repeats: usize, quick: bool, mut f: impl FnMut() -> T) -> (T, f64) {
     let mut clock = |runs: usize| {
         let start = Instant::now();

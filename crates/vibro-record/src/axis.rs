@@ -58,8 +58,9 @@ impl Axis {
 
     /// Axis from printed abscissa values, which may carry too few digits.
     ///
-    /// The grid is even, with step (last − first)/(n − 1), where every value lies within `resolution` (the size of half
-    /// a unit in the last printed digit, plus rounding) of it; otherwise the values are kept.
+    /// The grid is even, with step (last − first)/(n − 1), where every value lies within `resolution` (the
+    /// size of half a unit in the last printed digit, plus rounding) of it; otherwise the values are
+    /// kept.
     pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64) -> Axis {
         let n = values.len();
         if n >= 2 {
@@ -128,7 +129,8 @@ impl Axis {
         Axis { kind: self.kind.clone(), grid }
     }
 
-    /// Indices of the values from `from` on and before `to`; a value within a billionth of a step of a bound lies on it.
+    /// Indices of the values from `from` on and before `to`; a value within a billionth of a step of a bound
+    /// lies on it.
     ///
     /// ```
     /// use vibro_record::Axis;

@@ -1,26 +1,31 @@
-//! Clocks of loggers and telephones: the even grid that jittering instants mean, and the stretches between lost samples.
+//! Clocks of loggers and telephones: the even grid that jittering instants mean, and the stretches between
+//! lost samples.
 
 use crate::Finding;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Largest jitter, as a part of a step, of an instant on an even grid. Below 1/6: where every third sample is lost, all that are left lie within
-/// 1/6 of a step of another even grid. No other pattern of lost samples has them nearer.
+/// Largest jitter, as a part of a step, of an instant on an even grid. Below 1/6: where every third sample is
+/// lost, all that are left lie within 1/6 of a step of another even grid. No other pattern of lost samples
+/// has them nearer.
 const JITTER: f64 = 0.15;
-/// The same with the rounding of what is printed, between lost samples that show as long steps. Beside one that does not show, instants are
-/// half a step from the line through all of them.
+/// The same with the rounding of what is printed, between lost samples that show as long steps. Beside one
+/// that does not show, instants are half a step from the line through all of them.
 const ROUNDED: f64 = 0.4;
-/// Fewest instants that tell jitter from a lost sample: it bends the line through fewer so far that it lies near all of them.
+/// Fewest instants that tell jitter from a lost sample: it bends the line through fewer so far that it lies
+/// near all of them.
 const FEWEST: usize = 16;
 /// Parts of a record whose steps are compared for the uncertainty of the step.
 const PARTS: usize = 8;
 /// Instants that a part must have for a step of its own.
 const FEWEST_OF_PART: usize = 8;
-/// Part of a step: steps further from the usual one end a stretch, residuals that jump further hide a lost sample.
+/// Part of a step: steps further from the usual one end a stretch, residuals that jump further hide a lost
+/// sample.
 const BREAK: f64 = 0.5;
 /// Printed digits that rows must span for the mean of their rounding to be far below one step.
 const CYCLES: f64 = 8.0;
-/// Fewest steps of one digit more that prove rounding: one or two may be lost samples, where a sample is as long as a digit.
+/// Fewest steps of one digit more that prove rounding: one or two may be lost samples, where a sample is as
+/// long as a digit.
 const FEWEST_SLIPS: usize = 3;
 /// Part of a step that a printed digit may have for lost samples to show as long steps.
 const FINEST_HIDING: f64 = 0.25;
@@ -40,7 +45,8 @@ pub struct Clock {
     pub step: f64,
     /// Its standard uncertainty in s: of rounding, and of steps that jitter, wander or drift.
     pub step_std: f64,
-    /// Standard deviation in s of the instants from the grid, beyond rounding; 0 where rounding explains all of it.
+    /// Standard deviation in s of the instants from the grid, beyond rounding; 0 where rounding explains all
+    /// of it.
     pub jitter: f64,
 }
 
@@ -48,8 +54,9 @@ impl Clock {
     /// Code of the finding that instants jitter.
     pub const JITTERS: &str = "axis-jitter";
 
-    /// The clock of `instants` in s, which were printed to within `resolution`, half a unit in the last digit, rounded or cut off. `None` where they
-    /// neither lie on an even grid that was printed so, nor, of 16 and more, within 0.15 of a step beside; and where samples were lost.
+    /// The clock of `instants` in s, which were printed to within `resolution`, half a unit in the last
+    /// digit, rounded or cut off. `None` where they neither lie on an even grid that was printed so, nor,
+    /// of 16 and more, within 0.15 of a step beside; and where samples were lost.
     pub fn of(instants: &[f64], resolution: f64) -> Option<Clock> {
         Clock::rounded(instants, resolution).or_else(|| {
             let resolution = printed(instants, resolution);
@@ -58,8 +65,8 @@ impl Clock {
         })
     }
 
-    /// The clock of instants that are rounded and no more: the middle of all steps whose grid lies within `resolution` of all of them. The true
-    /// step is one of these, and anywhere among them.
+    /// The clock of instants that are rounded and no more: the middle of all steps whose grid lies within
+    /// `resolution` of all of them. The true step is one of these, and anywhere among them.
     pub fn rounded(instants: &[f64], resolution: f64) -> Option<Clock> {
         let (n, resolution) = (instants.len(), printed(instants, resolution));
         let (low, high) = steps_within(instants, resolution)?;
@@ -67,9 +74,11 @@ impl Clock {
         if step <= 0.0 || !step.is_finite() || !slips(instants).is_empty() {
             return None;
         }
-        // One or two lost samples that are shorter than a digit pass for the drift of a clock, which makes the step too long by 3/2n of it for each.
+        // One or two lost samples that are shorter than a digit pass for the drift of a clock, which makes
+        // the step too long by 3/2n of it for each.
         let hidden = if step < 2.0 * resolution { 1.5 * step / (n - 1) as f64 } else { 0.0 };
-        // Clocks jitter below a digit, too: no step is known better than by least squares from errors of that size.
+        // Clocks jitter below a digit, too: no step is known better than by least squares from errors of that
+        // size.
         let least = independent(resolution / 3f64.sqrt(), n);
         let step_std = ((high - low) / 12f64.sqrt()).hypot(hidden).hypot(least);
         let residuals = instants.iter().enumerate().map(|(i, t)| t - i as f64 * step);
@@ -107,8 +116,8 @@ impl Clock {
         self.step_std / self.step
     }
 
-    /// The finding that a column is used as even: that it is rounded; or the rate, the jitter, and what it does to the amplitude of a sine at the
-    /// end of the base band, 2πf·σ of it at most.
+    /// The finding that a column is used as even: that it is rounded; or the rate, the jitter, and what it
+    /// does to the amplitude of a sine at the end of the base band, 2πf·σ of it at most.
     pub fn finding(&self, column: &str) -> Finding {
         let (rate, std) = self.rate();
         if self.jitter == 0.0 {
@@ -128,12 +137,14 @@ impl Clock {
     }
 }
 
-/// Standard uncertainty of a step by the ends of `n` instants that are each off by at most `resolution`, with all errors between equally likely.
+/// Standard uncertainty of a step by the ends of `n` instants that are each off by at most `resolution`, with
+/// all errors between equally likely.
 pub fn uniform_std(resolution: f64, n: usize) -> f64 {
     2.0 * resolution / (3f64.sqrt() * n.saturating_sub(1).max(1) as f64)
 }
 
-/// Whether digits of which a half is `resolution` are so fine that rounding shifts no instant visibly from a grid of that step.
+/// Whether digits of which a half is `resolution` are so fine that rounding shifts no instant visibly from a
+/// grid of that step.
 pub fn is_fine(resolution: f64, step: f64) -> bool {
     2.0 * resolution <= FINE * step
 }
@@ -144,7 +155,8 @@ fn printed(instants: &[f64], resolution: f64) -> f64 {
     resolution * (1.0 + 1e-6) + 4.0 * f64::EPSILON * largest
 }
 
-/// The least and the largest step of an even grid that lies within `resolution` of all instants; `None` where there is none, and for fewer than three.
+/// The least and the largest step of an even grid that lies within `resolution` of all instants; `None` where
+/// there is none, and for fewer than three.
 fn steps_within(instants: &[f64], resolution: f64) -> Option<(f64, f64)> {
     if instants.len() < 3 {
         return None;
@@ -153,14 +165,16 @@ fn steps_within(instants: &[f64], resolution: f64) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-/// The largest such step, as far as instants know it that are later than others: the least (tⱼ − tᵢ + 2·resolution)/(j − i) of all i < j, of instants
-/// times `sign`. By Dinkelbach's iteration: the pair that violates the present step most gives the next one.
+/// The largest such step, as far as instants know it that are later than others: the least (tⱼ − tᵢ +
+/// 2·resolution)/(j − i) of all i < j, of instants times `sign`. By Dinkelbach's iteration: the pair that
+/// violates the present step most gives the next one.
 fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
     let n = instants.len();
     let (first, last) = (sign * instants[0], sign * instants[n - 1]);
     let mut step = (last - first + 2.0 * resolution) / (n - 1) as f64;
     loop {
-        // The highest deviation from the grid so far, and the deepest fall from it with the step that forbids it.
+        // The highest deviation from the grid so far, and the deepest fall from it with the step that forbids
+        // it.
         let (mut top, mut worst) = ((0, first), (0.0, step));
         for (j, t) in instants.iter().map(|t| sign * t).enumerate() {
             let behind = (j - top.0) as f64;
@@ -179,7 +193,8 @@ fn largest_step(instants: &[f64], sign: f64, resolution: f64) -> f64 {
     }
 }
 
-/// The one or two steps that stand out, as a lost sample does where a sample is about as long as a printed digit; none where there are more.
+/// The one or two steps that stand out, as a lost sample does where a sample is about as long as a printed
+/// digit; none where there are more.
 fn slips(instants: &[f64]) -> Vec<usize> {
     let steps = || instants.windows(2).map(|w| w[1] - w[0]);
     let (low, high) = steps().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
@@ -191,8 +206,9 @@ fn slips(instants: &[f64]) -> Vec<usize> {
     if long.len() < FEWEST_SLIPS { long } else { Vec::new() }
 }
 
-/// Whether the residual of instants from the line through them jumps by about a sample or more. Where a printed digit is as long as a sample no step
-/// shows that, and no residual of its own; those before and behind do, cumulated: the jump at s that least squares find beside the line.
+/// Whether the residual of instants from the line through them jumps by about a sample or more. Where a
+/// printed digit is as long as a sample no step shows that, and no residual of its own; those before and
+/// behind do, cumulated: the jump at s that least squares find beside the line.
 fn hides_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
     if 2.0 * resolution < BREAK * clock.step {
         return false;
@@ -217,8 +233,9 @@ fn independent(std: f64, n: usize) -> f64 {
     std * (12.0 / (n as f64).powi(3)).sqrt()
 }
 
-/// Standard uncertainty of the step. Independent jitter of size σ gives σ·√(12/n³). The steps of eight parts differ by jitter, too, and as far
-/// as the clock wanders or drifts; their mean is as good as the line through all where deviations add up from step to step, and never better.
+/// Standard uncertainty of the step. Independent jitter of size σ gives σ·√(12/n³). The steps of eight parts
+/// differ by jitter, too, and as far as the clock wanders or drifts; their mean is as good as the line
+/// through all where deviations add up from step to step, and never better.
 fn step_std(instants: &[f64], jitter: f64) -> f64 {
     let n = instants.len();
     let independent = independent(jitter, n);
@@ -275,9 +292,10 @@ impl Stretch {
     }
 }
 
-/// The stretches of `instants` in s, printed to within `resolution`, that have an even clock, in order; empty where they hold less than half of the
-/// instants. No step of them is near two: that of a lost sample, so instants may be off as far as jitter and rounding together put them. Where a
-/// digit hides lost samples, stretches end before and begin behind where they may be.
+/// The stretches of `instants` in s, printed to within `resolution`, that have an even clock, in order; empty
+/// where they hold less than half of the instants. No step of them is near two: that of a lost sample, so
+/// instants may be off as far as jitter and rounding together put them. Where a digit hides lost samples,
+/// stretches end before and begin behind where they may be.
 pub fn stretches(instants: &[f64], resolution: f64) -> Vec<Stretch> {
     let resolution = printed(instants, resolution);
     let Some(usual) = usual_step(instants, resolution) else { return Vec::new() };
@@ -332,8 +350,9 @@ fn cut_behind(range: Range<usize>, last: &[usize]) -> Vec<Range<usize>> {
     ends.map(|end| std::mem::replace(&mut first, end)..end).collect()
 }
 
-/// Pieces of `instants` that surely lie between lost samples: each as long as an even grid is within `tolerance` of it, from the first on and from the
-/// last back. Any other way to cut them into as few ends each piece between the two.
+/// Pieces of `instants` that surely lie between lost samples: each as long as an even grid is within
+/// `tolerance` of it, from the first on and from the last back. Any other way to cut them into as few ends
+/// each piece between the two.
 fn pieces(instants: &[f64], tolerance: f64) -> Vec<Range<usize>> {
     let n = instants.len();
     let back: Vec<f64> = instants.iter().rev().map(|t| -t).collect();
@@ -369,7 +388,8 @@ fn longest_even(instants: &[f64], tolerance: f64) -> usize {
     known
 }
 
-/// The usual step, by the median over so many that a printed digit is a small part of them; `None` where it is not above 0.
+/// The usual step, by the median over so many that a printed digit is a small part of them; `None` where it
+/// is not above 0.
 fn usual_step(instants: &[f64], resolution: f64) -> Option<f64> {
     let mut lag = 1;
     loop {
@@ -401,7 +421,8 @@ mod tests {
         }
     }
 
-    /// How often the true step lies within 2 of its standard uncertainties, and how large the uncertainty is beside the actual scatter.
+    /// How often the true step lies within 2 of its standard uncertainties, and how large the uncertainty is
+    /// beside the actual scatter.
     fn coverage(instants: impl Fn(u64) -> Vec<f64>, step: f64) -> (f64, f64) {
         const DRAWS: u64 = 400;
         let found: Vec<Clock> =
@@ -427,12 +448,15 @@ mod tests {
             };
             (0..1000).map(|_| next()).collect::<Vec<_>>()
         };
-        // Student with 7 degrees of freedom has 91.4 % within 2; 400 draws scatter by 1.4 %, three times that is allowed.
+        // Student with 7 degrees of freedom has 91.4 % within 2; 400 draws scatter by 1.4 %, three times that
+        // is allowed.
         let (held, ratio) = coverage(wandering, 0.01);
         assert!((0.87..=0.96).contains(&held), "{held}");
-        // Both are the same for deviations that add up: 6σ²/5n. 400 draws of 7 degrees of freedom scatter by 4 %.
+        // Both are the same for deviations that add up: 6σ²/5n. 400 draws of 7 degrees of freedom scatter by
+        // 4 %.
         assert!((0.85..=1.2).contains(&ratio), "{ratio}");
-        // Of independent jitter the mean of eight parts is eight times less certain than the line; that is not too sure.
+        // Of independent jitter the mean of eight parts is eight times less certain than the line; that is
+        // not too sure.
         let (held, ratio) = coverage(independent, 0.01);
         assert!(held > 0.97, "{held}");
         assert!((6.5..=9.5).contains(&ratio), "{ratio}");

@@ -1,7 +1,8 @@
 //! Errors that say where, what was found, what was expected and what to try.
 //!
-//! Every fallible function of this crate returns [`Error`]. What it is decides the exit code of the command: 1 where the data or the
-//! parameters do not allow an answer, 2 for wrong usage and for input that cannot be read.
+//! Every fallible function of this crate returns [`Error`]. What it is decides the exit code of the command:
+//! 1 where the data or the parameters do not allow an answer, 2 for wrong usage and for input that cannot be
+//! read.
 
 use crate::{nearest, pattern, shown};
 use std::fmt;
@@ -118,7 +119,8 @@ impl Error {
         Error::usage(found, "").hint(instead(folder, name))
     }
 
-    /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its option.
+    /// Names the setting that helps, as the key of a campaign: `low_pass`. The command line shows it as its
+    /// option.
     pub fn setting(self, key: &'static str) -> Self {
         self.set(key, "")
     }
@@ -135,7 +137,8 @@ impl Error {
         self.0.settings.iter().map(|known| known.0)
     }
 
-    /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as `--low-pass`.
+    /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as
+    /// `--low-pass`.
     pub fn spoken(&self, typed: impl Fn(&str, &str) -> String) -> String {
         let Inner { place, excerpt, hint, settings, .. } = &*self.0;
         let what = self.what(place);

@@ -1,4 +1,5 @@
-//! What an analysis, a model or a reader reports, as data: numbers with their uncertainty, and what a person should know of them.
+//! What an analysis, a model or a reader reports, as data: numbers with their uncertainty, and what a person
+//! should know of them.
 
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
@@ -37,11 +38,13 @@ pub enum Fact {
     Name(String),
 }
 
-/// A code with its numbers; no sentence. Programs, tests and estimators read the code, people the words that the report has for it.
+/// A code with its numbers; no sentence. Programs, tests and estimators read the code, people the words that
+/// the report has for it.
 ///
 /// ```
 /// use vibro_record::{Finding, Severity};
-/// let hum = Finding::note("mains-hum-removed").number("frequency", 50.0).number("amplitude", 0.3).name("unit", "V");
+/// let hum = Finding::note("mains-hum-removed").number("frequency", 50.0).number("amplitude", 0.3);
+/// let hum = hum.name("unit", "V");
 /// assert_eq!((&*hum.code, hum.severity), ("mains-hum-removed", Severity::Note));
 /// assert_eq!(hum.get("frequency"), Some(50.0));
 /// ```
@@ -194,7 +197,8 @@ impl Estimate {
         Estimate { value, std: std.filter(|s| s.is_finite()), unit, n, method: method.into() }
     }
 
-    /// The same of a value that is proportional to the sampling rate or to its inverse, whose relative standard uncertainty is `clock`.
+    /// The same of a value that is proportional to the sampling rate or to its inverse, whose relative
+    /// standard uncertainty is `clock`.
     pub fn by_clock(mut self, clock: f64) -> Estimate {
         self.std = self.std.map(|std| std.hypot(clock * self.value));
         self

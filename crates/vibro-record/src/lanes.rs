@@ -1,5 +1,5 @@
-//! Sums and ranges of long records in several lanes, which a processor works on at once; the order of the operations is fixed,
-//! so that the result does not depend on it.
+//! Sums and ranges of long records in several lanes, which a processor works on at once; the order of the
+//! operations is fixed, so that the result does not depend on it.
 
 const LANES: usize = 8;
 

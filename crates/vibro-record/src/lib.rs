@@ -1,8 +1,8 @@
 //! Records: samples with their axis, quantity, unit and history.
 //!
-//! A record is a [`Trace`] (samples over time), a [`Spectrum`] (lines over frequency, with its scaling) or an [`Frf`]
-//! (receptance, mobility or accelerance). Values are SI. Each record carries its [`Meta`]: the channel, every step that
-//! made it, and the doubts that a person must hear before trusting it.
+//! A record is a [`Trace`] (samples over time), a [`Spectrum`] (lines over frequency, with its scaling) or an
+//! [`Frf`] (receptance, mobility or accelerance). Values are SI. Each record carries its [`Meta`]: the
+//! channel, every step that made it, and the doubts that a person must hear before trusting it.
 
 mod axis;
 mod clock;

@@ -28,10 +28,12 @@ impl Step {
 /// How an identification line of UFF-58 begins that states the decay of an exponential window in 1/s.
 pub const ADDED_DECAY: &str = "exponential window; decay in 1/s ";
 
-/// Identification line of UFF-58, and key of a remark in CSV, that a function was averaged over the blows of a hammer.
+/// Identification line of UFF-58, and key of a remark in CSV, that a function was averaged over the blows of
+/// a hammer.
 pub const FROM_BLOWS: &str = "averaged over hammer blows";
 
-/// How an identification line of UFF-58 begins that states the window of the segments that a function was averaged over.
+/// How an identification line of UFF-58 begins that states the window of the segments that a function was
+/// averaged over.
 pub const AVERAGED_WITH: &str = "averaged over segments; window ";
 
 /// Channel, quantity, unit, history and findings.
@@ -100,7 +102,8 @@ impl Meta {
         self.history.push(Step::new(name, arguments));
     }
 
-    /// Decay in 1/s that an exponential window added to the response: from the history, or as the writers of this crate state it.
+    /// Decay in 1/s that an exponential window added to the response: from the history, or as the writers of
+    /// this crate state it.
     pub fn added_decay(&self) -> Option<f64> {
         let made = self.history.iter().rev().find(|step| step.name == "exponential_window");
         let made = made.and_then(|step| step.arguments.iter().find(|(key, _)| key == "decay"));
@@ -113,8 +116,8 @@ impl Meta {
         text.trim().parse().ok().filter(|decay: &f64| decay.is_finite() && *decay > 0.0)
     }
 
-    /// Window of the segments over which a frequency response function was averaged: from the history, or as the writers of this crate
-    /// state it. `None` for one that was averaged over blows.
+    /// Window of the segments over which a frequency response function was averaged: from the history, or as
+    /// the writers of this crate state it. `None` for one that was averaged over blows.
     pub fn averaged_with(&self) -> Option<Window> {
         let made = self.history.iter().rev().find(|step| step.name == "segments");
         let made = made.and_then(|step| step.arguments.iter().find(|(key, _)| key == "window"));
@@ -127,8 +130,8 @@ impl Meta {
         Window::from_name(name).filter(|_| !self.from_blows())
     }
 
-    /// Whether a frequency response function was averaged over the blows of a hammer: from the history, or as the writers of this
-    /// crate state it.
+    /// Whether a frequency response function was averaged over the blows of a hammer: from the history, or as
+    /// the writers of this crate state it.
     pub fn from_blows(&self) -> bool {
         let said = |(key, text): &(String, String)| match key.as_str() {
             "id line 4" => text == FROM_BLOWS,
@@ -138,8 +141,9 @@ impl Meta {
         self.history.iter().any(|step| step.name == "blows") || self.notes.iter().any(said)
     }
 
-    /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns the factor
-    /// by which the values must be multiplied. An unknown unit is kept, with a finding and factor 1.
+    /// Takes the unit an instrument wrote: stores its SI unit and quantity, notes the conversion, and returns
+    /// the factor by which the values must be multiplied. An unknown unit is kept, with a finding and
+    /// factor 1.
     pub fn adopt_unit(&mut self, text: &str) -> f64 {
         let unit = Unit::parse_or_opaque(text);
         if !unit.is_known() {

@@ -2,8 +2,8 @@
 
 use std::cmp::Reverse;
 
-/// The known name at the smallest edit distance (Damerau 1964, each letter changed once), where that is small beside its length; else the longest with
-/// which the wrong one begins.
+/// The known name at the smallest edit distance (Damerau 1964, each letter changed once), where that is small
+/// beside its length; else the longest with which the wrong one begins.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wrong = wrong.to_lowercase();
     let known: Vec<(&str, String)> = known.into_iter().map(|name| (name, name.to_lowercase())).collect();

@@ -7,19 +7,20 @@ use crate::{Axis, AxisKind, Error, Finding, Grid, Result, Trace};
 const SLOWEST: f64 = 0.95;
 /// Largest multiple of the mean rate: beyond, values are added that nothing is known of.
 const FASTEST: f64 = 10.0;
-/// Longest step, in median steps, that is bridged: the error is that of leaving out one sample, which leaves two steps.
+/// Longest step, in median steps, that is bridged: the error is that of leaving out one sample, which leaves
+/// two steps.
 const LONGEST: f64 = 2.5;
-/// Largest error of a sample that is predicted from its neighbours, as a part of the standard deviation: noise has 1.4, a sine four samples a
-/// period long 0.4.
+/// Largest error of a sample that is predicted from its neighbours, as a part of the standard deviation:
+/// noise has 1.4, a sine four samples a period long 0.4.
 const LARGEST_ERROR: f64 = 0.5;
 
 impl Trace {
-    /// Interpolates at `rate` in Hz from the first instant on, by cubics through four samples. What that is wrong by at most is a finding: each sample
-    /// predicted from its four neighbours, RMS.
+    /// Interpolates at `rate` in Hz from the first instant on, by cubics through four samples. What that is
+    /// wrong by at most is a finding: each sample predicted from its four neighbours, RMS.
     ///
     /// # Errors
-    /// If instants do not rise, or a gap is too long to bridge; if values are missing; if the rate is below that of the samples or far beyond; if the
-    /// samples are too far apart for their signal.
+    /// If instants do not rise, or a gap is too long to bridge; if values are missing; if the rate is below
+    /// that of the samples or far beyond; if the samples are too far apart for their signal.
     pub fn resample(&mut self, rate: f64) -> Result<()> {
         let (t, v) = (self.axis.values(), &self.values);
         let n = t.len();
@@ -113,7 +114,8 @@ impl Trace {
     }
 }
 
-/// A refusal of uneven instants, printed to within `resolution` in s, with what makes them even: one of their stretches, or interpolation.
+/// A refusal of uneven instants, printed to within `resolution` in s, with what makes them even: one of their
+/// stretches, or interpolation.
 pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
     let all = stretches(instants, resolution);
     if let Some((number, longest)) = Stretch::longest(&all) {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-/// Whether a character steers a terminal or a page instead of being shown: a control character, one that turns the direction of writing
-/// (Unicode Standard Annex 9, section 2), or one that parts lines.
+/// Whether a character steers a terminal or a page instead of being shown: a control character, one that
+/// turns the direction of writing (Unicode Standard Annex 9, section 2), or one that parts lines.
 pub fn is_unprintable(c: char) -> bool {
     let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns

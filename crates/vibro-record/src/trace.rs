@@ -46,8 +46,8 @@ impl Trace {
 
     /// Applies a calibration: a value v becomes `factor`·v in `unit`, stored in SI.
     ///
-    /// The finding that no calibration is known goes; all others, notes and steps stay, and a step `calibrate` is
-    /// added. A negative factor turns the sensor around.
+    /// The finding that no calibration is known goes; all others, notes and steps stay, and a step
+    /// `calibrate` is added. A negative factor turns the sensor around.
     ///
     /// ```
     /// use vibro_record::{Axis, Meta, Trace};
@@ -61,7 +61,8 @@ impl Trace {
     /// ```
     ///
     /// # Errors
-    /// If the factor is 0 or not finite, or takes a value beyond what a number can hold; values before it are multiplied then.
+    /// If the factor is 0 or not finite, or takes a value beyond what a number can hold; values before it are
+    /// multiplied then.
     pub fn calibrate(&mut self, factor: f64, unit: &Unit) -> Result<()> {
         let to_si = factor * unit.factor();
         if to_si == 0.0 || !to_si.is_finite() {

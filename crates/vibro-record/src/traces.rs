@@ -11,7 +11,8 @@ const APART: f64 = 0.01;
 
 /// Samples that come block by block, in SI units.
 pub trait Stream: Send {
-    /// Adds the next samples behind what `block` holds, one `Vec` a channel, and returns how many there are of each; 0 at the end.
+    /// Adds the next samples behind what `block` holds, one `Vec` a channel, and returns how many there are
+    /// of each; 0 at the end.
     ///
     /// # Errors
     /// If the source cannot be read, or a sample is missing and that is not allowed.
@@ -155,8 +156,8 @@ impl Traces {
         self.frames
     }
 
-    /// Findings about the file and its channels, these with their names where there are several. What only the values
-    /// show is among them once all have been read.
+    /// Findings about the file and its channels, these with their names where there are several. What only
+    /// the values show is among them once all have been read.
     pub fn findings(&self) -> Vec<Finding> {
         let channels: Vec<_> =
             self.channels.iter().map(|m| (m.name.as_str(), m.findings.as_slice())).collect();
@@ -165,17 +166,19 @@ impl Traces {
         all
     }
 
-    /// Replaces the content of `block` by the next samples, one `Vec` a channel in SI units, and returns how many there
-    /// are of each; 0 at the end. Missing samples are NaN, where they are allowed.
+    /// Replaces the content of `block` by the next samples, one `Vec` a channel in SI units, and returns how
+    /// many there are of each; 0 at the end. Missing samples are NaN, where they are allowed.
     ///
     /// # Errors
-    /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not allowed.
+    /// If the file cannot be read, or a sample is missing (or beyond all numbers in its unit) and that is not
+    /// allowed.
     pub fn next_block(&mut self, block: &mut Vec<Vec<f64>>) -> Result<usize> {
         block.iter_mut().for_each(Vec::clear);
         self.append(block)
     }
 
-    /// As [`Traces::next_block`], but adds the samples behind what `block` holds, which saves a copy where they are collected.
+    /// As [`Traces::next_block`], but adds the samples behind what `block` holds, which saves a copy where
+    /// they are collected.
     ///
     /// # Errors
     /// As [`Traces::next_block`].
@@ -191,7 +194,8 @@ impl Traces {
         Ok(frames)
     }
 
-    /// Hands out these channels only from here on, in this order; an index that does not exist is passed over.
+    /// Hands out these channels only from here on, in this order; an index that does not exist is passed
+    /// over.
     pub fn keep(&mut self, channels: &[usize]) {
         self.stream.keep(channels);
         self.factors = picked(&self.factors, channels);
@@ -201,8 +205,8 @@ impl Traces {
     /// Multiplies a channel by a factor from here on.
     ///
     /// # Errors
-    /// If there is no such channel, the factor is 0 or not finite, or the channel is in fractions of full scale and no unit was
-    /// stated.
+    /// If there is no such channel, the factor is 0 or not finite, or the channel is in fractions of full
+    /// scale and no unit was stated.
     pub fn calibrate(&mut self, channel: usize, factor: f64) -> Result<()> {
         let (Some(meta), Some(known)) = (self.channels.get_mut(channel), self.factors.get_mut(channel))
         else {
@@ -221,8 +225,8 @@ impl Traces {
     }
 }
 
-/// Index of a channel among `all`, names with their quantities, by its name, in any case where none has that of `wanted`, or by its number from 1; `path` is for
-/// the complaint.
+/// Index of a channel among `all`, names with their quantities, by its name, in any case where none has that
+/// of `wanted`, or by its number from 1; `path` is for the complaint.
 ///
 /// # Errors
 /// If there is none, or two have this name.

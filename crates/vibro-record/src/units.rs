@@ -1,8 +1,8 @@
 //! Physical units: what an instrument wrote, and the factor that takes it to SI.
 //!
-//! Records hold SI values only. A reader parses the instrument's unit text with [`Unit::parse`], multiplies by
-//! [`Unit::factor`] and stores [`Unit::si`]. A text that is not understood is kept as an opaque unit with factor 1 and
-//! a doubt in the record; it is never guessed.
+//! Records hold SI values only. A reader parses the instrument's unit text with [`Unit::parse`], multiplies
+//! by [`Unit::factor`] and stores [`Unit::si`]. A text that is not understood is kept as an opaque unit with
+//! factor 1 and a doubt in the record; it is never guessed.
 //!
 //! In this field `g` is the standard acceleration of gravity, never the gram.
 
@@ -144,7 +144,8 @@ impl Unit {
         self.dimension
     }
 
-    /// One of this unit in Hz: a frequency as it is, an angular velocity divided by 2π; `None` for anything else.
+    /// One of this unit in Hz: a frequency as it is, an angular velocity divided by 2π; `None` for anything
+    /// else.
     ///
     /// ```
     /// use vibro_record::units::Unit;

@@ -1,7 +1,8 @@
 //! Windows of spectra.
 //!
-//! Coefficients: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier transform",
-//! Proc. IEEE 66 (1978), table I; flat top: the five-term window of ISO 18431-2, as in scipy's `flattop`.
+//! Coefficients: F. J. Harris, "On the use of windows for harmonic analysis with the discrete Fourier
+//! transform", Proc. IEEE 66 (1978), table I; flat top: the five-term window of ISO 18431-2, as in scipy's
+//! `flattop`.
 
 use Window::{Blackman, BlackmanHarris, FlatTop, Hamming, Hann, Rectangular};
 use serde::{Deserialize, Serialize};

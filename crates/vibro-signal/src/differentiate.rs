@@ -13,15 +13,18 @@ pub struct Differentiated {
     pub highest: f64,
 }
 
-/// Weights on five neighbours for the derivative at the first, second and middle one, in twelfths of a sample: the derivative
-/// of the polynomial through them (Abramowitz & Stegun, Handbook of Mathematical Functions, 1964, table 25.2).
+/// Weights on five neighbours for the derivative at the first, second and middle one, in twelfths of a
+/// sample: the derivative of the polynomial through them (Abramowitz & Stegun, Handbook of Mathematical
+/// Functions, 1964, table 25.2).
 const WEIGHTS: [[f64; 5]; 3] =
     [[-25.0, 48.0, -36.0, 16.0, -3.0], [-3.0, -10.0, 18.0, -6.0, 1.0], [1.0, -8.0, 0.0, 8.0, -1.0]];
 
-/// Differentiates a trace `times` times by differences of five samples. There is no delay; noise grows with frequency.
+/// Differentiates a trace `times` times by differences of five samples. There is no delay; noise grows with
+/// frequency.
 ///
 /// # Errors
-/// If `times` is not 1 or 2, the trace has no sampling rate or fewer than five samples, or a sample is missing.
+/// If `times` is not 1 or 2, the trace has no sampling rate or fewer than five samples, or a sample is
+/// missing.
 pub fn in_time(trace: &Trace, times: u8) -> Result<Differentiated> {
     if !(1..=2).contains(&times) {
         return Err(Error::usage(format!("{times} differentiations"), "1 or 2"));
@@ -95,8 +98,8 @@ mod tests {
                 let found = in_time(&trace(rate, values), times).unwrap().trace;
                 let largest = found.values[10..3990].iter().fold(0.0, |a: f64, v| a.max(v.abs()));
                 let factor = largest / omega.powi(i32::from(times));
-                // The next term of the series, x⁶/252 a derivative, works the other way; a crest between two samples hides up to
-                // x²/8 in a few samples, nothing in four thousand.
+                // The next term of the series, x⁶/252 a derivative, works the other way; a crest between two
+                // samples hides up to x²/8 in a few samples, nothing in four thousand.
                 assert!(factor < 1.0001 && factor > 0.99, "{f} Hz, {times}: {factor}");
                 assert!(f < highest || factor < 0.993, "{f} Hz, {times}: {factor}");
             }

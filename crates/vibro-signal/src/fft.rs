@@ -1,6 +1,7 @@
 //! Fourier transforms of real records.
 //!
-//! Xₖ = Σ xₙ e^(−2πikn/N), without a factor, for k = 0 … N/2; the inverse divides by N, so that both together change nothing.
+//! Xₖ = Σ xₙ e^(−2πikn/N), without a factor, for k = 0 … N/2; the inverse divides by N, so that both together
+//! change nothing.
 
 use num_complex::Complex64;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
@@ -82,8 +83,8 @@ impl Transform {
         work.output
     }
 
-    /// Record of these lines. Missing lines are zero; what a real record cannot have (an imaginary part at zero and at half
-    /// the sampling rate) is left out.
+    /// Record of these lines. Missing lines are zero; what a real record cannot have (an imaginary part at
+    /// zero and at half the sampling rate) is left out.
     pub fn inverse(&self, lines: &[Complex64]) -> Vec<f64> {
         let mut input = self.inverse.make_input_vec();
         input.iter_mut().zip(lines).for_each(|(to, from)| *to = *from);

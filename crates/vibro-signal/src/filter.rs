@@ -1,8 +1,8 @@
 //! Filters: Butterworth as second-order sections, causal or without phase, and exponential smoothing.
 //!
-//! Analogue Butterworth poles lie on a half circle; the bilinear transform with pre-warped corners takes them to the z plane
-//! (Oppenheim & Schafer, Discrete-Time Signal Processing, 3rd ed., sections 7.2 and 7.3). Each section holds one pair of
-//! poles, so that high orders keep their digits.
+//! Analogue Butterworth poles lie on a half circle; the bilinear transform with pre-warped corners takes them
+//! to the z plane (Oppenheim & Schafer, Discrete-Time Signal Processing, 3rd ed., sections 7.2 and 7.3). Each
+//! section holds one pair of poles, so that high orders keep their digits.
 
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -32,8 +32,8 @@ pub struct Analogue {
 
 /// A filter for one sampling rate.
 ///
-/// Corners are where one pass lets through 1/√2 of the amplitude. [`Filter::zero_phase`] passes twice, so that the corner
-/// is then at one half, and the order counts twice.
+/// Corners are where one pass lets through 1/√2 of the amplitude. [`Filter::zero_phase`] passes twice, so
+/// that the corner is then at one half, and the order counts twice.
 ///
 /// ```
 /// use vibro_signal::filter::Filter;
@@ -82,8 +82,8 @@ impl Filter {
         Ok(Filter { name: format!("exponential smoothing, corner {} Hz", shortest(corner)), rate, sections })
     }
 
-    /// Sections of second order one behind the other, each transformed bilinearly such that it is exact at one frequency:
-    /// s = c(1 − z⁻¹)/(1 + z⁻¹) with c = 2πf/tan(πf/rate).
+    /// Sections of second order one behind the other, each transformed bilinearly such that it is exact at
+    /// one frequency: s = c(1 − z⁻¹)/(1 + z⁻¹) with c = 2πf/tan(πf/rate).
     ///
     /// # Errors
     /// If one of these frequencies does not lie between 0 and half the sampling rate.
@@ -122,8 +122,9 @@ impl Filter {
         }
     }
 
-    /// Filters forwards and backwards, so that nothing is delayed. Both ends are continued by their mirror image about the
-    /// end point, as scipy's `sosfiltfilt` does (Gustafsson, IEEE Trans. Signal Process. 44 (1996) 988 on why ends matter).
+    /// Filters forwards and backwards, so that nothing is delayed. Both ends are continued by their mirror
+    /// image about the end point, as scipy's `sosfiltfilt` does (Gustafsson, IEEE Trans. Signal Process.
+    /// 44 (1996) 988 on why ends matter).
     ///
     /// # Errors
     /// If the trace is not longer than three times the number of coefficients, or a sample is missing.
@@ -168,7 +169,8 @@ impl std::fmt::Display for Filter {
     }
 }
 
-/// A Butterworth filter from the numerators of a pair of poles and of the real pole of an odd order, at a warped corner.
+/// A Butterworth filter from the numerators of a pair of poles and of the real pole of an odd order, at a
+/// warped corner.
 fn butterworth(
     kind: &str,
     numerators: fn(f64) -> ([f64; 3], [f64; 2]),

@@ -1,7 +1,9 @@
-//! Frequency response functions from hammer blows: one record a blow, of the force and of the response that rings down.
+//! Frequency response functions from hammer blows: one record a blow, of the force and of the response that
+//! rings down.
 //!
-//! The force counts only while the hammer touches (force window); a response that has not died away when the record ends is
-//! made to (exponential window, on the force, too). That adds damping, by an amount that is known and reported.
+//! The force counts only while the hammer touches (force window); a response that has not died away when the
+//! record ends is made to (exponential window, on the force, too). That adds damping, by an amount that is
+//! known and reported.
 
 mod left;
 
@@ -19,7 +21,8 @@ use vibro_record::{Error, Finding, Meta, Result, Trace};
 
 /// Part of the largest force, above the level before it, at which a blow is noticed.
 const TRIGGER: f64 = 0.2;
-/// A second blow from this part of the smoothed peak on: from a tenth, where noise and filters take less than a third of it.
+/// A second blow from this part of the smoothed peak on: from a tenth, where noise and filters take less than
+/// a third of it.
 const SECOND: f64 = 0.07;
 /// A second blow rises from a valley by this factor; the flank of a blow, however bent, does not.
 const RISE: f64 = 2.0;
@@ -29,7 +32,8 @@ const SIGMAS: f64 = 6.0;
 const BOUNCE: f64 = 0.1;
 /// A force that stands less than this factor (10 dB) above its noise tells nothing of the response to it.
 const AUDIBLE: f64 = 10.0;
-/// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below zero.
+/// An extreme nearer the quiet level than this part of the other one is no rail: a force does not go below
+/// zero.
 const RAIL: f64 = 0.1;
 
 const CUT_OFF: &str = "the record cuts it off";
@@ -70,9 +74,11 @@ pub struct BlowTransfer {
     pub transfer: Transfer,
     /// Every blow.
     pub blows: Vec<Blow>,
-    /// Decay in 1/s that the exponential window adds: a mode of f Hz seems to have a damping ratio that is this over 2πf larger.
+    /// Decay in 1/s that the exponential window adds: a mode of f Hz seems to have a damping ratio that is
+    /// this over 2πf larger.
     pub added_decay: f64,
-    /// The windows that were applied: `rectangular` for none, `force`, `exponential`, or `force and exponential`.
+    /// The windows that were applied: `rectangular` for none, `force`, `exponential`, or `force and
+    /// exponential`.
     pub window: &'static str,
     /// Equivalent noise bandwidth in lines of the response's window, NΣw²/(Σw)².
     pub enbw: f64,
@@ -81,8 +87,8 @@ pub struct BlowTransfer {
 /// Finds the blows in a force, averages those that are clean, and relates the response to the force.
 ///
 /// # Errors
-/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing, or no blow is
-/// clean.
+/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing,
+/// or no blow is clean.
 pub fn from_blows(
     force: &Trace,
     response: &Trace,
@@ -131,7 +137,8 @@ pub fn from_blows(
     let mut sums = Sums::new(2, true, transform.lines());
     let mut noise = 0.0;
     for start in &kept {
-        // Steps from sample to sample: hum and drift before the blow are no noise of all lines. A blow begins below the trigger.
+        // Steps from sample to sample: hum and drift before the blow are no noise of all lines. A blow begins
+        // below the trigger.
         let before = force.values.get(*start..start + how.before / 2).unwrap_or_default();
         let squares: f64 = before.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
         noise += 0.5 * squares / before.len().saturating_sub(1).max(1) as f64 / kept.len() as f64;
@@ -171,7 +178,8 @@ pub fn from_blows(
     })
 }
 
-/// Samples from a blow to the next, or from the last one to the end of the record: what a record that holds one blow alone may have.
+/// Samples from a blow to the next, or from the last one to the end of the record: what a record that holds
+/// one blow alone may have.
 ///
 /// What is behind the last blow counts where it is not much shorter than what is behind the others.
 ///
@@ -251,8 +259,9 @@ fn find(force: &Trace, response: &Trace, how: &Blows, rate: f64) -> Vec<Blow> {
     found
 }
 
-/// Samples of the force, averaged with the Hann window of eight: what a filter near the end of the band rings with, above a fifth of the rate, is
-/// 18 dB down there and above a quarter 31 dB, and a blow is not, whose force has one sign.
+/// Samples of the force, averaged with the Hann window of eight: what a filter near the end of the band rings
+/// with, above a fifth of the rate, is 18 dB down there and above a quarter 31 dB, and a blow is not, whose
+/// force has one sign.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let weights: [f64; 7] = std::array::from_fn(|k| 0.25 * (PI * (k + 1) as f64 / 8.0).sin().powi(2));
     let last = values.len().saturating_sub(1);
@@ -262,7 +271,8 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Whether a smoothed force, quiet in its first `before` samples, rises again behind its largest blow or before it.
+/// Whether a smoothed force, quiet in its first `before` samples, rises again behind its largest blow or
+/// before it.
 fn second(values: &[f64], before: usize, sign: f64, noise: f64) -> bool {
     let quiet = Quiet::of(if before > 0 { &values[..before] } else { values });
     let push = |j: usize| sign * (values[j] - quiet.level);
@@ -299,8 +309,8 @@ fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each rail on its own, since
-/// an offset takes a signal to one of them first.
+/// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each
+/// rail on its own, since an offset takes a signal to one of them first.
 fn overloaded(values: &[f64], before: usize) -> Option<f64> {
     let level = Quiet::of(if before > 0 { &values[..before] } else { values }).level;
     let mut rails = Rails::default();

@@ -8,9 +8,9 @@ use vibro_record::units::Unit;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Axis, Error, Grid, Result, Scaling, Spectrum, Trace, Values};
 
-/// Integrates a spectrum `times` times (differentiates where below 0): each line is divided by (iω) that often, magnitudes by
-/// ω, powers by ω². Lines below `fmin` Hz are left out, and so is zero where it is integrated: a mean velocity has no
-/// displacement in a spectrum.
+/// Integrates a spectrum `times` times (differentiates where below 0): each line is divided by (iω) that
+/// often, magnitudes by ω, powers by ω². Lines below `fmin` Hz are left out, and so is zero where it is
+/// integrated: a mean velocity has no displacement in a spectrum.
 ///
 /// # Errors
 /// If `times` is not −2 to 2, no line is left, or the lines are not of a scaling that can be integrated.
@@ -83,8 +83,8 @@ pub struct InTime {
 }
 
 impl InTime {
-    /// Part of the amplitude of a sine of `frequency` Hz that is left by high-pass and trapezoid at this sampling rate in Hz, in all
-    /// integrations together, between the edges of the record.
+    /// Part of the amplitude of a sine of `frequency` Hz that is left by high-pass and trapezoid at this
+    /// sampling rate in Hz, in all integrations together, between the edges of the record.
     ///
     /// # Errors
     /// If the corner or the order cannot be.
@@ -102,22 +102,22 @@ impl InTime {
 pub struct Integrated {
     /// The trace, with its new unit.
     pub trace: Trace,
-    /// Frequencies in Hz between which amplitudes are right within 1 %: the high-pass takes from lower ones, the
-    /// trapezoid from higher ones.
+    /// Frequencies in Hz between which amplitudes are right within 1 %: the high-pass takes from lower ones,
+    /// the trapezoid from higher ones.
     pub band: [f64; 2],
     /// Seconds at both ends in which the high-pass has not settled.
     pub edge: f64,
-    /// Change of the mean from the first period to the last, between the edges; without a period, of a straight line through
-    /// the values: the drift that is left.
+    /// Change of the mean from the first period to the last, between the edges; without a period, of a
+    /// straight line through the values: the drift that is left.
     pub drift: f64,
 }
 
-/// Integrates a trace by the trapezoid: its mean over whole periods is taken out first, a zero-phase Butterworth high-pass
-/// takes the drift out afterwards.
+/// Integrates a trace by the trapezoid: its mean over whole periods is taken out first, a zero-phase
+/// Butterworth high-pass takes the drift out afterwards.
 ///
 /// # Errors
-/// If the trace has no sampling rate, is too short for the filter or for one period, a sample is missing, or the corner leaves no
-/// band.
+/// If the trace has no sampling rate, is too short for the filter or for one period, a sample is missing, or
+/// the corner leaves no band.
 pub fn in_time(trace: &Trace, how: &InTime) -> Result<Integrated> {
     check(how.times, 1)?;
     let rate = trace.sampling_rate()?;
@@ -169,8 +169,9 @@ fn check(times: i8, least: i8) -> Result<()> {
     Err(Error::usage(format!("{times} integrations"), format!("a whole number from {least} to 2")))
 }
 
-/// Where high-pass and trapezoid take half a percent each at most, in all integrations together. The high-pass lets through
-/// 1/(1 + (corner/f)^2N) in two passes; the trapezoid is the integral times (ωΔt/2)/tan(ωΔt/2) ≈ 1 − (ωΔt)²/12.
+/// Where high-pass and trapezoid take half a percent each at most, in all integrations together. The
+/// high-pass lets through 1/(1 + (corner/f)^2N) in two passes; the trapezoid is the integral times
+/// (ωΔt/2)/tan(ωΔt/2) ≈ 1 − (ωΔt)²/12.
 fn band(how: &InTime, rate: f64) -> [f64; 2] {
     let share = 0.005 / f64::from(how.times);
     let low = how.corner * (1.0 / share - 1.0).powf(0.5 / how.order as f64);
@@ -266,7 +267,8 @@ mod tests {
         assert!(in_frequency(&once, 1, 257.0).unwrap_err().to_string().contains("no line is left"));
     }
 
-    /// Velocity with offset, drift and noise: the displacement is right within 1 % from one end of the stated band to the other.
+    /// Velocity with offset, drift and noise: the displacement is right within 1 % from one end of the stated
+    /// band to the other.
     #[test]
     fn displacement_is_right_within_the_stated_band() {
         let (rate, n) = (2048.0, 40_960usize);

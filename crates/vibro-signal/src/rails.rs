@@ -2,14 +2,16 @@
 
 /// So many samples in a row at the very extreme are a clipped signal.
 const CLIPPED: usize = 3;
-/// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)² for three, and noise.
+/// Steps of the converter by which a round top of three equal samples or more may fall to the next: (5/3)²
+/// for three, and noise.
 const ROUNDED: f64 = 8.0;
 /// Steps in a record of which only few different values are known: at least so many up to its extreme.
 const COARSEST: f64 = 250.0;
 
 /// Smallest and largest value of samples that come one by one, and how they are left.
 ///
-/// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one leaves it as steeply as it came.
+/// A slow vibration in coarse steps stays at its extreme, too, but leaves it by a few steps; a clipped one
+/// leaves it as steeply as it came.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rails {
     /// Largest and smallest value.
@@ -68,8 +70,9 @@ impl Rails {
         self.ends.map(|end| end.value)
     }
 
-    /// Ends at which samples rest, with their number: rails, where the signal is clipped. One that rests elsewhere, too, is held between
-    /// its samples. `reach` is how far it goes from its own level, where few of its values are known; else infinite.
+    /// Ends at which samples rest, with their number: rails, where the signal is clipped. One that rests
+    /// elsewhere, too, is held between its samples. `reach` is how far it goes from its own level, where
+    /// few of its values are known; else infinite.
     pub fn clipped(&self, reach: f64) -> impl Iterator<Item = (f64, usize)> {
         let mut all = *self;
         all.leave(f64::NAN);

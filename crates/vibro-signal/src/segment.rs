@@ -4,7 +4,8 @@ use super::rails::Rails;
 use super::sound::no_gaps;
 use vibro_record::{Error, Result, Traces};
 
-/// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache holds.
+/// Samples of each channel in one batch: several segments for several cores, and yet no more than a cache
+/// holds.
 const BATCH: usize = 128 * 1024;
 
 /// Length and distance of segments in samples.
@@ -59,8 +60,9 @@ impl<'a> Batches<'a> {
         Batches { traces, segments, frames: 0, ranges }
     }
 
-    /// Adds samples to `batch` (one `Vec` a channel, which hold what [`Batches::carry`] left there) up to a full batch (more
-    /// by less than a block of the file) or the end; returns the number of whole segments in it.
+    /// Adds samples to `batch` (one `Vec` a channel, which hold what [`Batches::carry`] left there) up to a
+    /// full batch (more by less than a block of the file) or the end; returns the number of whole
+    /// segments in it.
     ///
     /// # Errors
     /// If the file cannot be read, or a sample is missing.

@@ -2,8 +2,8 @@
 
 use vibro_record::{Error, Result};
 
-/// Refuses missing samples of a channel, the first of them `before` samples behind its start: they would spread over all of the
-/// result.
+/// Refuses missing samples of a channel, the first of them `before` samples behind its start: they would
+/// spread over all of the result.
 pub(crate) fn no_gaps(values: &[f64], channel: &str, before: usize) -> Result<()> {
     let Some(place) = values.iter().position(|v| !v.is_finite()) else { return Ok(()) };
     let at = before + place;

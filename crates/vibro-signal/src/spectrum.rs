@@ -1,9 +1,10 @@
 //! Lines of a record with a named scaling.
 //!
-//! One-sided: a line stands for its frequency and the negative one, so that powers are doubled, but for zero and, at an even
-//! number of samples, half the sampling rate f, which stand for themselves. With Σw the sum of the window's samples and c = 2 (or
-//! 1 for those two): power c|X|²/(Σw)², RMS its root, peak amplitude c|X|/Σw, density c|X|²/(f Σw²)
-//! (Heinzel, Rüdiger & Schilling, Spectrum and spectral density estimation by the DFT, 2002, section 9).
+//! One-sided: a line stands for its frequency and the negative one, so that powers are doubled, but for zero
+//! and, at an even number of samples, half the sampling rate f, which stand for themselves. With Σw the sum
+//! of the window's samples and c = 2 (or 1 for those two): power c|X|²/(Σw)², RMS its root, peak amplitude
+//! c|X|/Σw, density c|X|²/(f Σw²) (Heinzel, Rüdiger & Schilling, Spectrum and spectral density estimation by
+//! the DFT, 2002, section 9).
 
 use super::fft::Transform;
 use super::segment::Segments;
@@ -16,8 +17,8 @@ use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Values, 
 
 /// The spectrum of a whole trace, lines complex where the scaling keeps their phase (peak and RMS).
 ///
-/// The phase is that of A cos(ωt + φ) at the first sample. With `detrend` the mean is taken out first, and the line at 0 Hz, which
-/// would be what a window leaves of nothing, is NaN.
+/// The phase is that of A cos(ωt + φ) at the first sample. With `detrend` the mean is taken out first, and
+/// the line at 0 Hz, which would be what a window leaves of nothing, is NaN.
 ///
 /// ```
 /// use vibro_record::{Axis, Meta, Scaling, Trace, Window};
@@ -33,8 +34,8 @@ use vibro_record::{Axis, Error, Meta, Result, Scaling, Spectrum, Trace, Values, 
 /// ```
 ///
 /// # Errors
-/// If the trace has no sampling rate, fewer than 8 samples, missing ones or a single value, or the scaling is not one that a
-/// transform gives.
+/// If the trace has no sampling rate, fewer than 8 samples, missing ones or a single value, or the scaling is
+/// not one that a transform gives.
 pub fn plain(trace: &Trace, window: Window, scaling: Scaling, detrend: bool) -> Result<Spectrum> {
     let rate = trace.sampling_rate()?;
     let n = trace.values.len();
@@ -101,10 +102,11 @@ pub fn averaged(
 /// So many independent segments are needed before the scatter of a line is stated.
 const FEWEST: f64 = 17.0;
 
-/// Standard deviation of each averaged line over its value, for noise: 1/√n for powers of n independent segments, half of that
-/// for amplitudes, and √2 times as much for the two lines that are real (Bendat & Piersol, Random Data, 4th ed. 2010, eq. 8.158).
-/// A sine that stands out of the noise scatters less. NaN for fewer than 17 independent segments: by the gamma distribution of
-/// their mean, ± 1.96 of what is stated around a power that was found would hold the truth in less than 92 %.
+/// Standard deviation of each averaged line over its value, for noise: 1/√n for powers of n independent
+/// segments, half of that for amplitudes, and √2 times as much for the two lines that are real (Bendat &
+/// Piersol, Random Data, 4th ed. 2010, eq. 8.158). A sine that stands out of the noise scatters less. NaN for
+/// fewer than 17 independent segments: by the gamma distribution of their mean, ± 1.96 of what is stated
+/// around a power that was found would hold the truth in less than 92 %.
 pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
     let n = if averages.effective < FEWEST { f64::NAN } else { averages.effective };
     let order = if matches!(scaling, Scaling::Peak | Scaling::Rms) { 0.5 } else { 1.0 };
@@ -112,7 +114,8 @@ pub fn scatter(averages: &Averages, scaling: Scaling) -> Vec<f64> {
     (0..lines).map(|k| order * (2.0 / sides(k, averages.length) / n).sqrt()).collect()
 }
 
-/// Lines in a scaling from the |X|² of a channel. The line at 0 Hz of a record whose mean was taken out says nothing.
+/// Lines in a scaling from the |X|² of a channel. The line at 0 Hz of a record whose mean was taken out says
+/// nothing.
 fn finished(
     averages: &Averages,
     squared: &[f64],

@@ -1,8 +1,9 @@
 //! Frequency response functions from averaged spectra, with coherence and random error.
 //!
-//! With the averages A = ⟨|X|²⟩, B = ⟨|Y|²⟩ and C = ⟨conj(X) Y⟩ of excitation x and response y: H1 = C/A (not biased by noise in
-//! the response), H2 = B/conj(C) (not by noise in the excitation), Hv = √(B/A) with the phase of C, the geometric mean of both
-//! (Rocklin, Crowley & Vold 1985); γ² = |C|²/(AB). A response that lags has a negative phase.
+//! With the averages A = ⟨|X|²⟩, B = ⟨|Y|²⟩ and C = ⟨conj(X) Y⟩ of excitation x and response y: H1 = C/A (not
+//! biased by noise in the response), H2 = B/conj(C) (not by noise in the excitation), Hv = √(B/A) with the
+//! phase of C, the geometric mean of both (Rocklin, Crowley & Vold 1985); γ² = |C|²/(AB). A response that
+//! lags has a negative phase.
 
 use super::integrate;
 use super::welch::Averages;
@@ -15,8 +16,9 @@ use vibro_record::{Axis, Error, Finding, Frf, Meta, Result, Scaling, Spectrum, V
 /// Below this share of the largest line there is no excitation, only rounding.
 const NOTHING: f64 = 1e-28;
 
-/// From so many independent averages on, 1.96 standard deviations of the band hold the truth in 92 to 98 % of all cases. The
-/// deviation is an estimate of 2(n − 1) degrees of freedom: Student's t gives 81 % for two averages, 88 % for three.
+/// From so many independent averages on, 1.96 standard deviations of the band hold the truth in 92 to 98 % of
+/// all cases. The deviation is an estimate of 2(n − 1) degrees of freedom: Student's t gives 81 % for two
+/// averages, 88 % for three.
 const ENOUGH: f64 = 7.0;
 /// With fewer independent averages the coherence is near 1 whatever was measured.
 const LEAST: f64 = 2.0;
@@ -84,8 +86,8 @@ impl Transfer {
         self.findings.extend((silent > 0).then_some(found));
     }
 
-    /// The function of the response integrated `times` times (mobility becomes receptance with 1, accelerance with 2), from
-    /// `fmin` Hz on; uncertainties and coherence go along.
+    /// The function of the response integrated `times` times (mobility becomes receptance with 1, accelerance
+    /// with 2), from `fmin` Hz on; uncertainties and coherence go along.
     ///
     /// # Errors
     /// If `times` is not −2 to 2, or no line is left.
@@ -126,15 +128,16 @@ fn low(coherence: &[f64], lines: usize) -> Option<Finding> {
 
 /// The function from the first channel of `averages` to another.
 ///
-/// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)), and the phase's
-/// arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and B (1/n) and their covariance (γ²/n)
-/// from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is spent on H itself; n counts independent segments. Few
-/// averages (below 7) keep their standard deviations, with a finding: they are right, but are themselves known poorly. One alone has neither
-/// a coherence, which would always be 1, nor a standard deviation.
+/// Random errors as in Bendat & Piersol, Random Data (4th ed. 2010), table 9.6: ε(|H|) = √(1−γ²)/(|γ|√(2n)),
+/// and the phase's arcsin ε. The magnitude of Hv is a root of B/A without C, and with the variances of A and
+/// B (1/n) and their covariance (γ²/n) from the same table ε(|Hv|) = √(1−γ²)/√(2n). One of the n averages is
+/// spent on H itself; n counts independent segments. Few averages (below 7) keep their standard deviations,
+/// with a finding: they are right, but are themselves known poorly. One alone has neither a coherence, which
+/// would always be 1, nor a standard deviation.
 ///
 /// # Errors
-/// For fewer than two independent averages of segments that overlap, and if there are no products with that channel or the excitation is
-/// empty.
+/// For fewer than two independent averages of segments that overlap, and if there are no products with that
+/// channel or the excitation is empty.
 pub fn transfer(
     averages: &Averages,
     channel: usize,

@@ -1,7 +1,8 @@
 //! Averaged spectra of long records: P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70.
 //!
-//! Segments are read, transformed on all cores and averaged as they come, so that memory does not grow with the record. Sums
-//! are formed in a fixed order: the same record gives the same digits on any number of cores.
+//! Segments are read, transformed on all cores and averaged as they come, so that memory does not grow with
+//! the record. Sums are formed in a fixed order: the same record gives the same digits on any number of
+//! cores.
 
 use super::fft::{Transform, Workspace};
 use super::rails::Rails;
@@ -32,7 +33,8 @@ pub struct Welch {
 pub struct Averages {
     /// Number of segments.
     pub count: usize,
-    /// Number of independent segments that would scatter as little; fewer than `count` where segments overlap.
+    /// Number of independent segments that would scatter as little; fewer than `count` where segments
+    /// overlap.
     pub effective: f64,
     /// Samples of a segment.
     pub length: usize,
@@ -68,11 +70,12 @@ impl Averages {
 }
 
 impl Welch {
-    /// Averages over all segments of all channels of `traces`; with `products` against the first of them, too. `progress`
-    /// gets the number of samples of each channel that have been read.
+    /// Averages over all segments of all channels of `traces`; with `products` against the first of them,
+    /// too. `progress` gets the number of samples of each channel that have been read.
     ///
     /// # Errors
-    /// If the record is shorter than a segment, a sample is missing or a channel is constant, or the file cannot be read.
+    /// If the record is shorter than a segment, a sample is missing or a channel is constant, or the file
+    /// cannot be read.
     pub fn average(
         &self,
         traces: &mut Traces,
@@ -201,8 +204,9 @@ impl Sums {
     }
 }
 
-/// Independent segments that scatter as little as `count` overlapping ones: count/(1 + 2 Σⱼ (1 − j/K) ρⱼ), ρⱼ the squared
-/// correlation of the windows of segments that are j apart (Welch 1967, section "Application to Gaussian noise").
+/// Independent segments that scatter as little as `count` overlapping ones: count/(1 + 2 Σⱼ (1 − j/K) ρⱼ), ρⱼ
+/// the squared correlation of the windows of segments that are j apart (Welch 1967, section "Application to
+/// Gaussian noise").
 fn effective(weights: &[f64], hop: usize, count: usize) -> f64 {
     let squares: f64 = weights.iter().map(|w| w * w).sum();
     let mut inflation = 1.0;

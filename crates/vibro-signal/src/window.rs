@@ -1,7 +1,7 @@
 //! Windows: samples, and the shape of a spectral line.
 //!
-//! All windows here are sums of cosines, w(n) = Σ (−1)ᵏ aₖ cos(2πkn/N), in the periodic form that an FFT analyser uses;
-//! their coefficients and sums belong to [`Window`].
+//! All windows here are sums of cosines, w(n) = Σ (−1)ᵏ aₖ cos(2πkn/N), in the periodic form that an FFT
+//! analyser uses; their coefficients and sums belong to [`Window`].
 
 use std::f64::consts::PI;
 use vibro_record::Window;
@@ -23,7 +23,8 @@ pub fn samples(window: Window, n: usize) -> Vec<f64> {
 /// The sign alternates from line to line of the main lobe as the phases of a DFT do; W(0) = 1.
 pub fn line_shape(window: Window, offset: f64) -> f64 {
     let a = window.coefficients();
-    // Each cosine term is half a Dirichlet kernel at δ − k and half at δ + k; (−1)ᵏ of the window cancels (−1)ᵏ of the shift.
+    // Each cosine term is half a Dirichlet kernel at δ − k and half at δ + k; (−1)ᵏ of the window cancels
+    // (−1)ᵏ of the shift.
     let kernel = |k: f64| f64::midpoint(sinc(offset - k), sinc(offset + k));
     a.iter().enumerate().map(|(k, ak)| ak * kernel(k as f64)).sum::<f64>() / a[0]
 }
@@ -37,8 +38,8 @@ fn sign(k: usize) -> f64 {
     if k.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// Correlation of white noise in two lines that are `distance` apart, with the sign that the main lobe's alternating
-/// phases give it: 1, 2/3, 1/6, 0 … for Hann.
+/// Correlation of white noise in two lines that are `distance` apart, with the sign that the main lobe's
+/// alternating phases give it: 1, 2/3, 1/6, 0 … for Hann.
 pub fn noise_correlation(window: Window, distance: usize) -> f64 {
     let a = window.coefficients();
     // Line weights of the window over unwindowed lines: a₀ in the middle, (−1)ᵏ aₖ/2 at ±k.

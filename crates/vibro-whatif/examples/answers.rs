@@ -1,5 +1,6 @@
-//! Answers what a page would ask, for the comparison with it: each line of standard input has the 16 numbers of `vibro_whatif`, behind `response` or `motion`;
-//! each line of standard output has the bits of the answer's numbers.
+//! Answers what a page would ask, for the comparison with it: each line of standard input has the 16 numbers
+//! of `vibro_whatif`, behind `response` or `motion`; each line of standard output has the bits of the
+//! answer's numbers.
 
 use vibro_model::Rig;
 use vibro_whatif::Scene;

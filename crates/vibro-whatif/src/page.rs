@@ -1,4 +1,5 @@
-//! The functions by which a page calls the model: it writes numbers at [`input`], calls one, and reads so many at [`output`].
+//! The functions by which a page calls the model: it writes numbers at [`input`], calls one, and reads so
+//! many at [`output`].
 #![allow(
     unsafe_code,
     reason = "a name by which a page calls a function is an unsafe attribute; nothing else is unsafe here"
@@ -20,7 +21,8 @@ fn answered(answer: impl Fn(&Scene, &[f64; 16]) -> Vec<f64>) -> usize {
     output.len()
 }
 
-/// Place of 16 numbers: m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, and what is asked from the eleventh on.
+/// Place of 16 numbers: m1, m2, k1, k2, c1, c2, gap, restitution, force, stiffness, and what is asked from
+/// the eleventh on.
 #[unsafe(no_mangle)]
 pub extern "C" fn input() -> *mut f64 {
     INPUT.lock().map_or(std::ptr::null_mut(), |mut input| input.as_mut_ptr())
@@ -32,7 +34,8 @@ pub extern "C" fn output() -> *const f64 {
     OUTPUT.lock().map_or(std::ptr::null(), |output| output.as_ptr())
 }
 
-/// The response from the eleventh number to the twelfth in Hz, at so many frequencies as the thirteenth says; gives the count of numbers.
+/// The response from the eleventh number to the twelfth in Hz, at so many frequencies as the thirteenth says;
+/// gives the count of numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn response() -> usize {
     answered(|scene, input| scene.response(input[10], input[11], input[12] as usize))

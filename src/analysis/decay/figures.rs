@@ -9,7 +9,8 @@ use std::fmt::Write as _;
 /// Points that a line keeps: more than a print can show.
 const SHOWN: usize = 4000;
 
-/// The part that was used with the sum of its modes, what they leave, and the strongest mode's damping ratio over its amplitude.
+/// The part that was used with the sum of its modes, what they leave, and the strongest mode's damping ratio
+/// over its amplitude.
 pub fn decay(title: &str, meta: &Meta, found: &DecayResult) -> Figure {
     let [times, record, modes] = &found.curves;
     let unit = meta.unit.symbol();

@@ -69,7 +69,8 @@ fn average(name: &str, drill: &Drill) -> Figure {
     ))
 }
 
-/// Velocities before and after the impacts over `x`, each group with its own markers; and the number of impacts marked.
+/// Velocities before and after the impacts over `x`, each group with its own markers; and the number of
+/// impacts marked.
 fn marks(
     mut plot: Plot,
     drill: &Drill,

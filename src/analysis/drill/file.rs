@@ -16,8 +16,8 @@ pub(super) struct Channels {
 }
 
 impl Channels {
-    /// Reads channels; missing values are taken, they are drop-outs. `progress` hears after every block how many samples were read, of
-    /// how many.
+    /// Reads channels; missing values are taken, they are drop-outs. `progress` hears after every block how
+    /// many samples were read, of how many.
     ///
     /// # Errors
     /// If the file cannot be read, a channel does not exist or is named twice, or has another rate.

@@ -67,8 +67,8 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     })
 }
 
-/// The fitted response at its lines and, where these are few, between them: the modes, and a straight line through what else was fitted. What a
-/// window adds to the modes is known at the lines only.
+/// The fitted response at its lines and, where these are few, between them: the modes, and a straight line
+/// through what else was fitted. What a window adds to the modes is known at the lines only.
 fn curve(measured: &Measured, modes: &[Mode], windowed: bool) -> Vec<(f64, Complex64)> {
     let fitted = modes.first().map(|mode| mode.fitted.as_slice()).unwrap_or_default();
     let at_lines = fitted.iter().map(|(f, re, im)| (*f, Complex64::new(*re, *im)));
@@ -105,7 +105,8 @@ pub(crate) fn coherence_plot(f: &[f64], coherence: &[f64], ink: Ink) -> Plot {
         .with(Series::line("", f, coherence).ink(ink).stroke(Stroke::Solid))
 }
 
-/// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below it only fills the frame.
+/// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below it only
+/// fills the frame.
 pub(crate) fn phase_plot(
     f: &[f64],
     values: impl Iterator<Item = Complex64>,

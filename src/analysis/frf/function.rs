@@ -38,8 +38,8 @@ impl Function {
         Function::of_response(&response)
     }
 
-    /// The receptance of a response, its points in the order of frequency, those on both sides of a jump and those without an
-    /// uncertainty left out; a magnitude where its phase is not
+    /// The receptance of a response, its points in the order of frequency, those on both sides of a jump and
+    /// those without an uncertainty left out; a magnitude where its phase is not
     /// known.
     ///
     /// # Errors
@@ -89,8 +89,8 @@ impl Function {
     }
 }
 
-/// Uncertainties none of which lies below the median of the five around it: each comes from a few blocks, and one that is small by chance would
-/// carry the fit.
+/// Uncertainties none of which lies below the median of the five around it: each comes from a few blocks, and
+/// one that is small by chance would carry the fit.
 fn pooled(std: &[f64]) -> Vec<f64> {
     let around = |i: usize| {
         let mut near = std[i.saturating_sub(2)..(i + 3).min(std.len())].to_vec();

@@ -1,4 +1,5 @@
-//! Impacts: the trace with its impacts marked, a histogram of the intervals, and each interval over the one before.
+//! Impacts: the trace with its impacts marked, a histogram of the intervals, and each interval over the one
+//! before.
 
 use crate::measure::impacts::Impacts;
 use crate::record::Trace;

@@ -27,7 +27,8 @@ pub struct Keys {
     pub from: f64,
     /// Upper end, in the same unit
     pub to: f64,
-    /// Excitation frequency in Hz; over the frequency, where the search for motions starts [default: the middle]
+    /// Excitation frequency in Hz; over the frequency, where the search for motions starts [default: the
+    /// middle]
     pub frequency: Option<f64>,
     /// Impacts in a period
     #[cfg_attr(feature = "cli", arg(default_value_t = 1))]

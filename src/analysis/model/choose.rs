@@ -36,8 +36,8 @@ pub struct Keys {
     /// Number of frequencies of the range
     #[cfg_attr(feature = "cli", arg(default_value_t = 100))]
     pub points: usize,
-    /// Observable: fundamental, the amplitude of both masses at the excitation frequency; peak, half of peak-to-peak; impact-speed;
-    /// impulse
+    /// Observable: fundamental, the amplitude of both masses at the excitation frequency; peak, half of
+    /// peak-to-peak; impact-speed; impulse
     #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
     /// Relative change of the answer that does not matter
@@ -202,7 +202,8 @@ fn percent(part: Option<f64>) -> Cell {
     part.map(|p| 100.0 * p).into()
 }
 
-/// Adds the columns of an answer to a table that has a row for each of these: one for both masses, or one for each.
+/// Adds the columns of an answer to a table that has a row for each of these: one for both masses, or one for
+/// each.
 fn answered(mut table: Table, question: &Question, answers: impl Iterator<Item = Option<[f64; 2]>>) -> Table {
     let heads: &[&str] =
         if question.observable.is_of_impacts() { &["answer"] } else { &["answer, x1", "answer, x2"] };

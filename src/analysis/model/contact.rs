@@ -27,8 +27,8 @@ pub(super) const HELP: &str = "Contact law: restitution, kelvin-voigt, hertz, hu
 /// A motion, whatever its law.
 pub(super) type Moving = Box<dyn Motion>;
 
-/// The law by which the masses of a scene meet, `None` for impacts. A spring and a damper without a stated damping rebound with the rig's
-/// restitution.
+/// The law by which the masses of a scene meet, `None` for impacts. A spring and a damper without a stated
+/// damping rebound with the rig's restitution.
 fn meeting(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     let keys = scene.contact.unwrap_or_default();
     // Keys of `[contact]` that the law has a place for, and the exponent that it has by itself.
@@ -70,7 +70,8 @@ fn meeting(scene: &Scene, wanted: Contact) -> Result<Option<Law>> {
     })
 }
 
-/// Makes motions of a scene from an excitation, a state and a phase (rad). Impacts below `grazing` (m/s) count as such, where they are at once.
+/// Makes motions of a scene from an excitation, a state and a phase (rad). Impacts below `grazing` (m/s)
+/// count as such, where they are at once.
 ///
 /// # Errors
 /// If a number of the contact is missing that nothing else gives, or is impossible.

@@ -16,7 +16,8 @@ pub struct Keys {
     /// The scene.
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
-    /// Parameter across: one of m1 m2 k1 k2 c1 c2 gap restitution frequency force impulse width, e.g. frequency:3:14:120
+    /// Parameter across: one of m1 m2 k1 k2 c1 c2 gap restitution frequency force impulse width, e.g.
+    /// frequency:3:14:120
     #[cfg_attr(feature = "cli", arg(value_name = "NAME:LOW:HIGH:N"))]
     pub x: String,
     /// Parameter upwards, as x

@@ -1,4 +1,5 @@
-//! All motions with one impact a period at one frequency, and those with several that are found: `vibro model orbit`.
+//! All motions with one impact a period at one frequency, and those with several that are found: `vibro model
+//! orbit`.
 
 use super::{Driven, Judged, SceneKeys, check_gap_std, figures, pattern};
 use crate::analysis::Answer;

@@ -22,7 +22,8 @@ pub(super) fn sine(excitation: &Excitation) -> Result<Sine> {
     }
 }
 
-/// The keys of a motion: those of one impact a period, and its impacts; `gap_std` is the standard uncertainty of the gap in m.
+/// The keys of a motion: those of one impact a period, and its impacts; `gap_std` is the standard uncertainty
+/// of the gap in m.
 pub(super) fn told(orbit: &PeriodicOrbit, gap_std: Option<f64>) -> Value {
     let v = &orbit.validity;
     let mut told = json!({

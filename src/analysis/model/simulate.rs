@@ -37,7 +37,8 @@ pub struct Keys {
         arg(long, value_name = "X1,V1,X2,V2", value_delimiter = ',', allow_hyphen_values = true)
     )]
     pub initial: Vec<f64>,
-    /// Phase of the excitation's cycle at the start, in rad: 0 is the crest of a sine and the beginning of a pulse
+    /// Phase of the excitation's cycle at the start, in rad: 0 is the crest of a sine and the beginning of a
+    /// pulse
     #[cfg_attr(feature = "cli", arg(default_value_t = 0.0))]
     pub phase: f64,
     /// Approach speed in m/s below which an impact counts as grazing

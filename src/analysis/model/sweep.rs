@@ -51,8 +51,8 @@ pub struct Keys {
     /// Cycles read at each step
     #[cfg_attr(feature = "cli", arg(default_value_t = 12))]
     pub measure: u32,
-    /// Observable of both masses: fundamental, the amplitude at the excitation frequency; peak, half of peak-to-peak; rms, a running RMS
-    /// through a low-pass of 10 rad/s
+    /// Observable of both masses: fundamental, the amplitude at the excitation frequency; peak, half of
+    /// peak-to-peak; rms, a running RMS through a low-pass of 10 rad/s
     #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Observable>, default_value = "fundamental"))]
     pub observable: Observable,
 }

@@ -15,7 +15,8 @@ const MARKERS: [Marker; 6] = {
 /// Crosses of what failed, in turn.
 const CROSSES: [Marker; 3] = [Marker::Cross, Marker::Saltire, Marker::Star];
 
-/// Methods of other kinds that stand in several charts, those last that only some builds have: each has one colour and form in all of them.
+/// Methods of other kinds that stand in several charts, those last that only some builds have: each has one
+/// colour and form in all of them.
 const OFTEN: [&str; 10] = [
     "Euler loop",
     "RK4 loop",
@@ -47,7 +48,8 @@ const ROW: f64 = 0.05;
 /// Distance within which points of a line share their letters, in parts of the width and of the height.
 const SHARED: [f64; 2] = [0.025, 0.03];
 
-/// What of the plane is seen: decades of time in s, and of the error, and over it rows of crosses, one for each method that failed.
+/// What of the plane is seen: decades of time in s, and of the error, and over it rows of crosses, one for
+/// each method that failed.
 struct View {
     times: [f64; 2],
     floor: f64,
@@ -79,8 +81,9 @@ impl View {
     }
 }
 
-/// Error over time of every method of a scene, one line a method; what failed stands as crosses at the upper edge, each method in a
-/// row of its own. Points of models are their settings; those of estimators are kinds of records, which letters name.
+/// Error over time of every method of a scene, one line a method; what failed stands as crosses at the upper
+/// edge, each method in a row of its own. Points of models are their settings; those of estimators are kinds
+/// of records, which letters name.
 pub fn chart(scene: &Scene) -> Figure {
     let mut lines: Vec<&[Measured]> = scene.methods.chunk_by(|a, b| a.method == b.method).collect();
     lines.sort_by_key(|line| group(&line[0]));
@@ -100,7 +103,8 @@ pub fn chart(scene: &Scene) -> Figure {
         let (x, y) = stairs(scene, power(view.edge), last);
         plot = plot.with(Series::line("Pareto front", x, y).ink(Ink::Grey).stroke(Stroke::Dotted));
     }
-    // This library's methods are black, the others coloured, other programs dashed: six colours, and another form when they come round.
+    // This library's methods are black, the others coloured, other programs dashed: six colours, and another
+    // form when they come round.
     let (mut own, mut others) = (0, OFTEN.len());
     let (mut crosses, mut named) = (Vec::new(), Vec::new());
     let mut last_group = None;
@@ -224,7 +228,8 @@ fn error(m: &Measured) -> Option<f64> {
     m.error.filter(|e| e.is_finite()).map(|e| e.abs().max(1e-17))
 }
 
-/// The border of what has been reached: down from the upper edge at the fastest, along to the most accurate, and on.
+/// The border of what has been reached: down from the upper edge at the fastest, along to the most accurate,
+/// and on.
 fn stairs(scene: &Scene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
     let on = scene.methods.iter().filter(|m| m.front);
     let mut front: Vec<(f64, f64)> = on.filter_map(|m| Some((seconds(m), error(m)?))).collect();
@@ -357,7 +362,8 @@ mod tests {
         plot.series.iter().filter_map(form).collect()
     }
 
-    /// As many as a chart may have: all that stand in several charts, four of its own, two added, two of ours.
+    /// As many as a chart may have: all that stand in several charts, four of its own, two added, two of
+    /// ours.
     #[test]
     fn what_failed_is_told_apart() {
         let own = [("exact", true), ("closed form", true)];

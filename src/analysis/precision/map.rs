@@ -5,7 +5,8 @@ use crate::report::colour::{BLACK, Rgb, SERIES, WHITE};
 use crate::report::{Figure, Grid, Kind};
 use crate::units::notation::typeset;
 
-/// Outcomes with their letters, colours and how much white is in them; the letters tell them apart without colour.
+/// Outcomes with their letters, colours and how much white is in them; the letters tell them apart without
+/// colour.
 pub const OUTCOMES: [(Outcome, &str, Rgb, f64); 6] = [
     (Outcome::Right, "+", SERIES[2], 0.45),
     (Outcome::Refused, "–", SERIES[5], 0.45),

@@ -39,7 +39,8 @@ pub fn pulse(title: &str, result: &PulseResult) -> Option<Figure> {
         let (t, v): (Vec<f64>, Vec<f64>) =
             picture.samples.iter().filter(|s| s.2 == fitted).map(|s| (s.0 - start, s.1)).unzip();
         if !t.is_empty() {
-            // Markers lie over lines; many samples are a line, under the models, with gaps where samples are left out.
+            // Markers lie over lines; many samples are a line, under the models, with gaps where samples are
+            // left out.
             let series = if fitted && dense {
                 let gaps = |s: &(f64, f64, bool)| (s.0 - start, if s.2 { s.1 } else { f64::NAN });
                 let (t, v): (Vec<f64>, Vec<f64>) = picture.samples.iter().map(gaps).unzip();

@@ -28,7 +28,8 @@ pub fn lines(title: &str, result: &SpectralResult) -> Figure {
 /// Lines of which more are not seen in print: a curve through all would fill the frame.
 const LINES: usize = 4000;
 
-/// The curve, or of very many lines the largest of as many as print shows side by side; and the sines that were fitted.
+/// The curve, or of very many lines the largest of as many as print shows side by side; and the sines that
+/// were fitted.
 fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &SpectralResult) -> Figure {
     let together = f.len().div_ceil(LINES).max(1);
     let on_line = |at: f64| {

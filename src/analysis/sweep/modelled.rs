@@ -23,7 +23,8 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
         return Ok(None);
     }
     let force = campaign.excitation.and_then(|e| e.force);
-    // A curved contact has no stiffness in N/m, and a damper that is stated leaves no restitution to be found.
+    // A curved contact has no stiffness in N/m, and a damper that is stated leaves no restitution to be
+    // found.
     let straight = campaign.contact.filter(|c| c.exponent.is_none_or(|n| n == 1.0) && c.damping.is_none());
     let contact = straight.and_then(|c| c.stiffness);
     crate::compare::fit(rig, force, contact, predicting(campaign).pace(), responses, &campaign.fit).map(Some)
@@ -79,7 +80,8 @@ fn shown(campaign: &Campaign, responses: &[Response], overlay: &Overlay, fit: Op
 /// Overlays the responses of a campaign on its rig and fits the parameters that it asks for.
 ///
 /// # Errors
-/// If what was found cannot be written as JSON. Data that allow no overlay or no fit are no reason to give up the rest.
+/// If what was found cannot be written as JSON. Data that allow no overlay or no fit are no reason to give up
+/// the rest.
 pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<Table>> {
     let campaign = job.campaign;
     let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());

@@ -7,7 +7,8 @@ use crate::units::notation::significant;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// Part of a frequency by which two steps at one setting of the generator differ at most: twice the 50 ppm of a quartz.
+/// Part of a frequency by which two steps at one setting of the generator differ at most: twice the 50 ppm of
+/// a quartz.
 const SAME: f64 = 1e-4;
 
 /// Whether two frequencies are one setting of the generator.
@@ -15,11 +16,12 @@ pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-/// Steps a turn, where the order of names is lost: drawn at random they turn at two steps of three, and a sweep that goes up and down several times
-/// has branches of many steps.
+/// Steps a turn, where the order of names is lost: drawn at random they turn at two steps of three, and a
+/// sweep that goes up and down several times has branches of many steps.
 const STEPS_A_TURN: usize = 4;
 
-/// The files in the order of their frequencies, where the order of their names turns at more than one step of four.
+/// The files in the order of their frequencies, where the order of their names turns at more than one step of
+/// four.
 pub(super) fn sorted(sweep: &Sweep, response: &Response, files: &[PathBuf]) -> Option<Vec<PathBuf>> {
     let frequency = |k: usize| response.points[k].excitation;
     let mut order: Vec<usize> = (0..response.points.len()).collect();

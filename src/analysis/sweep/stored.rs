@@ -13,11 +13,13 @@ pub(crate) const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velo
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Stored {
-    /// Unit of the stored responses [default: what the files say, else the SI unit of the quantity, m where none is stated]
+    /// Unit of the stored responses [default: what the files say, else the SI unit of the quantity, m where
+    /// none is stated]
     pub unit: Option<String>,
     /// Factor on the stored responses
     pub calibration: Option<f64>,
-    /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown [default: hann, assumed]
+    /// Window of the analyser: hann, rectangular, hamming, blackman, blackman-harris, flat-top, unknown
+    /// [default: hann, assumed]
     pub window: Option<String>,
     /// Scaling of the spectra: peak or rms [default: peak, assumed]
     #[cfg_attr(feature = "cli", arg(value_parser = clap::builder::TypedValueParser::try_map(
@@ -32,7 +34,8 @@ impl Stored {
     /// Tells a reader.
     ///
     /// # Errors
-    /// If a name is not known, a number is impossible, or the unit is one of another quantity than what was stored.
+    /// If a name is not known, a number is impossible, or the unit is one of another quantity than what was
+    /// stored.
     pub fn apply(&self, reader: &mut SweepReader) -> Result<()> {
         if let Some(text) = &self.unit {
             let unit = Unit::parse_or_opaque(text);

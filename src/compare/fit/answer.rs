@@ -61,7 +61,8 @@ pub struct LeftOut {
     pub faint: usize,
     /// The simulated sweep shows another pattern than one impact a cycle or none.
     pub other_motion: usize,
-    /// Outliers: five standard deviations, and five times the median scatter, from the motion of the simulated sweep.
+    /// Outliers: five standard deviations, and five times the median scatter, from the motion of the
+    /// simulated sweep.
     pub far: usize,
     /// Their motion changed with the parameters from round to round.
     pub wavering: usize,
@@ -91,8 +92,8 @@ pub struct Fit {
     pub n: usize,
     /// Amplitudes left out.
     pub left_out: LeftOut,
-    /// Sum of squared residuals over degrees of freedom, by the stated uncertainties: about 1 where model and uncertainties are right;
-    /// NaN (null) without degrees of freedom.
+    /// Sum of squared residuals over degrees of freedom, by the stated uncertainties: about 1 where model
+    /// and uncertainties are right; NaN (null) without degrees of freedom.
     pub reduced_chi_squared: f64,
     /// Factor on the standard deviations of the data, by which the residuals are larger than stated.
     pub widened: f64,
@@ -208,7 +209,8 @@ impl Answer<'_> {
             identifiable,
             reason,
             prior,
-            // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the model is linear.
+            // A prior adds 1/s² to the reciprocal of the variance that all else leaves, exactly where the
+            // model is linear.
             rests_on_prior: prior.is_some_and(|[_, s]| std.powi(2) > 0.5 * s * s),
         }
     }
@@ -221,18 +223,21 @@ impl Answer<'_> {
     }
 }
 
-/// A prior and the points contradict each other by so many standard uncertainties of both: chance does so in one of 1.7 million cases.
+/// A prior and the points contradict each other by so many standard uncertainties of both: chance does so in
+/// one of 1.7 million cases.
 const APART: f64 = 5.0;
 /// Smallest part of a prior's variance that the points can have taken away and be told from rounding.
 const TAKEN: f64 = 0.01;
-/// Standard deviations by which the points must pull a parameter over a bound to contradict it: chance does so in one of 700 cases.
+/// Standard deviations by which the points must pull a parameter over a bound to contradict it: chance does
+/// so in one of 700 cases.
 const PULLED: f64 = 3.0;
-/// One standard uncertainty raises the sum of squares by 1: a profile that falls by as much has found another answer.
+/// One standard uncertainty raises the sum of squares by 1: a profile that falls by as much has found another
+/// answer.
 const FALL: f64 = 1.0;
 /// Part of the amplitudes that may be outliers, or lost to a long contact, before the answer is in doubt.
 const LOST: f64 = 0.1;
-/// χ²/ν beyond which residuals say more of the model than of noise: what it lacks moves parameters by more than is left of it in the
-/// residuals, which the parameters take up as far as they can.
+/// χ²/ν beyond which residuals say more of the model than of noise: what it lacks moves parameters by more
+/// than is left of it in the residuals, which the parameters take up as far as they can.
 const POOR: f64 = 1.25;
 /// A force that differs by more than this part is another one: a load cell is calibrated to 1 or 2 %.
 const OTHER: f64 = 0.05;
@@ -268,8 +273,9 @@ impl Answer<'_> {
             let (name, unit) = (unknown.parameter.name(), unknown.parameter.unit());
             let pulled = |doubt: Finding, deviations| doubt.about(name).number("deviations", deviations);
             if let Some([known, std]) = unknown.prior {
-                // The answer lies (s² − p²)/s² of the way from the prior, of uncertainty s, to what the points alone say, p being its own:
-                // over √(s² − p²), that is the distance of both over their uncertainties.
+                // The answer lies (s² − p²)/s² of the way from the prior, of uncertainty s, to what the
+                // points alone say, p being its own: over √(s² − p²), that is the distance of
+                // both over their uncertainties.
                 let taken = (std * std - self.std(i).powi(2)).max(TAKEN * std * std).sqrt();
                 let deviations = (setting.get(unknown.parameter) - known).abs() / taken;
                 if deviations > APART {

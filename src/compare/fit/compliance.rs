@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
 
-/// Rounds of correction and fit: with 2.5 % of the period in contact, the most that can be corrected, three leave 2e-5 of the change.
+/// Rounds of correction and fit: with 2.5 % of the period in contact, the most that can be corrected, three
+/// leave 2e-5 of the change.
 const ROUNDS: usize = 8;
 /// Part of a standard deviation by which the corrections then still change at most.
 const STILL: f64 = 0.1;
@@ -22,15 +23,17 @@ pub struct Corrected {
 
 /// The points of an answer without the compliance of a contact of `stiffness` (N/m).
 ///
-/// Each amplitude of impacts is divided by what the contact makes of it in the rig found, and the rig found again from the points so
-/// corrected, in turn until both stay. With the part s of the period in contact, a change of the rig by δ changes the correction by some
-/// sδ: each round leaves about s of the change that was left.
+/// Each amplitude of impacts is divided by what the contact makes of it in the rig found, and the rig found
+/// again from the points so corrected, in turn until both stay. With the part s of the period in contact, a
+/// change of the rig by δ changes the correction by some sδ: each round leaves about s of the change that was
+/// left.
 ///
 /// # Errors
 /// If too few points are left.
 pub fn corrected(answer: &Converged<'_>, stiffness: f64) -> Result<Corrected> {
     let from = |setting: &Setting| corrected_from(answer, setting, stiffness);
-    // A rigid answer may be a rig whose contacts last too long to be corrected: then from the rig as it was stated.
+    // A rigid answer may be a rig whose contacts last too long to be corrected: then from the rig as it was
+    // stated.
     let stated = || from(&answer.least.problem.base);
     match from(&answer.setting()) {
         Ok(found) if found.lost == 0 => Ok(found),
@@ -53,8 +56,8 @@ fn corrected_from(answer: &Converged<'_>, from: &Setting, stiffness: f64) -> Res
     Ok(now)
 }
 
-/// The points of the problem without what the contact makes of them in this setting. The motions are those of `latest` points: uncorrected
-/// ones may be outliers for want of the correction.
+/// The points of the problem without what the contact makes of them in this setting. The motions are those of
+/// `latest` points: uncorrected ones may be outliers for want of the correction.
 fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f64) -> Result<Corrected> {
     let kinds = assigned(latest, setting, latest.pace)?.kinds;
     let (mut data, mut lost) = (problem.data.clone(), 0);
@@ -90,8 +93,8 @@ fn change(before: &Data, after: &Data) -> f64 {
     readings(before).iter().zip(&readings(after)).map(one).fold(0.0, f64::max)
 }
 
-/// What the compliance makes of the amplitudes of both masses, as factors, and the part (ωt)² of each that a correction of first order in the
-/// time t in contact leaves; `None` where the correction does not hold.
+/// What the compliance makes of the amplitudes of both masses, as factors, and the part (ωt)² of each that a
+/// correction of first order in the time t in contact leaves; `None` where the correction does not hold.
 fn factors(setting: &Setting, stiffness: f64, force: f64, frequency: f64) -> Option<([f64; 2], f64)> {
     let (rig, sine) = (&setting.rig, Sine { force, frequency });
     let compliance = Compliance::new(rig, stiffness, None).ok()?;

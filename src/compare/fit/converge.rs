@@ -10,11 +10,13 @@ use crate::measure::residuals::{Whiteness, student};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Rounds before steps whose motion still changes are left out: near a fold each set of parameters has another motion there.
+/// Rounds before steps whose motion still changes are left out: near a fold each set of parameters has
+/// another motion there.
 const ROUNDS: usize = 3;
 /// Rounds in all.
 const MOST: usize = 6;
-/// Pace of simulated sweeps on the way: parameters that are wrong by more than a disturbance leaves need no long wait for it.
+/// Pace of simulated sweeps on the way: parameters that are wrong by more than a disturbance leaves need no
+/// long wait for it.
 const BRIEF: Pace = Pace { settle: 60, measure: 36 };
 /// Normal deviate that χ²/ν exceeds by chance in one of a thousand cases.
 const CHANCE: f64 = 3.09;
@@ -40,8 +42,8 @@ pub struct Converged<'a> {
     pub far: usize,
     /// Whether the motions stayed the same in the last round.
     pub agreed: bool,
-    /// How far all points lie from a simulated sweep, or from the motion they are taken for, and the parameters from their priors: the less
-    /// the better.
+    /// How far all points lie from a simulated sweep, or from the motion they are taken for, and the
+    /// parameters from their priors: the less the better.
     pub unexplained: f64,
 }
 
@@ -54,7 +56,8 @@ impl Converged<'_> {
 impl<'a> Problem<'a> {
     /// Settles from the coordinates `start` on.
     ///
-    /// At first outliers pull little ([`super::search`]), since the motions of wrong parameters are wrong, too; in the end all count as stated.
+    /// At first outliers pull little ([`super::search`]), since the motions of wrong parameters are wrong,
+    /// too; in the end all count as stated.
     ///
     /// # Errors
     /// If a round leaves fewer points than parameters.
@@ -98,7 +101,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The least sum of squares with its motions, from `start` on; weights and scale from the parameters found, twice.
+    /// The least sum of squares with its motions, from `start` on; weights and scale from the parameters
+    /// found, twice.
     ///
     /// # Errors
     /// If there are fewer points than parameters.
@@ -121,7 +125,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// How far all points lie from what was simulated, or nearer from the motion they are taken for: Σ min (z², 1) over all κ.
+    /// How far all points lie from what was simulated, or nearer from the motion they are taken for: Σ min
+    /// (z², 1) over all κ.
     fn left_over(&self, u: &[f64], motions: &Motions) -> f64 {
         let (data, setting) = (self.data, self.setting(u));
         let one = |((step, kind), simulated): ((&Step, &Option<Kind>), &Option<[f64; 2]>)| {
@@ -173,9 +178,9 @@ pub struct Motions {
     pub simulated: Vec<Option<[f64; 2]>>,
 }
 
-/// The motion of each step, as a sweep simulated through all steps of its sequence reaches it; `None` where that is none of the closed
-/// form. Where the measured amplitudes lie nearer to another stable motion, it is that one: on which of several a sweep settles may hang on
-/// less than can be known.
+/// The motion of each step, as a sweep simulated through all steps of its sequence reaches it; `None` where
+/// that is none of the closed form. Where the measured amplitudes lie nearer to another stable motion, it is
+/// that one: on which of several a sweep settles may hang on less than can be known.
 ///
 /// # Errors
 /// If the rig is impossible.
@@ -190,7 +195,8 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
             let history = simulated.as_ref().and_then(|simulated| reached(simulated, &motions));
             let seen = motions.iter().filter(|m| m.is_seen());
             let nearest = seen.min_by(|a, b| away(step, a).total_cmp(&away(step, b)));
-            // A mass that moves is not free; of two impacting motions the closed form of a fit is the upper one.
+            // A mass that moves is not free; of two impacting motions the closed form of a fit is the upper
+            // one.
             let upper = motions.first().filter(|m| m.kind == Kind::Impacting);
             let kind = history.and(nearest).map(|m| m.kind).filter(|kind| match kind {
                 Kind::Free => step.readings[1].as_ref().is_none_or(|r| r.upper_limit.is_some()),
@@ -216,7 +222,8 @@ fn away(step: &Step, motion: &Motion) -> f64 {
     step.clear().map(moves).sum::<f64>() + step.faint().map(above).sum::<f64>()
 }
 
-/// A step farther from its motion than so many standard deviations is an outlier: noise alone takes one of a million there.
+/// A step farther from its motion than so many standard deviations is an outlier: noise alone takes one of a
+/// million there.
 const FAR: f64 = 5.0;
 /// Median of the larger of two absolute normal deviates: erf² (x/√2) = 1/2.
 const MEDIAN: f64 = 1.052;
@@ -225,8 +232,8 @@ const OUTLIERS: f64 = 0.25;
 
 /// Motions without those of outliers: a point of another motion, or of a sweep that had not settled.
 ///
-/// They are left out one after the other, the farthest first, since it moves what the points share. Where the points scatter more than they
-/// should, by the median, that counts for a standard deviation.
+/// They are left out one after the other, the farthest first, since it moves what the points share. Where the
+/// points scatter more than they should, by the median, that counts for a standard deviation.
 pub fn without_outliers(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
     for _ in 0..(OUTLIERS * kinds.len() as f64) as usize {
         let mut problem = Problem::new(data, setting, Vec::new()).of(kinds.clone());

@@ -16,12 +16,14 @@ pub struct Reading {
     pub std: f64,
     /// Upper limit of an amplitude below the noise floor, in m.
     pub upper_limit: Option<f64>,
-    /// Factor by which the contact's compliance changed the amplitude; amplitude and uncertainty are those divided by it.
+    /// Factor by which the contact's compliance changed the amplitude; amplitude and uncertainty are those
+    /// divided by it.
     pub compliance: f64,
 }
 
 impl Reading {
-    /// ln (measured/predicted), e^20 at most: a motion that shows nothing, or does not exist, is as far as can be.
+    /// ln (measured/predicted), e^20 at most: a motion that shows nothing, or does not exist, is as far as
+    /// can be.
     pub fn log_ratio(&self, predicted: f64) -> f64 {
         const FARTHEST: f64 = 20.0;
         let ratio = (self.amplitude / predicted).ln();
@@ -78,11 +80,13 @@ pub struct Data {
     pub pace: Pace,
 }
 
-/// Part of an amplitude that stands for its standard uncertainty where none is known. It is only a weight: the residuals scale it.
+/// Part of an amplitude that stands for its standard uncertainty where none is known. It is only a weight:
+/// the residuals scale it.
 pub(crate) const GUESS: f64 = 1e-2;
 
 impl Data {
-    /// The points of displacement responses that name their mass and direction, their calibration exact. `force` in N is the stated one.
+    /// The points of displacement responses that name their mass and direction, their calibration exact.
+    /// `force` in N is the stated one.
     ///
     /// # Errors
     /// If there is no such response, or no force is known.
@@ -138,8 +142,8 @@ impl Data {
         self.steps.iter().flat_map(Step::clear).count()
     }
 
-    /// Adds a sweep: beside the other mass, where that passed the very same steps. `relative` is the standard uncertainty of amplitudes
-    /// without one.
+    /// Adds a sweep: beside the other mass, where that passed the very same steps. `relative` is the standard
+    /// uncertainty of amplitudes without one.
     fn add(&mut self, swept: &Swept<'_>, relative: f64) {
         let (sweep, mass, points) = (self.sweeps.len(), usize::from(swept.mass) - 1, swept.points());
         self.sweeps.push((swept.response.name.clone(), swept.direction));

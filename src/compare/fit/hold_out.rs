@@ -1,4 +1,5 @@
-//! No more model than the points ask for: models of rising order, each judged by points that it was not fitted to.
+//! No more model than the points ask for: models of rising order, each judged by points that it was not
+//! fitted to.
 
 use super::{Converged, Data, Kind, Problem, Setting, assigned};
 use crate::measure::residuals::aicc;
@@ -22,15 +23,16 @@ pub struct Block {
     pub feature: String,
     /// Its frequency in Hz.
     pub frequency: f64,
-    /// Mean of |ln (measured/predicted)| over all amplitudes of the steps held out, each 1 at most: about the relative error.
+    /// Mean of |ln (measured/predicted)| over all amplitudes of the steps held out, each 1 at most: about
+    /// the relative error.
     pub error: f64,
 }
 
 /// A model, and how well it predicts what it was not shown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rung {
-    /// Model: `linear`, without impacts; `closed form`, with rigid impacts; `soft-corrected closed form`, with the compliance of the contact
-    /// taken out to first order.
+    /// Model: `linear`, without impacts; `closed form`, with rigid impacts; `soft-corrected closed form`,
+    /// with the compliance of the contact taken out to first order.
     pub model: &'static str,
     /// Parameters that it was fitted with.
     pub parameters: Vec<Parameter>,
@@ -40,7 +42,8 @@ pub struct Rung {
     pub held_out: Option<f64>,
     /// Standard error of that mean, by the scatter of the blocks.
     pub held_out_std: Option<f64>,
-    /// Akaike's criterion of the weighted residuals of all amplitudes of the answer, corrected for their number (Hurvich & Tsai 1989).
+    /// Akaike's criterion of the weighted residuals of all amplitudes of the answer, corrected for their
+    /// number (Hurvich & Tsai 1989).
     pub aicc: Option<f64>,
     /// Probability that white noise shows as much correlation along frequency as its residuals.
     pub whiteness: Option<f64>,
@@ -52,10 +55,11 @@ pub struct Rung {
 
 /// Judges the models by the answer with rigid contacts and that with compliance, where it is known.
 ///
-/// Steps around each resonance, antiresonance and jump, and a stretch away from them, are held out in turn, in all sweeps; the rest is
-/// fitted, and what was held out predicted (blocked cross-validation: D. R. Roberts et al., *Ecography* 40 (2017) 913). Which motion such a
-/// step shows, the simulated sweep of the model's own rig decides. The simplest model within one standard error of the best is chosen
-/// (L. Breiman et al., *Classification and Regression Trees* (1984), 3.4.3).
+/// Steps around each resonance, antiresonance and jump, and a stretch away from them, are held out in turn,
+/// in all sweeps; the rest is fitted, and what was held out predicted (blocked cross-validation: D. R.
+/// Roberts et al., *Ecography* 40 (2017) 913). Which motion such a step shows, the simulated sweep of the
+/// model's own rig decides. The simplest model within one standard error of the best is chosen (L. Breiman et
+/// al., *Classification and Regression Trees* (1984), 3.4.3).
 pub fn rungs(rigid: &Converged<'_>, soft: Option<&Converged<'_>>, responses: &[Response]) -> Vec<Rung> {
     let full = &rigid.least.problem;
     let mut linear = full.clone();
@@ -92,7 +96,8 @@ fn rung(
 ) -> Option<Rung> {
     let (own, u) = fitted(problem.clone(), from)?;
     let setting = own.setting(&u);
-    // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be compared.
+    // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be
+    // compared.
     let off = answer.off(|step, kind| {
         let kind = if impacts { kind } else { Kind::Free };
         let shows = answer.data.shows(&setting, kind, step);
@@ -131,7 +136,8 @@ fn rung(
     })
 }
 
-/// A model at its least sum of squares over its steps, with weights of its own; it begins at the setting `from`.
+/// A model at its least sum of squares over its steps, with weights of its own; it begins at the setting
+/// `from`.
 fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, Vec<f64>)> {
     let mut u = problem.coordinates(from);
     for _ in 0..2 {
@@ -143,7 +149,8 @@ fn fitted<'a>(mut problem: Problem<'a>, from: &Setting) -> Option<(Problem<'a>, 
     Some((problem, u))
 }
 
-/// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is none.
+/// Mean of |ln (measured/predicted)|, 1 at most, of all amplitudes at these steps; `None` where there is
+/// none.
 fn error(data: &Data, setting: &Setting, impacts: bool, steps: &[usize]) -> Option<f64> {
     let motions = if impacts { Some(assigned(data, setting, data.pace).ok()?) } else { None };
     let one = |i: &usize| {
@@ -166,7 +173,8 @@ struct HeldOut {
     steps: Vec<usize>,
 }
 
-/// Features with their frequency and the steps of all sweeps around them; between them pieces of as many steps.
+/// Features with their frequency and the steps of all sweeps around them; between them pieces of as many
+/// steps.
 fn blocks(data: &Data, responses: &[Response]) -> Vec<HeldOut> {
     let at = |i: &usize| data.steps[*i].frequency;
     let mut used: Vec<usize> = (0..data.steps.len()).filter(|i| data.steps[*i].clear().count() > 0).collect();

@@ -8,9 +8,9 @@ use nalgebra::{DMatrix, SVD};
 
 /// A sum of squares to be minimised: data with weights, and priors.
 ///
-/// Frequency and force of a step err for both masses alike, and calibrations for all points of a mass; each amplitude has its own
-/// uncertainty beside these. The residuals are whitened with what such errors make of them ([`SharedErrors`]): first step by step, then all
-/// together.
+/// Frequency and force of a step err for both masses alike, and calibrations for all points of a mass; each
+/// amplitude has its own uncertainty beside these. The residuals are whitened with what such errors make of
+/// them ([`SharedErrors`]): first step by step, then all together.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     pub data: &'a Data,
@@ -65,7 +65,8 @@ impl Problem<'_> {
         self.unknowns.iter().map(|k| k.coordinate.of(setting.get(k.parameter))).collect()
     }
 
-    /// The same minimum with coordinates of unknowns without an upper bound not below 0, where they have the same values.
+    /// The same minimum with coordinates of unknowns without an upper bound not below 0, where they have the
+    /// same values.
     pub fn folded(&self, mut minimum: Minimum) -> Minimum {
         for (i, (unknown, u)) in self.unknowns.iter().zip(&mut minimum.parameters).enumerate() {
             if unknown.coordinate.high.is_infinite() && *u < 0.0 {
@@ -108,7 +109,8 @@ impl Problem<'_> {
         (data + priors).saturating_sub(self.unknowns.len())
     }
 
-    /// Takes what errors of frequencies, forces and calibrations make of the residuals from the setting at `u`.
+    /// Takes what errors of frequencies, forces and calibrations make of the residuals from the setting at
+    /// `u`.
     pub fn weigh(&mut self, u: &[f64]) {
         let setting = self.setting(u);
         let errors = |(step, kind): (&Step, &Option<Kind>)| {
@@ -132,8 +134,9 @@ impl Problem<'_> {
         self.calibrations = SharedErrors::new(&self.calibration_columns(&setting));
     }
 
-    /// Change of each residual by one standard uncertainty of the calibrations: of each mass' factor, of its slope, 1 at the ends of the
-    /// frequencies, and of the force where it is not looked for. That moves gap and amplitudes alike, and no amplitude tells it.
+    /// Change of each residual by one standard uncertainty of the calibrations: of each mass' factor, of its
+    /// slope, 1 at the ends of the frequencies, and of the force where it is not looked for. That moves
+    /// gap and amplitudes alike, and no amplitude tells it.
     fn calibration_columns(&self, setting: &Setting) -> Vec<Vec<f64>> {
         let (std, mut columns) = (self.data.calibration, Vec::new());
         if std == 0.0 {
@@ -217,7 +220,8 @@ pub fn shown(step: &Step, kind: Option<Kind>) -> impl Iterator<Item = (usize, &R
     })
 }
 
-/// Change of both amplitudes by a relative change of what `shows` multiplies by its argument; 0 at the end of a motion, where there is none.
+/// Change of both amplitudes by a relative change of what `shows` multiplies by its argument; 0 at the end of
+/// a motion, where there is none.
 ///
 /// A central difference over h = 1e-6 errs by h²/6 of the third derivative and by ε/h = 2e-10 of the value.
 fn slopes(shows: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
@@ -226,11 +230,13 @@ fn slopes(shows: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     [0, 1].map(|mass| (above[mass] - below[mass]) / (2.0 * H)).map(|s| if s.is_finite() { s } else { 0.0 })
 }
 
-/// Errors that move several residuals at once: frequency and force of a step, the calibrations of all points of a mass.
+/// Errors that move several residuals at once: frequency and force of a step, the calibrations of all points
+/// of a mass.
 ///
-/// With W the change of the residuals, in their standard deviations, by one standard uncertainty of each error, their covariance is
-/// `I + WWᵀ`. With `W = VSQᵀ` they are multiplied by its inverse square root `I − V (I − (I + S²)^(−1/2)) Vᵀ`: generalised least squares
-/// (A. C. Aitken 1935), as if each error were an unknown with a prior, found with the rest.
+/// With W the change of the residuals, in their standard deviations, by one standard uncertainty of each
+/// error, their covariance is `I + WWᵀ`. With `W = VSQᵀ` they are multiplied by its inverse square root `I −
+/// V (I − (I + S²)^(−1/2)) Vᵀ`: generalised least squares (A. C. Aitken 1935), as if each error were an
+/// unknown with a prior, found with the rest.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SharedErrors {
     /// Columns of V, each of length 1, and S.
@@ -266,7 +272,8 @@ impl SharedErrors {
 mod tests {
     use super::*;
 
-    /// Against the definition: rᵀ(I + WWᵀ)⁻¹r by a plain inverse, for columns that are neither at right angles nor small.
+    /// Against the definition: rᵀ(I + WWᵀ)⁻¹r by a plain inverse, for columns that are neither at right
+    /// angles nor small.
     #[test]
     fn squares_sum_to_the_definition() {
         let columns: [Vec<f64>; 3] =
@@ -294,7 +301,8 @@ mod tests {
         }
     }
 
-    /// Against the definition for two residuals, C^(−1/2) C C^(−1/2) = I, for errors small and large, along each other and not.
+    /// Against the definition for two residuals, C^(−1/2) C C^(−1/2) = I, for errors small and large, along
+    /// each other and not.
     #[test]
     fn the_covariance_of_white_residuals_is_one() {
         for errors in [
@@ -316,7 +324,8 @@ mod tests {
                 for (j, b) in columns.iter().enumerate() {
                     let pairs = (0..2).flat_map(|k| (0..2).map(move |l| (k, l)));
                     let sum: f64 = pairs.map(|(k, l)| a[k] * c(k, l) * b[l]).sum();
-                    // Sums of C that cancel down to 1: three roundings in each whitened entry, two in a product, three in the sum.
+                    // Sums of C that cancel down to 1: three roundings in each whitened entry, two in a
+                    // product, three in the sum.
                     let tolerance = 11.0 * f64::EPSILON * (c(0, 0) + c(1, 1));
                     assert!(
                         (sum - f64::from(u8::from(i == j))).abs() < tolerance,

@@ -1,10 +1,12 @@
-//! Where to begin: several starting points, every step on that motion which lies nearest to what was measured.
+//! Where to begin: several starting points, every step on that motion which lies nearest to what was
+//! measured.
 //!
-//! Far from the truth a simulated sweep says little of the measured one, so here no history is asked, and points of other patterns cannot be
-//! recognised. A residual z is ln (measured/predicted) over a part κ of the amplitude or three standard deviations, and it costs ln (1 + z²)
-//! (Cauchy's: P. J. Huber, *Robust Statistics* (1981), 4.8): an outlier pulls the less the farther it lies off. κ falls in steps, so that the
-//! valley that most points share is found before its floor (graduated non-convexity: A. Blake & A. Zisserman, *Visual Reconstruction*
-//! (1987), 7).
+//! Far from the truth a simulated sweep says little of the measured one, so here no history is asked, and
+//! points of other patterns cannot be recognised. A residual z is ln (measured/predicted) over a part κ of
+//! the amplitude or three standard deviations, and it costs ln (1 + z²) (Cauchy's: P. J. Huber, *Robust
+//! Statistics* (1981), 4.8): an outlier pulls the less the farther it lies off. κ falls in steps, so that the
+//! valley that most points share is found before its floor (graduated non-convexity: A. Blake & A. Zisserman,
+//! *Visual Reconstruction* (1987), 7).
 
 use super::{Data, Kind, Problem, Setting, Step, Unknown};
 use crate::math::minimise;
@@ -19,11 +21,13 @@ pub(crate) const FINE: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 const WIDE: f64 = 3.0;
 /// Places that cost the same but for this, a tenth of a point …
 const SAME_COST: f64 = 0.1;
-/// … and have the same coordinates but for this part are one, and followed once. Losses that replace each other cost the same, and are not.
+/// … and have the same coordinates but for this part are one, and followed once. Losses that replace each
+/// other cost the same, and are not.
 const SAME_PLACE: f64 = 0.02;
 /// Starting values lie within this factor of the first: what a person knows of a rig.
 const REACH: f64 = 1.5;
-/// Starting values of a parameter between two bounds lie within this of the first in its logit: a loss 1 − R within a factor of 4.5.
+/// Starting values of a parameter between two bounds lie within this of the first in its logit: a loss 1 − R
+/// within a factor of 4.5.
 const LOGIT: f64 = 1.5;
 /// Places whose cost is looked at for each start: one evaluation costs a hundredth of following a start.
 const SCREENED: usize = 16;
@@ -44,7 +48,8 @@ pub struct End {
 }
 
 impl Problem<'_> {
-    /// Follows `starts` starting points, the first from the base itself; gives where they ended, each place once, the cheapest first.
+    /// Follows `starts` starting points, the first from the base itself; gives where they ended, each place
+    /// once, the cheapest first.
     pub fn search(&self, starts: usize) -> Vec<End> {
         let ranked = |places: Vec<Vec<f64>>| {
             let mut costs: Vec<_> = places.into_par_iter().map(|u| (self.cost(&u), u)).collect();
@@ -67,7 +72,8 @@ impl Problem<'_> {
         ends.into_iter().map(|end| end.1).collect()
     }
 
-    /// Starting point number `i` of Halton's sequence (1960), within [`REACH`] of the base, or two standard uncertainties of a prior.
+    /// Starting point number `i` of Halton's sequence (1960), within [`REACH`] of the base, or two standard
+    /// uncertainties of a prior.
     fn spread(&self, i: usize) -> Vec<f64> {
         const PRIMES: [usize; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
         let one = |(unknown, prime): (&Unknown, usize)| {
@@ -83,7 +89,8 @@ impl Problem<'_> {
         self.unknowns.iter().zip(PRIMES).map(one).collect()
     }
 
-    /// Places beside the answer `u` with other losses: they replace one another, and the points determine them worst.
+    /// Places beside the answer `u` with other losses: they replace one another, and the points determine
+    /// them worst.
     pub fn around(&self, u: &[f64], turn: usize) -> Vec<Vec<f64>> {
         let is_loss =
             |k: &Unknown| matches!(k.parameter, Parameter::Restitution | Parameter::C1 | Parameter::C2);
@@ -132,7 +139,8 @@ impl Problem<'_> {
         found.map_or(u, |minimum| self.folded(minimum).parameters)
     }
 
-    /// Σ ln (1 + z²) of all points at the finer of the coarse κ, each on its nearest motion, and of the priors.
+    /// Σ ln (1 + z²) of all points at the finer of the coarse κ, each on its nearest motion, and of the
+    /// priors.
     fn cost(&self, u: &[f64]) -> f64 {
         let setting = self.setting(u);
         let one = |step: &Step| self.nearest(&setting, step, COARSE[1]).1;
@@ -154,7 +162,8 @@ impl Problem<'_> {
     fn nearest(&self, setting: &Setting, step: &Step, part: f64) -> (Kind, f64) {
         let [impacting, free] =
             [Kind::Impacting, Kind::Free].map(|kind| self.data.shows(setting, kind, step));
-        // A mass in the noise speaks against impacts; without weight in the sum, since it is the same for all parameters.
+        // A mass in the noise speaks against impacts; without weight in the sum, since it is the same for all
+        // parameters.
         let silent = step.faint().any(|(mass, limit)| impacting[mass] > 2.0 * limit);
         // No sharp border while the parameters are wrong.
         let clears = free[0] < REACH * setting.rig.gap;

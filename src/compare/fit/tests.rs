@@ -23,8 +23,9 @@ fn example() -> Setting {
 /// Amplitudes below so many times the noise do not stand out of it.
 const FAINT: f64 = 20.0 / 3.0;
 
-/// Sweeps up and down of this rig with the noise of the example's points: 0.3 µm in x, faint below 2 µm, and 1.5e-4 Hz in frequency (0.05
-/// Hz a line). Steps of another pattern have the amplitudes of the simulated sweep.
+/// Sweeps up and down of this rig with the noise of the example's points: 0.3 µm in x, faint below 2 µm, and
+/// 1.5e-4 Hz in frequency (0.05 Hz a line). Steps of another pattern have the amplitudes of the simulated
+/// sweep.
 fn truth(setting: &Setting, pace: Pace) -> (Data, Vec<Option<Kind>>) {
     swept(setting, pace, &FREQUENCIES, 0.3e-6)
 }
@@ -81,7 +82,8 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
     (data, kinds)
 }
 
-/// The same with noise: amplitudes of the closed form where it has the motion, at a frequency that is not quite the stated one.
+/// The same with noise: amplitudes of the closed form where it has the motion, at a frequency that is not
+/// quite the stated one.
 fn noisy(truth: &Data, kinds: &[Option<Kind>], setting: &Setting, seed: u64) -> Data {
     let mut normal = Noise::new(seed);
     for _ in 0..16 {
@@ -142,10 +144,10 @@ fn miscalibrated(mut data: Data, std: f64, seed: u64) -> Data {
 const SEEDS: u64 = 500;
 const FEW: u64 = 8;
 
-/// The truth lies within the joint region of 95 % in 92 to 98 % of 500 seeds, three standard deviations of a binomial, within the interval of
-/// each parameter in 91 % or more, four of them, and within all intervals together in 92 to 98 %: neither too narrow nor too wide. `drawn`
-/// gives the points of a seed and what is to be found. The fits begin at the truth with its motions: how the search gets there is for other
-/// tests.
+/// The truth lies within the joint region of 95 % in 92 to 98 % of 500 seeds, three standard deviations of a
+/// binomial, within the interval of each parameter in 91 % or more, four of them, and within all intervals
+/// together in 92 to 98 %: neither too narrow nor too wide. `drawn` gives the points of a seed and what is to
+/// be found. The fits begin at the truth with its motions: how the search gets there is for other tests.
 fn covered(
     seeds: u64,
     setting: &Setting,
@@ -186,8 +188,8 @@ fn covered(
     assert!((0.92..=0.98).contains(&share), "{share}");
 }
 
-/// So with noise alone, with calibrations that err, too, by three times the noise of the largest points, and with the measured force of each
-/// step, by four times.
+/// So with noise alone, with calibrations that err, too, by three times the noise of the largest points, and
+/// with the measured force of each step, by four times.
 #[test]
 fn the_truth_lies_within_the_region_as_often_as_stated() {
     within_the_region(FEW);
@@ -216,7 +218,8 @@ fn within_the_region(seeds: u64) {
     }
 }
 
-/// So where both masses were weighed to half a hundredth only, which is then in the uncertainty of all that motion tells by its ratio to them.
+/// So where both masses were weighed to half a hundredth only, which is then in the uncertainty of all that
+/// motion tells by its ratio to them.
 #[test]
 fn what_is_not_known_of_the_masses_is_in_the_uncertainties() {
     with_weighed_masses(FEW);
@@ -333,7 +336,8 @@ fn what_the_points_do_not_determine_is_named() {
     let found = unidentified(&["force", "c2", "k2", "restitution"], free);
     let needs = Some(Unidentified::NeedsImpacts);
     assert_eq!(found, [None, needs, needs, needs]);
-    // Far above resonance the amplitude is F₀/|k − mω²| but for (ωc/(k − mω²))²/2, 2e-4 of it, where the noise is 1e-3 of 20 points.
+    // Far above resonance the amplitude is F₀/|k − mω²| but for (ωc/(k − mω²))²/2, 2e-4 of it, where the
+    // noise is 1e-3 of 20 points.
     let found =
         unidentified(&["force", "c1"], |mass, step, kind| free(mass, step, kind) && step.frequency > 9.5);
     assert!(found[0].is_none(), "{found:?}");
@@ -397,7 +401,8 @@ fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
     // The points know c1 to some 1e-5: all but the hundredth part squared is the prior's.
     assert!(c1.rests_on_prior && (c1.estimate.std.unwrap() / 1e-7 - 1.0).abs() < 1e-3, "{c1:?}");
-    // The profile of one parameter of a straight problem is a parabola: its interval is ±1.96 standard deviations.
+    // The profile of one parameter of a straight problem is a parabola: its interval is ±1.96 standard
+    // deviations.
     let profile = profile(&answer.found.least, &answer.uncertainty, 0).unwrap();
     let [low, high] = profile.interval.map(Option::unwrap);
     let width = 2.0 * NORMAL * gap.estimate.std.unwrap();

@@ -1,4 +1,5 @@
-//! How well the points determine each parameter: by the slopes at the least sum of squares, and by its profile.
+//! How well the points determine each parameter: by the slopes at the least sum of squares, and by its
+//! profile.
 
 use super::{Kind, Least, Problem};
 use crate::error::{Error, Result};
@@ -9,10 +10,11 @@ use serde::Serialize;
 
 /// Normal deviate that is exceeded on both sides together in 5 % of cases (Abramowitz & Stegun, table 26.1).
 pub const NORMAL: f64 = 1.959_964;
-/// Relative standard uncertainty beyond which a parameter is not identifiable: twice or half its value would do. Between two bounds the same
-/// part of what is between them, for its interval of 95 %.
+/// Relative standard uncertainty beyond which a parameter is not identifiable: twice or half its value would
+/// do. Between two bounds the same part of what is between them, for its interval of 95 %.
 const LOOSE: f64 = 0.5;
-/// Parameters of a larger correlation are known only together: 1/√(1 − r²) = 3 times better where one of them is known.
+/// Parameters of a larger correlation are known only together: 1/√(1 − r²) = 3 times better where one of them
+/// is known.
 const TIED: f64 = 0.95;
 /// Smallest singular value over the largest that a Jacobian by central differences can tell from 0, ε^(2/3).
 const RESOLVED: f64 = 4e-11;
@@ -49,7 +51,8 @@ pub struct Limit {
 /// What the Jacobian at the least sum of squares says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
-    /// Covariance of the coordinates u; directions that are not determined have a large variance, not an infinite one.
+    /// Covariance of the coordinates u; directions that are not determined have a large variance, not an
+    /// infinite one.
     pub covariance: DMatrix<f64>,
     /// Relative standard uncertainty of each parameter.
     pub relative: Vec<f64>,
@@ -62,8 +65,9 @@ pub struct Uncertainty {
 impl Uncertainty {
     /// Of an answer.
     ///
-    /// The columns of ∂r/∂u are taken for relative changes of the parameters, ∂r/∂ln θ, so that units do not decide what is small. With
-    /// singular values s and right vectors v the variance of ln θᵢ is Σ vᵢ²/s².
+    /// The columns of ∂r/∂u are taken for relative changes of the parameters, ∂r/∂ln θ, so that units do not
+    /// decide what is small. With singular values s and right vectors v the variance of ln θᵢ is Σ
+    /// vᵢ²/s².
     ///
     /// # Errors
     /// If the singular values cannot be found.
@@ -156,8 +160,8 @@ impl Uncertainty {
     }
 }
 
-/// The way outwards, 1 or −1, and the bound where the parameter number `i` lies at a limit. Beyond it nothing changes any more, so its column
-/// of the Jacobian becomes that from the limit inwards.
+/// The way outwards, 1 or −1, and the bound where the parameter number `i` lies at a limit. Beyond it nothing
+/// changes any more, so its column of the Jacobian becomes that from the limit inwards.
 fn side(problem: &Problem<'_>, u: &[f64], i: usize, jacobian: &mut DMatrix<f64>) -> Option<(f64, f64)> {
     let (unknown, span) = (&problem.unknowns[i], AT_LIMIT * (1.0 + u[i].abs()));
     let (coordinate, limits) = (unknown.coordinate, unknown.limits(&problem.base));
@@ -200,7 +204,8 @@ pub struct Profile {
     pub rise: Vec<f64>,
     /// The rise that the true value stays below with 95 % confidence.
     pub limit: f64,
-    /// Values within which the rise stays below it. `None` for a side on which it is not reached in the values.
+    /// Values within which the rise stays below it. `None` for a side on which it is not reached in the
+    /// values.
     pub interval: [Option<f64>; 2],
 }
 

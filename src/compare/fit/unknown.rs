@@ -14,15 +14,17 @@ pub struct Unknown {
     pub prior: Option<[f64; 2]>,
 }
 
-/// A parameter without an upper bound goes no farther than this factor from where it started, ten times a mistaken milli: beyond, nothing
-/// pulls it back, and a rig without dampers or gap takes for ever to simulate.
+/// A parameter without an upper bound goes no farther than this factor from where it started, ten times a
+/// mistaken milli: beyond, nothing pulls it back, and a rig without dampers or gap takes for ever to
+/// simulate.
 const FARTHEST: f64 = 1e4;
 
 impl Unknown {
     /// All that an entry asks for, from these values on.
     ///
     /// # Errors
-    /// If nothing is asked for, a parameter twice, a starting value lies outside its bounds, or a prior or bounds cannot be.
+    /// If nothing is asked for, a parameter twice, a starting value lies outside its bounds, or a prior or
+    /// bounds cannot be.
     pub fn all(entry: &FitEntry, from: &Setting) -> Result<Vec<Unknown>> {
         entry.usable()?;
         if entry.parameters.is_empty() {
@@ -65,10 +67,11 @@ impl Unknown {
     }
 }
 
-/// A parameter θ from `low` to `high` by a coordinate u from −∞ to ∞: √(θ − low) without an upper bound, else the logit of its place
-/// between both.
+/// A parameter θ from `low` to `high` by a coordinate u from −∞ to ∞: √(θ − low) without an upper bound, else
+/// the logit of its place between both.
 ///
-/// A logarithm instead of the root would never come back from θ = low, where all slopes vanish: a damper may be 0.
+/// A logarithm instead of the root would never come back from θ = low, where all slopes vanish: a damper may
+/// be 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
     pub low: f64,
@@ -76,7 +79,8 @@ pub struct Coordinate {
     pub high: f64,
 }
 
-/// A parameter between two bounds comes no nearer to either than this part of the way: a loss 1 − R of 1e-6 is below what any sweep shows.
+/// A parameter between two bounds comes no nearer to either than this part of the way: a loss 1 − R of 1e-6
+/// is below what any sweep shows.
 const NEAREST: f64 = 1e-6;
 
 impl Coordinate {
@@ -137,7 +141,8 @@ impl Setting {
         self
     }
 
-    /// What a spectrum shows of both masses in m, of the motion of this kind at this force and frequency; NaN where it cannot be.
+    /// What a spectrum shows of both masses in m, of the motion of this kind at this force and frequency; NaN
+    /// where it cannot be.
     pub fn shows(&self, kind: Kind, force: f64, frequency: f64) -> [f64; 2] {
         let sine = Sine { force, frequency };
         match kind {

@@ -201,7 +201,8 @@ fn a_text_is_extended_unless_it_changed_meanwhile() {
     });
 }
 
-/// A link in the place of each file by which the folder is kept in order, or of a result: what it points to stays.
+/// A link in the place of each file by which the folder is kept in order, or of a result: what it points to
+/// stays.
 #[cfg(unix)]
 #[test]
 fn links_are_not_written_through() {

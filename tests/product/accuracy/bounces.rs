@@ -53,8 +53,9 @@ fn scatter_of_the_first_flights_is_covered_beside_noise_of_the_last(draws: Draws
                 if stated { "" } else { " (not stated)" },
                 100.0 * coverage
             );
-            // Where the noise of the first ratio, √6 σ over 0.2 s, is as large as the scatter of R, flights do not show how small that is: it errs to
-            // the safe side. 600 cases scatter the coverage by 0.9 %.
+            // Where the noise of the first ratio, √6 σ over 0.2 s, is as large as the scatter of R, flights
+            // do not show how small that is: it errs to the safe side. 600 cases scatter the
+            // coverage by 0.9 %.
             let most = if 6f64.sqrt() * timing / 0.2 > 0.5 * per_bounce { 1.0 } else { 0.98 };
             assert!(
                 draws.part(0.92..=most).contains(&coverage),
@@ -72,8 +73,9 @@ fn noise_of_the_onsets_makes_no_outliers() {
         println!(
             "bounces, R {r}, onsets {timing:e} s, {flights} flights: {CASES} cases, seeds 170000.., a flight left out in {named}"
         );
-        // The quantile leaves out 0.1 % of flights, both sides together: 1.2 % of trains of twelve. Neighbouring flights share their onsets, and
-        // where they are not much longer than the noise their logarithms are not normal: three times that.
+        // The quantile leaves out 0.1 % of flights, both sides together: 1.2 % of trains of twelve.
+        // Neighbouring flights share their onsets, and where they are not much longer than the noise
+        // their logarithms are not normal: three times that.
         assert!(named as f64 <= 0.036 * CASES as f64, "{r} {flights}: {named}");
     }
 }

@@ -1,4 +1,5 @@
-//! Impacts of a drill beside which the velocity is no parabola: what rings, lasts too long or comes through a slow instrument.
+//! Impacts of a drill beside which the velocity is no parabola: what rings, lasts too long or comes through a
+//! slow instrument.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -13,8 +14,8 @@ const CASES: u64 = 200;
 const BEFORE: f64 = 6.0;
 const AFTER: f64 = -1.0;
 
-/// What happens to a velocity that goes from −1 to 6 m/s, by a straight line and the square of a sine that brings the mass back, and falls back at
-/// phase 0.6.
+/// What happens to a velocity that goes from −1 to 6 m/s, by a straight line and the square of a sine that
+/// brings the mass back, and falls back at phase 0.6.
 #[derive(Clone, Copy)]
 enum Spoilt {
     /// Nothing but noise of 0.02 m/s, each value this part of the one before.
@@ -127,7 +128,8 @@ fn parabolas_in_noise_keep_their_intervals(draws: Draws) {
 }
 
 fn what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding(draws: Draws) {
-    // Rings from a tenth of the jump down to twice the noise, below, at and above the inverse of the fit's 0.5 ms.
+    // Rings from a tenth of the jump down to twice the noise, below, at and above the inverse of the fit's
+    // 0.5 ms.
     let rings = [
         (3000.0, 0.3, 3e-4),
         (3000.0, 0.5, 5e-4),
@@ -138,7 +140,8 @@ fn what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding(draws: Draw
     let (behind, both): (&[&str], &[&str]) = (&["after"], &["before", "after"]);
     let mut spoilt: Vec<(Spoilt, &[&str])> =
         rings.into_iter().map(|(f, v, tau)| (Spoilt::Rings(f, v, tau), behind)).collect();
-    // Contacts of 0.3 and 0.4 ms where 0.2 are allowed; an instrument that is a thousandth of the jump off after 0.2 ms.
+    // Contacts of 0.3 and 0.4 ms where 0.2 are allowed; an instrument that is a thousandth of the jump off
+    // after 0.2 ms.
     spoilt.extend([(Spoilt::Lasts(3e-4), both), (Spoilt::Lasts(4e-4), both)]);
     spoilt.push((Spoilt::Slow(5000.0), behind));
     let mut score = Score::default();
@@ -147,7 +150,8 @@ fn what_is_no_parabola_has_its_bias_in_the_uncertainty_and_a_finding(draws: Draw
             let found = case(spoilt, 1000 * number as u64 + seed);
             let (before, after) = (found.before.as_ref().unwrap(), found.after.as_ref().unwrap());
             assert_eq!(lacking(&found), sides, "case {number}, seed {seed}");
-            // The bias is that of the least bent curve that the parabola leaves: a ring moves the velocity by as much, seldom by more.
+            // The bias is that of the least bent curve that the parabola leaves: a ring moves the velocity by
+            // as much, seldom by more.
             let within = |e: &Estimate, truth: f64| (e.value - truth).abs() < 2.0 * e.std.unwrap();
             assert!(within(after, AFTER), "case {number}: {after:?}");
             assert!(sides == behind || within(before, BEFORE), "case {number}: {before:?}");

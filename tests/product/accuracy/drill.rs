@@ -7,12 +7,14 @@ use vibroimpact::measure::Estimate;
 use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, TurnsFrom, drill};
 
 const CASES: u64 = 240;
-/// Whole records: ten parts are checked one by one, each scatters by 0.75 % of this many, and none may be below 92 % by chance.
+/// Whole records: ten parts are checked one by one, each scatters by 0.75 % of this many, and none may be
+/// below 92 % by chance.
 const RECORDS: u64 = 960;
 const RATE: f64 = 51_200.0;
 const COUNT: usize = 80_000;
 const MASS: f64 = 0.14;
-/// Three times the striker: the rebounds below then ask for a restitution of 0.47 to 0.87; at twice it, for up to 1.1, which is refused.
+/// Three times the striker: the rebounds below then ask for a restitution of 0.47 to 0.87; at twice it, for
+/// up to 1.1, which is refused.
 const STRUCK: f64 = 0.42;
 
 /// How many intervals of ± 1.96 standard uncertainties hold the truth.
@@ -52,7 +54,8 @@ impl Coverage {
         100.0 * self.inside as f64 / self.all as f64
     }
 
-    /// Nothing may be stated in one case of fifty: chance makes a few turns look like a slow change of which the mean is not known.
+    /// Nothing may be stated in one case of fifty: chance makes a few turns look like a slow change of which
+    /// the mean is not known.
     fn mostly_stated(&self) {
         assert!(50 * self.open <= self.all + self.open, "{}: {} of {} open", self.name, self.open, self.all);
     }
@@ -289,7 +292,8 @@ fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
     }
 }
 
-/// Adds the intervals of stroke and drift of a velocity A sin 2πφ + d, both varying from turn to turn: the stroke is A T/π, the drift d T.
+/// Adds the intervals of stroke and drift of a velocity A sin 2πφ + d, both varying from turn to turn: the
+/// stroke is A T/π, the drift d T.
 fn strokes(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 2]) {
     let mut noise = Noise::new(seed);
     let (speed, amplitude, offset) =
@@ -334,8 +338,9 @@ fn covered(turns: usize, rho: f64, draws: Draws) {
     let each: Vec<String> = all.iter().map(|c| format!("{} {:.1}", c.name, c.part())).collect();
     let part = all.iter().map(|c| c.part()).sum::<f64>() / all.len() as f64;
     println!("{turns} turns, rho {rho}, seeds 1 to {}: {part:.1} % ({})", draws.of(CASES), each.join(", "));
-    // Of 240 intervals the part that holds the truth scatters by 1.4 %, that of nine quantities of which some depend on each other by
-    // about 0.7 %: the limits are for the mean, and none of them may be off by four times its own scatter.
+    // Of 240 intervals the part that holds the truth scatters by 1.4 %, that of nine quantities of which some
+    // depend on each other by about 0.7 %: the limits are for the mean, and none of them may be off by
+    // four times its own scatter.
     for coverage in &all {
         coverage.mostly_stated();
     }

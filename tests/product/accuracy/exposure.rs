@@ -12,8 +12,8 @@ const TONE: f64 = 100.0;
 /// Time between two knots of the amplitude in s.
 const KNOT: f64 = 0.5;
 
-/// Amplitudes 1 + m of a vibration that waxes and wanes: m is straight between knots of variance `scatter`² that depend on the
-/// one before by `rho`.
+/// Amplitudes 1 + m of a vibration that waxes and wanes: m is straight between knots of variance `scatter`²
+/// that depend on the one before by `rho`.
 fn knots(count: usize, scatter: f64, rho: f64, noise: &mut Noise) -> Vec<f64> {
     let mut m = scatter * noise.normal();
     (0..count)
@@ -35,8 +35,8 @@ fn uncertainties_of_an_exposure_are_true(draws: Draws) {
         let scatter = 0.1 + 0.1 * noise.uniform();
         let count = (seconds / KNOT) as usize + 2;
         let shared = knots(count, scatter, rho, &mut noise);
-        // Mean square of 1 + m: at a share s between two knots m has the variance (1 − s)² + s² + 2s(1 − s)ρ, on average
-        // 2/3 + ρ/3, times scatter².
+        // Mean square of 1 + m: at a share s between two knots m has the variance (1 − s)² + s² + 2s(1 − s)ρ,
+        // on average 2/3 + ρ/3, times scatter².
         let square = 1.0 + scatter * scatter * (2.0 + rho) / 3.0;
         let mut handles = Vec::new();
         let mut truths = Vec::new();
@@ -56,8 +56,8 @@ fn uncertainties_of_an_exposure_are_true(draws: Draws) {
                 })
                 .collect();
             handles.push(values);
-            // The digital weighting at 100 Hz is off the formula by at most (π·100/6400)²/3 = 0.08 %, a tenth of the smallest
-            // uncertainty here.
+            // The digital weighting at 100 Hz is off the formula by at most (π·100/6400)²/3 = 0.08 %, a tenth
+            // of the smallest uncertainty here.
             truths.push(0.5 * amplitude * amplitude * square * weighting(TONE).norm_sqr());
         }
         let handles: Vec<&[f64]> = handles.iter().map(Vec::as_slice).collect();

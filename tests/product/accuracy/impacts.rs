@@ -30,8 +30,8 @@ fn trace(noise: &mut Noise, at: &[f64], heights: &[f64], n: usize, sigma: f64) -
     Trace { meta: Meta::new("contact", Unit::parse("V").unwrap()), axis: Axis::time(0.0, 1.0, n), values }
 }
 
-/// Cramér–Rao bound of the time of one pulse of unknown height in white noise: σ² over the information that is left
-/// beside the height, from slopes by central differences.
+/// Cramér–Rao bound of the time of one pulse of unknown height in white noise: σ² over the information that
+/// is left beside the height, from slopes by central differences.
 fn bound(at: f64, height: f64, sigma: f64) -> f64 {
     let (mut tt, mut th, mut hh) = (0.0, 0.0, 0.0);
     for i in -200..400 {
@@ -55,7 +55,8 @@ fn onset_times_reach_their_bound() {
         let heights: Vec<f64> = at.iter().map(|_| 0.8 + 0.4 * noise.uniform()).collect();
         let found = impacts(&trace(&mut noise, &at, &heights, 3200, sigma), &options).unwrap();
         assert_eq!(found.n, at.len(), "seed {seed}: {:?}", found.findings);
-        // An average knows no origin: what is common to a record is taken out, with its one degree of freedom.
+        // An average knows no origin: what is common to a record is taken out, with its one degree of
+        // freedom.
         let off: Vec<f64> = found.times.iter().zip(&at).map(|(a, b)| a - b).collect();
         let common = off.iter().sum::<f64>() / off.len() as f64;
         let free = off.len() as f64 / (off.len() - 1) as f64;
@@ -93,7 +94,8 @@ fn times(noise: &mut Noise, n: usize, onset: f64, jitter: f64) -> Vec<f64> {
 #[test]
 fn intervals_are_covered_whatever_the_ratio_of_jitter_to_onset_noise() {
     let ratios = [0.0, 0.1, 0.3, 1.0, 3.0, f64::INFINITY];
-    // Where these few intervals cannot tell the ratio from a larger one that would matter, the uncertainty errs to the safe side.
+    // Where these few intervals cannot tell the ratio from a larger one that would matter, the uncertainty
+    // errs to the safe side.
     let safe =
         |n: usize, ratio: f64| ratio <= [(8, 1.0), (20, 0.3), (60, 0.1)].iter().find(|s| s.0 == n).unwrap().1;
     let total = 2000;
@@ -162,8 +164,8 @@ fn intervals_that_depend_on_those_before_are_covered() {
             100.0 * part(inside),
             100.0 * part(told)
         );
-        // 800 cases scatter the coverage by 0.8 %. Sixty intervals hold three times what ρ = 0.9 remembers (20 intervals): the mean of such a chain is
-        // covered in 89 %, and most are said to wander.
+        // 800 cases scatter the coverage by 0.8 %. Sixty intervals hold three times what ρ = 0.9 remembers
+        // (20 intervals): the mean of such a chain is covered in 89 %, and most are said to wander.
         if rho < 0.9 {
             assert!((0.92..=0.98).contains(&part(inside)), "{rho}: {}", part(inside));
         } else {
@@ -191,7 +193,8 @@ fn onsets_of_single_flanks_are_covered() {
             found.interval.method
         );
         let u = found.onset_std.unwrap();
-        // Where half a height is passed is the same in all pulses: its mean is taken out, with its degree of freedom.
+        // Where half a height is passed is the same in all pulses: its mean is taken out, with its degree of
+        // freedom.
         let off: Vec<f64> = found.times.iter().zip(&at).map(|(a, b)| a - b).collect();
         let common = off.iter().sum::<f64>() / f64::from(per_record);
         let free = (f64::from(per_record) / f64::from(per_record - 1)).sqrt();
@@ -225,7 +228,8 @@ fn phases_of_impacts_are_covered() {
         let u = found.onset_std.unwrap() / period;
         let off = found.phase.iter().zip(&at).map(|(p, t)| p - (t / period).rem_euclid(1.0));
         let off: Vec<f64> = off.map(|o| o - o.round()).collect();
-        // An average knows no origin: what is common to a record is taken out, with its one degree of freedom.
+        // An average knows no origin: what is common to a record is taken out, with its one degree of
+        // freedom.
         let common = off.iter().sum::<f64>() / off.len() as f64;
         let free = (off.len() as f64 / (off.len() - 1) as f64).sqrt();
         single += off.iter().filter(|o| ((**o - common) * free).abs() < 1.96 * u).count();

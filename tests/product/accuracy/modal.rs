@@ -10,8 +10,8 @@ use vibroimpact::units::Quantity;
 
 const CASES: u64 = 250;
 
-/// One mode with a constant and a mass-like residual term, times (iω)^power; `p` is frequency, ζ, and the real and imaginary
-/// parts of the modal constant and of the two residual terms.
+/// One mode with a constant and a mass-like residual term, times (iω)^power; `p` is frequency, ζ, and the
+/// real and imaginary parts of the modal constant and of the two residual terms.
 fn one(p: &[f64], f: f64, power: i32) -> Complex64 {
     let (omega, own) = (TAU * f, TAU * p[0]);
     let constant = Complex64::new(p[2], p[3]);
@@ -33,7 +33,8 @@ fn measured(frequency: Vec<f64>, values: Vec<Complex64>, kind: Quantity) -> Meas
     Measured::new(frequency, values, kind)
 }
 
-/// A bandwidth 2ζf of one line, the mode anywhere between two lines; noise equal on all lines, or proportional to the response.
+/// A bandwidth 2ζf of one line, the mode anywhere between two lines; noise equal on all lines, or
+/// proportional to the response.
 fn a_mode_one_line_wide(proportional: bool, from: u64, draws: Draws) {
     let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
     let cases = draws.of(CASES);
@@ -56,7 +57,8 @@ fn a_mode_one_line_wide(proportional: bool, from: u64, draws: Draws) {
             lines.iter().zip(&clean).filter(|(f, _)| near(f)).map(|(_, v)| v.norm()).fold(0.0, f64::max);
         let sigma: Vec<f64> =
             clean.iter().map(|v| if proportional { level * v.norm() } else { level * top }).collect();
-        // The bound is that of the forty lines on either side, real and imaginary parts, beyond which other modes would be.
+        // The bound is that of the forty lines on either side, real and imaginary parts, beyond which other
+        // modes would be.
         let part: Vec<(f64, f64)> =
             lines.iter().zip(&sigma).filter(|(f, _)| near(f)).map(|(f, s)| (*f, *s)).collect();
         let spread: Vec<f64> = part.iter().flat_map(|(_, s)| [*s, *s]).collect();
@@ -82,7 +84,8 @@ fn a_mode_one_line_wide(proportional: bool, from: u64, draws: Draws) {
         assert!(mode.frequency.std.is_some(), "seed {seed}: {:?}", found.findings);
         frequency.add(&mode.frequency, f0, bound[0]);
         zeta.add(&mode.zeta, damping, bound[1]);
-        // |A| moves with its real part by cos of its phase; the imaginary part's share is left to the coverage.
+        // |A| moves with its real part by cos of its phase; the imaginary part's share is left to the
+        // coverage.
         constant.add(&mode.modal_constant, a.hypot(b), bound[2].hypot(bound[3]));
     }
     let what = if proportional { "noise proportional" } else { "noise equal on all lines" };
@@ -99,8 +102,8 @@ fn a_mode_one_line_wide_in_proportional_noise(draws: Draws) {
     a_mode_one_line_wide(true, 5000, draws);
 }
 
-/// Several modes found without a band, bandwidths of half a line to some lines: what is printed as uncertainty covers the error, of
-/// noise and of the modes beside.
+/// Several modes found without a band, bandwidths of half a line to some lines: what is printed as
+/// uncertainty covers the error, of noise and of the modes beside.
 fn modes_beside_each_other(draws: Draws) {
     let (mut frequency, mut zeta) = <(Score, Score)>::default();
     let cases = draws.of(100);
@@ -147,7 +150,8 @@ fn modes_beside_each_other(draws: Draws) {
     zeta.judge(draws, "modes beside each other, ζ against its own uncertainty", 1.3);
 }
 
-/// A function and its coherence from `averages` blows of a force that scatters by a tenth; noise in the response 1/30 of its height.
+/// A function and its coherence from `averages` blows of a force that scatters by a tenth; noise in the
+/// response 1/30 of its height.
 fn averaged(averages: usize, frequency: f64, damping: f64, noise: &mut Noise) -> Measured {
     let step = 0.3125;
     let lines: Vec<f64> =
@@ -200,8 +204,8 @@ fn modes_by_the_coherence_of_few_averages(draws: Draws) {
     }
 }
 
-/// Whether the clean function has a peak near `f` that stands a factor of 2.2 over the valleys towards anything higher: more than the two
-/// that is asked of a peak, as noise may cut it.
+/// Whether the clean function has a peak near `f` that stands a factor of 2.2 over the valleys towards
+/// anything higher: more than the two that is asked of a peak, as noise may cut it.
 fn stands(lines: &[f64], clean: &[Complex64], f: f64) -> bool {
     let height: Vec<f64> = clean.iter().map(|v| v.norm()).collect();
     let near = |i: &usize| (lines[*i] - f).abs() < 0.05 * f;
@@ -213,9 +217,9 @@ fn stands(lines: &[f64], clean: &[Complex64], f: f64) -> bool {
     (lines[peak] - f).abs() < 0.03 * f && height[peak] > 2.2 * valleys
 }
 
-/// Structures of three to six modes, damped by 0.3 to 3 %, of either sign, noise of the variance that the coherence says
-/// (Bendat & Piersol 2010, 9.90, sixteen averages). The band holds them all: all that have a peak of their own are found and nothing
-/// else, and what is printed as uncertainty covers the error.
+/// Structures of three to six modes, damped by 0.3 to 3 %, of either sign, noise of the variance that the
+/// coherence says (Bendat & Piersol 2010, 9.90, sixteen averages). The band holds them all: all that have a
+/// peak of their own are found and nothing else, and what is printed as uncertainty covers the error.
 fn structures_in_a_band(with_coherence: bool, banded: bool, from: u64, draws: Draws) {
     let (mut frequency, mut zeta, mut constant) = <(Score, Score, Score)>::default();
     // One structure has three modes or more, and takes seconds in a build for development.

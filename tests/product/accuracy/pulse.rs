@@ -1,5 +1,5 @@
-//! Contact pulses in white noise. The pulse is made by formulas written here, and what a low-pass makes of it by integrating the
-//! filter's differential equation: nothing is taken from the code under test.
+//! Contact pulses in white noise. The pulse is made by formulas written here, and what a low-pass makes of it
+//! by integrating the filter's differential equation: nothing is taken from the code under test.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -15,7 +15,8 @@ const CASES: u64 = 600;
 /// Cases whose filter is integrated, which takes longer; about 15 of them lie beyond what the bound can say.
 const FILTERED: u64 = 220;
 
-/// Deceleration of a contact of spring and damper at time t: −ẍ of x = e^{−ht} sin(Ωt)/Ω, differentiated twice.
+/// Deceleration of a contact of spring and damper at time t: −ẍ of x = e^{−ht} sin(Ωt)/Ω, differentiated
+/// twice.
 pub fn contact(xi: f64, omega: f64, t: f64) -> f64 {
     let (h, turn) = (xi * omega, omega * (1.0 - xi * xi).sqrt());
     let (sin, cos) = (turn * t).sin_cos();
@@ -84,7 +85,8 @@ impl Case {
             .collect()
     }
 
-    /// The same behind a Butterworth low-pass: a chain of parts of first and second order, by Runge and Kutta.
+    /// The same behind a Butterworth low-pass: a chain of parts of first and second order, by Runge and
+    /// Kutta.
     pub fn filtered(&self, p: &[f64], corner: f64, order: usize) -> Vec<f64> {
         let (omega, corner) = (TAU * p[4], TAU * corner);
         let last = end(p[3], omega);
@@ -116,7 +118,8 @@ impl Case {
                     // Steps end at the end of the contact, where the input has a corner.
                     let stops = if now < last && t > last { vec![last, t] } else { vec![t] };
                     for stop in stops {
-                        // A quarter of the filter's time constant at most: Runge and Kutta err by 0.25⁵/120 there.
+                        // A quarter of the filter's time constant at most: Runge and Kutta err by 0.25⁵/120
+                        // there.
                         let parts = (corner * (stop - now) / 0.25).ceil().max(4.0) as u32;
                         let h = (stop - now) / f64::from(parts);
                         for _ in 0..parts {
@@ -166,7 +169,8 @@ fn a_sampled_pulse(draws: Draws) {
         velocity.add(&found.initial_velocity.expect("an acceleration"), case.velocity.abs(), bound[2]);
         let theta = case.xi.asin();
         let r = |xi: f64| (-(PI - 2.0 * xi.asin()) * xi.asin().tan()).exp();
-        // |dR/dξ| carries the bound of ξ to R, and so do both derivatives that of ξ and f to the duration, left to its coverage.
+        // |dR/dξ| carries the bound of ξ to R, and so do both derivatives that of ξ and f to the duration,
+        // left to its coverage.
         let slope = (r(case.xi + 1e-6) - r(case.xi - 1e-6)) / 2e-6;
         restitution.add(
             &found.restitution,
@@ -188,7 +192,8 @@ fn a_sampled_pulse_behind_a_low_pass(draws: Draws) {
     for seed in 1000..1000 + draws.of(FILTERED) {
         let mut noise = Noise::new(seed);
         let case = Case::new(&mut noise);
-        // From the corner of the thesis' instrument, 30 kHz for a contact of 25 kHz, to where a filter hardly matters.
+        // From the corner of the thesis' instrument, 30 kHz for a contact of 25 kHz, to where a filter hardly
+        // matters.
         let (corner, order) = (case.frequency * noise.between(1.2, 5.0), 1 + (seed % 5) as usize);
         let p = case.parameters();
         let clean = case.filtered(&p, corner, order);
@@ -211,7 +216,8 @@ fn a_sampled_pulse_behind_a_low_pass(draws: Draws) {
     velocity.judge(draws, "pulse behind a low-pass, initial velocity", 1.3);
 }
 
-/// Corners from just above half the sampling rate up: the rise lies between two samples, and several onsets fit.
+/// Corners from just above half the sampling rate up: the rise lies between two samples, and several onsets
+/// fit.
 fn a_low_pass_above_half_the_sampling_rate_leaves_no_uncertainty(draws: Draws) {
     println!("seeds 5000 to {}", 5000 + draws.of(20));
     for seed in 5000..5000 + draws.of(20) {

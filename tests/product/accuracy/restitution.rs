@@ -47,7 +47,8 @@ fn drops_are_covered() {
             "restitution, {name}: {CASES} cases, seeds 70000.., 95 % coverage {:.1} %",
             100.0 * coverage
         );
-        // Student's 1.96√(ν/(ν − 2)): 95.7 % at three degrees of freedom to 94.7 % at nine, and 0.7 % for 1000 cases.
+        // Student's 1.96√(ν/(ν − 2)): 95.7 % at three degrees of freedom to 94.7 % at nine, and 0.7 % for
+        // 1000 cases.
         assert!((0.92..=0.98).contains(&coverage), "{name}: {coverage}");
     }
 }
@@ -131,8 +132,9 @@ fn trains_together_are_covered(draws: Draws) {
         );
         // Two or three trains that by chance differ as if R did have none.
         assert!(open * 20 < draws.of(CASES), "{name}: {open}");
-        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show: it errs to the safe side, as it does by
-        // a per cent where two or three trains, each of an uncertainty of few flights, are taken together.
+        // 1000 cases scatter the coverage by 0.7 %. That R does not scatter at all these flights do not show:
+        // it errs to the safe side, as it does by a per cent where two or three trains, each of an
+        // uncertainty of few flights, are taken together.
         let most = if per_bounce == 0.0 { 1.0 } else { 0.99 };
         assert!(draws.part(0.92..=most).contains(&coverage), "{name}: {coverage}");
     }
@@ -183,7 +185,8 @@ fn scatter_of_bounces_is_covered_whatever_is_stated_of_the_onsets(draws: Draws) 
                 100.0 * coverage,
                 (squares / stated as f64).sqrt()
             );
-            // As above; between trains a scatter is allowed for that is not there, which errs to the safe side.
+            // As above; between trains a scatter is allowed for that is not there, which errs to the safe
+            // side.
             let most = if trains > 1 { 0.995 } else { 0.985 };
             assert!(
                 draws.part(0.92..=most).contains(&coverage),
@@ -221,7 +224,8 @@ fn scatter_between_trains_is_covered_or_refused(draws: Draws) {
             "restitution, {trains} trains that differ by 1 %, bounces by {per_bounce}: seeds 140000.., 95 % coverage {:.1} % of {stated}",
             100.0 * inside as f64 / stated as f64
         );
-        // Fewer than three trains that clearly differ have no uncertainty: by 1 % where timing scatters by 1e-5 all but a few per cent of them.
+        // Fewer than three trains that clearly differ have no uncertainty: by 1 % where timing scatters by
+        // 1e-5 all but a few per cent of them.
         if draws == Draws::Few {
             assert!(inside as u64 == stated && (trains < 3 || open == 0), "{trains}: {inside} of {stated}");
         } else if trains < 3 {
@@ -248,8 +252,8 @@ fn propagation_agrees_with_a_bootstrap() {
     let mean = values.iter().sum::<f64>() / 2000.0;
     let bootstrap = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 1999.0).sqrt();
     println!("restitution of 40 drops: propagated {stated:.6}, bootstrap {bootstrap:.6}, seed 4321");
-    // The bootstrap is √(39/40) of the standard deviation of the mean, Student's √(39/37) more than it; 2000 drawings scatter by
-    // 1/√4000 = 1.6 %: four of these.
+    // The bootstrap is √(39/40) of the standard deviation of the mean, Student's √(39/37) more than it; 2000
+    // drawings scatter by 1/√4000 = 1.6 %: four of these.
     let expected = (37f64 / 40.0).sqrt();
     assert!((bootstrap / stated - expected).abs() < 0.065);
     let tool = restitution(&Measured {

@@ -1,5 +1,5 @@
-//! Coverage of all that a pulse prints beside ξ and frequency: stiffness, damping, velocity from a force, and the parameters of
-//! the contacts of Hertz and of Hunt and Crossley, integrated here.
+//! Coverage of all that a pulse prints beside ξ and frequency: stiffness, damping, velocity from a force, and
+//! the parameters of the contacts of Hertz and of Hunt and Crossley, integrated here.
 
 use super::draws::Draws;
 use super::noise::Noise;
@@ -77,8 +77,8 @@ fn what_follows_from_a_pulse_behind_a_low_pass(draws: Draws) {
     judge(draws, "pulse with a mass behind a low-pass", &scores);
 }
 
-/// −z″ of z″ = −z^{3/2}(1 + α z′), z(0) = 0, z′(0) = 1, at every step up to where z is 0 again, by Runge and Kutta; its end,
-/// and −z′ there.
+/// −z″ of z″ = −z^{3/2}(1 + α z′), z(0) = 0, z′(0) = 1, at every step up to where z is 0 again, by Runge and
+/// Kutta; its end, and −z′ there.
 fn losses(alpha: f64, step: f64) -> (Vec<f64>, f64, f64) {
     let force = |z: f64, v: f64| z.max(0.0).powf(1.5) * (1.0 + alpha * v);
     let (mut z, mut v) = (0.0, 1.0);

@@ -39,8 +39,9 @@ impl Score {
         self.n += 1;
     }
 
-    /// Prints what was reached; fails beyond `ratio` of the bound, a bias of 0.1 of it (three times what chance gives, where that is
-    /// more), a coverage outside 92…98 %, or where more than two in a hundred state no uncertainty.
+    /// Prints what was reached; fails beyond `ratio` of the bound, a bias of 0.1 of it (three times what
+    /// chance gives, where that is more), a coverage outside 92…98 %, or where more than two in a hundred
+    /// state no uncertainty.
     pub fn judge(&self, draws: Draws, what: &str, ratio: f64) {
         let n = self.n as f64;
         let (reached, bias, coverage) =
@@ -97,8 +98,9 @@ impl Score {
     }
 }
 
-/// Standard deviations of unbiased estimates of the parameters `p` from values with independent noise of this standard deviation:
-/// the diagonal of the inverse of Fisher's information, whose slopes are central differences.
+/// Standard deviations of unbiased estimates of the parameters `p` from values with independent noise of this
+/// standard deviation: the diagonal of the inverse of Fisher's information, whose slopes are central
+/// differences.
 pub fn bounds(p: &[f64], steps: &[f64], noise: &[f64], model: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
     let k = p.len();
     let slopes: Vec<Vec<f64>> = (0..k)

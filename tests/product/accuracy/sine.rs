@@ -11,14 +11,16 @@ const CASES: u64 = 1000;
 const SEED: u64 = 0x51e;
 const RATE: f64 = 1024.0;
 
-/// Root mean square and mean of errors in standard deviations of the bound, and the share of 95 % intervals with the truth.
+/// Root mean square and mean of errors in standard deviations of the bound, and the share of 95 % intervals
+/// with the truth.
 struct Reached {
     ratio: f64,
     bias: f64,
     coverage: f64,
 }
 
-/// Frequency and amplitude over random cases at this signal-to-noise ratio in dB; records without a visible line count apart.
+/// Frequency and amplitude over random cases at this signal-to-noise ratio in dB; records without a visible
+/// line count apart.
 fn reached(decibel: f64, draws: Draws) -> ([Reached; 2], usize) {
     let mut random = Noise::new(SEED);
     let eta = 10f64.powf(decibel / 10.0);
@@ -27,7 +29,8 @@ fn reached(decibel: f64, draws: Draws) -> ([Reached; 2], usize) {
     let mut refused = 0;
     for _ in 0..draws.of(CASES) {
         let n = random.between(200.0, 600.0) as usize;
-        // Not nearer to zero and half the rate than four lines, where the sine's own image takes part in the bound.
+        // Not nearer to zero and half the rate than four lines, where the sine's own image takes part in the
+        // bound.
         let f = random.between(4.0, n as f64 / 2.0 - 4.0) * RATE / n as f64;
         let (amplitude, phase) = (random.between(0.5, 2.0), random.between(0.0, TAU));
         let sigma = amplitude / (2.0 * eta).sqrt();
@@ -139,7 +142,8 @@ fn two_sines_are_parted_with_uncertainties_that_cover() {
     assert!(fewer * 100 <= PAIRS, "{fewer}");
 }
 
-/// One sine at 3 to 8 Hz in y(i) = 0.95 y(i − 1) + e(i), whose density there is up to 39 times that of white noise.
+/// One sine at 3 to 8 Hz in y(i) = 0.95 y(i − 1) + e(i), whose density there is up to 39 times that of white
+/// noise.
 fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     let records = draws.of(600) as usize;
     let seed = 0xc0_104e;
@@ -180,7 +184,8 @@ fn coloured_noise_is_counted_where_the_sine_is(draws: Draws) {
     );
     // Against the noise around it one of 10⁴ lines looks like a sine, where noise is steep some more.
     assert!(stated.iter().all(|n| *n >= records * 98 / 100), "{stated:?}");
-    // A share of 600 scatters by 0.009. The density is that of a process whose coefficient is good to a tenth of 1 − 0.95.
+    // A share of 600 scatters by 0.009. The density is that of a process whose coefficient is good to a tenth
+    // of 1 − 0.95.
     assert!(covered.iter().flatten().all(|c| draws.part(0.92..=0.98).contains(c)), "{covered:?}");
     assert!(said == records, "{said}");
 }

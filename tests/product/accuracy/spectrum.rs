@@ -56,8 +56,9 @@ fn the_scatter_of_lines_holds_the_truth() {
         for scaling in [Scaling::Power, Scaling::Psd, Scaling::Peak, Scaling::Rms] {
             let found = coverage(averages, scaling, &mut random);
             println!("{averages} averages, {scaling:?}: {:.1} %", 100.0 * found);
-            // A sum of squares is no normal number: its gamma distribution gives 92.4 % for powers of 19 segments and 94.5 %
-            // of 95, amplitudes lie between; two thirds of 6000 lines scatter by 0.4 %.
+            // A sum of squares is no normal number: its gamma distribution gives 92.4 % for powers of 19
+            // segments and 94.5 % of 95, amplitudes lie between; two thirds of 6000 lines scatter
+            // by 0.4 %.
             assert!((0.912..=0.98).contains(&found), "{averages} {scaling:?}: {found}");
         }
     }

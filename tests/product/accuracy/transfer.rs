@@ -12,8 +12,8 @@ const SEED: u64 = 0xf2f;
 const LENGTH: usize = 64;
 const GAIN: f64 = 2.0;
 
-/// Shares of lines whose 95 % interval of magnitude and of phase holds the truth. Noise of `noise` times the signal's power, where
-/// the estimator expects it: in the response, in the excitation, or in both.
+/// Shares of lines whose 95 % interval of magnitude and of phase holds the truth. Noise of `noise` times the
+/// signal's power, where the estimator expects it: in the response, in the excitation, or in both.
 fn coverage(
     estimator: Estimator,
     (averages, overlap, noise): (usize, f64, f64),
@@ -40,7 +40,8 @@ fn coverage(
         let welch = Welch { segments, window: Window::Hann, detrend: true };
         let found =
             transfer(&welch.average(&mut traces, true, |_| ()).unwrap(), 1, &metas, estimator).unwrap();
-        // Lines next to each other are not independent under a window, but each counts; the outermost are half real.
+        // Lines next to each other are not independent under a window, but each counts; the outermost are
+        // half real.
         for k in (3..LENGTH / 2 - 3).filter(|k| found.magnitude_std[*k].is_finite()) {
             let h = found.frf.values[k];
             magnitude += usize::from((h.norm() - GAIN).abs() < 1.96 * found.magnitude_std[k]);

@@ -275,8 +275,9 @@ fn the_example_is_measured_as_it_was() {
                     point["amplitude"]["value"].as_f64().unwrap(),
                     point["amplitude"]["std"].as_f64().unwrap(),
                 );
-                // Four standard deviations of noise; 0.2 % where side lines of irregular motion reach in; and where
-                // the mass rests, a magnitude of noise alone lies within four of its standard deviations above zero.
+                // Four standard deviations of noise; 0.2 % where side lines of irregular motion reach in; and
+                // where the mass rests, a magnitude of noise alone lies within four of its
+                // standard deviations above zero.
                 let allowed = 4.0 * std + 0.002 * amplitude;
                 assert!(
                     (value - amplitude).abs() < allowed,

@@ -135,7 +135,8 @@ fn spectra_and_functions_from_two_channels() {
             (of("frequency", "value") - f).abs() < 1e-6 && (of("amplitude", "value") - a).abs() < 1e-6,
             "{tone}"
         );
-        // Times are printed in whole milliseconds: both ends of 2000 samples are known to half of one, with all errors equally likely.
+        // Times are printed in whole milliseconds: both ends of 2000 samples are known to half of one, with
+        // all errors equally likely.
         let of_digits = f * 1e-3 / (3f64.sqrt() * 1.999);
         assert!((of("frequency", "std") / of_digits - 1.0).abs() < 1e-3, "{tone}");
         assert!(of("phase", "std") < 1e-6, "{tone}");

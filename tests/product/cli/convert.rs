@@ -11,8 +11,8 @@ use vibroimpact::record::Trace;
 const RATE: f64 = 2000.0;
 const OMEGA: f64 = TAU * 20.0;
 
-/// 4 s of a velocity of 20 Hz and 1 mm amplitude of displacement, with a mean of half its amplitude and, at 200 Hz, a tenth
-/// of it, beside a pulse.
+/// 4 s of a velocity of 20 Hz and 1 mm amplitude of displacement, with a mean of half its amplitude and, at
+/// 200 Hz, a tenth of it, beside a pulse.
 fn bench(folder: &Path) -> PathBuf {
     let mut rows = String::from("time [s],velocity [m/s],pulse [V]\n");
     for i in 0..8000 {
@@ -54,7 +54,8 @@ fn velocity_to_displacement_and_acceleration() {
     for sentence in ["integrated once", "order 4, corner 5 Hz", "within 1 % from 9.", "Drift left: "] {
         assert!(said.contains(sentence), "{sentence}: {said}");
     }
-    // What is said to be left of the excitation is left of it: the high-pass settles within the 3/5 s that are said, to 1e-4.
+    // What is said to be left of the excitation is left of it: the high-pass settles within the 3/5 s that
+    // are said, to 1e-4.
     for (corner, band) in [("5", " Hz high-pass"), ("12", "outside the band")] {
         let (x, said) = converted(&input, &["--integrate", "1", "--fmin", corner, "--excitation", "20"]);
         let (before, after) = said.split_once("trapezoidal rule leave ").unwrap();
@@ -68,7 +69,8 @@ fn velocity_to_displacement_and_acceleration() {
     let (a, said) = converted(&input, &["--integrate", "-1"]);
     assert_eq!(a.meta.unit.symbol(), "m/s²");
     for (multiple, part) in [(1.0, 1.0), (10.0, 1.0)] {
-        // The tenth of the velocity at ten times the frequency is as large an acceleration; 200 Hz lie within the 235 Hz stated.
+        // The tenth of the velocity at ten times the frequency is as large an acceleration; 200 Hz lie within
+        // the 235 Hz stated.
         let found = amplitude(&a, multiple) / (1e-3 * OMEGA * OMEGA);
         assert!((found / part - 1.0).abs() < 0.01, "{multiple}: {found}");
     }

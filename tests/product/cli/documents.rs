@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// Section and command of each line of the blocks of `sh` that begins with `vibro` or a tool of the shell; lines that end in a backslash go on.
+/// Section and command of each line of the blocks of `sh` that begins with `vibro` or a tool of the shell;
+/// lines that end in a backslash go on.
 fn commands(text: &str) -> Vec<(String, String)> {
     let (mut section, mut shell, mut found) = (String::new(), false, Vec::new());
     let joined = text.replace("\\\n", " ");
@@ -20,12 +21,14 @@ fn commands(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// Sections whose commands run elsewhere: the record of the first is made by a program of twenty seconds (`tests/product/drill.rs`); the second measures every method,
-/// a minute in a build for development (`tests/product/failure_map.rs`, `tests/product/cli/precision.rs`).
+/// Sections whose commands run elsewhere: the record of the first is made by a program of twenty seconds
+/// (`tests/product/drill.rs`); the second measures every method, a minute in a build for development
+/// (`tests/product/failure_map.rs`, `tests/product/cli/precision.rs`).
 #[cfg(unix)]
 const ELSEWHERE: [&str; 2] = ["vibro drill", "vibro precision"];
 
-/// Runs the commands of a document in their order, in a folder that has the repository's examples; gives the number of each section's.
+/// Runs the commands of a document in their order, in a folder that has the repository's examples; gives the
+/// number of each section's.
 #[cfg(unix)]
 fn run(document: &str) -> BTreeMap<String, usize> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -88,7 +91,8 @@ fn the_tutorial_and_the_recipes_run() {
     assert_eq!(run("docs/recipes.md").len(), 9);
 }
 
-/// The help of every command, as a page: `VIBRO_DOCS=1 cargo test --release --test product options_of_every_command` writes it anew.
+/// The help of every command, as a page: `VIBRO_DOCS=1 cargo test --release --test product
+/// options_of_every_command` writes it anew.
 #[test]
 fn the_options_of_every_command_are_those_of_its_help() {
     let help =
@@ -163,7 +167,8 @@ fn the_example_bench_gives_back_the_truth() {
     let mode = &results["frf"][0]["modes"][0];
     let (f, f_std) = value(&mode["frequency"]);
     assert!((f - 60.0).abs() < 4.0 * f_std && f_std < 0.5, "{mode}");
-    // The damping of a peak of 2.4 Hz at lines of 1 Hz: leakage, which would widen it by up to 23 %, is in the fit, and said.
+    // The damping of a peak of 2.4 Hz at lines of 1 Hz: leakage, which would widen it by up to 23 %, is in
+    // the fit, and said.
     let (zeta, zeta_std) = value(&mode["zeta"]);
     assert!((zeta - 0.02).abs() < 4.0 * zeta_std && zeta_std < 0.25 * 0.02, "{mode}");
     assert!(answer["results"].to_string().contains("modal-leakage-fitted"), "{}", answer["results"]["frf"]);

@@ -1,4 +1,5 @@
-//! A folder of recordings without a campaign: `vibro init`, `vibro check`, `vibro run FOLDER`, `vibro response FILES`.
+//! A folder of recordings without a campaign: `vibro init`, `vibro check`, `vibro run FOLDER`, `vibro
+//! response FILES`.
 
 use super::stepped::steps;
 use super::{complaint, json, text, vibro};
@@ -130,7 +131,8 @@ fn a_folder_runs_without_a_campaign_and_nothing_is_written_beside_its_files() {
         serde_json::from_slice(&fs::read(root.path().join("results/results.json")).unwrap()).unwrap();
     let interval = &results["impacts"][0]["interval"];
     let [value, std] = ["value", "std"].map(|key| interval[key].as_f64().unwrap());
-    // Samples are 0.1 ms apart, and a fourth of that is the most by which a mean of 33 intervals of 1/11 s can be off.
+    // Samples are 0.1 ms apart, and a fourth of that is the most by which a mean of 33 intervals of 1/11 s
+    // can be off.
     assert!((value - 1.0 / 11.0).abs() < 2.5e-5 && std < 1e-4, "{interval}");
 }
 
@@ -193,7 +195,8 @@ fn an_example_is_written_with_its_recordings_and_runs() {
     assert_eq!(listed["demos"].as_array().unwrap().len(), 4);
     let answer = json(&["demo", "bench", "--out", text(&folder)]);
     assert_eq!(answer["results"]["decays"][0]["modes"].as_array().unwrap().len(), 1);
-    // The recordings are those of the repository; a second time nothing is written anew, and a changed file is left.
+    // The recordings are those of the repository; a second time nothing is written anew, and a changed file
+    // is left.
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bench");
     for name in ["BENCH.CSV", "PULSE.CSV", "FILTERED.CSV", "DECAY.CSV", "TRUTH.csv", "campaign.toml"] {
         assert_eq!(fs::read(folder.join(name)).unwrap(), fs::read(own.join(name)).unwrap(), "{name}");
@@ -288,7 +291,8 @@ fn a_check_names_channels_that_are_not_there_and_tables_that_are_comments() {
     );
 }
 
-/// From within the folder, with names that are parts of others, and beside a series of drops whose height is known.
+/// From within the folder, with names that are parts of others, and beside a series of drops whose height is
+/// known.
 #[test]
 fn what_comes_later_joins_its_series_and_is_not_taken_for_another_file() {
     let root = tempfile::tempdir().unwrap();

@@ -9,7 +9,8 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 use vibroimpact::math::Noise;
 
-/// A folder `rig` of files of force and velocity under noise, 300 rows each: functions that a name does not tell apart.
+/// A folder `rig` of files of force and velocity under noise, 300 rows each: functions that a name does not
+/// tell apart.
 fn functions(root: &Path, files: usize) -> PathBuf {
     let (folder, mut noise) = (root.join("rig"), Noise::new(8));
     fs::create_dir(&folder).unwrap();
@@ -55,7 +56,8 @@ fn a_long_series_of_functions_is_one_table_in_bounded_work() {
     assert_eq!(json(&["check", text(&folder)])["files"].as_array().unwrap().len(), 250);
 }
 
-/// Pulses up to the seventh file, sines from there on: each file has a table of its kind, in the order of the numbers.
+/// Pulses up to the seventh file, sines from there on: each file has a table of its kind, in the order of the
+/// numbers.
 #[test]
 fn where_files_of_a_series_are_of_several_kinds_each_gets_its_own() {
     let root = tempfile::tempdir().unwrap();

@@ -45,7 +45,8 @@ fn modes_of_a_file() {
     complaint(&["modal", text(&path), "--complex", "--band", "120"], 2);
 }
 
-/// Lines without frequencies have no answer in Hz, and a spectrum of one signal has no modal constants: what the message says to state helps.
+/// Lines without frequencies have no answer in Hz, and a spectrum of one signal has no modal constants: what
+/// the message says to state helps.
 #[test]
 fn lines_that_are_no_function_are_refused_until_it_is_stated() {
     let folder = tempfile::tempdir().unwrap();

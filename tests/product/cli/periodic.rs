@@ -1,4 +1,5 @@
-//! `vibro model orbit --impacts --cycles` and `vibro model continue`: keys, values against closed forms, complaints.
+//! `vibro model orbit --impacts --cycles` and `vibro model continue`: keys, values against closed forms,
+//! complaints.
 
 use super::{complaint, json, text, vibro};
 use num_complex::Complex64;
@@ -26,8 +27,9 @@ fn omega(nu: f64) -> f64 {
     nu * (MASSES[0][1] / MASSES[0][0]).sqrt()
 }
 
-/// What the closed form leaves of an impulse once in `cycles` cycles of F₀ cos ωt: (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² by the sum of the sizes of its terms.
-/// Of the periodic Green's function χ(t) = e^{−bt}[sin λt + B sin λ(T−t)]/(mλ(1 + B² − 2B cos λT)), B = e^{−bT}: C is the sum of both χ(0), P that of 1/(M(1+R)) and
+/// What the closed form leaves of an impulse once in `cycles` cycles of F₀ cos ωt: (C² + (P/ω)²)J² + 2ΔCJ +
+/// Δ² − A² by the sum of the sizes of its terms. Of the periodic Green's function χ(t) = e^{−bt}[sin λt + B
+/// sin λ(T−t)]/(mλ(1 + B² − 2B cos λT)), B = e^{−bT}: C is the sum of both χ(0), P that of 1/(M(1+R)) and
 /// both χ̇(T⁻) (Babitsky 1998).
 fn left(force: f64, frequency: f64, gap: f64, restitution: f64, impulse: f64, cycles: f64) -> f64 {
     let (omega, period) = (TAU * frequency, cycles / frequency);
@@ -92,7 +94,8 @@ fn motions_of_several_impacts_have_their_keys_and_keep_the_laws_of_their_impacts
         }
         let beats = list(orbit, "impacts");
         assert_eq!((beats.len(), &orbit["cycles"]), (2, &Value::from(2)));
-        // Newton's last step is below 1e-10 and squares: what is left are roundings, enlarged by the motion's sensitivity (tens).
+        // Newton's last step is below 1e-10 and squares: what is left are roundings, enlarged by the motion's
+        // sensitivity (tens).
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-11 * b.abs(), "{a} {b} in {orbit}");
         for beat in beats {
             close(number(beat, "impulse"), exchange(restitution) * number(beat, "approach_velocity"));
@@ -100,7 +103,8 @@ fn motions_of_several_impacts_have_their_keys_and_keep_the_laws_of_their_impacts
         let sum = |key: &str| beats.iter().map(|b| number(b, key)).sum::<f64>();
         close(sum("interval"), cycles / frequency);
         close(number(orbit, "impulse"), sum("impulse"));
-        // The volume of the state space shrinks by R² at each impact, by the dampers between: det = R^{2p} exp(−2(b₁+b₂)T).
+        // The volume of the state space shrinks by R² at each impact, by the dampers between: det = R^{2p}
+        // exp(−2(b₁+b₂)T).
         let decay: f64 = MASSES.iter().map(|[m, _, c]| c / (2.0 * m)).sum();
         let det: Complex64 = multipliers(orbit).iter().product();
         close(det.re, restitution.powi(4) * (-2.0 * decay * cycles / frequency).exp());
@@ -134,7 +138,8 @@ fn one_impact_in_several_cycles_is_the_closed_form() {
             assert!(left.abs() < 1e-14, "{left} at {impulse} N s");
         }
     }
-    // The thesis' rig at ν 2.1, 0.5 N, R 0.7: the other root as published for it, all digits of a double; its sensitivity is below 100.
+    // The thesis' rig at ν 2.1, 0.5 N, R 0.7: the other root as published for it, all digits of a double; its
+    // sensitivity is below 100.
     let found = model(&format!("orbit --force 0.5 --frequency {}", omega(2.1) / TAU));
     let impulse = number(&list(&found, "orbits")[1], "impulse");
     assert!((impulse / -0.008_944_428_353_726_736 - 1.0).abs() < 1e-13, "{impulse}");
@@ -182,14 +187,15 @@ fn a_branch_has_its_keys_and_each_point_is_the_closed_form() {
 
 #[test]
 fn a_branch_passes_the_peak_of_the_thesis_and_grazes_where_the_linear_motion_does() {
-    // Golden values of the rig at 0.5 N and R 0.7: the impact speed is largest at ν 2.00992 with 0.46903 m/s, and the amplitude
-    // without impacts falls below the gap at ν 2.168715614919.
+    // Golden values of the rig at 0.5 N and R 0.7: the impact speed is largest at ν 2.00992 with 0.46903 m/s,
+    // and the amplitude without impacts falls below the gap at ν 2.168715614919.
     let found = model("continue --force 0.5 --frequency 11 --from 8 --to 14 --step 0.01");
     let all: Vec<&Value> = list(&found, "branches").iter().collect();
     let points = all.iter().flat_map(|b| list(b, "points"));
     let speed = |p: &Value| number(&p["impacts"][0], "approach_velocity");
     let fastest = points.max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap();
-    // At the peak the speed falls with the square of the way along the branch: by less than 1e-3 in steps of 0.01.
+    // At the peak the speed falls with the square of the way along the branch: by less than 1e-3 in steps of
+    // 0.01.
     assert!((speed(fastest) / 0.46903 - 1.0).abs() < 1e-3, "{fastest}");
     assert!((TAU * number(fastest, "value") / omega(2.00992) - 1.0).abs() < 5e-3, "{fastest}");
     let grazing: Vec<f64> = all
@@ -198,7 +204,8 @@ fn a_branch_passes_the_peak_of_the_thesis_and_grazes_where_the_linear_motion_doe
         .filter(|m| m["kind"] == "grazing")
         .map(|m| TAU * number(&m["orbit"], "value") / omega(2.168_715_614_919) - 1.0)
         .collect();
-    // The frequency of a touch is located by bisection to 1e-11 of a step; an impulse near 0 is known by the root of that.
+    // The frequency of a touch is located by bisection to 1e-11 of a step; an impulse near 0 is known by the
+    // root of that.
     assert!(grazing.iter().any(|off| off.abs() < 1e-6), "{grazing:?}");
 }
 
@@ -220,8 +227,8 @@ fn motions_of_two_cycles_are_drawn_beside_the_flips_of_one() {
             })
             .collect()
     };
-    // Twice the period begins and ends where a multiplier of one impact a cycle is −1. The turn is flat: a difference of 1e-2 between both
-    // halves of the motion moves its frequency by the square of that.
+    // Twice the period begins and ends where a multiplier of one impact a cycle is −1. The turn is flat: a
+    // difference of 1e-2 between both halves of the motion moves its frequency by the square of that.
     let (twice, once) = (values("branches"), values("one_impact"));
     assert!(!twice.is_empty());
     for flip in &twice {

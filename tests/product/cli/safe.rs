@@ -1,4 +1,5 @@
-//! Nothing of a person's is lost: what is replaced, what is looked at, and what a killed or failing run leaves.
+//! Nothing of a person's is lost: what is replaced, what is looked at, and what a killed or failing run
+//! leaves.
 
 use super::kept::{contents, records};
 use super::{complaint, json, text, vibro};
@@ -84,8 +85,8 @@ fn written(folder: &Path) -> Vec<String> {
     names.filter(|name| !name.starts_with(".vibro")).collect()
 }
 
-/// A recording that has the name of a file which the command would write beside it, and a file of a person's that has it: both stay, and the
-/// command says so before it looks at its input.
+/// A recording that has the name of a file which the command would write beside it, and a file of a person's
+/// that has it: both stay, and the command says so before it looks at its input.
 #[test]
 fn no_command_replaces_what_a_person_has() {
     let mut tried = 0;
@@ -155,7 +156,8 @@ fn a_sweep_and_a_conversion_replace_nothing() {
     json(&["convert", text(&from), text(&to), "--single"]);
 }
 
-/// What a person has in the folder of results, under each name that a campaign with records of most kinds writes.
+/// What a person has in the folder of results, under each name that a campaign with records of most kinds
+/// writes.
 #[test]
 fn no_campaign_replaces_what_a_person_has() {
     let root = tempfile::tempdir().unwrap();
@@ -261,7 +263,8 @@ fn a_result_that_is_read_stays() {
     }
 }
 
-/// Starts a command, waits until it has said a line so many times or for a while, and gives how often it did in the end.
+/// Starts a command, waits until it has said a line so many times or for a while, and gives how often it did
+/// in the end.
 fn watched(folder: &Path, wait: Duration) -> usize {
     let said = tempfile::tempdir().unwrap();
     let out = said.path().join("said");
@@ -411,7 +414,8 @@ mod on_unix {
         assert!(text.starts_with("# mine\n[[decay]]\nfile = \"DECAY.CSV\"\n") && text.contains("PULSE.CSV"));
     }
 
-    /// Two campaigns write into one folder in turn, and are killed: every second time while files get their names.
+    /// Two campaigns write into one folder in turn, and are killed: every second time while files get their
+    /// names.
     fn kills(times: u64) {
         let root = tempfile::tempdir().unwrap();
         let records = records(root.path());

@@ -8,7 +8,8 @@ use std::fs;
 use std::path::Path;
 use vibroimpact::math::Noise;
 
-/// Steps under names as they are typed at a bench: decimals, blanks, marks of a repetition, endings in capitals.
+/// Steps under names as they are typed at a bench: decimals, blanks, marks of a repetition, endings in
+/// capitals.
 const ODD: [(&str, f64); 13] = [
     ("sine_14hz.csv", 14.0),
     ("sine_17.5hz.csv", 17.5),
@@ -33,7 +34,8 @@ fn excitations(answer: &Value) -> Vec<f64> {
     answer["points"].as_array().unwrap().iter().map(|p| p["excitation"].as_f64().unwrap()).collect()
 }
 
-/// The frequencies are those written, in this order: 6 s of a force with a noise of a thousandth tell them to 10 µHz.
+/// The frequencies are those written, in this order: 6 s of a force with a noise of a thousandth tell them to
+/// 10 µHz.
 fn are(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{found:?}");
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3), "{found:?}");
@@ -71,7 +73,8 @@ fn steps_are_told_by_what_is_in_them() {
     are(&excitations(&run["results"]["responses"][0]), &ODD.map(|(_, f)| f));
 }
 
-/// A series that goes through the frequencies of another is a sweep of its own, and so is one of another direction.
+/// A series that goes through the frequencies of another is a sweep of its own, and so is one of another
+/// direction.
 #[test]
 fn sweeps_that_names_tell_apart_stay_apart() {
     let root = tempfile::tempdir().unwrap();

@@ -92,7 +92,8 @@ fn contacts_that_give_way_are_followed() {
     let stiff = ["--set", "contact.stiffness=1e9", "--settle", "300", "--cycles", "70"];
     let answer = json(&with(&[&["--model", "kelvin-voigt"], &stiff[..]].concat()));
     assert_eq!(answer["regime"], serde_json::json!({"impacts": 1, "cycles": 1}), "{}", answer["warnings"]);
-    // The time in contact falls as 1/√k, and with it what it changes: a fifth of the impulse at 1e6 N/m, a hundred and fiftieth at 1e9.
+    // The time in contact falls as 1/√k, and with it what it changes: a fifth of the impulse at 1e6 N/m, a
+    // hundred and fiftieth at 1e9.
     let hard = json(&with(&["--settle", "300"]));
     let last =
         |answer: &Value| answer["impacts"].as_array().unwrap().last().unwrap()["impulse"].as_f64().unwrap();

@@ -232,7 +232,8 @@ fn a_hammer_names_the_windows_applied() {
     let (sum, squares) = weights.fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
     assert_eq!(window, "exponential");
     assert!((enbw / (1000.0 * squares / (sum * sum)) - 1.0).abs() < 1e-12, "{enbw}");
-    // The response decays by 0.003 a sample at 0.3 rad a sample; the window's own decay is written, read, and taken off.
+    // The response decays by 0.003 a sample at 0.3 rad a sample; the window's own decay is written, read, and
+    // taken off.
     let out = folder.path().join("out");
     let options = ["--estimator", "h1", "--left-at-end", "0.01", "--out", text(&out)];
     json(&[&hammer[..], &options].concat());
@@ -243,7 +244,8 @@ fn a_hammer_names_the_windows_applied() {
     for file in files {
         let value = json(&["modal", text(&file), "--band", "40:58", "--channel", "1"]);
         let zeta = value["modes"][0]["zeta"]["value"].as_f64().unwrap();
-        // What the end of a record leaves is 0.01 e⁻³ of the response; with the window's decay ζ would be 0.026.
+        // What the end of a record leaves is 0.01 e⁻³ of the response; with the window's decay ζ would be
+        // 0.026.
         assert!((zeta / 0.01 - 1.0).abs() < 0.05, "{file:?}: {value}");
         assert!(value["findings"].to_string().contains("modal-window-decay"), "{value}");
         // The file says that it came from blows, not from a lasting excitation.
@@ -370,7 +372,8 @@ fn a_channel_that_rests_at_an_end_of_its_range_is_clipped_and_one_of_two_levels_
     assert!(!of(&|i| (100.0 * sine(i)).round()).0);
 }
 
-/// A spectrum as LabVIEW writes it, in dB re 1 g over an axis that it calls a time: noise of about −100 dB, three lines of 0 to −20 dB.
+/// A spectrum as LabVIEW writes it, in dB re 1 g over an axis that it calls a time: noise of about −100 dB,
+/// three lines of 0 to −20 dB.
 fn labview(folder: &Path) -> PathBuf {
     let head = "LabVIEW Measurement\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\n\nChannels\t1\n";
     let axis = "Y_Unit_Label\tg\nX_Dimension\tTime\nX0\t0\nDelta_X\t0.1\n***End_of_Header***\n";

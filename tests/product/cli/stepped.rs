@@ -23,7 +23,8 @@ fn frequency(step: usize) -> f64 {
     20.0 + 3.1 * step as f64
 }
 
-/// Files of 12 steps of 6 s: force in N with an offset, acceleration in m/s² with noise of a thousandth and a transient.
+/// Files of 12 steps of 6 s: force in N with an offset, acceleration in m/s² with noise of a thousandth and a
+/// transient.
 pub fn steps(folder: &Path) {
     let named: Vec<(String, f64)> = (1..=12).map(|k| (format!("step{k}.csv"), frequency(k))).collect();
     write_steps(folder, &named, 6.0);
@@ -62,7 +63,8 @@ fn a_folder_of_steps_gives_receptance_and_modes() {
     for (step, point) in (1..).zip(points) {
         let (re, im) = receptance(frequency(step));
         let (std, phase) = (point["receptance"]["std"].as_f64().unwrap(), &point["phase"]);
-        // Twelve blocks or more, two in three of them independent of the transient: six standard uncertainties.
+        // Twelve blocks or more, two in three of them independent of the transient: six standard
+        // uncertainties.
         for (part, truth) in [("re", re), ("im", im)] {
             let off = (point["receptance"][part].as_f64().unwrap() - truth).abs();
             assert!(off < 6.0 * std && std < 2e-3 * re.hypot(im), "{step} {part}: {off} {std}");

@@ -178,7 +178,8 @@ fn values_too_large_for_si_are_refused() {
 #[test]
 fn the_measured_accelerances() {
     let Some(folder) = others_files::folder("analyser") else { return };
-    // 1001 complex lines of 1 Hz; peaks near 52, 142, 279, 460, 687 and 959 Hz in their maximum over the three points.
+    // 1001 complex lines of 1 Hz; peaks near 52, 142, 279, 460, 687 and 959 Hz in their maximum over the
+    // three points.
     let mut largest = vec![0.0f64; 1001];
     for i in 1..=3 {
         let path = folder.join(format!("accelerance_point_{i}.txt"));

@@ -1,6 +1,7 @@
 //! Files of oscilloscopes, of LabVIEW and of PEER.
 //!
-//! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g, the factor stands in the test.
+//! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g, the factor stands in the
+//! test.
 
 #![expect(clippy::unreadable_literal, reason = "digits as the files print them")]
 

@@ -1,6 +1,7 @@
 //! Universal files of other people's instruments, against what their makers and other readers say of them.
 //!
-//! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g or inches, the factor stands in the test.
+//! Numbers are those of `../shared/data/README.md`, in SI: where a file is in g or inches, the factor stands
+//! in the test.
 
 use super::sentences;
 use std::path::{Path, PathBuf};
@@ -107,7 +108,8 @@ fn double_precision_in_binary() {
     assert_eq!(trace.meta.unit.symbol(), "m/s²");
     for (i, value) in trace.values.iter().enumerate() {
         let sine = G * (std::f64::consts::TAU * 5.0 * 0.01 * i as f64).sin();
-        // The file's generator summed its phase in single precision: an independent reader finds it off by up to 7.5e-6.
+        // The file's generator summed its phase in single precision: an independent reader finds it off by up
+        // to 7.5e-6.
         assert!((value - sine).abs() <= 7.5e-6 * G, "sample {i}: {value} against {sine}");
     }
 }
@@ -121,7 +123,8 @@ fn a_density_with_a_latin1_superscript() {
     assert!(record.is_complex());
     assert_eq!(spectrum.axis.step(), None, "the abscissa is stored as uneven");
     assert_eq!(spectrum.axis.at(3200), 3200.0);
-    // g²/Hz in the file, (m/s²)²/Hz here. The largest value is printed as 4.457989E-04; the reference table has 4.457988e-4.
+    // g²/Hz in the file, (m/s²)²/Hz here. The largest value is printed as 4.457989E-04; the reference table
+    // has 4.457988e-4.
     let (at, value) = peak(&record);
     assert!(printed(value / (G * G), 4.457_989e-4, 7), "{value} at {at} Hz");
     assert_eq!(
@@ -242,7 +245,8 @@ fn a_hammer_test() {
     let Some(record) = only("dataset58_FRF.unv") else { return };
     let response = frf(record);
     assert_eq!((response.values.len(), step(&response.axis)), (1600, 0.5));
-    // The file says (m/s)/N under the label "Receptance"; that it was an acceleration only the mangled twin shows.
+    // The file says (m/s)/N under the label "Receptance"; that it was an acceleration only the mangled twin
+    // shows.
     assert_eq!(response.meta.quantity, Quantity::Mobility);
     let doubts = sentences(&response.meta.findings).join(" ");
     assert!(doubts.contains("Receptance") && doubts.contains("(m/s)/N"), "{doubts}");

@@ -1,4 +1,5 @@
-//! Universal files of text with something odd about their values: what is wrong is said, what is right is still read.
+//! Universal files of text with something odd about their values: what is wrong is said, what is right is
+//! still read.
 
 use super::uff_set::{ONE_TO_SEVEN, SEVEN, Set, clean, doubts, read, reader, refused, try_read, values};
 

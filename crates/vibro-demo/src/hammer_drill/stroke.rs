@@ -1,8 +1,9 @@
 //! A striker that goes to and fro once a turn, with everything known of it.
 //!
-//! Between two impacts its velocity is a straight line from the speed after the one to the speed before the other and half a
-//! sine that brings it back to where it struck. An impact takes a contact time, in which the velocity goes from the one course to
-//! the other as half a sine. Duration of a turn, phase of the impact and speeds vary from turn to turn.
+//! Between two impacts its velocity is a straight line from the speed after the one to the speed before the
+//! other and half a sine that brings it back to where it struck. An impact takes a contact time, in which the
+//! velocity goes from the one course to the other as half a sine. Duration of a turn, phase of the impact and
+//! speeds vary from turn to turn.
 
 use super::noise::Noise;
 use std::f64::consts::PI;
@@ -56,7 +57,8 @@ pub struct Run {
 }
 
 impl Machine {
-    /// A run of `duration` seconds and a little more, the first top dead centre before its end of the first turn.
+    /// A run of `duration` seconds and a little more, the first top dead centre before its end of the first
+    /// turn.
     pub fn run(&self, duration: f64, noise: &mut Noise) -> Run {
         let mut edges = vec![-noise.uniform() / self.speed];
         let mut impacts = Vec::new();
@@ -105,7 +107,8 @@ impl Run {
         from.after * (1.0 - s) + to.before * s - back * (PI * s).sin()
     }
 
-    /// A pulse from 0 to 1 once a turn: it rises at the top dead centre within a few samples and lasts a tenth of a turn.
+    /// A pulse from 0 to 1 once a turn: it rises at the top dead centre within a few samples and lasts a
+    /// tenth of a turn.
     pub fn pulse(&self, rate: f64, count: usize) -> Vec<f64> {
         let rise = |samples: f64| 0.5 + 0.5 * (samples / 3.0).tanh();
         let mut k = 0;

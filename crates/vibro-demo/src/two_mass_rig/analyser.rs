@@ -1,8 +1,9 @@
-//! The instruments: force gauge, accelerometers with integrating charge amplifiers, and a dynamic signal analyser.
+//! The instruments: force gauge, accelerometers with integrating charge amplifiers, and a dynamic signal
+//! analyser.
 //!
 //! The converter runs at 32 times the rate of the finished record and averages over each of its intervals, as
-//! integrating converters do; the digital filter behind it keeps the base band. Here that is one windowed transform
-//! of the fast record, of which lines 0 to 400 are kept, so that the jumps of velocity do not fold.
+//! integrating converters do; the digital filter behind it keeps the base band. Here that is one windowed
+//! transform of the fast record, of which lines 0 to 400 are kept, so that the jumps of velocity do not fold.
 
 use super::noise::Noise;
 use std::f64::consts::{PI, TAU};
@@ -19,7 +20,8 @@ pub const SAMPLES: usize = 1024 * 32;
 /// Converter's interval in s.
 pub const INTERVAL: f64 = BLOCK / SAMPLES as f64;
 
-/// Mains hum of 50 Hz leaks through the analogue filter in front of the finished record's 51.2 Hz and folds to 1.2 Hz.
+/// Mains hum of 50 Hz leaks through the analogue filter in front of the finished record's 51.2 Hz and folds
+/// to 1.2 Hz.
 const HUM: f64 = 51.2 - 50.0;
 
 /// What an input adds to its signal, and how finely it is converted.
@@ -42,8 +44,9 @@ const VELOCITY: Input = Input { noise: 4e-5, hum: 2e-4, full_scale: 1.0 };
 const ACCELERATION_NOISE: f64 = 8e-4;
 /// Offset of an accelerometer in m/s².
 const ACCELERATION_OFFSET: f64 = 4e-3;
-/// Lower limiting frequency in Hz of the integrating charge amplifier. Above it the accelerometer's noise appears
-/// divided by 2πf, at it the offset stops growing: together the rise towards DC that integration leaves in a spectrum.
+/// Lower limiting frequency in Hz of the integrating charge amplifier. Above it the accelerometer's noise
+/// appears divided by 2πf, at it the offset stops growing: together the rise towards DC that integration
+/// leaves in a spectrum.
 const LOWER_LIMIT: f64 = 0.01;
 
 /// Force spectrum, in N.
@@ -92,7 +95,8 @@ pub fn hann(i: usize) -> f64 {
 
 /// Lines 0 to 400 of a Hann-windowed block as peak amplitudes.
 ///
-/// A plain sum for each line: its bits do not depend on which vector instructions a fast transform finds on a processor.
+/// A plain sum for each line: its bits do not depend on which vector instructions a fast transform finds on a
+/// processor.
 fn spectrum(signal: &[f64]) -> Vec<f64> {
     let table: Vec<(f64, f64)> = (0..SAMPLES).map(|i| (TAU * i as f64 / SAMPLES as f64).sin_cos()).collect();
     let windowed: Vec<f64> = signal.iter().enumerate().map(|(i, v)| v * hann(i)).collect();

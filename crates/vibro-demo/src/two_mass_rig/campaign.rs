@@ -9,12 +9,12 @@ use vibro_model::portrait::Samples;
 use vibro_model::{Motion, Rig, Simulation, Sine, State};
 use vibro_record::Result;
 
-/// Force amplitude in N. With it and the thesis' masses, springs and dampers the in-phase (grazing) resonance is met in
-/// both directions and the out-of-phase (clapping) one only going up.
+/// Force amplitude in N. With it and the thesis' masses, springs and dampers the in-phase (grazing) resonance
+/// is met in both directions and the out-of-phase (clapping) one only going up.
 const FORCE: f64 = 0.1;
 
-/// The clapping branch ends where damping and restitution can no longer be paid for by the force: at 10.79 Hz for
-/// restitution 0.998, that of the thesis' contact (1e5 N/m, 0.1 N s/m), at 10.67 Hz for this one.
+/// The clapping branch ends where damping and restitution can no longer be paid for by the force: at 10.79 Hz
+/// for restitution 0.998, that of the thesis' contact (1e5 N/m, 0.1 N s/m), at 10.67 Hz for this one.
 const RESTITUTION: f64 = 0.98;
 
 /// Settings of the generator in Hz, upwards; none lies on a line of the analyser (multiples of 0.05 Hz).
@@ -85,10 +85,11 @@ pub fn measure(direction: Direction, last: usize, mut show: impl FnMut(&Point) -
     Ok(())
 }
 
-/// Impacts per cycle of the pattern that repeats, or `irregular`; `2/2` is a pattern of two that repeats every two cycles.
+/// Impacts per cycle of the pattern that repeats, or `irregular`; `2/2` is a pattern of two that repeats
+/// every two cycles.
 ///
-/// The states at one phase of the force are compared, cycle by cycle, over the last part of a block. A pattern repeats
-/// if after some cycles every state is the same to a thousandth of the largest.
+/// The states at one phase of the force are compared, cycle by cycle, over the last part of a block. A
+/// pattern repeats if after some cycles every state is the same to a thousandth of the largest.
 fn pattern(mut motion: Simulation) -> Result<String> {
     const LONGEST: usize = 12;
     let period = 1.0 / motion.frequency();
@@ -110,7 +111,8 @@ fn pattern(mut motion: Simulation) -> Result<String> {
     let repeats = |q: &usize| tail.iter().zip(&tail[*q..]).all(|((a, _), (b, _))| close(a, b));
     Ok(match (1..=LONGEST).find(repeats) {
         Some(q) => {
-            // An impact at the strobe itself may be counted on either side: the mean over many patterns is whole.
+            // An impact at the strobe itself may be counted on either side: the mean over many patterns is
+            // whole.
             let whole = tail.len() / q * q;
             let total: usize = tail[tail.len() - whole..].iter().map(|(_, n)| n).sum();
             let p = (total as f64 / (whole / q) as f64).round() as usize;
@@ -126,8 +128,8 @@ impl Point {
         let omega = TAU * self.frequency;
         let force: Vec<f64> =
             (0..SAMPLES).map(|i| FORCE * (omega * i as f64 * INTERVAL + self.phase).cos()).collect();
-        // The converter averages: over an interval the mean velocity is the change of displacement, exactly. At 13 Hz
-        // the mean is 0.01 % low.
+        // The converter averages: over an interval the mean velocity is the change of displacement, exactly.
+        // At 13 Hz the mean is 0.01 % low.
         let mean = |x: fn(&State) -> f64| -> Vec<f64> {
             self.states.windows(2).map(|pair| (x(&pair[1]) - x(&pair[0])) / INTERVAL).collect()
         };
@@ -141,8 +143,8 @@ impl Point {
         spectra.map(|spectrum| (names.next().unwrap_or_default(), analyser::print(&spectrum)))
     }
 
-    /// Row of `TRUTH.csv`: amplitudes of displacement at the excitation frequency over this very block, through the Hann
-    /// window, without noise.
+    /// Row of `TRUTH.csv`: amplitudes of displacement at the excitation frequency over this very block,
+    /// through the Hann window, without noise.
     pub fn truth(&self) -> String {
         let omega = TAU * self.frequency;
         let (mut sums, mut weight) = ([Complex64::ZERO; 2], 0.0);
@@ -168,7 +170,8 @@ pub fn truth_header() -> String {
     "direction,point,frequency,x1,x2,impacts_per_cycle\n".to_owned()
 }
 
-/// Name and content of the list file of one mass: number of points, lines, base band, force names, response names.
+/// Name and content of the list file of one mass: number of points, lines, base band, force names, response
+/// names.
 pub fn list(direction: Direction, mass: usize) -> (String, String) {
     let names: Vec<[String; 3]> = (1..=FREQUENCIES.len()).map(|number| direction.names(number)).collect();
     let mut text = format!("{}\n{LINES}\n{BASE_BAND}\n", names.len());

@@ -9,8 +9,8 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Noise of one channel at one point; each has its own, so that any point can be made without the others. `draw` 0 is that of the files
-    /// of the example; others are as if all were measured again.
+    /// Noise of one channel at one point; each has its own, so that any point can be made without the others.
+    /// `draw` 0 is that of the files of the example; others are as if all were measured again.
     pub fn new(draw: u64, direction: u64, point: u64, channel: u64) -> Noise {
         let state = (draw << 40) | (direction << 32) | (point << 8) | channel;
         let mut noise = Noise { state, spare: None };

@@ -7,14 +7,16 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use vibro_record::{Error, Place, Result};
 
-/// The right to write into a folder, held until it is dropped. The system takes it back from a program that is killed.
+/// The right to write into a folder, held until it is dropped. The system takes it back from a program that
+/// is killed.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
     _file: File,
 }
 
-/// Time between two tries, and after which another writer is taken to be stuck: figures and tables of a large campaign are written in a second.
+/// Time between two tries, and after which another writer is taken to be stuck: figures and tables of a large
+/// campaign are written in a second.
 const PAUSE: Duration = Duration::from_millis(20);
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -58,8 +60,8 @@ impl Lock {
                 Ok(()) if read.is_err() || !process.bytes().all(|c| c.is_ascii_digit()) => {
                     return Err(strange());
                 }
-                // Where there are no locks, as on some network drives, there is nobody to wait for. The writer
-                // before may have removed the file between opening and locking it.
+                // Where there are no locks, as on some network drives, there is nobody to wait for. The
+                // writer before may have removed the file between opening and locking it.
                 Ok(()) | Err(TryLockError::Error(_)) if is_at(&path, &file) => {
                     let _ = file.set_len(0).and_then(|()| file.rewind());
                     let _ = write!(file, "{}", std::process::id());

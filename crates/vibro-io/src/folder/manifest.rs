@@ -4,8 +4,8 @@ use super::{Digest, Folder};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Files that vibro wrote into a folder, with what they held then. It lies in the folder as [`Manifest::FILE`], in lines that `sha256sum -c`
-/// takes:
+/// Files that vibro wrote into a folder, with what they held then. It lies in the folder as
+/// [`Manifest::FILE`], in lines that `sha256sum -c` takes:
 ///
 /// ```text
 /// # Files that vibro wrote here, as it left them. A file changed since is never replaced.
@@ -116,7 +116,8 @@ impl Manifest {
     }
 }
 
-/// A line of `sha256sum`: a name with a line break or a backslash is escaped, as a mark before the digest tells.
+/// A line of `sha256sum`: a name with a line break or a backslash is escaped, as a mark before the digest
+/// tells.
 pub fn listed(digest: &Digest, name: &str) -> String {
     let escaped = name.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r");
     let mut line = if escaped == name { String::new() } else { "\\".to_owned() };

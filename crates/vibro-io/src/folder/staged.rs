@@ -76,7 +76,8 @@ impl Folder {
         })
     }
 
-    /// Removes temporary files of programs that were killed in this folder. Only who holds its lock may ask for it.
+    /// Removes temporary files of programs that were killed in this folder. Only who holds its lock may ask
+    /// for it.
     pub(super) fn remove_leftovers(&self) {
         for name in self.names().iter().filter(|name| name.starts_with('.') && name.ends_with(PART)) {
             // It is in nobody's way: a leftover that cannot be removed is no failure.
@@ -85,7 +86,8 @@ impl Folder {
     }
 }
 
-/// A file of a hidden name, on the file system of its folder, which everybody may read who may read a new file there.
+/// A file of a hidden name, on the file system of its folder, which everybody may read who may read a new
+/// file there.
 fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut named = tempfile::Builder::new();
     named.prefix(".").suffix(PART);

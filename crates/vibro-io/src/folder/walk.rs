@@ -17,8 +17,9 @@ pub struct Walk {
 }
 
 impl Folder {
-    /// Looks through a folder and up to `levels` below it. Each folder is visited once, whatever links there are; links lead no further than
-    /// [`Folder::path`] does. Hidden files and what vibro wrote as results are passed over without a word.
+    /// Looks through a folder and up to `levels` below it. Each folder is visited once, whatever links there
+    /// are; links lead no further than [`Folder::path`] does. Hidden files and what vibro wrote as
+    /// results are passed over without a word.
     ///
     /// # Errors
     /// If the folder itself cannot be listed. One below it that cannot is skipped.

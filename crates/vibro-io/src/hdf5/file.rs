@@ -1,6 +1,7 @@
 //! What the groups, datasets and attributes of a file hold.
 //!
-//! The crate gives integers and floats their size alone; one whose bits lie otherwise, as the message of its datatype says, is not read as a number.
+//! The crate gives integers and floats their size alone; one whose bits lie otherwise, as the message of its
+//! datatype says, is not read as a number.
 
 use super::lzf;
 use crate::assemble::fewer;
@@ -179,7 +180,8 @@ impl File {
         self.findings
     }
 
-    /// What a dataset holds, of numbers only their `ends` where these are enough; where it cannot be read, a finding says why.
+    /// What a dataset holds, of numbers only their `ends` where these are enough; where it cannot be read, a
+    /// finding says why.
     pub fn data(&mut self, name: &str, dataset: &Dataset, ends: bool) -> Option<Data> {
         match self.held(dataset, ends) {
             Ok(Data::Other(class)) => self.pass(name, class),
@@ -295,7 +297,8 @@ impl H5Type for Number {
     }
 }
 
-/// The numbers of a dataset, some rows at a time: what is read needs no room of its size beside them, and of the `ends` alone none.
+/// The numbers of a dataset, some rows at a time: what is read needs no room of its size beside them, and of
+/// the `ends` alone none.
 fn by_rows(
     dataset: &Dataset,
     ends: bool,
@@ -410,7 +413,8 @@ fn column(bytes: &[u8], offset: usize, width: usize, of: &Datatype) -> Option<Ve
     Some(column)
 }
 
-/// How the message of a datatype describes an integer that fills its bytes, or a float of IEEE 754, behind the byte of its class.
+/// How the message of a datatype describes an integer that fills its bytes, or a float of IEEE 754, behind
+/// the byte of its class.
 fn description(kind: &Datatype) -> Option<Vec<u8>> {
     let (number, big_endian) = number(kind)?;
     let (flags, sign, properties): (u8, u8, &[u8]) = match (number, kind) {

@@ -1,7 +1,8 @@
 //! The filter LZF, which h5py writes for `compression="lzf"`.
 //!
-//! A byte below 32 is followed by one literal more than it says. Another begins a copy: its upper three bits are the length less two (seven: the
-//! next byte is added), its lower five bits and the next byte the distance less one.
+//! A byte below 32 is followed by one literal more than it says. Another begins a copy: its upper three bits
+//! are the length less two (seven: the next byte is added), its lower five bits and the next byte the
+//! distance less one.
 
 use hdf5_reader::error::Error as Fault;
 use hdf5_reader::messages::filter_pipeline::FilterDescription;

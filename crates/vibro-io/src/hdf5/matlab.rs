@@ -1,5 +1,5 @@
-//! The variables of a MAT-file of version 7.3: `MATLAB_class` names what a dataset or a group holds, dimensions are reversed, cells and fields of
-//! arrays of structs are references into the group `#refs#`.
+//! The variables of a MAT-file of version 7.3: `MATLAB_class` names what a dataset or a group holds,
+//! dimensions are reversed, cells and fields of arrays of structs are references into the group `#refs#`.
 
 use super::file::{Data, File, MOST_PATH, Member};
 use crate::held::Held;

@@ -13,7 +13,8 @@ use vibro_record::{Error, Place, Result, Values};
 const HEADER: usize = 128;
 /// Bytes that zlib makes of one at most: 258 of two bits.
 const MOST_UNPACKED: u64 = 1032;
-/// Structs and cell arrays within each other are read to this depth, and to names of this length: both bound what one byte of a file can cost.
+/// Structs and cell arrays within each other are read to this depth, and to names of this length: both bound
+/// what one byte of a file can cost.
 const MOST_DEPTH: usize = 32;
 const MOST_NAME: usize = 512;
 
@@ -99,7 +100,8 @@ pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
     Some(values)
 }
 
-/// All variables of a file behind its header, with their names. What stands in structs and cell arrays is named as MATLAB writes it.
+/// All variables of a file behind its header, with their names. What stands in structs and cell arrays is
+/// named as MATLAB writes it.
 pub fn all(bytes: &[u8], options: &Options) -> Result<Vec<(String, Content)>> {
     let mut held = 0.0;
     let mut variables = Vec::new();
@@ -122,8 +124,8 @@ pub fn all(bytes: &[u8], options: &Options) -> Result<Vec<(String, Content)>> {
     }
 }
 
-/// The content of the variable that `packed` holds. No more is unpacked than the variable declares, nor than may be held as numbers beside
-/// it and what was `held` before.
+/// The content of the variable that `packed` holds. No more is unpacked than the variable declares, nor than
+/// may be held as numbers beside it and what was `held` before.
 fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -> Result<Vec<u8>> {
     let damaged = |e: std::io::Error| {
         let found = format!("a packed variable that is damaged: {e}");
@@ -148,7 +150,8 @@ fn unpacked(file: &Elements, packed: &[u8], options: &Options, held: &mut f64) -
     Ok(inflated)
 }
 
-/// Adds what a matrix element holds: itself or, where it is a struct or a cell array, what stands in it. `inside` is its name and depth there.
+/// Adds what a matrix element holds: itself or, where it is a struct or a cell array, what stands in it.
+/// `inside` is its name and depth there.
 fn variable(
     elements: &mut Elements,
     inside: Option<(String, usize)>,

@@ -64,7 +64,8 @@ impl Clock {
     }
 }
 
-/// Takes the clocks out of the channels and gives them to those of their group and length; where there are several, each to those behind it.
+/// Takes the clocks out of the channels and gives them to those of their group and length; where there are
+/// several, each to those behind it.
 ///
 /// # Errors
 /// If it cannot be told which channels are whose.
@@ -146,7 +147,8 @@ fn stated(object: &Object) -> (AxisKind, Option<(f64, f64)>, Option<Finding>) {
     (kind, object.number("wf_increment").map(|step| (start * factor, step * factor)), found)
 }
 
-/// The axis of a channel: its clock, with the stated step where both agree, for that has more digits; else what is stated.
+/// The axis of a channel: its clock, with the stated step where both agree, for that has more digits; else
+/// what is stated.
 pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
     let (object, n) = (channel.object, channel.values.len());
     let (kind, step, found) = stated(object);

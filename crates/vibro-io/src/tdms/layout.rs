@@ -1,4 +1,5 @@
-//! How raw data lie in a segment, whatever their order: parts, one after the other, of equal rows with fields in them.
+//! How raw data lie in a segment, whatever their order: parts, one after the other, of equal rows with fields
+//! in them.
 
 use crate::binary::Kind;
 use std::sync::Arc;

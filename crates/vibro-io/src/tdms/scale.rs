@@ -1,4 +1,5 @@
-//! From raw values to measured ones: the scales `NI_Scale[0]`, `NI_Scale[1]`, … of a channel, the last of which gives the result.
+//! From raw values to measured ones: the scales `NI_Scale[0]`, `NI_Scale[1]`, … of a channel, the last of
+//! which gives the result.
 
 use super::description::Slot;
 use super::segment::Object;
@@ -55,7 +56,8 @@ impl<'a> Scales<'a> {
         if self.n == 0 {
             return Ok(Values::Real(columns.swap_remove(0)));
         }
-        // From the last scale down to the raw values, each once. Numbers are one higher here: the raw values are 0.
+        // From the last scale down to the raw values, each once. Numbers are one higher here: the raw values
+        // are 0.
         let (mut wanted, mut chain) = (BTreeSet::from([self.n]), Vec::new());
         while let Some(number) = wanted.pop_last() {
             let (step, inputs) = self.step(number.wrapping_sub(1), slots)?;

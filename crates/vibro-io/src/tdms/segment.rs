@@ -46,7 +46,8 @@ impl Object {
     }
 }
 
-/// Goes from segment to segment of a file of `len` bytes: objects in their order, and the raw data of each segment.
+/// Goes from segment to segment of a file of `len` bytes: objects in their order, and the raw data of each
+/// segment.
 ///
 /// # Errors
 /// If the file cannot be read, or a segment is not what the format says.

@@ -172,7 +172,8 @@ fn waveforms_of_a_group_with_units_and_notes() {
 #[test]
 fn chunks_segments_and_the_index_of_before() {
     let mut writer = Writer::new(false);
-    // Two chunks of two values each, then a segment without a description, then one with a longer list and one more property.
+    // Two chunks of two values each, then a segment without a description, then one with a longer list and
+    // one more property.
     let chunk = |from: f64| [from, from + 1.0, 100.0 + from, 101.0 + from];
     let first = writer.doubles(&[chunk(0.0), chunk(2.0)].concat());
     writer.segment(ALL, &[("/'g'/'a'", Raw::Of(10, 2), &[]), ("/'g'/'b'", Raw::Of(10, 2), &[])], &first);

@@ -68,8 +68,8 @@ impl Statement {
     }
 }
 
-/// The axis of `n` values: what a person states, then the printed one, then what the header states. Before it the relative
-/// standard uncertainty of its step, where that is printed.
+/// The axis of `n` values: what a person states, then the printed one, then what the header states. Before it
+/// the relative standard uncertainty of its step, where that is printed.
 ///
 /// # Errors
 /// If a person's statement contradicts a whole printed column.
@@ -125,8 +125,8 @@ impl Printed {
         self.axis.at(self.axis.len().saturating_sub(1))
     }
 
-    /// Whether what was stated can be meant by the digits of the column: a time may begin anywhere, lines that do not begin
-    /// at 0 Hz must end at the base band.
+    /// Whether what was stated can be meant by the digits of the column: a time may begin anywhere, lines
+    /// that do not begin at 0 Hz must end at the base band.
     fn goes_with(&self, statement: &Statement, relative: f64) -> bool {
         let (axis, given) = (&self.axis, &statement.axis);
         if axis.is_empty() || axis.kind != given.kind {

@@ -133,7 +133,8 @@ fn number(text: &str) -> Option<f64> {
     number::either(text.as_bytes())
 }
 
-/// `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms` and, where the last has decimals, `m:s`; a zone behind them says nothing within one file.
+/// `h:m`, `h:m:s`, `d.h:m:s`, `h:m:s:ms` and, where the last has decimals, `m:s`; a zone behind them says
+/// nothing within one file.
 fn seconds(word: &str) -> Option<f64> {
     // Before a trigger.
     if let Some(before) = word.strip_prefix('-') {
@@ -162,7 +163,8 @@ fn seconds(word: &str) -> Option<f64> {
     }
 }
 
-/// Days of a date since some day: year first, else day first, but for slashes with AM and PM and where no month has that number.
+/// Days of a date since some day: year first, else day first, but for slashes with AM and PM and where no
+/// month has that number.
 fn day(cells: &[&str], american: bool) -> Option<f64> {
     let &[a, b, c] = cells else { return None };
     let whole = |cell: &str| cell.parse::<u16>().ok().map(f64::from);

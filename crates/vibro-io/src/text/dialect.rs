@@ -9,8 +9,8 @@ use std::ops::Range;
 /// How rows are to be cut and read, and what stands above them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dialect {
-    /// CSV: the abscissa is the first column whose name says so. ASCII: it is the first column, by its name or because it
-    /// rises, and a blank line between rows of one column is a row without a value.
+    /// CSV: the abscissa is the first column whose name says so. ASCII: it is the first column, by its name
+    /// or because it rises, and a blank line between rows of one column is a row without a value.
     pub format: Format,
     pub separator: Separator,
     /// Decimal mark.
@@ -77,7 +77,8 @@ impl Dialect {
         parse(cell, self.decimal)
     }
 
-    /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not count.
+    /// Fields of a row; a complex number may have blanks in it. Blank fields behind the last column do not
+    /// count.
     ///
     /// # Errors
     /// The byte at which something stands behind a closing quote.

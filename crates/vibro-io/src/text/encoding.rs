@@ -7,7 +7,8 @@ use std::borrow::Cow;
 /// How many bytes are looked at to tell text from binary data.
 pub const LOOK: usize = 2048;
 
-/// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end mark of DOS.
+/// Whether the first bytes look like text: UTF-16, or no control characters but blanks, line ends and the end
+/// mark of DOS.
 pub(crate) fn is_text(head: &[u8]) -> bool {
     let control = |b: &u8| *b < 0x20 && !b"\t\n\r\x0c\x1a".contains(b);
     !head[..head.len().min(LOOK)].iter().any(control) || is_utf16(head)
@@ -29,7 +30,8 @@ pub fn name(head: &[u8]) -> Option<&'static str> {
     std::str::from_utf8(head).is_err_and(|e| e.error_len().is_some()).then_some("Latin-1")
 }
 
-/// The encoding of a text with words in another script, such as Shift JIS, GBK or Windows-1251; `None` for UTF-8 and Latin-1.
+/// The encoding of a text with words in another script, such as Shift JIS, GBK or Windows-1251; `None` for
+/// UTF-8 and Latin-1.
 ///
 /// What stands alone among ASCII, as in `µm` or `Prüfkörper`, is taken as Latin-1 whatever else it may be.
 pub(crate) fn foreign(head: &[u8]) -> Option<&'static Encoding> {
@@ -45,7 +47,8 @@ pub(crate) fn foreign(head: &[u8]) -> Option<&'static Encoding> {
     (![encoding_rs::UTF_8, encoding_rs::WINDOWS_1252].contains(&found)).then_some(found)
 }
 
-/// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells nothing.
+/// Whether a CR stands before anything but LF or another CR; the last byte of a head that is `cut` off tells
+/// nothing.
 pub(crate) fn lone_cr(bytes: &[u8], cut: bool) -> bool {
     // Most files have none at all, and that is told quickly.
     bytes.contains(&b'\r')
@@ -53,7 +56,8 @@ pub(crate) fn lone_cr(bytes: &[u8], cut: bool) -> bool {
             || (!cut && bytes.last() == Some(&b'\r')))
 }
 
-/// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted twice has it.
+/// Every CR that no LF follows becomes LF; several CRs before LF are one line end, as text that was converted
+/// twice has it.
 pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
     let mut before_lf = false;
     for b in bytes.iter_mut().rev() {
@@ -66,10 +70,11 @@ pub(crate) fn with_lf(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Text without a byte order mark: UTF-8 borrowed as it is, UTF-16 converted, everything else taken as Latin-1.
+/// Text without a byte order mark: UTF-8 borrowed as it is, UTF-16 converted, everything else taken as
+/// Latin-1.
 ///
-/// Latin-1 gives every byte a character, so that nothing is lost and a later complaint can show what stands there.
-/// Half a pair of surrogates becomes U+FFFD.
+/// Latin-1 gives every byte a character, so that nothing is lost and a later complaint can show what stands
+/// there. Half a pair of surrogates becomes U+FFFD.
 pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     if is_utf16(bytes) {
         let unit = if bytes[0] == 0xff { u16::from_le_bytes } else { u16::from_be_bytes };

@@ -71,8 +71,8 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
     number::exponential_of(width?).map(|parse| (parse, width.unwrap_or_default()))
 }
 
-/// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean. Of a column that is not to be `kept` and
-/// falls somewhere only the ends are held.
+/// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean. Of a
+/// column that is not to be `kept` and falls somewhere only the ends are held.
 pub fn read(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     match columns(source, shape, end, kept)? {
         None if shape.fixed.is_some() => columns(source, &Shape { fixed: None, ..*shape }, end, kept),
@@ -82,8 +82,8 @@ pub fn read(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<O
 
 /// All columns; `None` where the file is not clean.
 ///
-/// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes twice costs less
-/// than joining vectors. Memory that is not written to costs nothing.
+/// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes
+/// twice costs less than joining vectors. Memory that is not written to costs nothing.
 fn columns(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     let from = shape.first_byte;
     let to = end.max(from);
@@ -173,7 +173,8 @@ impl Lane {
         Lane { kept, falls: false, first: f64::NAN, last: f64::NEG_INFINITY, ends: Extremes::NONE }
     }
 
-    /// Takes the next values and writes them where they belong; `None` where there are more than were counted.
+    /// Takes the next values and writes them where they belong; `None` where there are more than were
+    /// counted.
     fn take(&mut self, next: &[f64], values: &mut [f64]) -> Option<()> {
         let (Some(first), Some(last)) = (next.first(), next.last()) else { return Some(()) };
         if self.kept || !self.falls {
@@ -230,8 +231,8 @@ fn rows_in(source: &Source, shape: &Shape, (from, to): (u64, u64)) -> Result<usi
     Ok(count + usize::from(!whole))
 }
 
-/// Hands these bytes, which begin with a row, to `each` in blocks of whole rows, until it gives `None`, as do rows that are longer
-/// than a block.
+/// Hands these bytes, which begin with a row, to `each` in blocks of whole rows, until it gives `None`, as do
+/// rows that are longer than a block.
 fn blocks(
     source: &Source,
     (from, to): (u64, u64),
@@ -295,7 +296,8 @@ impl Blocks {
     }
 }
 
-/// Reads whole rows to the columns of a block, which grow as they must, and gives their number; `None` where one is not clean.
+/// Reads whole rows to the columns of a block, which grow as they must, and gives their number; `None` where
+/// one is not clean.
 pub fn parsed(bytes: &[u8], shape: &Shape, block: &mut [Vec<f64>]) -> Option<usize> {
     let most = bytes.iter().filter(|b| **b == b'\n').count() + 1;
     for column in block.iter_mut().filter(|column| column.len() < most) {

@@ -6,8 +6,8 @@ use vibro_record::Window;
 
 /// Statements of a header that are understood; the rest stays as notes.
 ///
-/// Every number here is finite, positive and so far from the ends of what a double holds that its inverse and its quotients
-/// are too.
+/// Every number here is finite, positive and so far from the ends of what a double holds that its inverse and
+/// its quotients are too.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stated {
     /// Number of spectral lines, not counting 0 Hz.
@@ -93,8 +93,8 @@ impl Stated {
         stated
     }
 
-    /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated, since analysers
-    /// print the sampling rate too.
+    /// Whether `n` values are all lines of the base band: then they are a spectrum, whatever else is stated,
+    /// since analysers print the sampling rate too.
     pub(crate) fn all_lines(&self, n: usize) -> bool {
         self.base_band.is_some() && self.lines.is_some_and(|lines| lines as usize + 1 == n)
     }
@@ -121,7 +121,8 @@ pub fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
-/// `Sampling Freq(Hz) 100Hz`: a key that ends with its unit in brackets, and a value that begins with a digit; else an empty key.
+/// `Sampling Freq(Hz) 100Hz`: a key that ends with its unit in brackets, and a value that begins with a
+/// digit; else an empty key.
 fn behind_unit(line: &str) -> (&str, &str) {
     let found = line.split_once(')').filter(|(key, value)| {
         key.contains('(') && value.trim_start().starts_with(|c: char| c.is_ascii_digit())
@@ -149,7 +150,8 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ)
     };
     let bare = unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit());
-    // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other things.
+    // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other
+    // things.
     match key.trim() {
         // Without a unit these may be anything, but for an increment beside a start.
         // SAC and its kin: a step in s, which is none above 1.

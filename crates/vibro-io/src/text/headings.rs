@@ -11,8 +11,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use vibro_record::units::{Quantity, Unit};
 
-/// Which lines of a block, counted upwards, name the columns, and the names: a row of units below its names, perhaps above comments; or names
-/// alone.
+/// Which lines of a block, counted upwards, name the columns, and the names: a row of units below its names,
+/// perhaps above comments; or names alone.
 pub fn names_in(
     block: &[Fields],
     clock: Option<&Range<usize>>,
@@ -80,7 +80,8 @@ fn is_label(cell: &str) -> bool {
 
 const TYPES: [&str; 8] = ["f4", "f8", "float", "double", "single", "real32", "real64", "number"];
 
-/// Whether a line holds types of numbers only, `f8`, `float`, or something other than units behind one label: `Interp: zoh`.
+/// Whether a line holds types of numbers only, `f8`, `float`, or something other than units behind one label:
+/// `Interp: zoh`.
 pub fn is_types(line: &Line, separator: Separator) -> bool {
     let label =
         |cell: &str| Some(cell.split_once(": ")?.0.to_owned()).filter(|l| l == "Type" || l == "Interp");
@@ -106,7 +107,8 @@ pub fn is_title(line: &Fields, width: usize, preamble: &Preamble) -> bool {
     keyed || alone && (width > 1 || (preamble.names_columns() && unit_word(&line[0].1).is_none()))
 }
 
-/// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its end that the row has no value for.
+/// The fields of a line above the row `values`, without `skipped` ones at its start and a blank one at its
+/// end that the row has no value for.
 pub fn headings<'a>(
     line: &Line<'a>,
     separator: Separator,

@@ -1,7 +1,7 @@
 //! Lines and fields after RFC 4180, with any separator.
 //!
-//! The crate `csv` is not used here: it reads `"2"3` as 23, lets a stray quote swallow the rest of a file, and does not say
-//! in which column of a line a field stands.
+//! The crate `csv` is not used here: it reads `"2"3` as 23, lets a stray quote swallow the rest of a file,
+//! and does not say in which column of a line a field stands.
 
 use super::clock;
 use super::dialect::Separator;
@@ -45,7 +45,8 @@ pub struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// From byte `at` on, which is the start of line `number`; a line that begins with one of `remarks` is a remark.
+    /// From byte `at` on, which is the start of line `number`; a line that begins with one of `remarks` is a
+    /// remark.
     pub fn new(text: &'a str, at: usize, number: u64, remarks: &'static [&'static str]) -> Lines<'a> {
         Lines { text, at, number, remarks }
     }
@@ -137,8 +138,8 @@ pub fn fields(line: &str, separator: Separator) -> Result<Fields<'_>, usize> {
     }
 }
 
-/// Whether a line that is no row is meant as one: as many cells, all of them missing values; or the first begins with a digit, one is a
-/// number, another is none, and they are no units.
+/// Whether a line that is no row is meant as one: as many cells, all of them missing values; or the first
+/// begins with a digit, one is a number, another is none, and they are no units.
 pub fn is_torn(line: &str, separator: Separator, columns: usize) -> bool {
     let cells = fields(line, separator).unwrap_or_default();
     let cells: Vec<&str> = cells.iter().map(|(_, cell)| cell.as_ref()).collect();

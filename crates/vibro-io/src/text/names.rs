@@ -27,11 +27,11 @@ pub enum Part {
 }
 
 impl Name {
-    /// Reads `velocity [mm/s]`, `velocity (mm/s)`, `velocity / mm/s`, `velocity, mm/s`, `velocity in mm/s`, `velocity mm/s` and
-    /// `velocity_mm/s`.
+    /// Reads `velocity [mm/s]`, `velocity (mm/s)`, `velocity / mm/s`, `velocity, mm/s`, `velocity in mm/s`,
+    /// `velocity mm/s` and `velocity_mm/s`.
     ///
-    /// Text in square brackets is the unit, known or not. In every other spelling it must be a known unit; behind a blank
-    /// or an underscore it must also be one that cannot be part of a name.
+    /// Text in square brackets is the unit, known or not. In every other spelling it must be a known unit;
+    /// behind a blank or an underscore it must also be one that cannot be part of a name.
     pub fn parse(text: &str) -> Name {
         let text = text.trim();
         // `Y[0]` is the name of one of several.
@@ -149,7 +149,8 @@ impl Name {
         word.filter(|word| !known || by_unit.as_ref() == Some(word)).or(by_unit.filter(|_| first))
     }
 
-    /// What stands in brackets behind the name as a unit does, and is none that is known: up to three letters.
+    /// What stands in brackets behind the name as a unit does, and is none that is known: up to three
+    /// letters.
     pub fn unknown_unit(&self) -> Option<&str> {
         let (name, unit) = bracketed(&self.name, '(', ')')?;
         let short = (1..=3).contains(&unit.chars().count()) && unit.chars().all(char::is_alphabetic);
@@ -205,7 +206,8 @@ pub fn above(header: &[String], columns: usize, separator: Separator) -> Option<
     sure.then_some(names)
 }
 
-/// The fields of a line, as many as there are columns: cut as the rows are, else at tabs or wide gaps, else at single blanks.
+/// The fields of a line, as many as there are columns: cut as the rows are, else at tabs or wide gaps, else
+/// at single blanks.
 fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> {
     if !header::split(line).0.is_empty() || !line.contains(char::is_alphabetic) {
         return None;
@@ -228,8 +230,8 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     {
         return Some(fields);
     }
-    // A bracket belongs to the word before it. Between single blanks the first word must be an abscissa, or one have a unit in
-    // brackets: others are free text.
+    // A bracket belongs to the word before it. Between single blanks the first word must be an abscissa, or
+    // one have a unit in brackets: others are free text.
     let words = line.replace(" [", "[").replace(" (", "(");
     let words: Vec<String> = words.split_whitespace().map(str::to_owned).collect();
     let units = words.iter().any(|w| w.ends_with([']', ')']));
@@ -254,7 +256,8 @@ const WHOLE: [(&str, &str); 6] = [
 const COUNTS: &str =
     "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
 
-/// The unit behind the name of a time, where it has other letters elsewhere or means something else there: `d`, `H`, `Min`, `MS`.
+/// The unit behind the name of a time, where it has other letters elsewhere or means something else there:
+/// `d`, `H`, `Min`, `MS`.
 fn long(name: &str, unit: &str) -> Option<&'static str> {
     let found = match unit.trim().to_lowercase().as_str() {
         "h" | "hr" | "hrs" | "std" => HOUR,
@@ -291,7 +294,8 @@ fn begins(text: &str, word: &str) -> bool {
     text.strip_prefix(word).is_some_and(|rest| !rest.starts_with(char::is_alphabetic))
 }
 
-/// A quotient, hertz, a level, or a unit of the quantity that the name says: `x_m` may be a name, `force_N` is not.
+/// A quotient, hertz, a level, or a unit of the quantity that the name says: `x_m` may be a name, `force_N`
+/// is not.
 fn cannot_be_name(name: &str, unit: &str) -> bool {
     let quantity = Unit::parse(unit).map(|u| u.quantity());
     let key = name.to_lowercase();

@@ -138,7 +138,8 @@ fn stray(lines: &[Line]) -> Option<Error> {
     )
 }
 
-/// `300 0.005` above rows of three columns and more: number of values and step in s, as Fortran programs write them.
+/// `300 0.005` above rows of three columns and more: number of values and step in s, as Fortran programs
+/// write them.
 fn count_and_step(rows: &[Line]) -> Option<String> {
     let columns = |i: usize| rows.get(i).map_or(0, |line| line.text.split_whitespace().count());
     let (count, step) = rows.first()?.text.trim().split_once(char::is_whitespace)?;
@@ -148,7 +149,8 @@ fn count_and_step(rows: &[Line]) -> Option<String> {
         .then(|| format!("NPTS={count}, DT={}", step.trim()))
 }
 
-/// Whether every token of a line is a number, a piece of a complex number or a missing value, and at least one is a number.
+/// Whether every token of a line is a number, a piece of a complex number or a missing value, and at least
+/// one is a number.
 fn is_row(line: &[u8]) -> bool {
     let timed = line.contains(&b':');
     let mut numbers = 0;
@@ -201,7 +203,8 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
         {
             false
         }
-        // Several fields between blanks, each with at most one comma; or one that no integer column would print.
+        // Several fields between blanks, each with at most one comma; or one that no integer column would
+        // print.
         None if any(&|line| line.split_ascii_whitespace().count() > 1) || any(&no_integers) => true,
         None => return Err(doubtful()),
     };
@@ -215,7 +218,8 @@ fn no_integers(line: &str) -> bool {
     left == "-0" || leading_zero || right.contains(['e', 'E', 'd', 'D'])
 }
 
-/// Whether every row is one number with decimals, and some have their digits grouped in threes: `1.234,50` or `1,234.50`.
+/// Whether every row is one number with decimals, and some have their digits grouped in threes: `1.234,50` or
+/// `1,234.50`.
 fn grouped(rows: &[Line]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     // Number of groups before the decimal mark. Nobody groups `0.123`.
@@ -233,7 +237,8 @@ fn grouped(rows: &[Line]) -> bool {
     })
 }
 
-/// Reads `(re+imj)`, `re + im i` and the like, and what circuit simulators print; a bare number has no imaginary part and is accepted.
+/// Reads `(re+imj)`, `re + im i` and the like, and what circuit simulators print; a bare number has no
+/// imaginary part and is accepted.
 pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     let text = text.trim_ascii();
     if let Some(comma) = text.iter().position(|b| *b == b',').filter(|_| decimal == b'.') {
@@ -260,7 +265,8 @@ pub fn complex(text: &[u8], decimal: u8) -> Option<Complex64> {
     Some(Complex64::new(real, imaginary))
 }
 
-/// Real and imaginary part, each with its exponent, since `1,234` is one number; or level and angle: `(-3.1e+00dB,4.5e+01°)`.
+/// Real and imaginary part, each with its exponent, since `1,234` is one number; or level and angle:
+/// `(-3.1e+00dB,4.5e+01°)`.
 fn pair(first: &[u8], second: &[u8]) -> Option<Complex64> {
     let level = first.strip_prefix(b"(").and_then(|first| first.strip_suffix(b"dB"));
     if let Some(level) = level.map(number::parse) {

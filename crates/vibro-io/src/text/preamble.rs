@@ -1,4 +1,5 @@
-//! What stands above and beside the rows of a table and is no row of names: keys with values, of the file or of its columns.
+//! What stands above and beside the rows of a table and is no row of names: keys with values, of the file or
+//! of its columns.
 //!
 //! ```text
 //! Sample rate; 1000; Hz                  key and value in cells
@@ -19,7 +20,8 @@ use vibro_record::AxisKind;
 /// Rows that are looked at, of which a preamble may stand beside the first.
 pub const BESIDE: usize = 40;
 
-/// Keys in the first cell of a line, each with its values in the cells behind: one for all columns, or one for each.
+/// Keys in the first cell of a line, each with its values in the cells behind: one for all columns, or one
+/// for each.
 #[derive(Debug, Default)]
 pub struct Preamble(Vec<Vec<String>>);
 
@@ -65,8 +67,9 @@ impl Preamble {
         found.get(1..).filter(|values| values.iter().any(|value| !value.is_empty()))
     }
 
-    /// Gives columns the names and units that they lack, where there is one for each, or for each but the abscissa; says whether there are.
-    /// Under a scale, `whole` numbers are counts of a converter: the unit is not theirs.
+    /// Gives columns the names and units that they lack, where there is one for each, or for each but the
+    /// abscissa; says whether there are. Under a scale, `whole` numbers are counts of a converter: the
+    /// unit is not theirs.
     pub fn name<'a>(&'a self, names: &mut [Name], whole: bool) -> bool {
         let n = names.len();
         let axis = names.first().and_then(|name| name.axis(true));
@@ -108,8 +111,8 @@ impl Preamble {
     }
 }
 
-/// A preamble in the first columns of the first rows, as oscilloscopes of Tektronix write it: key, value and unit, then time and value, with
-/// nothing before them further down.
+/// A preamble in the first columns of the first rows, as oscilloscopes of Tektronix write it: key, value and
+/// unit, then time and value, with nothing before them further down.
 pub fn beside_rows(text: &Text) -> Option<Dialect> {
     let separator = Separator::Char(b',');
     let lines = Lines::new(&text.head, 0, 1, &[]).filter(|line| !line.is_blank()).take(BESIDE);
@@ -154,7 +157,8 @@ pub fn beside_rows(text: &Text) -> Option<Dialect> {
     })
 }
 
-/// Statements in cells beyond the `width` of the rows: a word over a number, `Start` over `-2e-3`, or `t0 = -5e-7`. They are taken out.
+/// Statements in cells beyond the `width` of the rows: a word over a number, `Start` over `-2e-3`, or `t0 =
+/// -5e-7`. They are taken out.
 pub fn beside(upper: Option<&mut Fields>, lower: &mut Fields, width: usize) -> Vec<String> {
     let over = |upper: &Fields| {
         let mut pairs = upper.iter().zip(&*lower).skip(width);

@@ -133,8 +133,8 @@ pub fn build(
 /// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
 const REPEATS: f64 = 0.05;
 
-/// How many rows repeat the one before in all of several columns, where these stand alone, between rows that differ: a motion that rests, or coarse
-/// digits, repeat many in a row.
+/// How many rows repeat the one before in all of several columns, where these stand alone, between rows that
+/// differ: a motion that rests, or coarse digits, repeat many in a row.
 fn repeats(table: &[Column]) -> Option<usize> {
     let measured = table.iter().filter(|column| !column.rises());
     let columns: Vec<&[f64]> = measured.map(|column| column.values.reals()).collect();
@@ -196,7 +196,8 @@ impl Column {
         })
     }
 
-    /// Whether it is the seconds of a clock whose date stands in `axis`: the same instants, from another start and in other units.
+    /// Whether it is the seconds of a clock whose date stands in `axis`: the same instants, from another
+    /// start and in other units.
     fn is_clock_of(&self, axis: &Column) -> bool {
         let seconds = self.name.name == "time" && self.name.unit.as_deref() == Some("s");
         let (own, other) = (self.reals(), axis.reals());
@@ -244,7 +245,8 @@ impl Made<'_> {
         !self.is_table && counts && table[0].counts() && (headed || beside())
     }
 
-    /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it is, or if it rises.
+    /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it
+    /// is, or if it rises.
     fn abscissa(&self, table: &[Column]) -> Option<usize> {
         let by_name = |column: &Column| {
             !column.name.is_vague()
@@ -339,7 +341,8 @@ impl Made<'_> {
         [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)].into_iter().find(agrees)
     }
 
-    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be told.
+    /// Refuses a second column of the axis that runs over another `span`: which columns are whose cannot be
+    /// told.
     fn one_clock(
         &self,
         kind: &AxisKind,

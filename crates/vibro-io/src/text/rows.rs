@@ -19,7 +19,8 @@ use vibro_record::{Error, Result, Values};
 pub struct Rows {
     /// One a column, all of one length; a missing value is NaN.
     pub columns: Vec<Held>,
-    /// First row and distance of the rows that have a value, for each column that has one in every second, third, … only.
+    /// First row and distance of the rows that have a value, for each column that has one in every second,
+    /// third, … only.
     pub sparse: Vec<Option<(usize, usize)>>,
     /// Number of missing values.
     pub missing: usize,
@@ -34,9 +35,9 @@ pub struct Rows {
 /// Reads all rows from the first one on.
 ///
 /// # Errors
-/// On the first field that is no number, the first row with another number of fields and, but for tables, the first blank line
-/// between rows of several columns; on missing values, all at once, unless they are allowed; on a missing value in a column that its name makes
-/// the abscissa always.
+/// On the first field that is no number, the first row with another number of fields and, but for tables, the
+/// first blank line between rows of several columns; on missing values, all at once, unless they are allowed;
+/// on a missing value in a column that its name makes the abscissa always.
 pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
     let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
     let reader = Reader { text, dialect };
@@ -148,7 +149,8 @@ pub const TABLES: &str =
 /// What stands behind the last row.
 const ENDS: [&str; 3] = ["end", "endcurve", "eof"];
 
-/// First row and distance of the rows with a value, where these are even and no others have one: a channel of a lower rate.
+/// First row and distance of the rows with a value, where these are even and no others have one: a channel of
+/// a lower rate.
 fn sparse(values: &[Complex64]) -> Option<(usize, usize)> {
     let has = |i: &usize| !values[*i].re.is_nan();
     let mut with = (0..values.len()).filter(has);

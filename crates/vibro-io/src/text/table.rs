@@ -5,10 +5,10 @@
 //! Sample rate; 1000; Hz              preamble: `key: value`, or key and value in cells
 //! time [s]; velocity [mm/s]          names, with units in the usual spellings (see `names`) …
 //! s; mm/s                            … or with a second row that holds the units
-//! 0,000; 1,5                         rows; comma, semicolon or tab separates, with a comma or point in numbers
+//! 0,000; 1,5                         rows; comma, semicolon or tab separates, a comma or point is decimal
 //! ```
-//! A time, a frequency or a counter is the abscissa by its name. Columns `X_re` and `X_im` over frequency are one complex
-//! record.
+//! A time, a frequency or a counter is the abscissa by its name. Columns `X_re` and `X_im` over frequency are
+//! one complex record.
 
 use super::clock;
 use super::dialect::{Dialect, Separator};
@@ -32,8 +32,8 @@ const DEEPEST: usize = 4;
 
 /// Finds the first row of numbers with names right above it; `None` where there is none.
 ///
-/// Where the file calls itself CSV a single column will do, and a header that does not fit its rows is still a header, so that
-/// reading can name the row at fault.
+/// Where the file calls itself CSV a single column will do, and a header that does not fit its rows is still
+/// a header, so that reading can name the row at fault.
 pub fn detect(text: &Text, options: &Options) -> Option<Dialect> {
     if let Some(found) = beside_rows(text) {
         return Some(found);
@@ -117,7 +117,8 @@ fn row(text: &str, mark: u8, options: &Options) -> Option<usize> {
     (numbers > 0).then_some(fields.len())
 }
 
-/// The dialect with the decimal mark: as stated, else the last comma or point of the first number that has one, where commas do not separate.
+/// The dialect with the decimal mark: as stated, else the last comma or point of the first number that has
+/// one, where commas do not separate.
 fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
     let rows = found.rows(&text.head).filter(|line| line.remark.is_none());
     let cells = rows.flat_map(|line| found.cut(&line).unwrap_or_default().into_iter().enumerate());
@@ -130,8 +131,8 @@ fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
     Dialect { decimal: if comma == Some(true) { b',' } else { b'.' }, stated, ..found }
 }
 
-/// Refuses whole numbers with a mark before their last three digits, `1,000` beside `998`, where nothing shows that the mark is not the decimal
-/// one.
+/// Refuses whole numbers with a mark before their last three digits, `1,000` beside `998`, where nothing
+/// shows that the mark is not the decimal one.
 ///
 /// # Errors
 /// Names the first of them.
@@ -158,8 +159,8 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<()> {
     })
 }
 
-/// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and whether there are as many as
-/// columns.
+/// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and
+/// whether there are as many as columns.
 fn fit(
     above: &[Line],
     first: Line,

@@ -4,10 +4,12 @@ use super::{Text, encoding};
 use crate::{Source, number};
 use vibro_record::{Finding, Result};
 
-/// How many times as many rows the longer of two tables has: a summary of some rows is short beside what it sums up.
+/// How many times as many rows the longer of two tables has: a summary of some rows is short beside what it
+/// sums up.
 const LONGER: usize = 10;
 
-/// The text with the longer of two tables, of which the second begins at `line`; `None` where they compare. Lines keep their numbers.
+/// The text with the longer of two tables, of which the second begins at `line`; `None` where they compare.
+/// Lines keep their numbers.
 ///
 /// # Errors
 /// If the file cannot be read.

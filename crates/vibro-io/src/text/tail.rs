@@ -32,8 +32,8 @@ pub fn of(source: &Source) -> Result<Cow<'_, [u8]>> {
     Ok(tail.split_off(rows(&tail)).into())
 }
 
-/// A doubt where `text` lacks its line end and its last number has fewer digits than the same column has in all rows above
-/// that are looked at.
+/// A doubt where `text` lacks its line end and its last number has fewer digits than the same column has in
+/// all rows above that are looked at.
 pub(crate) fn cut_off(text: &[u8], separator: Separator, decimal: u8) -> Option<Finding> {
     if text.last().is_none_or(|b| matches!(b, b'\n' | b'\r' | 0x1a)) {
         return None;
@@ -64,8 +64,8 @@ fn digits(cell: &[u8], decimal: u8) -> Option<(usize, usize)> {
     Some((behind, exponent.iter().filter(|b| b.is_ascii_digit()).count()))
 }
 
-/// Half a unit in the last digit that a column is printed with: by its rows in the head and at the end of the text, since the
-/// largest of a rising column have the most digits.
+/// Half a unit in the last digit that a column is printed with: by its rows in the head and at the end of the
+/// text, since the largest of a rising column have the most digits.
 pub fn resolution(text: &Text, tail: &[u8], dialect: &Dialect, column: usize) -> f64 {
     let mut digits = Digits::default();
     let mut take = |line: Line| {
@@ -109,8 +109,8 @@ impl Digits {
         self.largest = self.largest.max(value.abs());
     }
 
-    /// Numbers printed with `%.3f` share their last decimal, those of `%.6g` their number of digits: the coarser of both
-    /// bounds is right for either, and for the shortest form that reads back.
+    /// Numbers printed with `%.3f` share their last decimal, those of `%.6g` their number of digits: the
+    /// coarser of both bounds is right for either, and for the shortest form that reads back.
     /// Half a unit in the last digit.
     pub fn resolution(&self) -> f64 {
         let leading = if self.largest > 0.0 { self.largest.log10().floor() as i32 + 1 } else { 0 };

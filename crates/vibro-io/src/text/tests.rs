@@ -294,7 +294,8 @@ fn plain_columns_are_left_to_the_reader_of_plain_columns() {
     assert!(sniffed("x", long.as_bytes()));
 }
 
-/// 20 000 rows, more than the first bytes hold: times, a velocity that falls and rises, and a distance that rises.
+/// 20 000 rows, more than the first bytes hold: times, a velocity that falls and rises, and a distance that
+/// rises.
 fn long_text() -> String {
     let row = |i: u32| format!("{},{},{}\n", f64::from(i) / 1024.0, (i * 7919) % 1009, 3 * i);
     "time [s],v [mm/s],x [mm]\n".to_owned() + &(0..20_000).map(row).collect::<String>()
@@ -387,7 +388,8 @@ fn a_number_that_is_cut_off_is_seen_behind_every_line_end() {
     }
 }
 
-/// The digits of the abscissa are those of its text, also where rows are read as bytes: 1024 Hz in whole milliseconds.
+/// The digits of the abscissa are those of its text, also where rows are read as bytes: 1024 Hz in whole
+/// milliseconds.
 #[test]
 fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
     let mut text = "t [s],a [g]\n".to_owned();

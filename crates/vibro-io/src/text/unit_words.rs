@@ -28,7 +28,8 @@ pub(super) fn symbol(text: &str) -> &str {
     }
 }
 
-/// A unit without what says that amplitudes are RMS or peak, and the scaling that this is: `Vrms`, `mm/s RMS`, `g pk`.
+/// A unit without what says that amplitudes are RMS or peak, and the scaling that this is: `Vrms`, `mm/s
+/// RMS`, `g pk`.
 pub(crate) fn amplitude(unit: &str) -> (&str, Option<Scaling>) {
     const SAID: [(&str, Scaling); 4] =
         [("rms", Scaling::Rms), ("peak", Scaling::Peak), ("pk", Scaling::Peak), ("eff", Scaling::Rms)];
@@ -53,8 +54,8 @@ pub(crate) fn unit_word(field: &str) -> Option<Name> {
     word.then(|| Name { name: String::new(), unit: Some(unit.to_owned()) })
 }
 
-/// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known, at least
-/// half of them known and the others short, such as `EU`.
+/// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known,
+/// at least half of them known and the others short, such as `EU`.
 pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {

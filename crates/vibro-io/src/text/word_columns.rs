@@ -10,8 +10,8 @@ use vibro_record::{Error, Finding, Result};
 /// Rows that tell which columns hold words.
 const ENOUGH: usize = 24;
 
-/// The text without the columns that hold the same word in every row, and what is said of them; `None` where columns of words are not what keeps
-/// it from being read.
+/// The text without the columns that hold the same word in every row, and what is said of them; `None` where
+/// columns of words are not what keeps it from being read.
 ///
 /// # Errors
 /// If the words of a column change: rows of several channels or sensors may stand below each other.
@@ -68,8 +68,8 @@ pub fn left_out(text: &Text) -> Result<Option<(Source, Finding)>> {
     Ok(Some((Source::memory(text.source.path(), kept.into_bytes())?, found)))
 }
 
-/// Separator, line of the first row, and which columns hold words, where all rows at the end of the first lines have as many cells, the same
-/// of them numbers.
+/// Separator, line of the first row, and which columns hold words, where all rows at the end of the first
+/// lines have as many cells, the same of them numbers.
 fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
     let cut = |line: &Line, separator| fields(line.text, separator).unwrap_or_default().len();
     let marks = [b'\t', b';', b','].map(Separator::Char).into_iter().chain([Separator::Blank]);
@@ -84,7 +84,8 @@ fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
         .then(|| (separator, lines[lines.len() - rows].number, words))
 }
 
-/// Whether a cell is a word, and no number, no time and not blank; `None` where it is neither, such as `1.5 V`.
+/// Whether a cell is a word, and no number, no time and not blank; `None` where it is neither, such as `1.5
+/// V`.
 fn is_word(cell: &str) -> Option<bool> {
     let bytes = cell.as_bytes();
     let value = number::either(bytes).is_some() || number::is_missing(bytes) || clock::is_clock(cell);

@@ -1,4 +1,5 @@
-//! One series over many columns: rows that continue each other, as PEER's AT2 and other Fortran programs write them.
+//! One series over many columns: rows that continue each other, as PEER's AT2 and other Fortran programs
+//! write them.
 
 use super::Text;
 use super::dialect::Dialect;
@@ -33,7 +34,8 @@ pub fn flat(text: &Text, dialect: &Dialect) -> Result<Option<Vec<f64>>> {
     Ok(Some(values))
 }
 
-/// Whether all rows but the last are full, the last is shorter and ends as the others do, and the first column is no abscissa.
+/// Whether all rows but the last are full, the last is shorter and ends as the others do, and the first
+/// column is no abscissa.
 pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
     let Ok(bytes) = text.source.all() else { return false };
     let whole = encoding::decode(&bytes);
@@ -58,8 +60,8 @@ pub fn ends_short(text: &Text, dialect: &Dialect) -> bool {
         && full.iter().all(|row| row.0 == dialect.columns)
 }
 
-/// Whether columns look like one series, row after row: from one value to the next, also to the first of the next row, it goes less far than
-/// down a column.
+/// Whether columns look like one series, row after row: from one value to the next, also to the first of the
+/// next row, it goes less far than down a column.
 pub fn continues(columns: &[Held]) -> bool {
     let columns: Vec<&[f64]> = columns.iter().map(Held::reals).collect();
     if columns.len() < 3 || columns[0].len() < FEWEST {

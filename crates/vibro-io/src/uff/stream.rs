@@ -59,7 +59,8 @@ impl<'a> Stream<'a> {
         block
     }
 
-    /// Passes over everything up to and with the next delimiter: lines that are not blank before it, and whether there is one.
+    /// Passes over everything up to and with the next delimiter: lines that are not blank before it, and
+    /// whether there is one.
     pub fn pass_set(&mut self) -> (usize, bool) {
         let mut lines = 0;
         while let Some(line) = self.line_within() {
@@ -98,8 +99,8 @@ pub fn is_delimiter(line: &[u8]) -> bool {
     blanks <= 4 && line.trim_ascii() == b"-1"
 }
 
-/// The number on the line behind an opening `-1`, in its first six columns, and whether a `b` for binary values follows it;
-/// `None` where the line is something else.
+/// The number on the line behind an opening `-1`, in its first six columns, and whether a `b` for binary
+/// values follows it; `None` where the line is something else.
 pub fn set_number(line: &[u8]) -> Option<(u32, bool)> {
     let start = line.iter().position(|b| *b != b' ')?;
     let end = start + line[start..].iter().take_while(|b| b.is_ascii_digit()).count();
@@ -112,9 +113,11 @@ pub fn set_number(line: &[u8]) -> Option<(u32, bool)> {
     (ends && end <= 6).then_some((number, binary))
 }
 
-/// Whether `bytes`, which stand behind binary values, begin with a closing `-1`, alone or behind one line end.
+/// Whether `bytes`, which stand behind binary values, begin with a closing `-1`, alone or behind one line
+/// end.
 ///
-/// It must stand in its very columns: values are searched for it, and looser forms would be found in the wrong place.
+/// It must stand in its very columns: values are searched for it, and looser forms would be found in the
+/// wrong place.
 pub fn closes(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\r").unwrap_or(bytes);
     let bytes = bytes.strip_prefix(b"\n").unwrap_or(bytes);

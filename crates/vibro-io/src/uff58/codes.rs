@@ -21,7 +21,8 @@ pub enum Kind {
 use AxisKind::{Frequency, Time};
 use Kind::{Amplitude, Other, Ratio, Scaled, Squared};
 
-/// Function types of record 6 in their order, from 0: name, abscissa where only one makes sense, kind over frequency.
+/// Function types of record 6 in their order, from 0: name, abscissa where only one makes sense, kind over
+/// frequency.
 const FUNCTIONS: &[(&str, Option<AxisKind>, Kind)] = &[
     ("general function", None, Other),
     ("time response", Some(Time), Other),

@@ -57,7 +57,8 @@ pub struct Point {
 }
 
 impl Point {
-    /// `PWL Mic 1+X`: entity, node and direction, as far as they are given and the entity does not hold the rest.
+    /// `PWL Mic 1+X`: entity, node and direction, as far as they are given and the entity does not hold the
+    /// rest.
     pub fn name(&self) -> String {
         const AXES: [&str; 7] = ["", "X", "Y", "Z", "RX", "RY", "RZ"];
         let axis = AXES.get(self.direction.unsigned_abs() as usize).copied().unwrap_or_default();
@@ -94,8 +95,8 @@ impl Axis {
 }
 
 impl Heading {
-    /// Reads the eleven lines that follow the number of the set. Gives the number of lines found where the set or the
-    /// file ends before the eleventh; the delimiter that ended it is then left in the stream.
+    /// Reads the eleven lines that follow the number of the set. Gives the number of lines found where the
+    /// set or the file ends before the eleventh; the delimiter that ended it is then left in the stream.
     pub fn read(stream: &mut Stream) -> Result<std::result::Result<Heading, usize>> {
         let mut lines = Vec::with_capacity(LINES);
         while lines.len() < LINES {
@@ -208,7 +209,8 @@ fn form(text: &str) -> Result<(Layout, usize, f64, f64)> {
 fn axis(text: &str) -> Axis {
     let text = text.trim_end();
     let [data_type, _, _, _, before, label, between, unit] = cut(text, [10, 5, 5, 5, 1, 20, 1, usize::MAX]);
-    // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells which.
+    // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells
+    // which.
     let (label, unit) = if before.is_empty() && between.is_empty() {
         (label, unit)
     } else if text.is_char_boundary(46) {

@@ -7,12 +7,14 @@ use crate::uff::stream::Stream;
 use vibro_record::units::{Dimension, Quantity, Unit};
 use vibro_record::{Finding, Scaling};
 
-/// Data set 164: length, force and temperature of the file that make one in SI; `None` where the file does not say.
+/// Data set 164: length, force and temperature of the file that make one in SI; `None` where the file does
+/// not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct System(Option<[f64; 3]>);
 
 impl System {
-    /// Reads two lines of data set 164. `None` where the second does not hold three positive factors, format `3D25.17`.
+    /// Reads two lines of data set 164. `None` where the second does not hold three positive factors, format
+    /// `3D25.17`.
     pub fn read(stream: &mut Stream) -> Option<System> {
         stream.line_within()?;
         let line = stream.line_within()?;
@@ -20,8 +22,8 @@ impl System {
         Some(System(Some(*factors.collect::<Vec<f64>>().first_chunk()?)))
     }
 
-    /// SI units in one unit of the file, for a quantity of this dimension. Mass is force times time squared over length,
-    /// and time is in seconds in every system.
+    /// SI units in one unit of the file, for a quantity of this dimension. Mass is force times time squared
+    /// over length, and time is in seconds in every system.
     fn factor(&self, dimension: Dimension) -> f64 {
         let [length, force, temperature] = self.0.unwrap_or([1.0; 3]);
         let [m, kg, _, _, kelvin, _] = dimension.0.map(|doubled| f64::from(doubled) / 2.0);
@@ -29,8 +31,8 @@ impl System {
     }
 }
 
-/// Superscripts and µ, with what they become when they are read in another code page than they were written in: UTF-8 taken as code page 437
-/// and as Latin-1, then Latin-1 taken as Mac Roman and as code page 437.
+/// Superscripts and µ, with what they become when they are read in another code page than they were written
+/// in: UTF-8 taken as code page 437 and as Latin-1, then Latin-1 taken as Mac Roman and as code page 437.
 const MANGLED: [(&str, &str); 3] = [("²", "┬▓ Â² ≤ ▓"), ("³", "┬│ Â³ ≥ │"), ("µ", "┬╡ Âµ")];
 
 /// Numerator or denominator of an ordinate.
@@ -75,8 +77,8 @@ fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
     Some(unit)
 }
 
-/// SI unit of the values of a data set, or the file's own where it is not understood; the factor to it; the unit as the file has it, empty
-/// where it has none; and what is to be said of it.
+/// SI unit of the values of a data set, or the file's own where it is not understood; the factor to it; the
+/// unit as the file has it, empty where it has none; and what is to be said of it.
 pub fn unit(heading: &Heading, system: &System) -> (Unit, f64, String, Vec<Finding>) {
     let mut findings = Vec::new();
     let above = Part::of(&heading.ordinate, heading.response.direction, system, &mut findings);
@@ -132,8 +134,8 @@ fn is_whole(above: &Part, below: &Part) -> bool {
     }
 }
 
-/// Dimension of the ordinate, the power to which it stands in the lines of a spectrum of this function type, and the
-/// power of seconds beside it. Without an answer the values stay as they are, for the reason given.
+/// Dimension of the ordinate, the power to which it stands in the lines of a spectrum of this function type,
+/// and the power of seconds beside it. Without an answer the values stay as they are, for the reason given.
 fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8, i8), Option<Finding>> {
     let (name, _, kind) = codes::function(heading.function);
     if kind == Kind::Scaled(Scaling::Coherence) && !above.text {

@@ -76,7 +76,8 @@ fn split(numbers: Vec<f64>, layout: Layout) -> (Vec<f64>, Values) {
     (stored, values)
 }
 
-/// What this crate's own writer puts into the fifth identification line: `scaling rms; window hann; enbw 1.5`.
+/// What this crate's own writer puts into the fifth identification line: `scaling rms; window hann; enbw
+/// 1.5`.
 fn stated(line: &str) -> Spectral {
     let mut stated = Spectral::default();
     let parts = line.split("; ").filter_map(|part| part.split_once(' '));
@@ -154,7 +155,8 @@ fn abscissa(heading: &Heading, options: &Options, meta: &mut Meta) -> (AxisKind,
     }
 }
 
-/// Kind of an abscissa without data type or known unit: by its label, else by what the function type makes likely.
+/// Kind of an abscissa without data type or known unit: by its label, else by what the function type makes
+/// likely.
 fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
     let axis = &heading.abscissa;
     let label = axis.label.to_lowercase();

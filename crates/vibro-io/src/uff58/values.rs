@@ -38,8 +38,8 @@ impl Layout {
         }
     }
 
-    /// Bytes of one point in binary; `wide` where the abscissa has the precision of the values, which the standard does not
-    /// provide.
+    /// Bytes of one point in binary; `wide` where the abscissa has the precision of the values, which the
+    /// standard does not provide.
     pub fn point_size(self, wide: bool) -> usize {
         let value = if self.double { 8 } else { 4 };
         let abscissa = if wide { value } else { 4 };
@@ -73,8 +73,8 @@ pub fn text(stream: &mut Stream, heading: &Heading, allow_missing: bool) -> Resu
     Ok(numbers)
 }
 
-/// Reads the numbers of the line at the start of `bytes` in their columns and gives its length; the last field may lack its
-/// trailing blanks.
+/// Reads the numbers of the line at the start of `bytes` in their columns and gives its length; the last
+/// field may lack its trailing blanks.
 #[inline]
 fn by_columns(bytes: &[u8], widths: &[usize], numbers: &mut Vec<f64>) -> Option<usize> {
     let line_end = |at: usize| Some(at + bytes[at..].iter().position(|b| *b == b'\n')?);
@@ -104,8 +104,8 @@ fn by_columns(bytes: &[u8], widths: &[usize], numbers: &mut Vec<f64>) -> Option<
 
 /// The one number of a fixed-width field, which the end of the line may have cut short.
 ///
-/// A number that touches the field before it must begin with its sign or fill its field: else the line has other widths
-/// than the standard's, and this is the rest of a longer number.
+/// A number that touches the field before it must begin with its sign or fill its field: else the line has
+/// other widths than the standard's, and this is the rest of a longer number.
 #[inline]
 fn fixed_field(field: &[u8], width: usize, touches: bool) -> Option<f64> {
     let blanks = field.iter().take_while(|b| **b == b' ').count();
@@ -139,8 +139,8 @@ fn by_blanks(stream: &Stream, line: &[u8], allow_missing: bool, numbers: &mut Ve
     Ok(())
 }
 
-/// Numbers of a line that ends with the file and not with a line end. What stands last may be half a number that looks
-/// like a whole one: it counts only where it fills its field.
+/// Numbers of a line that ends with the file and not with a line end. What stands last may be half a number
+/// that looks like a whole one: it counts only where it fills its field.
 fn last_line(line: &[u8], widths: &[usize], numbers: &mut Vec<f64>) {
     let whole =
         widths.iter().fold(0, |whole, width| if whole + width <= line.len() { whole + width } else { whole });
@@ -160,8 +160,8 @@ fn tokens(line: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     tokens.map(|token| (token.as_ptr() as usize - line.as_ptr() as usize + 1, token))
 }
 
-/// What the number line of a 58b says, which has byte order, number format, header lines and bytes: whether it is big-endian, and the bytes of
-/// values, which are often wrong, so never more than a hint.
+/// What the number line of a 58b says, which has byte order, number format, header lines and bytes: whether
+/// it is big-endian, and the bytes of values, which are often wrong, so never more than a hint.
 pub fn storage(line: &[u8], stream: &Stream) -> Result<(bool, Option<usize>)> {
     let text = String::from_utf8_lossy(line);
     let mut fields = text.split_whitespace().skip(1);
@@ -182,8 +182,8 @@ pub fn storage(line: &[u8], stream: &Stream) -> Result<(bool, Option<usize>)> {
 
 /// Reads at most as many binary numbers as the header declares, and says what is odd about their size.
 ///
-/// Record 7 says how many bytes there should be. Only where they cannot be all there, where the number line contradicts, or
-/// where writers differ (abscissa of double-precision values) does the closing `-1` decide.
+/// Record 7 says how many bytes there should be. Only where they cannot be all there, where the number line
+/// contradicts, or where writers differ (abscissa of double-precision values) does the closing `-1` decide.
 pub fn binary(
     stream: &mut Stream,
     heading: &Heading,

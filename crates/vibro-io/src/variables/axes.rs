@@ -24,7 +24,8 @@ const TICKS: f64 = 1000.0;
 /// From here on, in s, steps are taken before they are scaled.
 const FAR: f64 = 1e6;
 
-/// The kind of abscissa that a vector of this name holds, from where it is counted, its factor to s or Hz, and what is assumed.
+/// The kind of abscissa that a vector of this name holds, from where it is counted, its factor to s or Hz,
+/// and what is assumed.
 fn kind(
     dialect: &Dialect,
     name: &str,
@@ -140,7 +141,8 @@ pub struct Axes<'a> {
 }
 
 impl<'a> Axes<'a> {
-    /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length. `notes` are the scalars and texts.
+    /// Takes the rising vectors named as abscissae out of `arrays` where another array has their length.
+    /// `notes` are the scalars and texts.
     pub fn find<'n>(
         dialect: &'static Dialect,
         arrays: &mut Vec<(String, Array)>,
@@ -231,9 +233,11 @@ impl<'a> Axes<'a> {
         self.even = even.collect();
     }
 
-    /// The scalars that say the step of a vector of `n` values, the most certain first; none where that is not certain enough.
+    /// The scalars that say the step of a vector of `n` values, the most certain first; none where that is
+    /// not certain enough.
     fn chosen<'s>(&'s self, name: &'s str, n: usize, complex: bool) -> Vec<(&'s str, &'s Scalar)> {
-        // What is shorter and stands deeper than the vectors of a struct has as a rule been made of them, at another rate.
+        // What is shorter and stands deeper than the vectors of a struct has as a rule been made of them, at
+        // another rate.
         let depth = self.dialect.structs(name).count();
         let shorter = |(d, long): &(Reverse<usize>, Option<u64>)| d.0 < depth && Some(2 * n as u64) <= *long;
         let made = |scope: &str| self.outer.get(scope).is_some_and(shorter);
@@ -342,7 +346,8 @@ impl<'a> Axes<'a> {
     }
 }
 
-/// Units by the vector whose attribute they are, or by the struct that states them of its only vector or, as an attribute, of all.
+/// Units by the vector whose attribute they are, or by the struct that states them of its only vector or, as
+/// an attribute, of all.
 pub fn units<'n>(
     dialect: &Dialect,
     notes: &'n [(String, String)],

@@ -1,7 +1,8 @@
 //! What the names of variables say: where they stand, of which vectors they speak, and what of them.
 //!
-//! What stands in a struct or group speaks of the vectors in it, however deep, and an attribute of its vector. Where a struct has none, it speaks of
-//! those beside it: `File_Header.SampleFrequency` of `Channel_1_Data`, `Signal.x_values.increment` of `Signal.y_values.values`.
+//! What stands in a struct or group speaks of the vectors in it, however deep, and an attribute of its
+//! vector. Where a struct has none, it speaks of those beside it: `File_Header.SampleFrequency` of
+//! `Channel_1_Data`, `Signal.x_values.increment` of `Signal.y_values.values`.
 
 use crate::format::Format;
 use std::collections::HashMap;
@@ -19,7 +20,8 @@ pub struct Dialect {
     pub by_rows: bool,
     /// A matrix with more columns than rows, and than this, is taken for one that lies on its side.
     pub wide: u64,
-    /// Whether groups and vectors have attributes: the unit of a group is that of all in it, and notes go by their names in the group.
+    /// Whether groups and vectors have attributes: the unit of a group is that of all in it, and notes go by
+    /// their names in the group.
     pub attributes: bool,
 }
 
@@ -117,7 +119,8 @@ impl Dialect {
         std::iter::successors(Some(self.container(name)), outer)
     }
 
-    /// The struct of whose vectors a variable speaks, or the vector whose attribute it is. `vectors` are sorted.
+    /// The struct of whose vectors a variable speaks, or the vector whose attribute it is. `vectors` are
+    /// sorted.
     pub fn scope<'n>(&self, name: &'n str, vectors: &[&str]) -> &'n str {
         let of = |inside: &'n str| {
             let behind = vectors.partition_point(|vector| *vector < inside);

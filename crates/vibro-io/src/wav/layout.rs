@@ -1,7 +1,7 @@
 //! Where the samples of a wave file are, and of what kind.
 //!
-//! Sources: Microsoft, "Multiple channel audio data and WAVE files" (`WAVE_FORMAT_EXTENSIBLE`); EBU Tech 3306 (RF64) and
-//! ITU-R BS.2088 (BW64) for the `ds64` chunk.
+//! Sources: Microsoft, "Multiple channel audio data and WAVE files" (`WAVE_FORMAT_EXTENSIBLE`); EBU Tech 3306
+//! (RF64) and ITU-R BS.2088 (BW64) for the `ds64` chunk.
 
 use super::scales::Scales;
 use crate::Source;
@@ -94,7 +94,8 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
     let mut findings = Vec::new();
     let bytes = sample.size() as usize;
     if bits < 8 * bytes {
-        // 12 bits in two bytes fill them from the top, so says the format; some writers fill them from the bottom.
+        // 12 bits in two bytes fill them from the top, so says the format; some writers fill them from the
+        // bottom.
         let wide = Finding::caution("bits-left-justified").count("bits", bits);
         findings.push(wide.count("bytes", bytes));
     }
@@ -138,7 +139,8 @@ fn field<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..)?.first_chunk().copied()
 }
 
-/// Kind of sample, channels, sampling rate and bits of a `fmt ` chunk, or what was found and what is expected.
+/// Kind of sample, channels, sampling rate and bits of a `fmt ` chunk, or what was found and what is
+/// expected.
 fn kind(format: &[u8]) -> std::result::Result<(Kind, usize, f64, usize), (String, &'static str)> {
     let word = |at| field(format, at).map(u16::from_le_bytes);
     let (Some(mut tag), Some(channels), Some(rate), Some(frame), Some(mut bits)) =

@@ -5,8 +5,9 @@
 //! frequency [Hz],v [m/s],H_re [m/N],H_im [m/N]
 //! 0,0.001,1.5e-7,-2e-9
 //! ```
-//! The first column is the abscissa; a complex record takes two. Numbers have the fewest digits that read back as the
-//! same double; an uneven abscissa has all its digits, so that its values cannot be taken for rounded even ones.
+//! The first column is the abscissa; a complex record takes two. Numbers have the fewest digits that read
+//! back as the same double; an uneven abscissa has all its digits, so that its values cannot be taken for
+//! rounded even ones.
 
 use super::{failed, label, parts, together};
 use std::fmt::Write as _;

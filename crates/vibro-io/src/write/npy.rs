@@ -1,7 +1,7 @@
 //! numpy's array file, format version 1.0.
 //!
-//! One record gives a vector, several of one length an array of shape (records, values): doubles, or complex doubles where
-//! any record is complex. Names, units and the abscissa have no place in it.
+//! One record gives a vector, several of one length an array of shape (records, values): doubles, or complex
+//! doubles where any record is complex. Names, units and the abscissa have no place in it.
 //!
 //! Source: numpy's own description of the format, `NEP 1`.
 

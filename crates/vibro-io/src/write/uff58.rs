@@ -1,8 +1,8 @@
 //! Universal File Format, data sets 58 (text) and 58b (binary).
 //!
-//! Each record becomes one data set with eleven header lines of 80 columns and its values in one of the eight cases of
-//! the standard: real or complex, single or double precision, even or uneven abscissa. See `read::uff58` for the format
-//! and its source.
+//! Each record becomes one data set with eleven header lines of 80 columns and its values in one of the eight
+//! cases of the standard: real or complex, single or double precision, even or uneven abscissa. See
+//! `read::uff58` for the format and its source.
 
 mod header;
 
@@ -33,13 +33,15 @@ pub struct Storage {
 
 /// Writes records in SI units, one data set each, lines ended by LF.
 ///
-/// Name, point and identification lines come from [`vibro_record::Meta::notes`] where the record was read from such a
-/// file, else the name becomes the first identification line. A scaling, a window and a noise bandwidth that the function
-/// type cannot tell stand in the fifth. Missing values are written as NaN, which few programs can read.
+/// Name, point and identification lines come from [`vibro_record::Meta::notes`] where the record was read
+/// from such a file, else the name becomes the first identification line. A scaling, a window and a noise
+/// bandwidth that the function type cannot tell stand in the fifth. Missing values are written as NaN, which
+/// few programs can read.
 ///
-/// Double precision in binary keeps every bit of the values. Start and step of an even abscissa are printed with up to
-/// nine digits, an uneven abscissa is rounded to six digits or single precision: the format has no room for more. Where
-/// that would move a value by more than a thousandth of the (smallest) step, the record is refused.
+/// Double precision in binary keeps every bit of the values. Start and step of an even abscissa are printed
+/// with up to nine digits, an uneven abscissa is rounded to six digits or single precision: the format has no
+/// room for more. Where that would move a value by more than a thousandth of the (smallest) step, the record
+/// is refused.
 ///
 /// ```
 /// use vibro_record::{Axis, Meta, Record, Trace};
@@ -54,8 +56,8 @@ pub struct Storage {
 /// ```
 ///
 /// # Errors
-/// If `out` cannot be written, there are no records, or one has more values than ten digits can count or an abscissa that
-/// the format would distort.
+/// If `out` cannot be written, there are no records, or one has more values than ten digits can count or an
+/// abscissa that the format would distort.
 pub fn write_uff58(records: &[Record], out: &mut impl Write, storage: Storage) -> Result<()> {
     if records.is_empty() {
         return Err(Error::refused("there are no records to write, and a file without any cannot be read"));
@@ -124,7 +126,8 @@ fn field(value: f64, width: usize, digits: usize) -> String {
     format!("{:>width$}", format!("{mantissa}{letter}{sign}{exponent:0>2}"))
 }
 
-/// How far a value of the abscissa should be off at most, in parts of the (smallest) step: more digits are taken for it.
+/// How far a value of the abscissa should be off at most, in parts of the (smallest) step: more digits are
+/// taken for it.
 const WANTED: f64 = 1e-3;
 /// How far it may be off, or the record is refused.
 const TOLERANCE: f64 = 0.1;
@@ -144,7 +147,8 @@ fn form(record: &Record, binary: bool) -> Result<[String; 2]> {
     match &record.axis().grid {
         Grid::Even { start, step, n } => {
             let last = n.saturating_sub(1) as f64;
-            // Start and step take half of the tolerance each; the error of the step adds up to the last value.
+            // Start and step take half of the tolerance each; the error of the step adds up to the last
+            // value.
             let fitting = |value: f64, times: f64| {
                 [WANTED, TOLERANCE].into_iter().find_map(|part| {
                     let bound = 0.5 * part * step.abs();
@@ -169,8 +173,8 @@ fn form(record: &Record, binary: bool) -> Result<[String; 2]> {
     }
 }
 
-/// Ways to write a number in its columns, the usual one first: E13.5 with one more digit where there is no sign, then as
-/// many digits as go behind a blank, then as many as there are columns.
+/// Ways to write a number in its columns, the usual one first: E13.5 with one more digit where there is no
+/// sign, then as many digits as go behind a blank, then as many as there are columns.
 fn spellings(value: f64) -> [String; 3] {
     let dense = |room: usize| {
         let fits = |digits: &usize| format!("{value:.digits$E}").len() <= room;

@@ -1,7 +1,9 @@
-//! Text exports of instruments and programs, written by this program from public descriptions of their layouts: each is read
-//! right, or refused with one thing to state that reads it right. `docs/formats.md` says which, and is held to it here.
+//! Text exports of instruments and programs, written by this program from public descriptions of their
+//! layouts: each is read right, or refused with one thing to state that reads it right. `docs/formats.md`
+//! says which, and is held to it here.
 //!
-//! All of them hold the same signals: closed forms that differ from each other, have both signs, and peak at a known place.
+//! All of them hold the same signals: closed forms that differ from each other, have both signs, and peak at
+//! a known place.
 
 mod loggers;
 mod programs;

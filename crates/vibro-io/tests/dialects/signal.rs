@@ -7,7 +7,8 @@ pub const N: usize = 128;
 /// Sampling interval in s.
 pub const DX: f64 = 5e-4;
 
-/// Value `i` of a channel: a pulse on a cosine with its peak near 20, a sine on a drift, a decay that changes sign.
+/// Value `i` of a channel: a pulse on a cosine with its peak near 20, a sine on a drift, a decay that changes
+/// sign.
 pub fn value(channel: usize, i: usize) -> f64 {
     let x = i as f64;
     match channel {

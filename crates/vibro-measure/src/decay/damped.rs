@@ -1,7 +1,8 @@
 //! Lines of damped sines, and their fit.
 //!
-//! The transform of a damped sine over a finite part is a geometric sum: no window is needed, and what the ends of the part do to the lines
-//! is in the model. A fit reads the lines around a few sines only, where noise is white enough, whatever colour it has elsewhere.
+//! The transform of a damped sine over a finite part is a geometric sum: no window is needed, and what the
+//! ends of the part do to the lines is in the model. A fit reads the lines around a few sines only, where
+//! noise is white enough, whatever colour it has elsewhere.
 
 use crate::residuals::{Whiteness, student};
 use nalgebra::{DMatrix, DVector, SVD};

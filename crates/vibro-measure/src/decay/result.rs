@@ -49,7 +49,8 @@ pub struct DecayResult {
     pub modes: Vec<DecayMode>,
     /// The strongest mode over falling amplitude, where the part is long enough.
     pub levels: Vec<Level>,
-    /// Damping ratio of the strongest mode from the logarithmic decrement between the first and the last level.
+    /// Damping ratio of the strongest mode from the logarithmic decrement between the first and the last
+    /// level.
     pub decrement: Option<Estimate>,
     /// What was left out, and what makes numbers doubtful.
     pub findings: Vec<Finding>,

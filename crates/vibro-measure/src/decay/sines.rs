@@ -20,7 +20,8 @@ const WORTH: f64 = 10.0;
 const PARTED: f64 = 1.5;
 /// Decay over the part, in natural logarithms: later there is nothing to be learnt.
 pub(super) const ENOUGH: f64 = 6.0;
-/// A part so many times as long as its strongest mode is seen is cut before others are sought: its lines, of which a mode has thousands, say no more.
+/// A part so many times as long as its strongest mode is seen is cut before others are sought: its lines, of
+/// which a mode has thousands, say no more.
 const LONG: f64 = 4.0;
 /// Standard uncertainties by which a decay has to be above nothing.
 const SURE: f64 = 3.0;
@@ -41,8 +42,8 @@ pub struct Sines {
 }
 
 impl Sines {
-    /// Finds the sines of a part, the strongest first; no more than that one where the part is much too long for it, and more than `least` samples, or where
-    /// it does not decay.
+    /// Finds the sines of a part, the strongest first; no more than that one where the part is much too long
+    /// for it, and more than `least` samples, or where it does not decay.
     pub fn of(part: &[f64], rate: f64, options: &DecayOptions, least: usize) -> Sines {
         let n = part.len();
         let mean = average(part);
@@ -126,7 +127,8 @@ impl Sines {
         self.strongest().is_some_and(|(group, m)| decays(group, m) && group.sines[m].decay > LONG * ENOUGH)
     }
 
-    /// Whether the strongest sine does not decay, and none of a line this high can be stronger: a sine is as high as its line.
+    /// Whether the strongest sine does not decay, and none of a line this high can be stronger: a sine is as
+    /// high as its line.
     fn is_steady(&self, line: f64) -> bool {
         let steady = self.strongest().filter(|(group, m)| !decays(group, *m));
         steady.is_some_and(|(group, m)| group.sines[m].amplitude.norm() > 2.0 * ENOUGH * line)
@@ -217,7 +219,8 @@ impl Sines {
         }
     }
 
-    /// Samples at the beginning of a part in which something else acts, as the contact of a blow: what is left falls at once behind it.
+    /// Samples at the beginning of a part in which something else acts, as the contact of a blow: what is
+    /// left falls at once behind it.
     pub fn contact(&self, part: &[f64], block: usize) -> Option<usize> {
         let left = self.left(part);
         let levels = levels(&left, block);

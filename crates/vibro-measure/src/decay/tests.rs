@@ -1,7 +1,8 @@
 use super::*;
 use crate::synthetic::{Normal, trace};
 
-/// Samples of 1 kHz: modes (frequency, damping ratio, amplitude, phase) from sample `onset` on, and white noise.
+/// Samples of 1 kHz: modes (frequency, damping ratio, amplitude, phase) from sample `onset` on, and white
+/// noise.
 fn record(
     n: usize,
     onset: usize,
@@ -26,7 +27,8 @@ fn off(estimate: &Estimate, truth: f64) -> f64 {
     (estimate.value - truth) / estimate.std.unwrap()
 }
 
-/// Stated intervals hold the truth as often as they say, over damping ratios from 0.003 to 0.1 and noise of 0.1 to 3 % of the amplitude.
+/// Stated intervals hold the truth as often as they say, over damping ratios from 0.003 to 0.1 and noise of
+/// 0.1 to 3 % of the amplitude.
 #[test]
 fn intervals_hold_the_truth_as_often_as_stated() {
     let mut normal = Normal(7);
@@ -178,7 +180,8 @@ fn damping_that_changes_with_amplitude_has_no_uncertainty() {
     assert!(zeta.len() > 1 && zeta.is_sorted() && zeta[zeta.len() - 1] > 2.0 * zeta[0], "{zeta:?}");
 }
 
-/// A record a hundred times as long as its motion is seen: it is cut before further modes are sought, and the second mode is found all the same.
+/// A record a hundred times as long as its motion is seen: it is cut before further modes are sought, and the
+/// second mode is found all the same.
 #[test]
 fn bounces_in_a_long_record_are_cut_to_the_first() {
     let mut normal = Normal(11);

@@ -50,7 +50,8 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let (low, high) = band.map_or((LOWEST, lines.len()), |(low, high)| {
         (line(low).max(LOWEST), line(high).saturating_add(1).min(lines.len()))
     });
-    // Drift is high where all lines are, however steep: a mode stands out of the lines from half to twice its frequency.
+    // Drift is high where all lines are, however steep: a mode stands out of the lines from half to twice its
+    // frequency.
     let over = |k: &usize| {
         let (from, to) = ((k / 2).min(k.saturating_sub(LEAST)).max(1), (2 * k).max(k + LEAST));
         let mut around = lines[from..to.min(lines.len())].to_vec();

@@ -1,4 +1,5 @@
-//! Turns over their phase: the time-synchronous average, the displacement, and the bandwidth that the motion needs.
+//! Turns over their phase: the time-synchronous average, the displacement, and the bandwidth that the motion
+//! needs.
 
 use super::survey::{State, median};
 use super::turns;
@@ -15,7 +16,8 @@ pub struct Cycle<'a> {
     pub time: f64,
     /// Turns a second.
     pub speed: f64,
-    /// Velocity in m/s at equal steps of the phase from 0 on, smoothed as the average is; NaN where it was not measured.
+    /// Velocity in m/s at equal steps of the phase from 0 on, smoothed as the average is; NaN where it was
+    /// not measured.
     pub velocity: &'a [f64],
 }
 
@@ -32,8 +34,8 @@ pub struct Phases {
 
 /// How fast a motion changes, and whether the sampling can follow.
 ///
-/// The frequencies f₁ = a/(2πv) and f₂ = j/(2πa) are those of the sine with the same ratio of largest acceleration to speed
-/// and of largest jerk to acceleration: medians over the turns.
+/// The frequencies f₁ = a/(2πv) and f₂ = j/(2πa) are those of the sine with the same ratio of largest
+/// acceleration to speed and of largest jerk to acceleration: medians over the turns.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bandwidth {
     /// Acceleration against speed, in Hz.
@@ -48,8 +50,8 @@ pub struct Bandwidth {
     pub acceleration: f64,
     /// Largest jerk in m/s³.
     pub jerk: f64,
-    /// Whether f₂ is within a factor of two of a quarter of the sampling rate, the most that differences of samples can
-    /// show: then it is the sampling that was measured.
+    /// Whether f₂ is within a factor of two of a quarter of the sampling rate, the most that differences of
+    /// samples can show: then it is the sampling that was measured.
     pub sampling_limited: bool,
 }
 
@@ -88,7 +90,8 @@ pub(super) struct Cycles {
     pub stroke: Vec<f64>,
     /// How much more it is where the velocity is not smoothed, in m.
     pub blunted: Vec<f64>,
-    /// Displacement left over at the end of each turn, in m; it was taken away evenly before the stroke was taken.
+    /// Displacement left over at the end of each turn, in m; it was taken away evenly before the stroke was
+    /// taken.
     pub drift: Vec<f64>,
 }
 
@@ -139,7 +142,8 @@ impl Cycles {
         }
     }
 
-    /// Stroke and drift of a turn: trapezoids from edge to edge; the mean velocity of the turn is what drifts.
+    /// Stroke and drift of a turn: trapezoids from edge to edge; the mean velocity of the turn is what
+    /// drifts.
     fn path(&self, values: &[f64], turn: Turn) -> Option<(f64, f64)> {
         let Turn { start, end } = turn;
         let (first, last) = (turns::value(values, start)?, turns::value(values, end)?);
@@ -180,8 +184,8 @@ impl Cycles {
     }
 }
 
-/// Displacement over the phase of a turn of `period` seconds, from velocities at equal phases: its mean is 0, and so is what
-/// it gains over a turn.
+/// Displacement over the phase of a turn of `period` seconds, from velocities at equal phases: its mean is 0,
+/// and so is what it gains over a turn.
 pub(super) fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
     let (drift, step) = (average(velocity), period / velocity.len().max(1) as f64);
     let (mut x, mut path) = (0.0, Vec::with_capacity(velocity.len()));
@@ -210,7 +214,8 @@ mod tests {
             motion.differentiate(&values, &vec![State::Good; 2000], turn);
             motion.integrate(&values, &values, turn);
         }
-        // Trapezoids of a sine fall short by (2πf/rate)²/12 = 7e-5; the top lies between samples, by (2πf/rate)²/8.
+        // Trapezoids of a sine fall short by (2πf/rate)²/12 = 7e-5; the top lies between samples, by
+        // (2πf/rate)²/8.
         let stroke = 2.0 * amplitude / (TAU * f);
         assert!(motion.stroke.iter().all(|s| (s / stroke - 1.0).abs() < 2e-4), "{:?}", motion.stroke);
         assert!(motion.drift.iter().all(|d| (d * f / 0.02 - 1.0).abs() < 1e-3), "{:?}", motion.drift);
@@ -283,7 +288,8 @@ mod tests {
                 (1002.0..1112.0).contains(&(edges[1] + phase * (edges[2] - edges[1]))) && counts[k] == 2;
             let (truth, scatter) =
                 if gap { (1.1 * sine, 0.02f64.sqrt() * sine) } else { (1.1 * sine, 0.1 * sine) };
-            // A cubic between samples 2π/900 of a period apart: 1e-9, and kinks of the slope where turns meet, 0.4·2π/900/8.
+            // A cubic between samples 2π/900 of a period apart: 1e-9, and kinks of the slope where turns
+            // meet, 0.4·2π/900/8.
             let near = if k == 0 { 4e-4 } else { 1e-8 };
             assert!((mean - truth).abs() < near, "{phase}: {mean} {truth}");
             assert!((std - scatter.abs()).abs() < near, "{phase}: {std} {scatter}");

@@ -28,8 +28,9 @@ pub struct NoiseFloor {
     pub line_width: f64,
 }
 
-/// RMS value of each line, from the line after 0 Hz on, and their equivalent noise bandwidth in lines: Hann window, half overlap.
-/// Missing samples are passed over. `None` if the signal is shorter than a segment or constant.
+/// RMS value of each line, from the line after 0 Hz on, and their equivalent noise bandwidth in lines: Hann
+/// window, half overlap. Missing samples are passed over. `None` if the signal is shorter than a segment or
+/// constant.
 fn lines(mut values: Vec<f64>, rate: f64) -> Option<(Vec<f64>, f64)> {
     values.retain(|v| v.is_finite());
     let meta = Meta::new("velocity", Unit::parse_or_opaque("m/s"));
@@ -47,7 +48,8 @@ impl NoiseFloor {
     pub(super) fn new(motion: Vec<f64>, noise: Vec<f64>, rate: f64, margin: f64) -> Option<NoiseFloor> {
         let ((motion, width), (noise, _)) = (lines(motion, rate)?, lines(noise, rate)?);
         let step = rate / SEGMENT as f64;
-        // Single lines scatter, and between the harmonics of the speed there is no motion: means over some lines decide.
+        // Single lines scatter, and between the harmonics of the speed there is no motion: means over some
+        // lines decide.
         let mean = |lines: &[f64], k: usize| {
             let part = &lines[k.saturating_sub(SMOOTH)..(k + SMOOTH + 1).min(lines.len())];
             (part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64).sqrt()
@@ -91,8 +93,8 @@ mod tests {
         assert_eq!(floor.frequency[499], 500.0);
         // 2/√2 m/s, noise adds nothing that is seen: 40 dB and more below.
         assert!((floor.motion[499] - 20.0 * 2f64.sqrt().log10()).abs() < 0.01);
-        // Power of uniform noise, 1e-4/12, over 4096 lines, a line 1.5 wide; 46 segments scatter by 0.7 dB a line, the
-        // mean of 3000 lines by 0.02 dB.
+        // Power of uniform noise, 1e-4/12, over 4096 lines, a line 1.5 wide; 46 segments scatter by 0.7 dB a
+        // line, the mean of 3000 lines by 0.02 dB.
         let mean = floor.noise[1000..4000].iter().map(|l| 10f64.powf(l / 10.0)).sum::<f64>() / 3000.0;
         assert!((10.0 * (mean / (1e-4 / 12.0 / 4096.0 * 1.5)).log10()).abs() < 0.1);
         assert_eq!(floor.bands.len(), 1);

@@ -10,8 +10,8 @@ use vibro_record::Finding;
 
 /// Bias of a mean, in standard uncertainties, that leaves ± 1.96 of them a coverage of 94 %.
 const BIAS: f64 = 0.3;
-/// The square of the sum of n unit vectors over n that one in twenty sets of random directions exceeds (J. Zar, Biostatistical
-/// Analysis, 1999, section 27.1: Rayleigh's test).
+/// The square of the sum of n unit vectors over n that one in twenty sets of random directions exceeds (J.
+/// Zar, Biostatistical Analysis, 1999, section 27.1: Rayleigh's test).
 const DIRECTED: f64 = 3.0;
 /// A velocity of approach is known from 0 by this many times its uncertainty.
 const CLEAR: f64 = 6.0;
@@ -23,7 +23,8 @@ const LARGEST: f64 = 0.1;
 const OF_VELOCITIES: [&str; 3] = ["drill-lack-of-fit", "drill-not-striking", "drill-restitution-impossible"];
 /// Times the largest velocity of a record that a parabola, continued to the middle of a contact, may give.
 const EXTRAPOLATED: f64 = 1.3;
-/// Part of their mean distance within which an impact follows another one closely: of impacts at random phases 3 % do.
+/// Part of their mean distance within which an impact follows another one closely: of impacts at random
+/// phases 3 % do.
 const CLOSE: f64 = 0.25;
 /// Part of the impacts that follow closely by accident.
 const ACCIDENTS: f64 = 0.1;
@@ -53,12 +54,13 @@ pub struct Impact {
     pub after: f64,
     /// Its standard uncertainty.
     pub after_std: f64,
-    /// Whether samples of the fits or of the contact are over-range: then the speeds are too small, and the impact is in no mean.
+    /// Whether samples of the fits or of the contact are over-range: then the speeds are too small, and the
+    /// impact is in no mean.
     pub clipped: bool,
 }
 
-/// Mean velocity over turns in m/s, which velocities at impacts are counted from: a mass that comes back each turn has none, so it is an offset of
-/// the instrument, or the machine moves as a whole.
+/// Mean velocity over turns in m/s, which velocities at impacts are counted from: a mass that comes back each
+/// turn has none, so it is an offset of the instrument, or the machine moves as a whole.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offset {
     pub value: f64,
@@ -66,7 +68,8 @@ pub(super) struct Offset {
 }
 
 impl Offset {
-    /// From the drift over a turn, in m, and its time in s; `beyond` is what over-range may have taken from the mean, in m/s.
+    /// From the drift over a turn, in m, and its time in s; `beyond` is what over-range may have taken from
+    /// the mean, in m/s.
     pub fn of(drift: &Mean, period: f64, beyond: f64) -> Offset {
         if !drift.value.is_finite() {
             return Offset { value: 0.0, std: None };
@@ -77,8 +80,9 @@ impl Offset {
 
 /// Impacts of one direction, by the sign of the jump of the velocity, and their means.
 ///
-/// A striker that hits the bit in front and is caught behind has two groups; means over both would be those of no impact. The first group
-/// is the strongest: that with the largest sum of squared jumps over the record.
+/// A striker that hits the bit in front and is caught behind has two groups; means over both would be those
+/// of no impact. The first group is the strongest: that with the largest sum of squared jumps over the
+/// record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Group {
@@ -88,7 +92,8 @@ pub struct Group {
     pub clipped: usize,
     /// Impacts for one turn measured: 1 where there is one in each.
     pub share: f64,
-    /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the turn.
+    /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the
+    /// turn.
     pub phase: Estimate,
     /// Mean velocity before, in m/s.
     pub before: Estimate,
@@ -108,8 +113,9 @@ pub struct Group {
     pub(super) wanders: bool,
 }
 
-/// Groups of impacts found in `turns` turns, the strongest first; each impact gets its group. Velocities are counted from the `offset`. `residuals` are those of their fits, which end
-/// `gap` samples from the middle of the contact.
+/// Groups of impacts found in `turns` turns, the strongest first; each impact gets its group. Velocities are
+/// counted from the `offset`. `residuals` are those of their fits, which end `gap` samples from the middle of
+/// the contact.
 pub(super) fn groups(
     impacts: &mut [Impact],
     residuals: &[[Vec<f64>; 2]],
@@ -142,7 +148,8 @@ pub(super) fn groups(
 }
 
 impl Group {
-    /// Adds what is not known of the offset, which all impacts share; nothing is known where it is more than an instrument has.
+    /// Adds what is not known of the offset, which all impacts share; nothing is known where it is more than
+    /// an instrument has.
     fn allowing(mut self, offset: &Offset) -> Group {
         let (before, after) = (self.before.value, self.after.value);
         let doubted = offset.value.abs() > LARGEST * before.abs().max(after.abs());
@@ -162,7 +169,8 @@ impl Group {
         self
     }
 
-    /// The same without velocities where the fits lead beyond what the record has, `reach` in m/s: they are no parabolas.
+    /// The same without velocities where the fits lead beyond what the record has, `reach` in m/s: they are
+    /// no parabolas.
     pub(super) fn within(mut self, reach: f64) -> Group {
         let largest = self.before.value.abs().max(self.after.value.abs());
         if largest.is_nan() || largest <= EXTRAPOLATED * reach {
@@ -257,7 +265,8 @@ impl Group {
     }
 }
 
-/// How many impacts follow another one closely, where that is no accident: a velocity that rings has several jumps an impact.
+/// How many impacts follow another one closely, where that is no accident: a velocity that rings has several
+/// jumps an impact.
 fn followed(impacts: &[&Impact]) -> usize {
     let ([first, .., last], gaps) = (impacts, impacts.windows(2).map(|w| w[1].time - w[0].time)) else {
         return 0;
@@ -270,13 +279,15 @@ fn followed(impacts: &[&Impact]) -> usize {
     if close > 1 && close as f64 > ACCIDENTS * impacts.len() as f64 { close } else { 0 }
 }
 
-/// R = Σ(v₂⁺ − v₁⁺)/Σv₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest before (W. J. Stronge,
-/// Impact Mechanics, 2000, section 2.4); without a struck mass, or away from it (not `front`), v₂⁺ = 0. The mean of the quotients
-/// would weigh slow impacts most. The uncertainty is that of the mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one
-/// (delta method); `moved` is by how much the biases of the velocities before and after move what changes by parts of them.
+/// R = Σ(v₂⁺ − v₁⁺)/Σv₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest
+/// before (W. J. Stronge, Impact Mechanics, 2000, section 2.4); without a struck mass, or away from it (not
+/// `front`), v₂⁺ = 0. The mean of the quotients would weigh slow impacts most. The uncertainty is that of the
+/// mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one (delta method); `moved` is by how much
+/// the biases of the velocities before and after move what changes by parts of them.
 ///
-/// There is none where the approach is consistent with 0, as that of a bit, which is struck; nor where it would be negative or above
-/// 1 by more than its uncertainty explains. Without an uncertainty nothing is explained, and a value above 1 stays.
+/// There is none where the approach is consistent with 0, as that of a bit, which is struck; nor where it
+/// would be negative or above 1 by more than its uncertainty explains. Without an uncertainty nothing is
+/// explained, and a value above 1 stays.
 fn restitution(
     impacts: &[&Impact],
     front: bool,

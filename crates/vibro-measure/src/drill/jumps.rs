@@ -1,9 +1,10 @@
 //! Impacts as jumps of a velocity.
 //!
-//! On both sides of the contact the velocity is fitted by a parabola; both are continued to the middle of the contact, where
-//! the measured velocity passes half way between them. That is the impact as an instant: the speeds right before and after
-//! hold for the balance of momentum. A straight line would be more precise in noise but wrong where the drive accelerates
-//! the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04 m/s.
+//! On both sides of the contact the velocity is fitted by a parabola; both are continued to the middle of the
+//! contact, where the measured velocity passes half way between them. That is the impact as an instant: the
+//! speeds right before and after hold for the balance of momentum. A straight line would be more precise in
+//! noise but wrong where the drive accelerates the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04
+//! m/s.
 
 use super::parabola::{FEWEST, Parabola};
 use super::survey::{State, median};
@@ -55,8 +56,9 @@ pub(super) struct Jumps<'a> {
 }
 
 impl<'a> Jumps<'a> {
-    /// Jumps in these numbered turns, or in parts of a record whose turns are not known: contacts take `contact` samples at most, fits reach over
-    /// `fit` samples on both sides. Where impacts begin the turns, the one that begins a turn belongs to it, however early it is found.
+    /// Jumps in these numbered turns, or in parts of a record whose turns are not known: contacts take
+    /// `contact` samples at most, fits reach over `fit` samples on both sides. Where impacts begin the
+    /// turns, the one that begins a turn belongs to it, however early it is found.
     pub fn of(
         values: &'a [f64],
         states: &'a [State],
@@ -110,7 +112,8 @@ impl<'a> Jumps<'a> {
         (self.length / 4).max(3)
     }
 
-    /// Difference between the mean behind and the mean before a sample, the contact left out; 0 at the ends of the record.
+    /// Difference between the mean behind and the mean before a sample, the contact left out; 0 at the ends
+    /// of the record.
     fn step(&self, i: usize) -> f64 {
         let m = self.averaged();
         let mean = |from: usize| Some(self.values.get(from..from + m)?.iter().sum::<f64>() / m as f64);
@@ -158,8 +161,8 @@ impl<'a> Jumps<'a> {
         })
     }
 
-    /// All impacts in the order of time, at `rate` samples a second, with reference edges of standard uncertainty `edge` samples; and
-    /// what their fits leave.
+    /// All impacts in the order of time, at `rate` samples a second, with reference edges of standard
+    /// uncertainty `edge` samples; and what their fits leave.
     pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Vec<[Vec<f64>; 2]>) {
         let typical = median(self.largest.iter().copied());
         self.found.retain(|j| j.height() >= PART * typical);
@@ -206,7 +209,8 @@ impl<'a> Jumps<'a> {
 mod tests {
     use super::*;
 
-    /// A velocity of 2000 m/s² and a bend up to an impact at `at`, then −1.5 m/s with 1000 m/s²; the contact takes 6 samples.
+    /// A velocity of 2000 m/s² and a bend up to an impact at `at`, then −1.5 m/s with 1000 m/s²; the contact
+    /// takes 6 samples.
     fn trace(at: f64) -> Vec<f64> {
         let dt = 1e-5;
         let before = |s: f64| 7.5 + 2000.0 * s + 1e5 * s * s;
@@ -234,9 +238,11 @@ mod tests {
             let (impacts, hidden) = one(&values, &vec![State::Good; values.len()]);
             assert_eq!((impacts.len(), hidden), (1, 0));
             let i = impacts[0];
-            // Without noise a parabola is fitted exactly: sums of 50 squares of numbers near 1, a condition of about 1e4.
+            // Without noise a parabola is fitted exactly: sums of 50 squares of numbers near 1, a condition
+            // of about 1e4.
             assert!((i.before - 7.5).abs() < 1e-3 && (i.after + 1.5).abs() < 1e-3, "{i:?}");
-            // The cubic between samples of the sine: (π/6)⁴·4.5·9/16/24 = 0.008 off at a slope of 2.3 a sample.
+            // The cubic between samples of the sine: (π/6)⁴·4.5·9/16/24 = 0.008 off at a slope of 2.3 a
+            // sample.
             assert!((i.time * 1e5 - at).abs() < 4e-3, "{i:?}");
             assert!((i.phase - (at - 100.0) / 1800.0).abs() < 3e-6 && i.cycle == 4);
         }

@@ -12,8 +12,8 @@ const MOST_PULSES: usize = 10_000;
 const MOST_POINTS: usize = 100_000;
 /// Cosine of 89°: nearer to square a tenth of a degree changes the velocity by a tenth.
 const SQUARE: f64 = 0.0175;
-/// Harmonics of the speed that the low-pass chosen from the data lets through at least, however few phases the average has:
-/// at the tenth, (10/50)⁴ = 0.2 % of the amplitude are missing then, of a stroke still less.
+/// Harmonics of the speed that the low-pass chosen from the data lets through at least, however few phases
+/// the average has: at the tenth, (10/50)⁴ = 0.2 % of the amplitude are missing then, of a stroke still less.
 const HARMONICS: f64 = 50.0;
 /// Largest corner as a part of the sampling rate: from there on differences of samples show too little:
 /// at a quarter of it a central difference gives 2/π of a slope.
@@ -49,7 +49,8 @@ impl Beam {
     /// A beam at `degrees`, counted `from` the normal or from the axis of the motion.
     ///
     /// # Errors
-    /// If the angle is not between 0° and 90°, or the beam stands square to the motion and sees nothing of it.
+    /// If the angle is not between 0° and 90°, or the beam stands square to the motion and sees nothing of
+    /// it.
     pub fn new(degrees: f64, from: From) -> Result<Beam> {
         if !(0.0..=90.0).contains(&degrees) {
             let found = format!("a beam angle of {degrees}°");
@@ -65,18 +66,19 @@ impl Beam {
     }
 }
 
-/// How the velocity is smoothed before it is averaged and integrated. Impacts and bandwidth are always taken from the
-/// velocity as it was measured.
+/// How the velocity is smoothed before it is averaged and integrated. Impacts and bandwidth are always taken
+/// from the velocity as it was measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Smoothing {
-    /// A zero-phase low-pass as in [`Smoothing::LowPass`] whose corner comes from the data: half as many times the speed as
-    /// the average has phases, the highest frequency that these can show (50 times at least), and at most a quarter of the
-    /// sampling rate.
+    /// A zero-phase low-pass as in [`Smoothing::LowPass`] whose corner comes from the data: half as many
+    /// times the speed as the average has phases, the highest frequency that these can show (50 times at
+    /// least), and at most a quarter of the sampling rate.
     #[default]
     Phases,
     /// None.
     Off,
-    /// Butterworth low-pass of second order, forward and backward: no delay. Corner in Hz, at half the amplitude.
+    /// Butterworth low-pass of second order, forward and backward: no delay. Corner in Hz, at half the
+    /// amplitude.
     LowPass(f64),
     /// Exponential smoothing with this time constant in s: delays by it.
     Exponential(f64),
@@ -103,8 +105,8 @@ pub enum Corner {
 }
 
 impl Smoothing {
-    /// Kind and corner for an average at `points` phases of turns of `turn` seconds, `rate` samples a second; `None` where nothing is
-    /// smoothed.
+    /// Kind and corner for an average at `points` phases of turns of `turn` seconds, `rate` samples a second;
+    /// `None` where nothing is smoothed.
     ///
     /// ```
     /// use vibro_measure::drill::{Corner, Smoothing};
@@ -137,7 +139,8 @@ impl Corner {
     }
 }
 
-/// Parameters of [`super::drill`]. There is no default for those of which a wrong guess gives a plausible wrong answer.
+/// Parameters of [`super::drill`]. There is no default for those of which a wrong guess gives a plausible
+/// wrong answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrillOptions {
     /// Velocity along the beam in m/s for one unit of the velocity channel.
@@ -162,7 +165,8 @@ pub struct DrillOptions {
     pub fit: f64,
     /// Longest drop-out in s that is bridged. Default 2 ms.
     pub longest_dropout: f64,
-    /// Delay in s of the velocity channel against the reference, such as of a vibrometer's decoder; it is removed. Default 0.
+    /// Delay in s of the velocity channel against the reference, such as of a vibrometer's decoder; it is
+    /// removed. Default 0.
     pub delay: f64,
     /// Phases of the average. Default 720.
     pub points: usize,

@@ -7,7 +7,8 @@ use std::ops::RangeInclusive;
 
 /// Fewest samples of a fit: twice its parameters.
 pub(super) const FEWEST: usize = 6;
-/// Standard deviations above 1 that the mean square of a common residual over that which chance leaves must have.
+/// Standard deviations above 1 that the mean square of a common residual over that which chance leaves must
+/// have.
 const SIGNIFICANT: f64 = 5.0;
 
 /// A parabola, continued to the middle of the contact.
@@ -25,8 +26,8 @@ pub(super) struct Parabola {
 }
 
 impl Parabola {
-    /// Parabola through the measured samples of `range`, continued to the place `at`; `None` where fewer than two thirds of them are
-    /// measured.
+    /// Parabola through the measured samples of `range`, continued to the place `at`; `None` where fewer than
+    /// two thirds of them are measured.
     pub fn through(
         values: &[f64],
         states: &[State],
@@ -68,9 +69,9 @@ impl Parabola {
 
 /// What the parabolas on one side of impacts leave in the same way at each of them.
 ///
-/// Noise differs from impact to impact. A residual that all have in common is motion that is no parabola: ringing, a contact that lasts
-/// longer than the gap between the fits, an instrument that is slow. It moves every speed by as much, and no scatter from impact to
-/// impact shows it.
+/// Noise differs from impact to impact. A residual that all have in common is motion that is no parabola:
+/// ringing, a contact that lasts longer than the gap between the fits, an instrument that is slow. It moves
+/// every speed by as much, and no scatter from impact to impact shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LackOfFit {
     /// Root of the mean square of the common residual, in m/s.
@@ -80,12 +81,13 @@ pub(super) struct LackOfFit {
 }
 
 impl LackOfFit {
-    /// Significant lack of fit of the parabolas that left these residuals, each with `gap` samples to the middle of the contact.
+    /// Significant lack of fit of the parabolas that left these residuals, each with `gap` samples to the
+    /// middle of the contact.
     ///
-    /// n residuals of p places have the mean m and the variances s²: n|m|²/Σs² is 1 ± √(2/f) in noise, f the number of places that do not
-    /// depend on each other. The bias is the common residual continued
-    /// to the middle of the contact: the least bent curve that a parabola leaves is the third of Legendre's polynomials, √7 P₃ for
-    /// a root mean square of 1.
+    /// n residuals of p places have the mean m and the variances s²: n|m|²/Σs² is 1 ± √(2/f) in noise, f the
+    /// number of places that do not depend on each other. The bias is the common residual continued
+    /// to the middle of the contact: the least bent curve that a parabola leaves is the third of Legendre's
+    /// polynomials, √7 P₃ for a root mean square of 1.
     pub fn of(residuals: &[&[f64]], gap: usize) -> Option<LackOfFit> {
         let (n, places) = (residuals.len() as f64, residuals.first()?.len());
         let (mut common, mut chance) = (0.0, 0.0);
@@ -109,8 +111,8 @@ mod tests {
     use super::*;
     use crate::synthetic::Normal;
 
-    /// Part of 1000 sets of `n` impacts whose noise depends on itself by `rho`, in which a lack of fit is significant, in %; with
-    /// `ring` in each.
+    /// Part of 1000 sets of `n` impacts whose noise depends on itself by `rho`, in which a lack of fit is
+    /// significant, in %; with `ring` in each.
     fn significant(n: usize, rho: f64, ring: f64) -> f64 {
         let mut noise = Normal(17);
         let significant = (0..1000).filter(|_| {
@@ -146,7 +148,8 @@ mod tests {
     fn no_lack_of_fit(impacts: &[usize]) {
         for &n in impacts {
             for rho in [0.0, 0.5, 0.9] {
-                // 0.03 % by the threshold; few impacts tell little of the noise's dependence. An uncertainty may be missing in 2 %.
+                // 0.03 % by the threshold; few impacts tell little of the noise's dependence. An uncertainty
+                // may be missing in 2 %.
                 assert!(significant(n, rho, 0.0) < 2.0, "{n} {rho}");
             }
         }
@@ -156,7 +159,8 @@ mod tests {
 
     #[test]
     fn the_residual_is_continued_to_the_contact() {
-        // A cubic of Legendre on 3200 samples: the residual is its own root mean square, the contact where it ends.
+        // A cubic of Legendre on 3200 samples: the residual is its own root mean square, the contact where it
+        // ends.
         let cubic = |k: usize| {
             let x = (k as f64 + 0.5) / 1600.0 - 1.0;
             0.5 * x * (5.0 * x * x - 3.0)

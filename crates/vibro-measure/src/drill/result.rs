@@ -39,7 +39,8 @@ pub struct Drill {
     pub energy: Option<Estimate>,
     /// Mean energy that the impacts take out of the mass.
     pub energy_given: Option<Estimate>,
-    /// Restitution from the balance of momentum; without a struck mass that of a struck mass that does not move.
+    /// Restitution from the balance of momentum; without a struck mass that of a struck mass that does not
+    /// move.
     pub restitution: Option<Estimate>,
     /// Turns whose impact lies in a drop-out.
     pub hidden: usize,
@@ -108,7 +109,8 @@ pub struct Displacement {
     pub drift: Estimate,
 }
 
-/// A displacement that drifts by more than this part of the stroke in a turn has an offset, or the machine moves.
+/// A displacement that drifts by more than this part of the stroke in a turn has an offset, or the machine
+/// moves.
 const DRIFTING: f64 = 0.1;
 /// Relative change of velocities for a degree of error in the beam angle that is worth a word.
 const STEEP: f64 = 0.005;
@@ -119,7 +121,8 @@ const SMALL: f64 = 0.01;
 /// One turn in so many may have no impact without a word.
 const FEW: usize = 10;
 
-/// Of a result and its velocity; `sharp`: edges of the reference rise within one sample; `still`: a noise floor was asked for.
+/// Of a result and its velocity; `sharp`: edges of the reference rise within one sample; `still`: a noise
+/// floor was asked for.
 pub(super) fn findings(
     d: &Drill,
     options: &DrillOptions,

@@ -1,5 +1,5 @@
-//! What a channel looks like: extremes, levels, noise; and the faults of a laser vibrometer: drop-outs and speckle spikes, found and
-//! bridged; over-range, found.
+//! What a channel looks like: extremes, levels, noise; and the faults of a laser vibrometer: drop-outs and
+//! speckle spikes, found and bridged; over-range, found.
 
 use crate::mean::upper_median;
 use std::ops::Range;
@@ -46,16 +46,18 @@ const AROUND: usize = 16;
 const SPIKE: usize = 3;
 /// Longest burst of outliers in samples: a dark speckle that passes within half a millisecond at 100 kHz.
 const BURST: usize = 48;
-/// Mean square of the second differences over that of the first: 3 of outliers that know nothing of each other, and 1.6 of a sine at a fifth of the
-/// sampling rate, below which structures ring.
+/// Mean square of the second differences over that of the first: 3 of outliers that know nothing of each
+/// other, and 1.6 of a sine at a fifth of the sampling rate, below which structures ring.
 const ROUGH: f64 = 1.6;
 /// Samples on both sides of a spike that must be calm: an impact is followed by ringing.
 const CALM: usize = 4;
-/// A spike stands this many standard deviations of the noise off its neighbours, which normal noise never does.
+/// A spike stands this many standard deviations of the noise off its neighbours, which normal noise never
+/// does.
 const SPIKE_NOISE: f64 = 10.0;
 /// … and this part of the range of the channel; smaller ones move neither impacts nor averages.
 const SPIKE_RANGE: f64 = 0.02;
-/// An extreme nearer to the median than this part of the reach is where the signal rests, not the end of the range.
+/// An extreme nearer to the median than this part of the reach is where the signal rests, not the end of the
+/// range.
 const RAIL: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,13 +67,15 @@ enum Kind {
     OverRange,
 }
 
-/// Bridges the drop-outs and spikes of a velocity by straight lines, except those longer than `longest` samples, and says what is
-/// known of each sample.
+/// Bridges the drop-outs and spikes of a velocity by straight lines, except those longer than `longest`
+/// samples, and says what is known of each sample.
 ///
-/// A *drop-out* is a stretch of missing values, or of equal values longer than chance gives, entered or left by a step amid
-/// neighbours that move; a *spike* is one to three samples that stand off both neighbours while these agree, or a burst of more that jump
-/// back and forth from sample to sample between calm ends, which an impact in it may part; *over-range* are two or more samples at the largest or smallest value, entered or left by a step. Neither a turning point of a coarsely digitised signal nor
-/// an impact is a fault.
+/// A *drop-out* is a stretch of missing values, or of equal values longer than chance gives, entered or left
+/// by a step amid neighbours that move; a *spike* is one to three samples that stand off both neighbours
+/// while these agree, or a burst of more that jump back and forth from sample to sample between calm ends,
+/// which an impact in it may part; *over-range* are two or more samples at the largest or smallest value,
+/// entered or left by a step. Neither a turning point of a coarsely digitised signal nor an impact is a
+/// fault.
 pub(super) fn repair(values: &mut [f64], survey: &Survey, longest: usize) -> (Vec<State>, FaultCount) {
     let height =
         (SPIKE_NOISE * noise(values).max(survey.quantum)).max(SPIKE_RANGE * (survey.high - survey.low));
@@ -163,7 +167,8 @@ impl Velocity<'_> {
         (end - i >= longest_by_chance && 2 * equal <= all).then_some(Kind::Dropout)
     }
 
-    /// The sample behind those that stand off the line between their neighbours, while the signal there is calm: one to three, or a rough burst.
+    /// The sample behind those that stand off the line between their neighbours, while the signal there is
+    /// calm: one to three, or a rough burst.
     fn spike(&self, i: usize) -> Option<usize> {
         let a = self.raw[i - 1];
         let spread = |x: f64, around: &[f64]| around.iter().map(|y| (x - y).abs()).fold(0.0, f64::max);
@@ -208,9 +213,11 @@ pub(super) struct Survey {
     pub high: f64,
     /// Median.
     pub median: f64,
-    /// Smallest step between neighbours that is not 0: the resolution, where the channel was digitised coarsely.
+    /// Smallest step between neighbours that is not 0: the resolution, where the channel was digitised
+    /// coarsely.
     pub quantum: f64,
-    /// Number of equal neighbours that chance does not give in the whole channel (once in a thousand such channels).
+    /// Number of equal neighbours that chance does not give in the whole channel (once in a thousand such
+    /// channels).
     pub longest_by_chance: usize,
 }
 
@@ -235,14 +242,15 @@ impl Survey {
     }
 }
 
-/// Standard deviation of white noise on a smooth signal: second differences of noise scatter √6 as much, and their median is not moved
-/// by the few places where the signal is not smooth.
+/// Standard deviation of white noise on a smooth signal: second differences of noise scatter √6 as much, and
+/// their median is not moved by the few places where the signal is not smooth.
 pub(super) fn noise(values: &[f64]) -> f64 {
     median(values.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs())) / (NORMAL_MEDIAN * 6f64.sqrt())
 }
 
-/// The two levels of a pulsed signal: medians of the values on both sides of the threshold that Otsu's method finds between its
-/// local extremes (N. Otsu, IEEE Trans. Syst. Man Cybern. 9 (1979) 62). `None` where there is only one level.
+/// The two levels of a pulsed signal: medians of the values on both sides of the threshold that Otsu's method
+/// finds between its local extremes (N. Otsu, IEEE Trans. Syst. Man Cybern. 9 (1979) 62). `None` where there
+/// is only one level.
 pub(crate) fn levels(values: &[f64]) -> Option<(f64, f64)> {
     let groups = values.chunks(values.len().div_ceil(GROUPS).max(1)).map(range);
     let mut all: Vec<f64> = groups.flat_map(|(low, high)| [low, high]).filter(|v| v.is_finite()).collect();
@@ -263,13 +271,15 @@ pub(crate) fn levels(values: &[f64]) -> Option<(f64, f64)> {
     Some((side(false), side(true)))
 }
 
-/// A pulse stands on its two levels for more than this part of the time; a sine is near the medians of its halves for a quarter.
+/// A pulse stands on its two levels for more than this part of the time; a sine is near the medians of its
+/// halves for a quarter.
 const PULSED: f64 = 0.8;
-/// Turns of a shaft are as long as their neighbours within this part; what vibrates crosses its middle at any distance.
+/// Turns of a shaft are as long as their neighbours within this part; what vibrates crosses its middle at any
+/// distance.
 const UNEVEN: f64 = 0.2;
 
-/// Refuses what is no reference: the velocity in its place, or a vibration. The `reference` comes with its two levels, `edges` are its edges in
-/// samples.
+/// Refuses what is no reference: the velocity in its place, or a vibration. The `reference` comes with its
+/// two levels, `edges` are its edges in samples.
 ///
 /// # Errors
 /// If the reference does not stand on two levels, while the velocity does or the edges are uneven.
@@ -376,7 +386,8 @@ mod tests {
             speckle(&mut raw[*at..at + n], k as u64);
         }
         let (values, states, count) = repaired(&raw);
-        // Of samples between −6 and 6 m/s within the height of a spike, 0.36 m/s, of the motion are 6 %: those at an end of a burst stay, and do no harm.
+        // Of samples between −6 and 6 m/s within the height of a spike, 0.36 m/s, of the motion are 6 %:
+        // those at an end of a burst stay, and do no harm.
         let all: usize = bursts.iter().map(|b| b.1).sum();
         assert!(count.bridged <= all && count.bridged > 9 * all / 10, "{count:?} of {all}");
         assert_eq!(states.iter().filter(|s| **s == State::Bridged).count(), count.bridged);
@@ -421,7 +432,8 @@ mod tests {
             let begun = std::time::Instant::now();
             let (_, _, count) = repaired(&raw);
             assert_eq!((count.dropouts, count.spikes, count.clipped), (0, 0, 0), "{jump}");
-            // 8 ms in a program that is not optimised; a search for the beginning of the rest from each sample took 100 times that.
+            // 8 ms in a program that is not optimised; a search for the beginning of the rest from each
+            // sample took 100 times that.
             assert!(begun.elapsed().as_secs_f64() < 2.0, "{:?}", begun.elapsed());
         }
     }
@@ -444,7 +456,8 @@ mod surveys {
         for turns in [400, 4000] {
             let mut values = Vec::new();
             for _ in 0..turns {
-                // A pulse of 3 samples in 500: 0.6 % of the time; a glitch of ten times its height in the record.
+                // A pulse of 3 samples in 500: 0.6 % of the time; a glitch of ten times its height in the
+                // record.
                 let mut turn = vec![0.25; 500];
                 turn[100..103].fill(4.75);
                 values.extend(turn);

@@ -10,14 +10,16 @@ const FEWEST: usize = 5;
 const PATTERN: f64 = 8.0;
 /// No impact counts more than this many times the median one: the strongest may be a fault of the instrument.
 const OUTLIER: f64 = 2.0;
-/// An impact repeats where another comes one period later within this part of it, and this part of the typical interval.
+/// An impact repeats where another comes one period later within this part of it, and this part of the
+/// typical interval.
 const NEAR: f64 = 0.1;
 const BETWEEN: f64 = 0.25;
 /// Standard deviations of chance that are taken off an agreement: many lags are tried.
 const CHANCE: f64 = 2.0;
 /// Agreement from which impacts have a common period: of trains at random one in a hundred agrees so well.
 const COMMON: f64 = 0.4;
-/// A multiple of the period agrees as well as the period: the first lag that agrees nearly as well as the best is taken.
+/// A multiple of the period agrees as well as the period: the first lag that agrees nearly as well as the
+/// best is taken.
 const FIRST: f64 = 0.9;
 /// Neighbours in a train are whole periods apart within this part of one; beyond so many, the machine paused.
 const UNEVEN: f64 = 0.2;
@@ -33,7 +35,8 @@ pub(super) struct Train {
 }
 
 impl Train {
-    /// Of all impacts of a record sampled `rate` times a second, those of the stronger direction that follow each other by their period.
+    /// Of all impacts of a record sampled `rate` times a second, those of the stronger direction that follow
+    /// each other by their period.
     ///
     /// # Errors
     /// If there are too few, or they have no common period.
@@ -69,8 +72,9 @@ impl Train {
     }
 }
 
-/// How much of the strength of the events (instant, strength) comes again one `lag` later, beyond what as many at random would (below 0
-/// by chance, near 1 where all of many does); and the median time to those that come again.
+/// How much of the strength of the events (instant, strength) comes again one `lag` later, beyond what as
+/// many at random would (below 0 by chance, near 1 where all of many does); and the median time to those that
+/// come again.
 fn agreement(events: &[(f64, f64)], lag: f64) -> (f64, f64) {
     let (first, last) = (events[0].0, events[events.len() - 1].0);
     let reach = (NEAR * lag).min(BETWEEN * median(events.windows(2).map(|e| e[1].0 - e[0].0)));
@@ -108,7 +112,8 @@ fn period(events: &[(f64, f64)]) -> Option<f64> {
     (agreed > COMMON).then_some(period)
 }
 
-/// The strongest chain of events that are whole periods apart, or far apart; an event counts the less the more unevenly it follows.
+/// The strongest chain of events that are whole periods apart, or far apart; an event counts the less the
+/// more unevenly it follows.
 fn chain(events: &[(f64, f64)], period: f64) -> Vec<usize> {
     // For each event the strength of the best chain that ends with it, and the event before.
     let mut best: Vec<(f64, Option<usize>)> = Vec::with_capacity(events.len());
@@ -181,7 +186,8 @@ mod tests {
             let same = found.at.iter().filter(|at| truth.contains(at)).count();
             // One where an impact is missing may stand for it, and the strong one for its neighbour.
             assert!(same + 1 >= truth.len() && found.at.len() <= same + 2 && found.std == 0.5);
-            // A catch behind, in the other direction; a second impact a turn as strong; one half a turn later and weaker.
+            // A catch behind, in the other direction; a second impact a turn as strong; one half a turn later
+            // and weaker.
             for (part, jump) in [(0.5, 6.0), (0.3, -7.0), (0.5, -4.5)] {
                 let second = whole.iter().map(|e| (e.0 + 1000.0 * part, jump));
                 let found = train(whole.iter().copied().chain(second).collect()).unwrap();

@@ -1,4 +1,5 @@
-//! Where a sampled signal crosses a level; edges of a reference signal; the turns between them: which are whole, how fast, how evenly.
+//! Where a sampled signal crosses a level; edges of a reference signal; the turns between them: which are
+//! whole, how fast, how evenly.
 
 use super::survey::{State, median};
 use crate::Estimate;
@@ -6,9 +7,11 @@ use crate::mean::Mean;
 use crate::noise::border;
 use vibro_record::{Error, Result};
 
-/// Neighbours on each side whose median is the expected interval: a machine that runs up changes little over them.
+/// Neighbours on each side whose median is the expected interval: a machine that runs up changes little over
+/// them.
 const AROUND: usize = 15;
-/// An interval shorter than this part of the expected one ends in a false edge; one longer than the second lacks edges.
+/// An interval shorter than this part of the expected one ends in a false edge; one longer than the second
+/// lacks edges.
 const SHORT: f64 = 0.6;
 const LONG: f64 = 1.5;
 /// Beyond this many intervals the machine stood still, and edges cannot be counted on.
@@ -41,8 +44,8 @@ pub(crate) struct Numbered {
 }
 
 impl Numbered {
-    /// Numbers edges, each by the median interval around it. Of two edges within an interval the one farther from where the edge before lets
-    /// it be expected is ignored.
+    /// Numbers edges, each by the median interval around it. Of two edges within an interval the one farther
+    /// from where the edge before lets it be expected is ignored.
     pub fn new(edges: &[f64]) -> Numbered {
         let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
         let (mut missing, mut extra) = (0, 0);
@@ -87,8 +90,8 @@ pub(super) struct Turns {
 }
 
 impl Turns {
-    /// Turns of `pulses` edges each. With several pulses a pause loses which of them comes first: then the longest stretch between
-    /// pauses is all that is taken.
+    /// Turns of `pulses` edges each. With several pulses a pause loses which of them comes first: then the
+    /// longest stretch between pauses is all that is taken.
     ///
     /// # Errors
     /// If there are fewer edges than a turn needs, or no whole turn between them.
@@ -124,12 +127,13 @@ impl Turns {
         Ok(Turns { whole, missing, extra, pauses: runs.len() - 1 })
     }
 
-    /// Turns a second at `rate` samples a second, the inverse of the mean duration of a turn; and whether the durations change so slowly
-    /// that its uncertainty may be too small.
+    /// Turns a second at `rate` samples a second, the inverse of the mean duration of a turn; and whether the
+    /// durations change so slowly that its uncertainty may be too small.
     ///
-    /// The standard uncertainty is that of the mean of durations that may depend on each other ([`Mean`]), and of the uncertainty
-    /// `edge` of an edge, in samples: durations that follow each other share their edges, so only the first and the last edge of each
-    /// stretch without a gap count. `None` for fewer than four turns.
+    /// The standard uncertainty is that of the mean of durations that may depend on each other ([`Mean`]),
+    /// and of the uncertainty `edge` of an edge, in samples: durations that follow each other share their
+    /// edges, so only the first and the last edge of each stretch without a gap count. `None` for fewer
+    /// than four turns.
     pub fn speed(&self, rate: f64, edge: f64) -> (Estimate, bool) {
         let durations: Vec<f64> = self.whole.iter().map(|t| t.end - t.start).collect();
         let mean = Mean::of(&durations);
@@ -151,7 +155,8 @@ pub enum Edge {
     Falling,
 }
 
-/// Part of the height by which the signal must pass the middle on both sides before an edge counts: ringing of a pick-up stays below.
+/// Part of the height by which the signal must pass the middle on both sides before an edge counts: ringing
+/// of a pick-up stays below.
 const HYSTERESIS: f64 = 0.2;
 
 /// Edges of a reference signal, and what is known of their times.
@@ -168,9 +173,9 @@ pub(crate) struct Edges {
 impl Edges {
     /// Edges between two levels.
     ///
-    /// An edge is where the signal crosses the middle of the two; it counts once it has come from beyond a fifth of the height on one
-    /// side and goes beyond a fifth on the other. Noise may make it cross several times: then the mean of the first and the last
-    /// crossing is taken.
+    /// An edge is where the signal crosses the middle of the two; it counts once it has come from beyond a
+    /// fifth of the height on one side and goes beyond a fifth on the other. Noise may make it cross
+    /// several times: then the mean of the first and the last crossing is taken.
     pub fn of(signal: &[f64], (low, high): (f64, f64), edge: Edge) -> Edges {
         let sign = if edge == Edge::Rising { 1.0 } else { -1.0 };
         let (middle, margin) = (0.5 * (low + high), HYSTERESIS * (high - low).abs());
@@ -201,7 +206,8 @@ impl Edges {
         Edges { sharp: 2 * sharp > at.len(), slope: slopes / at.len().max(1) as f64, at }
     }
 
-    /// Standard uncertainty of an edge in samples, where the reference carries noise of standard deviation `noise`.
+    /// Standard uncertainty of an edge in samples, where the reference carries noise of standard deviation
+    /// `noise`.
     pub fn std(&self, noise: f64) -> f64 {
         // Two samples share the crossing; over a sample's length their mean square weight is 2/3.
         let variance = if self.slope > 0.0 { 2.0 / 3.0 * (noise / self.slope).powi(2) } else { 0.0 };
@@ -220,8 +226,9 @@ fn around(values: &[f64], i: usize) -> Option<[f64; 4]> {
     values.get(i.checked_sub(1)?..i + 3)?.try_into().ok()
 }
 
-/// Place of the crossing of `level` between samples `i` and `i + 1`, on the cubic through the four samples around it (a
-/// straight line beside the ends of the record and missing samples). `None` unless the level lies between the two samples.
+/// Place of the crossing of `level` between samples `i` and `i + 1`, on the cubic through the four samples
+/// around it (a straight line beside the ends of the record and missing samples). `None` unless the level
+/// lies between the two samples.
 pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
     let (a, b) = (values.get(i)? - level, values.get(i + 1)? - level);
     if !(a.is_finite() && b.is_finite()) || a == b || a * b > 0.0 {
@@ -235,8 +242,8 @@ pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
     Some(i as f64 + border(0.0, 1.0, |s| cubic(four, s) * a > 0.0))
 }
 
-/// Value at a place between samples, on the cubic through the four samples around it; a straight line at the ends. `None`
-/// outside the record.
+/// Value at a place between samples, on the cubic through the four samples around it; a straight line at the
+/// ends. `None` outside the record.
 pub(super) fn value(values: &[f64], at: f64) -> Option<f64> {
     let i = at.floor();
     if i < 0.0 {
@@ -271,8 +278,8 @@ mod tests {
         // Three stretches without a gap, each with two edges.
         let std = 50.0 * 6f64.sqrt() * 0.1 / 41.0 / 100.0;
         assert!(speed.value == 50.0 && (speed.std.unwrap() / std - 1.0).abs() < 1e-12, "{speed:?}");
-        // Two pulses a turn: the turns at the missing edge are lost, the pairs stay as they were, and behind the pause nobody
-        // knows which pulse is the first of a turn.
+        // Two pulses a turn: the turns at the missing edge are lost, the pairs stay as they were, and behind
+        // the pause nobody knows which pulse is the first of a turn.
         let pairs = Turns::new(&edges, 2).unwrap();
         assert!(pairs.whole.iter().all(|t| t.end - t.start == 200.0 && t.start % 200.0 == 0.0));
         // 19 pairs less the two that meet at the missing edge; 2 behind the pause are left out.
@@ -296,9 +303,11 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
         };
-        // Edges of n turns that jitter by σ = 1/√12: the mean duration by √2 σ/n. Each of K cosines sees the jitter of the first and of
-        // the last edge whole and that between by πj/n: E c_j² = (2/n) σ² (2 + π²j²/(2n)), which is 2 (1 + π²(K + 1)(2K + 1)/(24 n)) times the
-        // true variance, and K/(K − 2) of Student's distribution; K = 6 at 60 and 19 at 1000. Sums of independent durations would be √n, 8 and 32 times the truth.
+        // Edges of n turns that jitter by σ = 1/√12: the mean duration by √2 σ/n. Each of K cosines sees the
+        // jitter of the first and of the last edge whole and that between by πj/n: E c_j² = (2/n) σ²
+        // (2 + π²j²/(2n)), which is 2 (1 + π²(K + 1)(2K + 1)/(24 n)) times the true variance, and
+        // K/(K − 2) of Student's distribution; K = 6 at 60 and 19 at 1000. Sums of independent durations
+        // would be √n, 8 and 32 times the truth.
         for (n, cosines) in [(60, 6.0), (1000, 19.0)] {
             let truth = (2.0f64 / 12.0).sqrt() / f64::from(n);
             let share = 1.0 + PI * PI * (cosines + 1.0) * (2.0 * cosines + 1.0) / (24.0 * f64::from(n));
@@ -312,8 +321,8 @@ mod tests {
                 .sum();
             let found = (squares / 200.0).sqrt();
             println!("{n} turns with edges that jitter: {found:.2} times the truth, {expected:.2} expected");
-            // Two edges, the same for all cosines, make the variance of each case scatter by 1; 200 cases: 7 % and half of it in the root;
-            // three times that.
+            // Two edges, the same for all cosines, make the variance of each case scatter by 1; 200 cases: 7
+            // % and half of it in the root; three times that.
             assert!((found / expected - 1.0).abs() < 0.11 && found < 2.4, "{found} {expected}");
         }
     }
@@ -386,8 +395,8 @@ mod edges {
         let whole = found(&values, Edge::Rising);
         assert_eq!(whole.at.len(), truth.len());
         for (found, truth) in whole.at.iter().zip(&truth) {
-            // The fourth derivative of tanh(s/4)/2 is at most 4.1/2/4⁴ = 0.008; a cubic through samples at a distance of 1 is
-            // off by 9/16/24 of it, 2e-4, and the slope there is 1/8.
+            // The fourth derivative of tanh(s/4)/2 is at most 4.1/2/4⁴ = 0.008; a cubic through samples at a
+            // distance of 1 is off by 9/16/24 of it, 2e-4, and the slope there is 1/8.
             assert!((found - truth).abs() < 1.6e-3, "{found} {truth}");
         }
         let falling = found(&values, Edge::Falling);

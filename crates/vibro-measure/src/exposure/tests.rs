@@ -30,7 +30,8 @@ const TABLE: [(i32, f64); 25] = [
 ];
 
 fn steady(rate: f64, f: f64) -> f64 {
-    // The slowest pole settles with e^(−π·6.31/0.71·t): after 2 s nothing of it is left; whole periods follow.
+    // The slowest pole settles with e^(−π·6.31/0.71·t): after 2 s nothing of it is left; whole periods
+    // follow.
     let settle = (2.0 * rate) as usize;
     let n = ((20.0 * f).round().max(20.0) / f * rate).round() as usize;
     let values: Vec<f64> = (0..settle + n).map(|i| (TAU * f * i as f64 / rate).sin()).collect();
@@ -52,8 +53,8 @@ fn the_filter_follows_the_formula_at_third_octave_centres() {
     for band in (6..=31).step_by(5) {
         let f = 10f64.powf(f64::from(band) / 10.0);
         let truth = weighting(f).norm();
-        // The bilinear transform bends frequencies by (πf/rate)²/3: 0.05 % at 1 kHz, three octaves of slope at most; a
-        // period that is no whole number of samples adds 1/(2n).
+        // The bilinear transform bends frequencies by (πf/rate)²/3: 0.05 % at 1 kHz, three octaves of slope
+        // at most; a period that is no whole number of samples adds 1/(2n).
         assert!((steady(102_400.0, f) / truth - 1.0).abs() < 2e-3, "{f}");
     }
     // At low rates it stays within the tolerance of the standard, 11 % between 10 Hz and 500 Hz.
@@ -84,7 +85,8 @@ fn an_offset_changes_nothing_that_vibrates() {
     let of = |values: &[f64]| exposure(rate, &[values], None).unwrap();
     let plain = of(&wave);
     let offset = of(&wave.iter().map(|v| v + 500.0).collect::<Vec<f64>>());
-    // Roundings of 500 beside 30, and what is left of the offset's start, e⁻¹⁴ of what the first sample differs by: nothing.
+    // Roundings of 500 beside 30, and what is left of the offset's start, e⁻¹⁴ of what the first sample
+    // differs by: nothing.
     assert!((offset.a_hv.value / plain.a_hv.value - 1.0).abs() < 1e-9);
     assert!((offset.crest_factor / plain.crest_factor - 1.0).abs() < 1e-9);
     assert!((offset.unweighted_peak / plain.unweighted_peak - 1.0).abs() < 1e-9);

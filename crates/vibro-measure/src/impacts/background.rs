@@ -1,4 +1,5 @@
-//! Level and noise of a trace between its impacts, and its bursts with the ringing that each impact leaves behind.
+//! Level and noise of a trace between its impacts, and its bursts with the ringing that each impact leaves
+//! behind.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -11,9 +12,10 @@ const STEP: f64 = 1.25;
 /// Numbers of bursts that differ by less than this part are the same.
 const SAME: f64 = 0.02;
 
-/// Bursts of samples further than `reach` from 0, one an impact, joined over pauses of up to `pause` samples; without `pause`, a burst goes on
-/// until something rises above the envelope of its ringing. Then there is also the factor by which the decay that is assumed of the ringing may
-/// change without another number of bursts.
+/// Bursts of samples further than `reach` from 0, one an impact, joined over pauses of up to `pause` samples;
+/// without `pause`, a burst goes on until something rises above the envelope of its ringing. Then there is
+/// also the factor by which the decay that is assumed of the ringing may change without another number of
+/// bursts.
 pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<usize>>, Option<f64>) {
     let runs = runs(values, reach);
     let (firsts, stable) = match pause {
@@ -28,8 +30,8 @@ pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<us
     (firsts.iter().zip(ends).map(whole).collect(), stable)
 }
 
-/// Stretches of samples beyond the noise. One that rises again from a valley, as an envelope does that rings until the next impact, is parted there; each
-/// part ends where it has fallen as far as an impact rises.
+/// Stretches of samples beyond the noise. One that rises again from a valley, as an envelope does that rings
+/// until the next impact, is parted there; each part ends where it has fallen as far as an impact rises.
 fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
     let beyond: Vec<usize> = (0..values.len()).filter(|i| values[*i].abs() > reach).collect();
     let mut found: Vec<Range<usize>> = Vec::new();
@@ -57,8 +59,9 @@ fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
     found
 }
 
-/// Runs that begin an impact if ringing decays by e in `decay` samples at least: those that rise above an envelope which follows every
-/// peak and falls with that time. What follows within the same time is the impact's own rise.
+/// Runs that begin an impact if ringing decays by e in `decay` samples at least: those that rise above an
+/// envelope which follows every peak and falls with that time. What follows within the same time is the
+/// impact's own rise.
 fn firsts(values: &[f64], runs: &[Range<usize>], decay: f64) -> Vec<usize> {
     let keep = (-1.0 / decay).exp();
     let (mut envelope, mut at) = (0.0f64, 0);
@@ -83,9 +86,9 @@ fn firsts(values: &[f64], runs: &[Range<usize>], decay: f64) -> Vec<usize> {
 
 /// Impacts for the decay whose choice matters least, and the factor over which it does not matter.
 ///
-/// The envelope follows each peak of the ringing, so that it need not fall as slowly as the ringing does: from a few half waves on, and up
-/// to the pause between impacts, the number of bursts stays the same. A decay that first parts bursts as it should far beyond the half waves
-/// belongs to a rest in the record.
+/// The envelope follows each peak of the ringing, so that it need not fall as slowly as the ringing does:
+/// from a few half waves on, and up to the pause between impacts, the number of bursts stays the same. A
+/// decay that first parts bursts as it should far beyond the half waves belongs to a rest in the record.
 fn most_stable(values: &[f64], runs: &[Range<usize>]) -> (Vec<usize>, Option<f64>) {
     // Length of a half wave, or of a pulse: half of all samples beyond the noise lie in runs no longer.
     let mut lengths: Vec<usize> = runs.iter().flat_map(|r| vec![r.len(); r.len()]).collect();
@@ -116,13 +119,15 @@ pub struct Background {
     pub level: f64,
     /// Standard deviation of its noise.
     pub sigma: f64,
-    /// Noise limit: the distance from the level that noise alone reaches in fewer than one of a thousand such records.
+    /// Noise limit: the distance from the level that noise alone reaches in fewer than one of a thousand
+    /// such records.
     pub reach: f64,
 }
 
 impl Background {
-    /// That of the envelope of the same samples, less their level: the noise of an envelope has Rayleigh's distribution, whose mean is √(π/2)σ and whose
-    /// variance (2 − π/2)σ², and which passes a limit zσ by the same bound. Samples of an envelope lie `apart` where they depend little on each other.
+    /// That of the envelope of the same samples, less their level: the noise of an envelope has Rayleigh's
+    /// distribution, whose mean is √(π/2)σ and whose variance (2 − π/2)σ², and which passes a limit zσ by
+    /// the same bound. Samples of an envelope lie `apart` where they depend little on each other.
     pub fn of_envelope(self, envelope: &[f64], apart: f64) -> Background {
         let stretch = ((STRETCH * apart) as usize).max(1);
         let power = |part: &[f64]| 0.5 * part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
@@ -134,8 +139,8 @@ impl Background {
     }
 }
 
-/// Independent samples of a stretch, and the part of all stretches that are quiet: of 4 in noise (χ² of 8 degrees of freedom) a tenth has σ below 0.66 of
-/// its value, so that half of it is no chance.
+/// Independent samples of a stretch, and the part of all stretches that are quiet: of 4 in noise (χ² of 8
+/// degrees of freedom) a tenth has σ below 0.66 of its value, so that half of it is no chance.
 const STRETCH: f64 = 4.0;
 const QUIETEST: f64 = 0.1;
 
@@ -146,8 +151,8 @@ const MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// Level and noise of the samples between impacts.
 ///
-/// Starts from the median and the lower quartile of the distances from it, so that impacts may fill half of the record; then
-/// leaves out the samples beyond the noise limit with their neighbours, and repeats.
+/// Starts from the median and the lower quartile of the distances from it, so that impacts may fill half of
+/// the record; then leaves out the samples beyond the noise limit with their neighbours, and repeats.
 pub fn background(values: &[f64]) -> Background {
     let Survey { low, high, .. } = survey(values);
     let step = step(values).filter(|step| *step < (high - low) / FINE).unwrap_or(0.0);
@@ -236,7 +241,8 @@ mod levels {
         let values: Vec<f64> =
             (0..4000).map(|i| 3.0 + 0.1 * noise.normal() + if i % 10 < 4 { 5.0 } else { 0.0 }).collect();
         let found = background(&values);
-        // 1200 quiet samples with quiet neighbours: the median scatters by 1.25·0.1/√1200 = 0.004, its deviation by 3 %.
+        // 1200 quiet samples with quiet neighbours: the median scatters by 1.25·0.1/√1200 = 0.004, its
+        // deviation by 3 %.
         assert!((found.level - 3.0).abs() < 0.02, "{found:?}");
         assert!((found.sigma / 0.1 - 1.0).abs() < 0.15, "{found:?}");
     }

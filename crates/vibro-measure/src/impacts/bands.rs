@@ -1,4 +1,5 @@
-//! Bands in which impacts ring, where the whole of a record shows none: a resonance that each excites, above hum, shafts and noise.
+//! Bands in which impacts ring, where the whole of a record shows none: a resonance that each excites, above
+//! hum, shafts and noise.
 
 use crate::mean::average;
 use vibro_record::{Finding, Result, Trace};
@@ -10,8 +11,8 @@ const ORDER: usize = 4;
 const HIGHEST: f64 = 0.9;
 /// Bands are an octave wide, half an octave apart: so many of them.
 const BANDS: i32 = 10;
-/// Kurtosis of a band from which on it has impacts in it: that of noise is 3, of a tone that comes and goes as a sine 2.9 or less (J. Antoni, Mech. Syst.
-/// Signal Process. 20 (2006) 282).
+/// Kurtosis of a band from which on it has impacts in it: that of noise is 3, of a tone that comes and goes
+/// as a sine 2.9 or less (J. Antoni, Mech. Syst. Signal Process. 20 (2006) 282).
 const IMPULSIVE: f64 = 3.5;
 
 /// Octaves in Hz below half the `rate`, the highest first.

@@ -20,8 +20,8 @@ use vibro_signal::envelope::envelope;
 const THRESHOLD: f64 = 0.125;
 /// The number of impacts must not change while the assumed decay of their ringing does by this factor.
 const STABLE: f64 = 2.0;
-/// Standard deviations of the noise by which the median height must exceed the noise limit: below them one impact in 700 or more is
-/// lost by chance.
+/// Standard deviations of the noise by which the median height must exceed the noise limit: below them one
+/// impact in 700 or more is lost by chance.
 const LOST: f64 = 3.0;
 /// A pulse that swings both ways is inverted where it is deeper than high by this factor.
 const INVERTED: f64 = 1.2;
@@ -38,7 +38,8 @@ pub struct Detected {
     pub onset_std: Option<f64>,
     /// Mains hum that was removed.
     pub hum: Option<Hum>,
-    /// How long an impact lasts, in s, where the trace comes back from each without swinging to the other side, as a force does.
+    /// How long an impact lasts, in s, where the trace comes back from each without swinging to the other
+    /// side, as a force does.
     pub contact: Option<Estimate>,
     /// What was done to the trace, and what is doubtful.
     pub findings: Vec<Finding>,
@@ -51,12 +52,14 @@ pub struct Detected {
 /// Finds the impacts of a trace.
 ///
 /// # Errors
-/// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; on impossible options.
+/// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; on impossible
+/// options.
 pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     detect_among(trace, options, None)
 }
 
-/// Chooses impacts among sounds in the order of their times, given with the noise limit and the median height: their places, and findings.
+/// Chooses impacts among sounds in the order of their times, given with the noise limit and the median
+/// height: their places, and findings.
 pub type Choose<'a> = &'a dyn Fn(&[Sound], f64, f64) -> Result<(Vec<usize>, Vec<Finding>)>;
 
 /// A sound that may be an impact.
@@ -177,8 +180,9 @@ const FOOT: f64 = 0.1;
 /// What swings back by this part of its height or more rings, and is no force of a contact.
 const BACK: f64 = 0.2;
 
-/// How long an impact lasts, the median of all. A pulse that is above the part p of its height for a time w lasts w where its flanks are steep, and
-/// πw/(π − 2 asin p) where it is half a sine: anywhere between them. Slower impacts of round bodies last longer: all that were seen are as likely.
+/// How long an impact lasts, the median of all. A pulse that is above the part p of its height for a time w
+/// lasts w where its flanks are steep, and πw/(π − 2 asin p) where it is half a sine: anywhere between them.
+/// Slower impacts of round bodies last longer: all that were seen are as likely.
 fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f64) -> Option<Estimate> {
     let bounds = |burst: &Range<usize>| {
         let peak = burst.clone().max_by(|a, b| values[*a].total_cmp(&values[*b]))?;
@@ -270,7 +274,8 @@ pub struct ImpactsOptions {
     pub refractory: Option<f64>,
     /// Band in Hz to which the trace is filtered first, without delay. Default: all of it.
     pub band: Option<(f64, f64)>,
-    /// Whether impacts are sought in the envelope, which the ringing of a structure does not part. Default false.
+    /// Whether impacts are sought in the envelope, which the ringing of a structure does not part. Default
+    /// false.
     pub envelope: bool,
     /// Whether mains hum stays. Default: it is removed.
     pub keep_hum: bool,

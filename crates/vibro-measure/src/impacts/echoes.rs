@@ -12,11 +12,13 @@ pub const QUIETER: f64 = 0.8;
 const SAME: f64 = 3e-4;
 /// Part of the impacts with any echo that have one of this delay, at least.
 const MOST: f64 = 0.6;
-/// Part of the impacts that something else precedes by the same delay, at most: in a train of uneven heights most do.
+/// Part of the impacts that something else precedes by the same delay, at most: in a train of uneven heights
+/// most do.
 const FEW: f64 = 0.2;
 /// Fewest impacts with an echo.
 const ENOUGH: usize = 4;
-/// Intervals between impacts that scatter more than delays by this factor are another thing than these: an echo keeps its delay however a machine jitters.
+/// Intervals between impacts that scatter more than delays by this factor are another thing than these: an
+/// echo keeps its delay however a machine jitters.
 const APART: f64 = 4.0;
 
 /// Bursts that repeat impacts.
@@ -30,8 +32,9 @@ pub struct Echoes {
     pub sure: bool,
 }
 
-/// Echoes among bursts with their times in s and heights; `None` where none repeats. Delay by delay, the most frequent first: a quieter burst follows
-/// most of the others by it, and hardly anything precedes these by it.
+/// Echoes among bursts with their times in s and heights; `None` where none repeats. Delay by delay, the most
+/// frequent first: a quieter burst follows most of the others by it, and hardly anything precedes these by
+/// it.
 pub fn echoes(times: &[f64], heights: &[f64]) -> Option<Echoes> {
     let mut impact = vec![true; times.len()];
     let (mut longest, mut off) = (0.0, Vec::new());
@@ -64,7 +67,8 @@ fn pairs(times: &[f64], heights: &[f64]) -> Vec<(usize, usize, f64)> {
     all
 }
 
-/// A delay of many `pairs`, sorted by it, and the bursts that are quieter there, if most of the others that quieter ones follow have one.
+/// A delay of many `pairs`, sorted by it, and the bursts that are quieter there, if most of the others that
+/// quieter ones follow have one.
 fn repeated(times: &[f64], impact: &[bool], pairs: &[(usize, usize, f64)]) -> Option<(f64, BTreeSet<usize>)> {
     let near =
         |at: f64| pairs.partition_point(|p| p.2 < at - SAME)..pairs.partition_point(|p| p.2 <= at + SAME);

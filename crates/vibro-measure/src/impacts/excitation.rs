@@ -11,7 +11,8 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Finding, Result};
 
-/// Impacts per excitation cycles; 2/2 where impacts come once a cycle, but every second one alike (period doubling).
+/// Impacts per excitation cycles; 2/2 where impacts come once a cycle, but every second one alike (period
+/// doubling).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct PerCycle {
     /// Impacts…
@@ -31,8 +32,8 @@ pub struct Phase {
     pub n: usize,
 }
 
-/// Adds to `answer` how the impacts go with the excitation; nothing where none is known. The record begins at `start` in s and has a
-/// sampling `rate` in Hz.
+/// Adds to `answer` how the impacts go with the excitation; nothing where none is known. The record begins at
+/// `start` in s and has a sampling `rate` in Hz.
 ///
 /// # Errors
 /// As [`Reference::new`].
@@ -88,7 +89,8 @@ pub fn compare(
     Ok(())
 }
 
-/// A multiple of a fraction counts where its places scatter by less than this part of what those of the fraction do.
+/// A multiple of a fraction counts where its places scatter by less than this part of what those of the
+/// fraction do.
 const DOUBLED: f64 = 0.5;
 /// Most impacts and cycles of a pattern.
 const LARGEST: usize = 8;
@@ -110,17 +112,20 @@ fn last_digit(frequency: f64) -> f64 {
 enum Locking {
     /// They repeat with it.
     Locked(PerCycle),
-    /// They come close to a fraction, but slip by this many impacts a cycle of the excitation (negative: too few).
+    /// They come close to a fraction, but slip by this many impacts a cycle of the excitation (negative: too
+    /// few).
     Drifting(PerCycle, f64),
     /// No fraction fits.
     Irregular,
 }
 
-/// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate: 2/2 where 1/1 does not repeat.
+/// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate:
+/// 2/2 where 1/1 does not repeat.
 ///
-/// `cycles` are the times of the impacts counted in excitation cycles, `index` their places in the series without missed ones. A fraction
-/// holds where it agrees with the rate, the ratio of both frequencies being known to this `part` of itself, and every place of the pattern keeps its phase
-/// within [`REPEATS`]: what is merely near a fraction wanders through all phases.
+/// `cycles` are the times of the impacts counted in excitation cycles, `index` their places in the series
+/// without missed ones. A fraction holds where it agrees with the rate, the ratio of both frequencies being
+/// known to this `part` of itself, and every place of the pattern keeps its phase within [`REPEATS`]: what is
+/// merely near a fraction wanders through all phases.
 fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
     let Some(step) = interval(cycles, index).filter(|s| s.mean > 0.0) else {
         return Locking::Irregular;
@@ -135,7 +140,8 @@ fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
     fractions.retain(|f| {
         let spans: Vec<f64> = cycles.windows(f.impacts + 1).map(|w| w[f.impacts] - w[0]).collect();
         let off: Vec<f64> = spans.iter().map(|s| (s - f.cycles as f64).powi(2)).collect();
-        // Spans over a missed impact are few and far off: the median leaves them out. The median of χ²₁ is 0.4549.
+        // Spans over a missed impact are few and far off: the median leaves them out. The median of χ²₁ is
+        // 0.4549.
         spans.len() >= 2
             && slip(f).abs() <= FITS * (rate - slip(f)) + 2.0 * own
             && (median(&off) / 0.454_936).sqrt() <= REPEATS
@@ -212,7 +218,8 @@ impl Reference {
     }
 }
 
-/// Phases of the places of a pattern: circular mean and standard deviation (Mardia 1972) on a circle of its cycles.
+/// Phases of the places of a pattern: circular mean and standard deviation (Mardia 1972) on a circle of its
+/// cycles.
 fn phases(cycles: &[f64], index: &[usize], pattern: PerCycle) -> Vec<Phase> {
     let length = pattern.cycles as f64;
     let phase = |place: usize| {
@@ -283,7 +290,8 @@ mod tests {
             assert_eq!(near, one);
             assert!((15.0 * slip - (frequency - 15.0)).abs() < 1e-9, "{slip}");
         }
-        // A slip of 0.1 cycle in all is within a tenth of a cycle: whether it is one depends on how well the excitation is known.
+        // A slip of 0.1 cycle in all is within a tenth of a cycle: whether it is one depends on how well the
+        // excitation is known.
         let slow: Vec<f64> = (0..150).map(|k| 1.0007 * f64::from(k)).collect();
         assert_eq!(locking(&slow, &index, 1e-3), Locking::Locked(one));
         assert!(matches!(locking(&slow, &index, 1e-5), Locking::Drifting(..)));
@@ -303,7 +311,8 @@ mod tests {
             .collect();
         let found = Reference::new(&sine).unwrap();
         assert_eq!((found.edges.len(), found.missing, found.extra), (10, 0, 0));
-        // The ripple moves a crossing of slope 0.063 a sample by 0.05/0.063 = 0.8 samples at most; ten of them 1.6/9.
+        // The ripple moves a crossing of slope 0.063 a sample by 0.05/0.063 = 0.8 samples at most; ten of
+        // them 1.6/9.
         assert!((found.mean_cycle() - 100.0).abs() < 0.18, "{:?}", found.edges);
         assert!((found.counted(found.edges[3].1 + 50.0) - 3.5).abs() < 0.02);
         assert!(Reference::new(&[0.0; 9]).is_err());
@@ -316,7 +325,8 @@ mod tests {
         pulses[7_350] = 9.0;
         let found = Reference::new(&pulses).unwrap();
         assert_eq!((found.missing, found.extra), (1, 1));
-        // All edges are between samples 99 and 100: equal but for roundings of the bisection (1e-6 of a sample).
+        // All edges are between samples 99 and 100: equal but for roundings of the bisection (1e-6 of a
+        // sample).
         assert!((found.mean_cycle() - 100.0).abs() < 1e-5, "{}", found.mean_cycle());
         // The record begins high, so the first edge is at 99.5.
         assert!((found.counted(12_049.5) - 119.5).abs() < 1e-5, "{}", found.counted(12_049.5));

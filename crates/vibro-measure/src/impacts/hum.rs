@@ -28,11 +28,13 @@ const PIECE: f64 = 10.0;
 /// The noise between impacts must fall to this part of what it was, or it was no hum.
 const WORTH: f64 = 0.8;
 
-/// Removes the hum from `values` in a `unit`, sampled at `rate` in Hz, where there is any that matters, and gives it.
+/// Removes the hum from `values` in a `unit`, sampled at `rate` in Hz, where there is any that matters, and
+/// gives it.
 ///
-/// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey 1974), so impacts do not
-/// count; nothing is removed where that does not lower the noise between impacts by a fifth. Where impacts come as often as the hum
-/// or half as often, a sine with its harmonics fits them as well: the hum stays, and a finding says so.
+/// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey
+/// 1974), so impacts do not count; nothing is removed where that does not lower the noise between impacts by
+/// a fifth. Where impacts come as often as the hum or half as often, a sine with its harmonics fits them as
+/// well: the hum stays, and a finding says so.
 pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<Finding>) -> Option<Hum> {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {
@@ -87,7 +89,8 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
         .flat_map(|nominal| (-steps..=steps).map(move |k| nominal + TOLERANCE * k as f64 / steps as f64))
         .map(|f| (f, power(&limited, f / rate)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    // A sine of amplitude 2√power/n has half its square of the variance; a tenth cannot lower the noise by a fifth.
+    // A sine of amplitude 2√power/n has half its square of the variance; a tenth cannot lower the noise by a
+    // fifth.
     let n = values.len() as f64;
     if 2.0 * power / n < 0.1 * limited.iter().map(|v| v * v).sum::<f64>() {
         return None;
@@ -114,7 +117,8 @@ fn refined(values: &[f64], mut frequency: f64, rate: f64, harmonics: usize) -> O
     let mut weights = vec![1.0; values.len()];
     let mut found: Option<(DVector<f64>, Vec<f64>)> = None;
     for _ in 0..8 {
-        // Offset, cosine and sine of each order, and after the first fit the derivative of the fundamental by frequency.
+        // Offset, cosine and sine of each order, and after the first fit the derivative of the fundamental by
+        // frequency.
         let fundamental = found.as_ref().map(|(c, _)| (c[1], c[2]));
         let row = |i: usize| -> DVector<f64> {
             let t = (i as f64 - 0.5 * values.len() as f64) / rate;
@@ -167,8 +171,9 @@ mod tests {
         };
         let mut values: Vec<f64> = clean.iter().enumerate().map(|(i, v)| v + hum(i)).collect();
         let found = remove(&mut values, (rate, "V"), &mut Vec::new()).unwrap();
-        // A sine of amplitude A in N samples of noise σ: u(f) = √6 σ/(π A T √N) = 2e-5 Hz, u(A) = σ√(2/N) = 2.2e-4.
-        // Bisquare weights cost 5 %, impacts in the tails of the weights more: five times as much.
+        // A sine of amplitude A in N samples of noise σ: u(f) = √6 σ/(π A T √N) = 2e-5 Hz, u(A) = σ√(2/N) =
+        // 2.2e-4. Bisquare weights cost 5 %, impacts in the tails of the weights more: five times as
+        // much.
         assert!((found.frequency - 50.07).abs() < 1e-4, "{found:?}");
         assert!((found.amplitude - 1.5).abs() < 1.1e-3, "{found:?}");
         let worst = values.iter().zip(&clean).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

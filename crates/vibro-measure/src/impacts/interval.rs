@@ -1,16 +1,19 @@
 //! The mean interval of impacts and its uncertainty, where onsets carry noise and intervals jitter.
 //!
-//! Let the k-th impact be at `t₀ + kT + w_k + e_k` with e white (onset noise, σ) and w a random walk (cycle-to-cycle jitter, s).
-//! Differences d of times `m_j` indices apart then have the covariance Σ with `m_j s² + 2σ²` on the diagonal and −σ² beside it, and
-//! T̂ = mᵀΣ⁻¹d/mᵀΣ⁻¹m with variance 1/mᵀΣ⁻¹m (Aitken 1935). s = 0 gives the straight line through (index, time), σ = 0 the telescoping
-//! mean `(t_last − t_first)/(n − 1)`.
+//! Let the k-th impact be at `t₀ + kT + w_k + e_k` with e white (onset noise, σ) and w a random walk
+//! (cycle-to-cycle jitter, s). Differences d of times `m_j` indices apart then have the covariance Σ with
+//! `m_j s² + 2σ²` on the diagonal and −σ² beside it, and T̂ = mᵀΣ⁻¹d/mᵀΣ⁻¹m with variance 1/mᵀΣ⁻¹m (Aitken
+//! 1935). s = 0 gives the straight line through (index, time), σ = 0 the telescoping mean `(t_last −
+//! t_first)/(n − 1)`.
 //!
-//! The ratio r = s/σ is not known, and few intervals say little about it: T̂ and its variance are averaged over it, weighted with the
-//! restricted likelihood (Patterson and Thompson 1971) and a prior: jitter alone with a probability of 3/4, otherwise r half-Cauchy
-//! with scale 1/2 (Gelman 2006). The variance is the mean of the variances and the variance of the means; each is that of a Student
-//! distribution of n − 2 degrees of freedom, as the scale of Σ is estimated too.
+//! The ratio r = s/σ is not known, and few intervals say little about it: T̂ and its variance are averaged
+//! over it, weighted with the restricted likelihood (Patterson and Thompson 1971) and a prior: jitter alone
+//! with a probability of 3/4, otherwise r half-Cauchy with scale 1/2 (Gelman 2006). The variance is the mean
+//! of the variances and the variance of the means; each is that of a Student distribution of n − 2 degrees of
+//! freedom, as the scale of Σ is estimated too.
 //!
-//! Of intervals ±1.96 u, these parts in per cent hold T (2000 simulated records each, standard error 0.6 or less):
+//! Of intervals ±1.96 u, these parts in per cent hold T (2000 simulated records each, standard error 0.6 or
+//! less):
 //!
 //! | n  | r = 0 | 0.1 | 0.3 | 1 | 3 | ∞ |
 //! |----|-------|-----|-----|---|---|---|
@@ -18,12 +21,13 @@
 //! | 20 | 100 | 100 | 99.9 | 97.6 | 95.8 | 95.2 |
 //! | 60 | 100 | 99.2 | 93.2 | 94.6 | 96.7 | 96.2 |
 //!
-//! Where no jitter is there, u is some three times what a straight line would state, at any n: jitter of r = 7/n, which n impacts hardly
-//! show, more than doubles the uncertainty of a straight line.
+//! Where no jitter is there, u is some three times what a straight line would state, at any n: jitter of r =
+//! 7/n, which n impacts hardly show, more than doubles the uncertainty of a straight line.
 //!
-//! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that wanders does. Where they are, u is not less
-//! than the standard uncertainty of the mean of values that depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7
-//! ±1.96 u then hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are found to wander.
+//! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that
+//! wanders does. Where they are, u is not less than the standard uncertainty of the mean of values that
+//! depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7 ±1.96 u then
+//! hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are found to wander.
 
 use super::background::median;
 use crate::mean::{Mean, average, mixture};
@@ -38,7 +42,8 @@ pub struct Interval {
     pub mean: f64,
     /// Its standard uncertainty; NaN where two impacts only are there.
     pub std: f64,
-    /// Serial correlation of neighbouring intervals: −1/2 for onset noise, 0 for jitter; NaN for fewer than four impacts.
+    /// Serial correlation of neighbouring intervals: −1/2 for onset noise, 0 for jitter; NaN for fewer than
+    /// four impacts.
     pub correlation: f64,
     /// Whether intervals wander so slowly that the uncertainty may be too small.
     pub wanders: bool,
@@ -81,8 +86,8 @@ const NEGLIGIBLE: f64 = -9.0;
 /// Steps of the logarithm of the ratio that no record needs finer.
 const FINEST: f64 = 0.005;
 
-/// Fits with ratios of jitter to onset noise from 0 to ∞, those between evenly spaced in the logarithm where the likelihood is, which has the prior
-/// probability in it.
+/// Fits with ratios of jitter to onset noise from 0 to ∞, those between evenly spaced in the logarithm where
+/// the likelihood is, which has the prior probability in it.
 fn nodes(d: &[f64], m: &[f64]) -> Vec<Gls> {
     let node = |ratio: f64, prior: f64| {
         let fit = gls(d, m, ratio.atan());
@@ -114,8 +119,9 @@ fn nodes(d: &[f64], m: &[f64]) -> Vec<Gls> {
     all
 }
 
-/// Correlation of intervals that follow each other, none of them over a missed impact: the mean product of neighbours over the variance. Without a gap
-/// that is the usual quotient of sums, whose neighbours are one fewer than its squares.
+/// Correlation of intervals that follow each other, none of them over a missed impact: the mean product of
+/// neighbours over the variance. Without a gap that is the usual quotient of sums, whose neighbours are one
+/// fewer than its squares.
 fn correlation(d: &[f64], m: &[f64]) -> f64 {
     let single: Vec<f64> = d.iter().zip(m).filter(|(_, m)| **m == 1.0).map(|(d, _)| *d).collect();
     let (n, mean) = (single.len() as f64, average(&single));
@@ -137,7 +143,8 @@ struct Gls {
     likelihood: f64,
 }
 
-/// Generalised least squares at one ratio of jitter to onset noise, in one pass down the bidiagonal factor of `Σ = LDLᵀ`.
+/// Generalised least squares at one ratio of jitter to onset noise, in one pass down the bidiagonal factor of
+/// `Σ = LDLᵀ`.
 fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
     let (s2, sigma2) = (angle.sin().powi(2), angle.cos().powi(2));
     let (mut pivot, mut before) = (f64::INFINITY, (0.0, 0.0));
@@ -176,13 +183,15 @@ pub struct Counted {
 
 /// Robust standard deviations of the intervals beyond which one is no chance.
 const OUTSIDE: f64 = 5.0;
-/// As many odd intervals as this part of all are no accident, but belong to the motion: so are those of every second impact of a cycle.
+/// As many odd intervals as this part of all are no accident, but belong to the motion: so are those of every
+/// second impact of a cycle.
 const ACCIDENTS: f64 = 0.4;
 
-/// Numbers the impacts at `times`, which are `steps` apart; with `complete` none is missed and none is too many.
+/// Numbers the impacts at `times`, which are `steps` apart; with `complete` none is missed and none is too
+/// many.
 ///
-/// An interval below half of the median ends with an impact too many, one beyond one and a half lacks impacts. Intervals that scatter as far
-/// as that say nothing of either: all count as they are.
+/// An interval below half of the median ends with an impact too many, one beyond one and a half lacks
+/// impacts. Intervals that scatter as far as that say nothing of either: all count as they are.
 pub fn count(times: &[f64], steps: &[f64], complete: bool) -> Counted {
     let typical = median(steps);
     let off: Vec<f64> = steps.iter().map(|d| (d - typical).abs()).collect();
@@ -213,11 +222,12 @@ const ALIKE: f64 = 0.1;
 /// Most impacts of a pattern, and how often it must be seen.
 const LONGEST: usize = 8;
 const SEEN: usize = 3;
-/// One unlike interval in each round of p makes 2/p of all neighbours unlike; so much of that is enough at the ends of a record.
+/// One unlike interval in each round of p makes 2/p of all neighbours unlike; so much of that is enough at
+/// the ends of a record.
 const UNLIKE: f64 = 0.8;
 
-/// Impacts after which all intervals repeat though they are unlike in between, as those of two impacts a cycle are; `None` where there is no such
-/// number.
+/// Impacts after which all intervals repeat though they are unlike in between, as those of two impacts a
+/// cycle are; `None` where there is no such number.
 pub fn pattern(steps: &[f64]) -> Option<usize> {
     let unlike = |lag: usize| {
         let pairs = steps.iter().zip(steps.iter().skip(lag));
@@ -291,7 +301,8 @@ mod tests {
         // Deviations from a mean of 1 of 0.1, 0.2, −0.1, −0.2, a gap before the third.
         let d = [1.1, 1.2, 3.0, 0.9, 0.8];
         let m = [1.0, 1.0, 3.0, 1.0, 1.0];
-        // Products 0.02 and 0.02 over squares of 0.1 and three pairs for two; few roundings of numbers near 1.
+        // Products 0.02 and 0.02 over squares of 0.1 and three pairs for two; few roundings of numbers near
+        // 1.
         assert!((correlation(&d, &m) - 0.04 / 0.1 * 3.0 / 2.0).abs() < 1e-13);
         assert!(correlation(&[1.1, 0.9, 2.0, 1.2], &[1.0, 1.0, 2.0, 1.0]).is_nan());
     }
@@ -363,7 +374,8 @@ mod tests {
                 // Intervals that chance has correlated have that of a mean of such values at least.
                 let least = if found.correlation > 0.0 { Mean::of(&d).std.unwrap() } else { 0.0 };
                 let std = plain_std.max(least);
-                // Half steps of the logarithm of the ratio, 0.2 or less, squared and over 24, and what lies at the ends.
+                // Half steps of the logarithm of the ratio, 0.2 or less, squared and over 24, and what lies
+                // at the ends.
                 let case = format!("n {n}, seed {seed}, {onset} {jitter}: {found:?}, plain {mean} {std}");
                 assert!((found.mean - mean).abs() < 0.01 * plain_std, "{case}");
                 assert!((found.std / std - 1.0).abs() < 0.01, "{case}");

@@ -16,7 +16,8 @@ pub struct Onset {
     pub height: f64,
 }
 
-/// A flank rises within one sample where both samples are within this part of the height of background and top.
+/// A flank rises within one sample where both samples are within this part of the height of background and
+/// top.
 const SHARP: f64 = 0.1;
 /// Fewer impacts than this are not averaged.
 const ENOUGH: usize = 8;
@@ -43,8 +44,9 @@ pub struct Onsets {
     pub sharp: bool,
 }
 
-/// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`: from eight like pulses on each is matched to their
-/// average, or all to the shape that is known; otherwise each rising flank is interpolated at half its height.
+/// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`: from eight like
+/// pulses on each is matched to their average, or all to the shape that is known; otherwise each rising flank
+/// is interpolated at half its height.
 pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option<&Shape>) -> Onsets {
     let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, sigma)).collect();
     let whole: Vec<&Lobe> = lobes.iter().filter(|l| l.onset.time.is_finite()).collect();
@@ -72,7 +74,8 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     }
     let width = median(&widths).max(1.0);
     let span = -2.0 * width.max(1.5)..1.5 * width.max(1.5);
-    // A flank before the record is expected where the others have theirs: a record may begin within an impact.
+    // A flank before the record is expected where the others have theirs: a record may begin within an
+    // impact.
     let rise = median(&whole.iter().map(|l| l.peak as f64 - l.onset.time).collect::<Vec<f64>>());
     let expected = |l: &Lobe| Onset { time: l.peak as f64 - rise, ..l.onset };
     let flanks: Vec<Onset> =
@@ -118,8 +121,9 @@ fn lobe(values: &[f64], burst: &Range<usize>, sigma: f64) -> Option<Lobe> {
     let time = below as f64 + part;
     let near = SHARP * height;
     let sharp = values[below] < near && values[below + 1] > height - near;
-    // Noise of both neighbours and of the level; and what the place of the samples on a flank of p samples does: for half a
-    // sine the chord is off by (π/2p)² sin 30°/8 over a slope of 1.36/p, the highest sample by as much: 0.05/p, root mean square.
+    // Noise of both neighbours and of the level; and what the place of the samples on a flank of p samples
+    // does: for half a sine the chord is off by (π/2p)² sin 30°/8 over a slope of 1.36/p, the highest
+    // sample by as much: 0.05/p, root mean square.
     let noise = sigma * (part.powi(2) + (1.0 - part).powi(2) + 0.25).sqrt() / slope;
     let std = noise.hypot(0.05 / (peak as f64 - time).max(0.5));
     let falls = (peak + 1..values.len()).find(under).map_or(f64::NAN, |above| {
@@ -151,11 +155,11 @@ const ROUNDS: usize = 20;
 /// Rounds end where no pulse moves further, in samples.
 const CONVERGED: f64 = 1e-3;
 
-/// Pulses near `onsets`, each matched to their average shape over `span` in samples around them. Scale and origin are those of the heights and
-/// of the median time of the onsets. `None` where no average follows.
+/// Pulses near `onsets`, each matched to their average shape over `span` in samples around them. Scale and
+/// origin are those of the heights and of the median time of the onsets. `None` where no average follows.
 pub fn averaged(values: &[f64], onsets: &[Onset], span: &Range<f64>) -> Option<Vec<Option<Matched>>> {
-    // Whole knots fill the span, no closer than samples: a shape that may bend from sample to sample follows any error of the times that
-    // depends on their fraction of a sample.
+    // Whole knots fill the span, no closer than samples: a shape that may bend from sample to sample follows
+    // any error of the times that depends on their fraction of a sample.
     let knots = ((span.end - span.start).floor() as usize).clamp(4, KNOTS);
     let mut at: Vec<(f64, f64)> = onsets.iter().map(|o| (o.time, o.height)).collect();
     let mut matched = Vec::new();
@@ -191,7 +195,8 @@ fn samples(n: usize, time: f64, span: &Range<f64>) -> Range<usize> {
     first.min(end)..end
 }
 
-/// A pulse of unit height over time in samples: a uniform cubic B-spline (C. de Boor, *A Practical Guide to Splines*, 1978, ch. IX).
+/// A pulse of unit height over time in samples: a uniform cubic B-spline (C. de Boor, *A Practical Guide to
+/// Splines*, 1978, ch. IX).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
     start: f64,
@@ -200,8 +205,8 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Least squares through points (x, y) with so many `knots` in `span`; a slight penalty on curvature decides where there are no points.
-    /// `None` where the points decide nothing.
+    /// Least squares through points (x, y) with so many `knots` in `span`; a slight penalty on curvature
+    /// decides where there are no points. `None` where the points decide nothing.
     pub fn through(points: &[(f64, f64)], span: &Range<f64>, knots: usize) -> Option<Shape> {
         let (start, step, n) = (span.start, (span.end - span.start) / knots as f64, knots + 3);
         let (mut normal, mut right) = (DMatrix::zeros(n, n), DVector::zeros(n));
@@ -223,8 +228,9 @@ impl Shape {
         Some(Shape { start, step, coefficients: normal.cholesky()?.solve(&right) })
     }
 
-    /// The shape of a recorded pulse whose samples lie `spacing` samples of the trace apart, scaled to unit height. Its first sample is its level;
-    /// its origin is where the first flank passes half its height. `None` where there is no such flank.
+    /// The shape of a recorded pulse whose samples lie `spacing` samples of the trace apart, scaled to unit
+    /// height. Its first sample is its level; its origin is where the first flank passes half its height.
+    /// `None` where there is no such flank.
     pub fn recorded(values: &[f64], spacing: f64) -> Option<Shape> {
         let level = *values.first()?;
         let higher =
@@ -239,7 +245,8 @@ impl Shape {
         Shape::through(&points, &span, (unit.len() - 1).clamp(4, RECORDED))
     }
 
-    /// Value and slope at `x`; beyond its ends it goes on straight, since a break there would keep a match from converging.
+    /// Value and slope at `x`; beyond its ends it goes on straight, since a break there would keep a match
+    /// from converging.
     pub fn at(&self, x: f64) -> (f64, f64) {
         let knots = self.coefficients.len() - 3;
         let u = (x - self.start) / self.step;
@@ -252,10 +259,11 @@ impl Shape {
         (sum(&|w| w.0) + slope * (u - inside), slope / self.step)
     }
 
-    /// Time and height of the pulse near time `t` in samples, by Gauss-Newton on the samples that the shape covers.
+    /// Time and height of the pulse near time `t` in samples, by Gauss-Newton on the samples that the shape
+    /// covers.
     ///
-    /// In white noise of variance σ² the time has the variance σ² × `cofactor`, which is the Cramér–Rao bound. `None` where fewer than
-    /// three samples are covered or the steps do not converge.
+    /// In white noise of variance σ² the time has the variance σ² × `cofactor`, which is the Cramér–Rao
+    /// bound. `None` where fewer than three samples are covered or the steps do not converge.
     pub fn matched(&self, values: &[f64], t: f64, height: f64) -> Option<Matched> {
         let span = self.start..self.start + self.step * (self.coefficients.len() - 3) as f64;
         let (mut time, mut height) = (t, height);
@@ -293,7 +301,8 @@ impl Shape {
     }
 }
 
-/// First coefficient, and values and slopes of the four basis functions, at `u` knots from the start; `None` outside.
+/// First coefficient, and values and slopes of the four basis functions, at `u` knots from the start; `None`
+/// outside.
 fn basis(u: f64, knots: usize) -> Option<(usize, [(f64, f64); 4])> {
     if !(0.0..=knots as f64).contains(&u) {
         return None;
@@ -327,7 +336,8 @@ mod shapes {
         let shape = Shape::through(&points, &(-6.0..6.0), 48).unwrap();
         let values: Vec<f64> = (0..40).map(|i| 0.7 * gauss(f64::from(i) - 17.37)).collect();
         let found = shape.matched(&values, 16.9, 1.0).unwrap();
-        // Cubic splines err by (h⁴/384) |s⁗| = 0.25⁴/384 · 3/1.2⁴ = 1.5e-5 of the height; slopes are about 0.5.
+        // Cubic splines err by (h⁴/384) |s⁗| = 0.25⁴/384 · 3/1.2⁴ = 1.5e-5 of the height; slopes are about
+        // 0.5.
         assert!((found.time - 17.37).abs() < 3e-5, "{found:?}");
         assert!((found.height - 0.7).abs() < 3e-5, "{found:?}");
     }
@@ -345,7 +355,8 @@ mod shapes {
         let off: Vec<f64> = matched.iter().zip(&times).map(|(m, t)| m.unwrap().time - t).collect();
         let mean = off.iter().sum::<f64>() / 20.0;
         // Rounds end at moves of 1e-3 and each takes off about half of what is left; a spline of
-        // knots a sample apart errs by |s⁗|/384 = 3.8e-3 of the height, over slopes of 0.5, and pulses share most of that.
+        // knots a sample apart errs by |s⁗|/384 = 3.8e-3 of the height, over slopes of 0.5, and pulses share
+        // most of that.
         assert!(off.iter().all(|o| (o - mean).abs() < 5e-3), "{off:?}");
     }
 }

@@ -1,18 +1,20 @@
-//! Where a sound rises at once, as an impact makes it: candidates for impacts among echoes, ringing and other sounds.
+//! Where a sound rises at once, as an impact makes it: candidates for impacts among echoes, ringing and other
+//! sounds.
 
 use std::collections::VecDeque;
 use std::ops::Range;
 
 /// A level rises at once where it grows by this factor from one span to the next.
 const RISE: f64 = 3.0;
-/// A sound exceeds the noise limit by this factor: what rings down through the limit rises above it again by chance.
+/// A sound exceeds the noise limit by this factor: what rings down through the limit rises above it again by
+/// chance.
 const CLEAR: f64 = 1.5;
-/// Span in s in which a level rises at once: longer than the contact of metals and hard plastics (below 1 ms), than half a swing of a plate of 170 Hz or
-/// more, and than the loudest part of their sound.
+/// Span in s in which a level rises at once: longer than the contact of metals and hard plastics (below 1
+/// ms), than half a swing of a plate of 170 Hz or more, and than the loudest part of their sound.
 const SPAN: f64 = 3e-3;
 
-/// Stretches of a span that begin where a sound has risen to half of its largest value, which exceeds `reach` by [`CLEAR`], and all of the span before by [`RISE`]
-/// where that is no noise.
+/// Stretches of a span that begin where a sound has risen to half of its largest value, which exceeds `reach`
+/// by [`CLEAR`], and all of the span before by [`RISE`] where that is no noise.
 pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
     let span = ((SPAN * rate) as usize).max(2);
     let ahead = largest_ahead(values, span);
@@ -64,7 +66,8 @@ mod tests {
 
     #[test]
     fn a_record_that_begins_in_a_sound_does_not_begin_with_an_impact() {
-        // A ring of 2 kHz that fades within 10 ms, and an impact that rings so after 50 ms; sampled at 20 kHz.
+        // A ring of 2 kHz that fades within 10 ms, and an impact that rings so after 50 ms; sampled at 20
+        // kHz.
         let ring =
             |t: f64| if t < 0.0 { 0.0 } else { (-t / 2e-3).exp() * (4e3 * std::f64::consts::PI * t).sin() };
         let values: Vec<f64> =

@@ -36,7 +36,8 @@ fn a_regular_train_with_one_missed_and_one_doubled() {
     times.sort_by(f64::total_cmp);
     let found = impacts(&pulses(&times, 4200, 1000.0, 0.005), &ImpactsOptions::default()).unwrap();
     assert_eq!((found.n, found.missed, found.doubled, found.regular), (40, 1, 1, true), "{found:?}");
-    // σ_t = 5e-3/(slope of 150/s) = 3e-5 s, so a line through 40 points has u = 3e-5·√(12/40³) = 4e-7 s; four of these.
+    // σ_t = 5e-3/(slope of 150/s) = 3e-5 s, so a line through 40 points has u = 3e-5·√(12/40³) = 4e-7 s; four
+    // of these.
     assert!((found.interval.value - 0.1).abs() < 2e-6, "{found:?}");
 }
 
@@ -120,7 +121,8 @@ fn no_impact_higher_than_the_hum_is_lost() {
     for hum in [0.0, 0.2, 0.4, 0.5, 1.0] {
         let found = impacts(&over_hum(&times, hum), &ImpactsOptions::default()).unwrap();
         assert_eq!(found.n, times.len(), "hum {hum}: {:?}", found.findings);
-        // The slope of hum of 1 V is 314 V/s, that of the flanks 2π·10³ V/s or more where the hum shifts them by its 1 V: 0.2 ms at most.
+        // The slope of hum of 1 V is 314 V/s, that of the flanks 2π·10³ V/s or more where the hum shifts them
+        // by its 1 V: 0.2 ms at most.
         let off = (found.frequency.value / rate - 1.0).abs();
         assert!(off < 2e-4 / found.interval.value / (times.len() - 1) as f64, "hum {hum}: {off}");
     }
@@ -152,7 +154,8 @@ fn two_unequal_intervals_a_cycle_are_a_pattern_and_miss_nothing() {
         let options = ImpactsOptions { excitation: Some(excitation), ..Default::default() };
         let found = impacts(&trace, &options).unwrap();
         assert_eq!((found.n, found.missed, found.doubled, found.pattern), (32, 0, 0, Some(2)), "{found:?}");
-        // Noise of 0.05 on a slope of 6e3 V/s is 8 µs an onset; a line through 32 of them knows T to 8e-6·√(12/32³) = 0.15 µs; four of these.
+        // Noise of 0.05 on a slope of 6e3 V/s is 8 µs an onset; a line through 32 of them knows T to
+        // 8e-6·√(12/32³) = 0.15 µs; four of these.
         assert!((found.interval.value - 0.06).abs() < 6e-7, "{:?}", found.interval);
         assert_eq!(found.per_cycle, Some(PerCycle { impacts: 2, cycles: 1 }), "{:?}", found.findings);
         let alone = impacts(&trace, &ImpactsOptions::default()).unwrap();
@@ -179,8 +182,9 @@ fn two_impacts_are_not_regular() {
     assert!(!found.regular && has(&found, "one-interval") && !has(&found, "no-fraction-fits"), "{found:?}");
 }
 
-/// A contact circuit closes within one sample. Its interval is near a whole number of samples or not, its first edge anywhere: the
-/// truth lies in the interval that is stated, and a train that keeps the rate of the excitation does not drift.
+/// A contact circuit closes within one sample. Its interval is near a whole number of samples or not, its
+/// first edge anywhere: the truth lies in the interval that is stated, and a train that keeps the rate of the
+/// excitation does not drift.
 #[test]
 fn edges_within_one_sample_leave_the_interval_unsure() {
     let (rate, n, seed) = (1000.0, 40, 21);
@@ -235,7 +239,8 @@ fn uneven_times_and_missing_values_are_named() {
     assert!(why.contains("unevenly spaced"), "{why}");
 }
 
-/// A bearing with a fault of its outer ring: three rises a ball passage that ring at 3.2 kHz, with slip, under a shaft and noise.
+/// A bearing with a fault of its outer ring: three rises a ball passage that ring at 3.2 kHz, with slip,
+/// under a shaft and noise.
 fn bearing(seed: u64, passage: f64) -> Trace {
     let (rate, n) = (25_600.0, 51_200);
     let mut noise = Noise::new(seed);
@@ -291,7 +296,8 @@ fn what_has_no_period_is_refused() {
     assert!((found.n as f64 - 100.0).abs() < 12.0, "{}", found.n);
 }
 
-/// A train of bursts at 25.6 kHz that ring at 3 kHz and decay by e within this part of their period, in noise of 1/200 of their height.
+/// A train of bursts at 25.6 kHz that ring at 3 kHz and decay by e within this part of their period, in noise
+/// of 1/200 of their height.
 fn ringing(part: f64, offset: f64) -> Trace {
     let (rate, n, period) = (25_600.0, 25_600, 0.0123);
     let mut noise = Noise::new(12);
@@ -318,7 +324,8 @@ fn an_envelope_that_rings_until_the_next_impact_has_them_all() {
                 "{part} {band:?}: {:?}",
                 found.findings
             );
-            // Noise of 1/200 of the height over a flank of a few samples: 0.05 samples, and so by a line through 81 points 1e-7 s of 80 intervals.
+            // Noise of 1/200 of the height over a flank of a few samples: 0.05 samples, and so by a line
+            // through 81 points 1e-7 s of 80 intervals.
             assert!((found.interval.value - 0.0123).abs() < 1e-6, "{part} {band:?}: {:?}", found.interval);
             assert!(!has(&found, "count-depends-on-ringing"), "{part} {band:?}: {:?}", found.findings);
         }
@@ -387,7 +394,8 @@ fn echoes_are_no_impacts() {
             // Half a swing of 2 kHz at either end.
             assert!((found.interval.value - 0.08).abs() < 4.0 * found.interval.std.unwrap(), "{mean}");
         }
-        // A machine that keeps its time may as well strike thrice: nothing is sure, and the pause that is named cures it.
+        // A machine that keeps its time may as well strike thrice: nothing is sure, and the pause that is
+        // named cures it.
         let (record, _) = echoing(9, 0.0, echo);
         let found = impacts(&record, &ImpactsOptions::default()).unwrap();
         let doubt = found.findings.iter().find(|f| f.code == "impacts-or-echoes");
@@ -405,8 +413,9 @@ fn echoes_are_no_impacts() {
     }
 }
 
-/// Three seconds of a bearing with a fault of its outer race: each roller excites a resonance of 3 kHz by an amplitude that the shaft of 29.95 Hz modulates;
-/// the shaft's own tone, and noise. The time of the first impact is anywhere.
+/// Three seconds of a bearing with a fault of its outer race: each roller excites a resonance of 3 kHz by an
+/// amplitude that the shaft of 29.95 Hz modulates; the shaft's own tone, and noise. The time of the first
+/// impact is anywhere.
 fn outer_race(seed: u64, zeta: f64, modulation: f64, tone: f64, sigma: f64) -> Trace {
     let (rate, shaft, ring, mut noise) = (12_000.0, 29.95, 3000.0, Noise::new(seed));
     let turn = |t: f64| std::f64::consts::TAU * shaft * t;
@@ -452,7 +461,8 @@ fn the_fault_of_an_outer_race_is_found_in_the_band_in_which_it_rings() {
     assert!(answered >= 4 && within + 1 >= answered, "{answered} {within}");
 }
 
-/// A free decay of 9.6 Hz from a pluck, at several rates and dampings: its swings are no impacts, however they are looked for.
+/// A free decay of 9.6 Hz from a pluck, at several rates and dampings: its swings are no impacts, however
+/// they are looked for.
 #[test]
 fn the_swings_of_a_free_decay_are_no_impacts() {
     for (rate, zeta) in [(500.0, 0.01), (2000.0, 0.003), (2000.0, 0.03), (10_000.0, 0.02)] {

@@ -7,8 +7,9 @@ use std::ops::Range;
 use vibro_math::least_squares;
 use vibro_record::Finding;
 
-/// Natural frequency and damping from the half-power points of the peak at line `at`, those interpolated between lines on |H|².
-/// `None` where the response does not fall to half its power on both sides inside `part`.
+/// Natural frequency and damping from the half-power points of the peak at line `at`, those interpolated
+/// between lines on |H|². `None` where the response does not fall to half its power on both sides inside
+/// `part`.
 pub(super) fn half_power(measured: &Measured, at: usize, part: &Range<usize>) -> Option<(f64, f64)> {
     let power = |i: usize| measured.values[i].norm_sqr();
     let half = power(at) / 2.0;
@@ -30,8 +31,9 @@ const POINTS: usize = 6;
 /// Largest deviation from a circle, by root mean square over its radius, that is still taken for one.
 const ROUND: f64 = 0.1;
 
-/// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by the method of Pratt
-/// (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² − ω²)/(2ζωᵣω) from the resonance.
+/// Fits a circle to the mobility at the lines within 2.4 half bandwidths of the mode (270° of the circle), by
+/// the method of Pratt (1987), then natural frequency and damping to the angles: tan(θ/2) = (ωᵣ² −
+/// ω²)/(2ζωᵣω) from the resonance.
 ///
 /// Gives the mode and the number of lines.
 ///
@@ -82,8 +84,8 @@ fn on_circle(points: &[(f64, Complex64)], near: &Pole) -> Option<(Pole, usize)> 
     (fit.converged && zeta > 0.0).then_some((pole, points.len()))
 }
 
-/// Circle through points by Pratt's algebraic fit: Σ(A|z|² + Bx + Cy + D)² is least under B² + C² − 4AD = 1, here by Newton's
-/// method on the characteristic polynomial (Chernov 2010, 5.9).
+/// Circle through points by Pratt's algebraic fit: Σ(A|z|² + Bx + Cy + D)² is least under B² + C² − 4AD = 1,
+/// here by Newton's method on the characteristic polynomial (Chernov 2010, 5.9).
 fn pratt(points: &[Complex64]) -> Option<(Complex64, f64)> {
     let n = points.len() as f64;
     let mean = points.iter().sum::<Complex64>() / n;

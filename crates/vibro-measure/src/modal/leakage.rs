@@ -1,11 +1,13 @@
 //! What averaging over windowed segments does to a mode.
 //!
-//! The mean of conj(F)X over segments of a stationary excitation, windowed by w, is the cross-spectrum smoothed by |W|² (Bendat & Piersol
-//! 2010, 8.5); for an excitation that is flat over a few lines the function is smoothed so, too. In time that multiplies the impulse
-//! response by the window's autocorrelation r(τ)/r(0), 0 ≤ τ ≤ T, and ∫ r(τ) exp(−sτ) dτ takes the place of 1/s.
+//! The mean of conj(F)X over segments of a stationary excitation, windowed by w, is the cross-spectrum
+//! smoothed by |W|² (Bendat & Piersol 2010, 8.5); for an excitation that is flat over a few lines the
+//! function is smoothed so, too. In time that multiplies the impulse response by the window's autocorrelation
+//! r(τ)/r(0), 0 ≤ τ ≤ T, and ∫ r(τ) exp(−sτ) dτ takes the place of 1/s.
 //!
-//! For w = Σ cₖ exp(2πikt/T) that integral is T Σ [cⱼ² L(z − 2πij) + bⱼ E(z − 2πij)]/Σ cₖ² with z = sT, E(z) = (1 − exp(−z))/z,
-//! L(z) = (1 − E(z))/z and bⱼ = cⱼ/(πi) Σ cₘ/(m − j) over m ≠ j: the products of two terms of w, each integrated from 0 to T − τ.
+//! For w = Σ cₖ exp(2πikt/T) that integral is T Σ [cⱼ² L(z − 2πij) + bⱼ E(z − 2πij)]/Σ cₖ² with z = sT, E(z)
+//! = (1 − exp(−z))/z, L(z) = (1 − E(z))/z and bⱼ = cⱼ/(πi) Σ cₘ/(m − j) over m ≠ j: the products of two terms
+//! of w, each integrated from 0 to T − τ.
 
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -42,7 +44,8 @@ impl Leakage {
         let decayed = (-s * self.length).exp();
         let sum = self.terms.iter().map(|(shift, square, b)| {
             let z = s * self.length - Complex64::new(0.0, *shift);
-            // z = 0 is a mode without damping on a line; beside it both are as near as makes no difference to their limits 1 and ½.
+            // z = 0 is a mode without damping on a line; beside it both are as near as makes no difference to
+            // their limits 1 and ½.
             let small = z.norm_sqr() < 1e-12;
             let e = if small { Complex64::new(1.0, 0.0) } else { (1.0 - decayed) / z };
             let l = if small { Complex64::new(0.5, 0.0) } else { (1.0 - e) / z };
@@ -131,7 +134,8 @@ mod averaged {
     use vibro_record::{Axis, Meta, Record, Trace, Traces};
     use vibro_signal::transfer::Estimator;
 
-    /// A mode under noise: ẍ + 2ζωẋ + ω²x = f, f white, sampled; its impulse response is sin(ω′t) exp(−ζωt)/ω′.
+    /// A mode under noise: ẍ + 2ζωẋ + ω²x = f, f white, sampled; its impulse response is sin(ω′t)
+    /// exp(−ζωt)/ω′.
     fn records(seed: u64, (own, zeta): (f64, f64), rate: f64, n: usize) -> [Trace; 2] {
         let mut noise = Noise::new(seed);
         let pole = TAU * own * Complex64::new(-zeta, (1.0 - zeta * zeta).sqrt());

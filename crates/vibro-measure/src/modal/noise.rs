@@ -1,11 +1,13 @@
 //! Noise of the lines of a function: how much each has, and how neighbours are correlated.
 //!
-//! A segment's lines are F = Σ W f and X = Σ W H f + v: the window's transform W at the distance of each frequency, the force f, the noise v of the response.
-//! βF is the part of X that the smoothed function β explains. The rest, e = Σ (H − β) W f + v, is leakage and noise.
-//! It is independent of F on its own line, but not on others. H1 has the error Σ conj(F) e / Σ |F|².
-//! Over a common factor the covariance of lines i and j is `E[conj(Fᵢ) Fⱼ] E[eᵢ conj(eⱼ)]`, their pseudo-covariance
-//! `E[eᵢ conj(Fⱼ)] E[eⱼ conj(Fᵢ)]` (Isserlis 1918), summed over segments that overlap by half. Leakage makes errors of neighbours
-//! opposite in the direction of a shift in frequency, and alike in that of damping: by independent lines ζ is 1.3 times less certain than stated.
+//! A segment's lines are F = Σ W f and X = Σ W H f + v: the window's transform W at the distance of each
+//! frequency, the force f, the noise v of the response. βF is the part of X that the smoothed function β
+//! explains. The rest, e = Σ (H − β) W f + v, is leakage and noise. It is independent of F on its own line,
+//! but not on others. H1 has the error Σ conj(F) e / Σ |F|². Over a common factor the covariance of lines i
+//! and j is `E[conj(Fᵢ) Fⱼ] E[eᵢ conj(eⱼ)]`, their pseudo-covariance `E[eᵢ conj(Fⱼ)] E[eⱼ conj(Fᵢ)]`
+//! (Isserlis 1918), summed over segments that overlap by half. Leakage makes errors of neighbours opposite in
+//! the direction of a shift in frequency, and alike in that of damping: by independent lines ζ is 1.3 times
+//! less certain than stated.
 
 use crate::mean::average;
 use num_complex::Complex64;
@@ -18,7 +20,8 @@ use vibro_signal::window::line_shape;
 pub(super) struct Noise {
     /// Standard deviation of each line.
     pub each: Vec<f64>,
-    /// Cholesky factor of the covariance of all components (real and imaginary part of each line in turn), where lines are not independent.
+    /// Cholesky factor of the covariance of all components (real and imaginary part of each line in turn),
+    /// where lines are not independent.
     factor: Option<Banded>,
 }
 
@@ -50,7 +53,8 @@ impl Noise {
         }
     }
 
-    /// What it adds to minus twice the logarithm of the likelihood of `numbers` residuals: the logarithm of its determinant.
+    /// What it adds to minus twice the logarithm of the likelihood of `numbers` residuals: the logarithm of
+    /// its determinant.
     pub fn spread(&self, numbers: usize) -> f64 {
         match &self.factor {
             Some(Banded { band, rows }) => {
@@ -82,20 +86,23 @@ impl Banded {
     }
 }
 
-/// Steps of the grid over a line: a mode of a bandwidth of one line has died away by exp(−4π) in four segments.
+/// Steps of the grid over a line: a mode of a bandwidth of one line has died away by exp(−4π) in four
+/// segments.
 pub(super) const STEPS: usize = 4;
 
-/// Lines on either side of a line from which leakage is taken: a Hann window's transform is there below a hundredth.
+/// Lines on either side of a line from which leakage is taken: a Hann window's transform is there below a
+/// hundredth.
 const REACH: usize = 4;
 
 /// Steps of the grid before the first line, and after the last.
 pub(super) const MARGIN: usize = REACH * STEPS;
 
-/// Least noise of the response of a line, over the leakage there: no excitation is quite flat, and the covariance needs an inverse.
+/// Least noise of the response of a line, over the leakage there: no excitation is quite flat, and the
+/// covariance needs an inverse.
 const LEAST: f64 = 0.02;
 
-/// Noise of H1 over segments under a window. The function without leakage is `h` on a grid, with lines at the steps `at` that have variances `total`.
-/// `None` where the covariance has no inverse.
+/// Noise of H1 over segments under a window. The function without leakage is `h` on a grid, with lines at the
+/// steps `at` that have variances `total`. `None` where the covariance has no inverse.
 pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: &[f64]) -> Option<Noise> {
     // The window's transform on the grid, real where time runs from its middle.
     let offset = |k: usize| (k as f64 - MARGIN as f64) / STEPS as f64;
@@ -153,8 +160,8 @@ pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: 
     Some(Noise { each, factor: Some(factor) })
 }
 
-/// Variance of the noise of the response at each line, which is smooth: what `total` has beyond the leakage, averaged over lines near with the weight of
-/// its own uncertainty.
+/// Variance of the noise of the response at each line, which is smooth: what `total` has beyond the leakage,
+/// averaged over lines near with the weight of its own uncertainty.
 fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
     let all = |(i, mean): (usize, f64)| {
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -168,8 +175,8 @@ fn background(total: &[f64], leakage: &[f64]) -> Vec<f64> {
     smoothed(total).into_iter().enumerate().map(all).collect()
 }
 
-/// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a line has 2 degrees of
-/// freedom, that of all 31 has 62, and a weight scatters by 9 %.
+/// Lines on either side over which the noise by the coherence is averaged: with two averages the noise of a
+/// line has 2 degrees of freedom, that of all 31 has 62, and a weight scatters by 9 %.
 const NEAR: usize = 15;
 
 fn near(i: usize, n: usize) -> std::ops::Range<usize> {
@@ -186,8 +193,8 @@ mod tests {
     use super::*;
     use std::f64::consts::SQRT_2;
 
-    /// Hann: the transform has −½, 1, −½ on lines; neighbours of independent noise correlate by (2/3)² and (1/6)², and with the segments
-    /// beside, of a correlation of 1/6 each, the variance is 1 + 2/36.
+    /// Hann: the transform has −½, 1, −½ on lines; neighbours of independent noise correlate by (2/3)² and
+    /// (1/6)², and with the segments beside, of a correlation of 1/6 each, the variance is 1 + 2/36.
     #[test]
     fn neighbours_share_the_noise_of_the_response_as_the_window_says() {
         let n = 12;

@@ -88,17 +88,20 @@ impl<'a> Scaled<'a> {
     }
 }
 
-/// Part of the sum of squares that another step gains, below which the search over the shapes ends: all parameters are then fitted together.
+/// Part of the sum of squares that another step gains, below which the search over the shapes ends: all
+/// parameters are then fitted together.
 const NEAR_ENOUGH: f64 = 1e-6;
 
 impl Scaled<'_> {
-    /// Frequency and damping of mode `m` from its parameters: in units of the first guess of its half bandwidth and damping.
+    /// Frequency and damping of mode `m` from its parameters: in units of the first guess of its half
+    /// bandwidth and damping.
     fn shape(&self, p: &[f64], m: usize) -> (f64, f64) {
         let (f, zeta) = self.starts[m];
         ((f + p[4 * m] * zeta * f) / self.unit, p[4 * m + 1] * zeta)
     }
 
-    /// Mode `m` at line `i`. All but a few steps of a fit leave its shape as it was: its lines are computed once a shape.
+    /// Mode `m` at line `i`. All but a few steps of a fit leave its shape as it was: its lines are computed
+    /// once a shape.
     fn mode(&self, i: usize, p: &[f64], m: usize) -> Complex64 {
         let shape = self.shape(p, m);
         let bits = [shape.0.to_bits(), shape.1.to_bits()];
@@ -162,8 +165,8 @@ impl Scaled<'_> {
         sum.is_finite().then_some(sum)
     }
 
-    /// First guess: frequency and damping of each mode but the first `known` in turn on a small grid, all else by linear least squares; behind the
-    /// sum of squares.
+    /// First guess: frequency and damping of each mode but the first `known` in turn on a small grid, all
+    /// else by linear least squares; behind the sum of squares.
     fn start(&self, known: usize, width: f64, weight: &[f64]) -> Option<(f64, Vec<f64>)> {
         let mut p = vec![0.0; 4 * self.starts.len() + 4];
         (0..self.starts.len()).for_each(|m| p[4 * m + 1] = 1.0);
@@ -183,7 +186,8 @@ impl Scaled<'_> {
         Some((self.linear(&mut p, weight)?, p))
     }
 
-    /// The minimum, nearly: frequency and damping of the modes alone, with all else by linear least squares for each (Golub & Pereyra 1973).
+    /// The minimum, nearly: frequency and damping of the modes alone, with all else by linear least squares
+    /// for each (Golub & Pereyra 1973).
     fn nearer(&self, start: &[f64], noise: &Noise) -> Result<Vec<f64>> {
         if self.magnitude_only {
             return Ok(self.fit(start, noise)?.parameters);
@@ -240,8 +244,8 @@ impl Scaled<'_> {
         Ok(fit)
     }
 
-    /// The noise of segments under a window, by the response of the model and the variance of each line; `None` for magnitudes, or lines that are not
-    /// evenly spaced.
+    /// The noise of segments under a window, by the response of the model and the variance of each line;
+    /// `None` for magnitudes, or lines that are not evenly spaced.
     fn of_segments(&self, window: Window, spacing: f64, p: &[f64], total: &[f64]) -> Option<Noise> {
         let step = spacing / self.unit / STEPS as f64;
         let at = |x: &f64| MARGIN + STEPS * ((x - self.x[0]) / step / STEPS as f64).round() as usize;
@@ -259,19 +263,21 @@ impl Scaled<'_> {
         of_segments(window, &h, &at, total)
     }
 
-    /// Parameters that the values can determine: without phases no phase of the modes, no term from below, and no part of the
-    /// residual term a quarter of a turn ahead, which changes |H| as the modal constant does.
+    /// Parameters that the values can determine: without phases no phase of the modes, no term from below,
+    /// and no part of the residual term a quarter of a turn ahead, which changes |H| as the modal
+    /// constant does.
     fn free(&self) -> Vec<usize> {
         let modes = 4 * self.starts.len();
         (0..modes + 4).filter(|i| !self.magnitude_only || (*i < modes && i % 4 != 3) || *i == modes).collect()
     }
 }
 
-/// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio), the first `known` of which come from a fit, to the lines `part` of a function from which
-/// `others` are subtracted.
+/// Fits modes near the first guesses `starts` (frequency in Hz, damping ratio), the first `known` of which
+/// come from a fit, to the lines `part` of a function from which `others` are subtracted.
 ///
-/// Noise is weighted by the uncertainty of each line where that is known, else by the coherence where there is one, its level or its share of the response smoothed over lines; else as equal
-/// on all lines or as proportional to the response, of which the more likely is taken.
+/// Noise is weighted by the uncertainty of each line where that is known, else by the coherence where there
+/// is one, its level or its share of the response smoothed over lines; else as equal on all lines or as
+/// proportional to the response, of which the more likely is taken.
 pub(super) fn rational(
     measured: &Measured,
     part: std::ops::Range<usize>,
@@ -309,8 +315,9 @@ pub(super) fn rational(
             vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
         }
         (None, Some(coherence)) => {
-            // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose number is left to the fit.
-            // That of few averages is hardly known from the line alone, and one that is small by chance would draw the fit to it.
+            // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose
+            // number is left to the fit. That of few averages is hardly known from the line
+            // alone, and one that is small by chance would draw the fit to it.
             let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
             let level: Vec<f64> =
                 share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
@@ -409,7 +416,8 @@ impl Scaled<'_> {
                 let own = re_part * re_part * covariance(re, re) + im_part * im_part * covariance(im, im);
                 (own + 2.0 * re_part * im_part * covariance(re, im)).sqrt()
             };
-            // |a| moves with its real part by cos and with its imaginary part by sin of its phase; the phase, times |a|, by −sin and cos.
+            // |a| moves with its real part by cos and with its imaginary part by sin of its phase; the phase,
+            // times |a|, by −sin and cos.
             let (cos, sin) = (a.re / a.norm(), a.im / a.norm());
             let std = [
                 f * zeta * covariance(4 * m, 4 * m).sqrt(),

@@ -14,7 +14,8 @@ const IN_STEP: f64 = 45.0;
 /// Bandwidths in lines below which the half-power method is tens of per cent off.
 const LINES_OF_HALF_POWER: f64 = 8.0;
 
-/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no modes as modelled.
+/// What a fit leaves, by root mean square, must be less than this part of the highest line; else these are no
+/// modes as modelled.
 const EXPLAINED: f64 = 0.1;
 
 /// One mode of a group that was fitted.
@@ -50,8 +51,8 @@ impl Candidate<'_> {
         find(fit.whiteness.rejected(), fit.whiteness.coloured("modal-residuals-coloured"));
         let span = measured.frequency[group.lines.end - 1] - measured.frequency[group.lines.start];
         let spacing = span / (group.lines.len() - 1) as f64;
-        // Averaging segments multiplies the impulse response by the window's autocorrelation, 1 − 2π²t²/3T² for a Hann window; the
-        // pole that fits 1/s − 2κ/s³ best has a decay larger by 2κ/a of a.
+        // Averaging segments multiplies the impulse response by the window's autocorrelation, 1 − 2π²t²/3T²
+        // for a Hann window; the pole that fits 1/s − 2κ/s³ best has a decay larger by 2κ/a of a.
         let bandwidth = 2.0 * pole.zeta * pole.frequency / spacing;
         let leakage = 4.0 / 3.0 / bandwidth.powi(2);
         let blows = self.options.from_blows;
@@ -85,8 +86,8 @@ impl Candidate<'_> {
         Some(self.estimates(&own, std.map(|s| known.then_some(s))))
     }
 
-    /// The estimates of a mode that has `own` pole without the decay of a window, and standard uncertainties of frequency, ζ, modal
-    /// constant and phase.
+    /// The estimates of a mode that has `own` pole without the decay of a window, and standard uncertainties
+    /// of frequency, ζ, modal constant and phase.
     fn estimates(&self, own: &Pole, std: [Option<f64>; 4]) -> Mode {
         let Candidate { measured, options, group, fit, m, .. } = *self;
         let f = &measured.frequency[group.lines.clone()];

@@ -6,7 +6,8 @@ use vibro_record::{
     Axis, AxisKind, Error, Finding, Frf, Meta, Place, Record, Result, Scaling, Spectrum, Values, Window,
 };
 
-/// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its coherence where known.
+/// A frequency response function as the estimates of modes take it, complex or in magnitude only, with its
+/// coherence where known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Frequencies of the lines in Hz, rising.
@@ -19,8 +20,8 @@ pub struct Measured {
     pub kind: Quantity,
     /// Coherence of each line.
     pub coherence: Option<Vec<f64>>,
-    /// Window of the segments that the function was averaged over, each as long as one over the distance of the lines; `None` where it
-    /// was not averaged so, or that is not known.
+    /// Window of the segments that the function was averaged over, each as long as one over the distance of
+    /// the lines; `None` where it was not averaged so, or that is not known.
     pub window: Option<Window>,
     /// Standard uncertainty of one component of each value, above 0, where it is known.
     pub std: Option<Vec<f64>>,
@@ -42,8 +43,9 @@ impl Measured {
         Measured::new(axis.values(), values, kind)
     }
 
-    /// The function that a record is: a response over a force, complex or in magnitude, or complex values of which the file does not
-    /// say what they are. Complex lines that have no frequencies, or are a spectrum by their unit or scaling, are refused.
+    /// The function that a record is: a response over a force, complex or in magnitude, or complex values of
+    /// which the file does not say what they are. Complex lines that have no frequencies, or are a
+    /// spectrum by their unit or scaling, are refused.
     fn record(record: &Record) -> Result<Option<Measured>> {
         let spectrum = match record {
             Record::Frf(frf) => return Ok(Some(Measured::complex(frf))),
@@ -79,8 +81,8 @@ impl Measured {
         Ok(Some(Measured::of(axis, values.clone(), kind)))
     }
 
-    /// All functions among records, or those of one name or number, each with its record's meta data. A coherence of the same lines among
-    /// them is theirs where there is just one of each.
+    /// All functions among records, or those of one name or number, each with its record's meta data. A
+    /// coherence of the same lines among them is theirs where there is just one of each.
     ///
     /// # Errors
     /// If there is none.

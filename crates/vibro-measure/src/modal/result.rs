@@ -17,10 +17,11 @@ pub struct ModalOptions {
     pub least_coherence: Option<f64>,
     /// Decay in 1/s that an exponential window added to the response, to be subtracted. Default: none.
     pub decay: Option<f64>,
-    /// Whether the function was averaged over the blows of a hammer, each a record as long as one over the distance of the lines.
-    /// Default: false.
+    /// Whether the function was averaged over the blows of a hammer, each a record as long as one over the
+    /// distance of the lines. Default: false.
     pub from_blows: bool,
-    /// Relative standard uncertainty of the sampling rate, by which all frequencies are off alike. Default 0.
+    /// Relative standard uncertainty of the sampling rate, by which all frequencies are off alike. Default
+    /// 0.
     pub clock: f64,
 }
 
@@ -40,10 +41,11 @@ pub struct Mode {
     pub frequency: Estimate,
     /// Damping ratio.
     pub zeta: Estimate,
-    /// Modal constant A of the receptance A/(ωᵣ² − ω² + 2iζωᵣω), 1/kg: its magnitude, negative where its phase is within 45° of
-    /// 180°. In a mode shape the signs are the directions.
+    /// Modal constant A of the receptance A/(ωᵣ² − ω² + 2iζωᵣω), 1/kg: its magnitude, negative where its
+    /// phase is within 45° of 180°. In a mode shape the signs are the directions.
     pub modal_constant: Estimate,
-    /// Phase of the modal constant in degrees: 0 or 180° for a mode of which all parts move in step. `None` without phases.
+    /// Phase of the modal constant in degrees: 0 or 180° for a mode of which all parts move in step. `None`
+    /// without phases.
     pub phase: Option<Estimate>,
     /// How these were found.
     pub method: String,
@@ -61,7 +63,8 @@ pub struct Mode {
 /// What one method gives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ByMethod {
-    /// `rational fit` in the complex plane, `circle fit` in the Nyquist plane, `half power` or largest line (`peak`).
+    /// `rational fit` in the complex plane, `circle fit` in the Nyquist plane, `half power` or largest line
+    /// (`peak`).
     pub method: &'static str,
     /// Natural frequency in Hz; NaN where the method gives none.
     pub frequency: Estimate,
@@ -99,10 +102,11 @@ impl Pole {
         factor * self.constant / Complex64::new(own * own - omega * omega, 2.0 * self.zeta * own * omega)
     }
 
-    /// The mode without a decay σ in 1/s that an exponential window added to a response of (iω)^`power` times the receptance.
+    /// The mode without a decay σ in 1/s that an exponential window added to a response of (iω)^`power` times
+    /// the receptance.
     ///
-    /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power` A/(2iωᵣ√(1 − ζ²)).
-    /// `None` where it decays by less than σ, or does not oscillate (ζ of 1 and more).
+    /// The window moves the pole s = −ζωᵣ ± iωᵣ√(1 − ζ²) by −σ and leaves its residue, which is `s^power`
+    /// A/(2iωᵣ√(1 − ζ²)). `None` where it decays by less than σ, or does not oscillate (ζ of 1 and more).
     pub(crate) fn without_decay(&self, decay: f64, power: i32) -> Option<Pole> {
         if self.zeta.is_nan() || self.zeta.abs() >= 1.0 {
             return None;

@@ -18,8 +18,9 @@ fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
     peaks.iter().map(start).collect()
 }
 
-/// Finds out whether the highest peak shows the leakage of segments under a Hann window, which analysers take if nothing else is said, or
-/// none at all, as under a periodic excitation; `false` where its lines do not tell.
+/// Finds out whether the highest peak shows the leakage of segments under a Hann window, which analysers take
+/// if nothing else is said, or none at all, as under a periodic excitation; `false` where its lines do not
+/// tell.
 pub(super) fn averaging(lines: &mut Measured, groups: &[Group]) -> bool {
     let highest = |group: &Group| group.peaks.iter().map(|p| p.rise).fold(0.0, f64::max);
     let Some(group) = groups.iter().max_by(|a, b| highest(a).total_cmp(&highest(b))) else { return false };
@@ -33,10 +34,11 @@ pub(super) fn averaging(lines: &mut Measured, groups: &[Group]) -> bool {
     (without - with).abs() > NO_SUPPORT
 }
 
-/// Finds the peaks of a group that the lines need. The group keeps those; the others are added to `unsupported`.
+/// Finds the peaks of a group that the lines need. The group keeps those; the others are added to
+/// `unsupported`.
 ///
-/// The highest peaks are fitted all at once: with a strong one left out the others explain its lines. Those that are not known, or
-/// not needed beside the others, are dropped.
+/// The highest peaks are fitted all at once: with a strong one left out the others explain its lines. Those
+/// that are not known, or not needed beside the others, are dropped.
 pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<Peak>) -> Result<Rational> {
     let mut highest = group.peaks.clone();
     highest.sort_by(|a, b| b.rise.total_cmp(&a.rise));
@@ -57,7 +59,8 @@ pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<
     Ok(if fit.whiteness.rejected() { narrowed(lines, group, fit) } else { fit })
 }
 
-/// Drops the modes that are not known, the lowest peak first, then those that the lines do not need beside the others.
+/// Drops the modes that are not known, the lowest peak first, then those that the lines do not need beside
+/// the others.
 fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &mut Vec<Peak>) -> Rational {
     while group.peaks.len() > 1 {
         let sound = fit.sound(lines, &group.peaks);
@@ -86,7 +89,8 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &
     fit
 }
 
-/// Fits the modes that were found around each peak of a band together, to all its lines, where that explains them.
+/// Fits the modes that were found around each peak of a band together, to all its lines, where that explains
+/// them.
 pub(super) fn together(
     lines: &Measured,
     part: Range<usize>,
@@ -116,8 +120,8 @@ pub(super) fn together(
 /// Fewest lines on either side of the outer peaks of a band that is made narrower.
 const BESIDE: usize = 8;
 
-/// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a band matters the
-/// less the narrower it is. Keeps the wide band where that does not help.
+/// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a
+/// band matters the less the narrower it is. Keeps the wide band where that does not help.
 fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
     let (first, last) = (group.peaks[0].at, group.peaks[group.peaks.len() - 1].at);
     let starts = starts(lines, &group.peaks);
@@ -135,8 +139,9 @@ fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
     wide
 }
 
-/// An additional mode that shows no peak must lower Akaike's criterion by this much: its four numbers then explain 28 of χ², as chance does
-/// in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance in one of a thousand.
+/// An additional mode that shows no peak must lower Akaike's criterion by this much: its four numbers then
+/// explain 28 of χ², as chance does in one of 10⁵ peaks; ten (Burnham & Anderson 2002, 2.6) would be chance
+/// in one of a thousand.
 const SPLIT: f64 = 20.0;
 
 /// Bandwidths from a mode at which another is looked for that shows no peak.
@@ -154,7 +159,8 @@ const LOW: f64 = 0.05;
 /// Of those places the best, at which it is fitted.
 const TRIED: usize = 3;
 
-/// The best fit of a group with one more mode than `fit`, whether it shows a peak or not; `others` are subtracted first.
+/// The best fit of a group with one more mode than `fit`, whether it shows a peak or not; `others` are
+/// subtracted first.
 fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) -> Option<Rational> {
     let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
     let guess = |(m, bandwidths): (usize, f64)| {
@@ -180,9 +186,10 @@ fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) ->
     guesses.into_iter().take(TRIED).filter_map(fitted).min_by(|a, b| a.aicc.total_cmp(&b.aicc))
 }
 
-/// Adds the modes that a group needs though they show no peak, as one beside a higher peak, or two under one. Where the lines support another
-/// mode and do not tell which, the group says so; where they do not tell whether there is one, the uncertainties hold both cases
-/// (Burnham & Anderson 2002, 4.3.2). Says which modes stand.
+/// Adds the modes that a group needs though they show no peak, as one beside a higher peak, or two under one.
+/// Where the lines support another mode and do not tell which, the group says so; where they do not tell
+/// whether there is one, the uncertainties hold both cases (Burnham & Anderson 2002, 4.3.2). Says which modes
+/// stand.
 pub(super) fn complete(
     lines: &Measured,
     group: &mut Group,
@@ -201,7 +208,8 @@ pub(super) fn complete(
             // Anything would explain residuals better that are not white.
             break;
         }
-        // What lies beyond the lines, or is much lower, is no mode of the group, and widens its uncertainties.
+        // What lies beyond the lines, or is much lower, is no mode of the group, and widens its
+        // uncertainties.
         let height = |mode: &Pole| mode.constant.norm() / (mode.zeta * mode.frequency.powi(2));
         let highest = more.modes.iter().map(height).fold(0.0, f64::max);
         let part = lines.frequency[group.lines.start]..lines.frequency[group.lines.end - 1];
@@ -251,7 +259,8 @@ pub(super) fn complete(
     sound
 }
 
-/// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its valleys.
+/// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its
+/// valleys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Peak {
     pub at: usize,
@@ -264,8 +273,8 @@ pub(super) struct Peak {
 pub(super) struct Group {
     pub peaks: Vec<Peak>,
     pub lines: Range<usize>,
-    /// How much lower Akaike's criterion is with one more mode, and its frequency, where that is not known by itself: then those around it
-    /// are not what they seem.
+    /// How much lower Akaike's criterion is with one more mode, and its frequency, where that is not known
+    /// by itself: then those around it are not what they seem.
     pub ahead: Option<(f64, f64)>,
 }
 
@@ -283,14 +292,16 @@ impl Measured {
 /// A peak must stand this factor above its valleys.
 const PROMINENCE: f64 = 2.0;
 
-/// A peak must rise above its valleys by this many standard deviations of the noise of one component of a line: of 3 000 lines of noise one does.
+/// A peak must rise above its valleys by this many standard deviations of the noise of one component of a
+/// line: of 3 000 lines of noise one does.
 const ABOVE_NOISE: f64 = 4.0;
 
 /// Lines on either side of a peak that are at least fitted, and bandwidths on either side.
 const LINES: usize = 16;
 const BANDWIDTHS: f64 = 6.0;
 
-/// The peaks, those too near each other in one group, each with the lines around it; only those of `band` where there is one.
+/// The peaks, those too near each other in one group, each with the lines around it; only those of `band`
+/// where there is one.
 pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<Group>> {
     let f = &measured.frequency;
     let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
@@ -346,16 +357,17 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
     Ok(groups.into_iter().enumerate().map(group).collect())
 }
 
-/// Standard deviation of the noise of one component of the lines around `at`, from the median of their second differences, in which what is smooth
-/// vanishes, where it is not known; 0 where there are too few lines.
+/// Standard deviation of the noise of one component of the lines around `at`, from the median of their second
+/// differences, in which what is smooth vanishes, where it is not known; 0 where there are too few lines.
 fn noise(measured: &Measured, at: usize) -> f64 {
     if let Some(std) = &measured.std {
         return std[at];
     }
     let around = at.saturating_sub(LINES)..(at + LINES + 1).min(measured.values.len());
     let differences = measured.values[around].windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).norm());
-    // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2) of its scale; that of the size of a
-    // normal one 0.6745, and magnitudes of noise alone scatter by 0.655σ.
+    // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2)
+    // of its scale; that of the size of a normal one 0.6745, and magnitudes of noise alone scatter by
+    // 0.655σ.
     let median = if measured.magnitude_only { 0.6745 * 0.655 } else { (2.0 * f64::ln(2.0)).sqrt() };
     upper_median(differences).map_or(0.0, |d| d / (median * f64::sqrt(6.0)))
 }
@@ -404,13 +416,14 @@ mod bands {
     #[test]
     fn noise_has_few_peaks_and_what_stands_out_of_it_is_one() {
         let found = measured(false);
-        // The median of 31 correlated values scatters by a fifth or so; their mean over many places is good to a few per cent.
+        // The median of 31 correlated values scatters by a fifth or so; their mean over many places is good
+        // to a few per cent.
         let mean = (0..100).map(|k| noise(&found, 30 + 9 * k)).sum::<f64>() / 100.0;
         assert!((mean / 0.3 - 1.0).abs() < 0.1, "{mean}");
         let all = groups(&found, None).unwrap();
         let peaks: Vec<usize> = all.iter().flat_map(|g| g.peaks.iter().map(|p| p.at)).collect();
-        // A third of 2000 lines are local maxima; fewer than one line of noise in 3000 passes four deviations, where those are right within a
-        // quarter one in 90 does.
+        // A third of 2000 lines are local maxima; fewer than one line of noise in 3000 passes four
+        // deviations, where those are right within a quarter one in 90 does.
         assert!(peaks.contains(&1000) && peaks.len() < 22, "{peaks:?}");
         let sizes = measured(true);
         assert!(groups(&sizes, None).unwrap().iter().any(|g| g.peaks.iter().any(|p| p.at == 1000)));

@@ -4,10 +4,11 @@ use super::LowPass;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Contact of damping ratio ξ and undamped frequency f, met at unit velocity and left where its force is zero.
+/// Contact of damping ratio ξ and undamped frequency f, met at unit velocity and left where its force is
+/// zero.
 ///
-/// With ω = 2πf, sin θ = ξ, Ω = ω cos θ and h = ωξ the deceleration is a(t) = (ω/cos θ) e^{−ht} sin(Ωt + 2θ) from 0 to
-/// (π − 2θ)/Ω: it begins with a jump to 2ξω.
+/// With ω = 2πf, sin θ = ξ, Ω = ω cos θ and h = ωξ the deceleration is a(t) = (ω/cos θ) e^{−ht} sin(Ωt + 2θ)
+/// from 0 to (π − 2θ)/Ω: it begins with a jump to 2ξω.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KelvinVoigt {
     theta: f64,
@@ -15,8 +16,8 @@ pub struct KelvinVoigt {
 }
 
 impl KelvinVoigt {
-    /// A contact; a fit to noise may need a slightly negative ξ, so −0.5 < ξ < 1 is allowed. `None` outside, and where f is not
-    /// above 0.
+    /// A contact; a fit to noise may need a slightly negative ξ, so −0.5 < ξ < 1 is allowed. `None` outside,
+    /// and where f is not above 0.
     pub fn new(xi: f64, frequency: f64) -> Option<KelvinVoigt> {
         let possible = xi > -0.5 && xi < 1.0 && frequency > 0.0 && frequency.is_finite();
         possible.then(|| KelvinVoigt { theta: xi.asin(), omega: TAU * frequency })
@@ -80,15 +81,18 @@ pub struct Rebound {
     pub restitution: f64,
 }
 
-/// Step of the integration, about 1/400 of the contact. Over the last part of a step the force falls along a straight line.
+/// Step of the integration, about 1/400 of the contact. Over the last part of a step the force falls along a
+/// straight line.
 const STEP: f64 = 1.0 / 128.0;
 
 /// Steps after which a contact is given up.
 const LONGEST: usize = 128 * 200;
 
 impl Rebound {
-    /// Force k δⁿ + c δˢ δ̇ that does not pull, for both exponents 3/2 that of Hunt & Crossley (1975), without losses that of Hertz; α the loss at unit velocity: z″ = −zⁿ − α zˢ z′. By the classical Runge–Kutta formula, for exponents of 3/2 good to
-    /// 1e-5 of the largest value. `None` for α outside −0.5…100, n outside 1…4, s outside 0…4, and where the contact does not end within 200 T.
+    /// Force k δⁿ + c δˢ δ̇ that does not pull, for both exponents 3/2 that of Hunt & Crossley (1975),
+    /// without losses that of Hertz; α the loss at unit velocity: z″ = −zⁿ − α zˢ z′. By the classical
+    /// Runge–Kutta formula, for exponents of 3/2 good to 1e-5 of the largest value. `None` for α outside
+    /// −0.5…100, n outside 1…4, s outside 0…4, and where the contact does not end within 200 T.
     pub fn power_law(alpha: f64, n: f64, s: f64) -> Option<Rebound> {
         let possible =
             (-0.5..=100.0).contains(&alpha) && (1.0..=4.0).contains(&n) && (0.0..=4.0).contains(&s);
@@ -132,7 +136,9 @@ impl Rebound {
         None
     }
 
-    /// A spring that yields and is 1/R² times as stiff on the way back (Walton & Braun 1986): a quarter of a sine, and a shorter one of a cosine. `None` for R outside 0.05…1.05, as much above 1 as noise may ask for.
+    /// A spring that yields and is 1/R² times as stiff on the way back (Walton & Braun 1986): a quarter of a
+    /// sine, and a shorter one of a cosine. `None` for R outside 0.05…1.05, as much above 1 as noise may ask
+    /// for.
     pub fn yielding(restitution: f64) -> Option<Rebound> {
         if !(0.05..=1.05).contains(&restitution) {
             return None;
@@ -144,8 +150,8 @@ impl Rebound {
         Some(Rebound { deceleration, duration, restitution })
     }
 
-    /// Deceleration at each of the rising `times` in s, in m/s² for each m/s of approach, of a contact that lasts `duration`
-    /// seconds; as an instrument with this low-pass shows it where there is one.
+    /// Deceleration at each of the rising `times` in s, in m/s² for each m/s of approach, of a contact that
+    /// lasts `duration` seconds; as an instrument with this low-pass shows it where there is one.
     pub(crate) fn decelerations(&self, duration: f64, filter: Option<&LowPass>, times: &[f64]) -> Vec<f64> {
         let scale = duration / self.duration;
         let step = STEP * scale;
@@ -227,7 +233,8 @@ mod tests {
                     contact.unbounded(tau) * 2.0 * omega * (-omega * ago).exp() * (omega * ago).sin() * h
                 })
                 .sum();
-            // The midpoint rule errs by h²/24 of the second derivative, about (3e5)² of the value: below 1e-7.
+            // The midpoint rule errs by h²/24 of the second derivative, about (3e5)² of the value: below
+            // 1e-7.
             assert!((contact.filtered(&filter, t) - sum).abs() < 1e-7 * 25e3 * TAU, "{t}");
         }
     }
@@ -237,7 +244,8 @@ mod tests {
 mod curved {
     use super::*;
 
-    /// Hertz: deepest at (5/4)^{2/5} VT, largest force there, duration 2.9432 times that over V (Johnson 1985, 11.22 to 11.24).
+    /// Hertz: deepest at (5/4)^{2/5} VT, largest force there, duration 2.9432 times that over V (Johnson
+    /// 1985, 11.22 to 11.24).
     #[test]
     fn hertz_has_its_closed_form() {
         let hertz = Rebound::power_law(0.0, 1.5, 1.5).unwrap();
@@ -266,8 +274,8 @@ mod curved {
         );
     }
 
-    /// With both exponents alike the same balance holds for any; with those of spring and damper the contact is that of [`KelvinVoigt`]; a spring that yields
-    /// keeps the part R² of its energy.
+    /// With both exponents alike the same balance holds for any; with those of spring and damper the contact
+    /// is that of [`KelvinVoigt`]; a spring that yields keeps the part R² of its energy.
     #[test]
     fn other_exponents_and_a_yielding_spring_balance_the_energy() {
         for n in [1.0, 2.0, 3.0] {
@@ -294,7 +302,8 @@ mod curved {
         assert!((impulse - 1.6).abs() < STEP, "{impulse}");
     }
 
-    /// The impulse is the change of velocity, 1 + R, whatever low-pass stands between, since its gain at 0 Hz is one.
+    /// The impulse is the change of velocity, 1 + R, whatever low-pass stands between, since its gain at 0 Hz
+    /// is one.
     #[test]
     fn a_low_pass_keeps_the_impulse() {
         let contact = Rebound::power_law(0.6, 1.5, 1.5).unwrap();
@@ -303,7 +312,8 @@ mod curved {
         let times: Vec<f64> = (0..40_000).map(|i| f64::from(i) * step).collect();
         for filter in [None, Some(&filter)] {
             let sum: f64 = contact.decelerations(20e-6, filter, &times).iter().sum::<f64>() * step;
-            // Straight lines between the integration's steps miss h²/12 of the change of slope, and the end part of a step.
+            // Straight lines between the integration's steps miss h²/12 of the change of slope, and the end
+            // part of a step.
             assert!((sum - 1.0 - contact.restitution).abs() < 1e-4, "{sum} {}", contact.restitution);
         }
     }

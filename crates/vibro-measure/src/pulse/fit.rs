@@ -21,14 +21,15 @@ pub(super) struct Samples<'a> {
     pub rings: Option<Ringing>,
 }
 
-/// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and f, duration,
-/// duration and α or R, or duration, α, and both exponents.
+/// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and
+/// f, duration, duration and α or R, or duration, α, and both exponents.
 pub(super) struct Fitted {
     pub model: ContactModel,
     pub fit: Fit,
     pub whiteness: Whiteness,
-    /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than elsewhere, and is not
-    /// white noise, or the onset lies beyond the two samples that begin the contact: the pulse begins otherwise than the model can, and the parameters may be anything.
+    /// Factor for the uncertainties by the fit's covariance. `None` where more is left around the onset than
+    /// elsewhere, and is not white noise, or the onset lies beyond the two samples that begin the
+    /// contact: the pulse begins otherwise than the model can, and the parameters may be anything.
     pub widening: Option<f64>,
     /// First sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
@@ -51,8 +52,9 @@ const FAST: f64 = 0.1;
 /// Part of the pulse's length around the onset in which a wrong low-pass shows.
 const AROUND: f64 = 0.1;
 
-/// What the exponents of spring and loss are likely to be, and by how much they differ: those of plane to pointed bodies (Johnson 1985, 5.3), and of
-/// losses that hardly depend on the indentation to such that grow like its square. Without losses nothing else tells the second.
+/// What the exponents of spring and loss are likely to be, and by how much they differ: those of plane to
+/// pointed bodies (Johnson 1985, 5.3), and of losses that hardly depend on the indentation to such that grow
+/// like its square. Without losses nothing else tells the second.
 const LIKELY: [(f64, f64); 2] = [(1.5, 0.5), (1.0, 0.75)];
 
 impl Samples<'_> {
@@ -91,7 +93,8 @@ impl Samples<'_> {
         Some(shape.into_iter().map(|s| p[1] + p[2] * s).collect())
     }
 
-    /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts as much as a sample each.
+    /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts
+    /// as much as a sample each.
     pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
         let (starts, noise) = (self.starts(model)?, self.noise());
         let corner = self.filter.map(|f| f.corner);
@@ -104,9 +107,10 @@ impl Samples<'_> {
                     .map(|p| (p.clone(), None)),
             );
         }
-        // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample. So the onset is
-        // fitted between each two samples near the guess, the contact going on smoothly beyond them, and the best is taken. The
-        // rise of a fast low-pass falls, like a jump, between a few samples: each of them then holds a minimum of its own.
+        // The jump of the force at the onset makes the sum of squares jump where the onset passes a sample.
+        // So the onset is fitted between each two samples near the guess, the contact going on
+        // smoothly beyond them, and the best is taken. The rise of a fast low-pass falls, like a
+        // jump, between a few samples: each of them then holds a minimum of its own.
         if model == ContactModel::KelvinVoigt && corner.is_none_or(|c| c * self.step > FAST) {
             let near = self.nearer(&starts[0]);
             let at = |onset: f64| [&[onset], &near[1..]].concat();
@@ -120,8 +124,9 @@ impl Samples<'_> {
                 Some((at(f64::midpoint(self.times[first - 1], self.times[first])), Some(first)))
             }));
         }
-        // Noise may take the onset beyond the two samples: what the sum of squares would be with the onset held between them, to first order. Farther
-        // beyond than noise takes it, or half a sample, or by half of the whole pulse, the model follows a rise that it has not.
+        // Noise may take the onset beyond the two samples: what the sum of squares would be with the onset
+        // held between them, to first order. Farther beyond than noise takes it, or half a sample, or
+        // by half of the whole pulse, the model follows a rise that it has not.
         let held = |fit: &Fitted| {
             let (onset, std) = (fit.fit.parameters[0], fit.fit.std(0));
             let beyond =
@@ -148,7 +153,8 @@ impl Samples<'_> {
         Ok(best)
     }
 
-    /// A fit with the whiteness of what it leaves and the factor of its uncertainties, if its onset is not `outside` of where it may be.
+    /// A fit with the whiteness of what it leaves and the factor of its uncertainties, if its onset is not
+    /// `outside` of where it may be.
     fn judged(&self, mut fitted: Fitted, outside: bool) -> Fitted {
         fitted.whiteness = Whiteness::of(&[&fitted.fit.residuals]);
         if !(outside || fitted.whiteness.rejected() && self.more_left_at_onset(&fitted.fit)) {
@@ -168,7 +174,8 @@ impl Samples<'_> {
         if before.len() < 8 { DIGITS } else { scatter(before).max(DIGITS) }
     }
 
-    /// Whether more is left within the contact than before it, by more than chance: then the contact follows another law, or something else moved.
+    /// Whether more is left within the contact than before it, by more than chance: then the contact follows
+    /// another law, or something else moved.
     pub fn unexplained(&self, fitted: &Fitted) -> bool {
         let fit = &fitted.fit;
         let (onset, end) = (fit.parameters[0], fitted.end() + self.delay());
@@ -184,8 +191,8 @@ impl Samples<'_> {
         free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * before.0 / before.1
     }
 
-    /// Whether the residuals around the onset have more than twice the variance of the others, and more than chance gives: the
-    /// variance of n samples of noise scatters by √(2/n).
+    /// Whether the residuals around the onset have more than twice the variance of the others, and more than
+    /// chance gives: the variance of n samples of noise scatters by √(2/n).
     fn more_left_at_onset(&self, fit: &Fit) -> bool {
         let onset = fit.parameters[0];
         let around = onset - AROUND..=onset + AROUND + self.delay();
@@ -241,14 +248,15 @@ impl Samples<'_> {
         least.1
     }
 
-    /// First guesses, the best first, one for each shape: durations and onsets on a grid, baseline and velocity by linear least
-    /// squares.
+    /// First guesses, the best first, one for each shape: durations and onsets on a grid, baseline and
+    /// velocity by linear least squares.
     fn starts(&self, model: ContactModel) -> Result<Vec<Vec<f64>>> {
         let stride = self.times.len().div_ceil(COARSE).max(1);
         let thin = |all: &[f64]| all.iter().copied().step_by(stride).collect::<Vec<f64>>();
         let (times, values) = (thin(&self.times), thin(&self.values));
         let delay = self.delay();
-        // The loss of free exponents has a minimum to either side of the exponent where it makes the pulse neither steeper nor flatter at its end.
+        // The loss of free exponents has a minimum to either side of the exponent where it makes the pulse
+        // neither steeper nor flatter at its end.
         let shapes: &[[f64; 2]] = match model {
             ContactModel::KelvinVoigt => &[[0.03, 0.0], [0.15, 0.0], [0.3, 0.0], [0.5, 0.0], [0.75, 0.0]],
             ContactModel::Hertz => &[[0.0; 2]],
@@ -282,7 +290,8 @@ impl Samples<'_> {
         Ok(found.into_iter().map(|f| f.1).collect())
     }
 
-    /// Parameters with the baseline and velocity that are best for these samples, behind their sum of squares.
+    /// Parameters with the baseline and velocity that are best for these samples, behind their sum of
+    /// squares.
     fn levelled(
         &self,
         model: ContactModel,

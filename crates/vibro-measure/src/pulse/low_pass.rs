@@ -70,8 +70,8 @@ impl LowPass {
         sum * c
     }
 
-    /// Response at each of the rising `times` to values at 0, `step`, 2·`step`, … joined by straight lines, 0 elsewhere; exact for
-    /// such an input.
+    /// Response at each of the rising `times` to values at 0, `step`, 2·`step`, … joined by straight lines, 0
+    /// elsewhere; exact for such an input.
     pub(super) fn straight_lines(&self, input: &[f64], step: f64, times: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; times.len()];
         let pieces = input.len().saturating_sub(1);

@@ -12,7 +12,8 @@ use std::ops::Range;
 use vibro_record::units::Quantity;
 use vibro_record::{Error, Finding, Result, Trace};
 
-/// A record with time over the length of its pulse, from half the height of the rising flank, and values over its height.
+/// A record with time over the length of its pulse, from half the height of the rising flank, and values over
+/// its height.
 pub(super) struct Normalised<'a> {
     trace: &'a Trace,
     found: &'a Located,
@@ -73,8 +74,8 @@ impl<'a> Normalised<'a> {
         Samples { step, filter, places, times, values, rings: None }
     }
 
-    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record does not rest after it;
-    /// and whether the record comes back to the level before the pulse.
+    /// The samples to be fitted: the pulse with a baseline on both sides, or only before it where the record
+    /// does not rest after it; and whether the record comes back to the level before the pulse.
     ///
     /// # Errors
     /// If there are too few samples, or no contact of spring and damper fits the pulse, as `unlike` says.
@@ -131,7 +132,8 @@ impl<'a> Normalised<'a> {
         findings.extend(other.map(|i| Finding::caution("pulse-not-alone").number("time", trace.axis.at(i))));
     }
 
-    /// Factor from the fitted velocity to m/s, where the record is an acceleration, or a force on a known mass.
+    /// Factor from the fitted velocity to m/s, where the record is an acceleration, or a force on a known
+    /// mass.
     pub(crate) fn to_velocity(&self, mass: Option<f64>) -> Option<f64> {
         let unit = self.height * self.length;
         match self.trace.meta.quantity {
@@ -247,7 +249,8 @@ const FLAT: f64 = 3.0;
 /// Standard deviations of the noise within which samples count as equal to the largest.
 const BAND: f64 = 8.0;
 
-/// Standard deviations of the noise that a pulse must stand above the baseline: white noise of 10⁶ samples reaches 5.
+/// Standard deviations of the noise that a pulse must stand above the baseline: white noise of 10⁶ samples
+/// reaches 5.
 const LEAST: f64 = 6.0;
 
 /// Finds the largest pulse.
@@ -306,17 +309,18 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     }
 }
 
-/// Whether `run` samples within `depth` (a part of the height) of the largest are a flat top of a pulse `width` samples wide at half
-/// its height.
+/// Whether `run` samples within `depth` (a part of the height) of the largest are a flat top of a pulse
+/// `width` samples wide at half its height.
 ///
-/// The top of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) widths. Three times that, and an
-/// eighth of the width at least, is the shape of no contact.
+/// The top of a half sine, 1.5 widths long, is within a part x of its height for (3/π) acos(1 − x) widths.
+/// Three times that, and an eighth of the width at least, is the shape of no contact.
 fn flat(run: f64, width: f64, depth: f64) -> bool {
     let round = 3.0 / std::f64::consts::PI * (1.0 - depth).max(-1.0).acos() * width;
     run > 3.0 * round + FLAT && run > width / 8.0
 }
 
-/// Middle of the shortest interval that holds a quarter of the values: the baseline, also of a record that is mostly pulse.
+/// Middle of the shortest interval that holds a quarter of the values: the baseline, also of a record that is
+/// mostly pulse.
 fn mode(sorted: &[f64]) -> f64 {
     let quarter = (sorted.len() / 4).clamp(1, sorted.len().max(2) - 1);
     sorted
@@ -373,10 +377,12 @@ mod located {
         let record =
             |limit: f64| (-200..400).map(|i| (5.0 * half(i)).min(limit) + noise(i)).collect::<Vec<f64>>();
         assert!(locate(&record(9.0)).unwrap().clipped.is_empty());
-        // With this noise 11 samples of a round top count as equal to its peak; a flat part of three times that, a cut of 4 %, is told.
+        // With this noise 11 samples of a round top count as equal to its peak; a flat part of three times
+        // that, a cut of 4 %, is told.
         for part in [0.8, 0.9] {
             let n = locate(&record(5.0 * part)).unwrap().clipped.len() as f64;
-            // 200/π · 2 acos(part) samples at the limit, and those within eight deviations of noise and their own noise beside them.
+            // 200/π · 2 acos(part) samples at the limit, and those within eight deviations of noise and their
+            // own noise beside them.
             let flat = 400.0 / std::f64::consts::PI * f64::acos(part);
             assert!(n > 0.9 * flat && n < flat + 20.0, "{part}: {n} {flat}");
         }

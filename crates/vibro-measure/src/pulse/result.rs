@@ -53,12 +53,13 @@ impl ContactModel {
 /// Damping and frequency of a contact, what follows from them, and the models that were fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PulseResult {
-    /// Damping ratio of a contact of spring and damper; it and all that follows null where the record is no such contact.
+    /// Damping ratio of a contact of spring and damper; it and all that follows null where the record is no
+    /// such contact.
     pub xi: Estimate,
     /// Its undamped natural frequency in Hz.
     pub frequency: Estimate,
-    /// Velocity after over velocity before, when it is left at zero force; like the velocity of approach and the duration by the model that
-    /// the record prefers, where that states it.
+    /// Velocity after over velocity before, when it is left at zero force; like the velocity of approach and
+    /// the duration by the model that the record prefers, where that states it.
     pub restitution: Estimate,
     /// Stiffness in N/m; `None` without a mass.
     pub stiffness: Option<Estimate>,
@@ -93,7 +94,8 @@ impl PulseResult {
         self
     }
 
-    /// The same of a record whose sampling rate has the relative standard uncertainty `clock`: ratios do not depend on it, stiffness on its square.
+    /// The same of a record whose sampling rate has the relative standard uncertainty `clock`: ratios do not
+    /// depend on it, stiffness on its square.
     pub(super) fn by_clock(mut self, clock: f64) -> PulseResult {
         let once = [
             Some(&mut self.frequency),
@@ -114,16 +116,18 @@ impl PulseResult {
         self
     }
 
-    /// Leads with the model that the record prefers, where that is not the one of spring and damper: what it states takes the place of what that
-    /// states, which loses its uncertainty. What all models state has the spread between them in its uncertainty. `inflation` is that of
-    /// the best model's residuals: what they repeat counts once (Burnham & Anderson 2002, 2.5). `also` are other minima of the models.
+    /// Leads with the model that the record prefers, where that is not the one of spring and damper: what it
+    /// states takes the place of what that states, which loses its uncertainty. What all models state has
+    /// the spread between them in its uncertainty. `inflation` is that of the best model's residuals:
+    /// what they repeat counts once (Burnham & Anderson 2002, 2.5). `also` are other minima of the models.
     pub(super) fn led_by_best(&mut self, also: &[PulseFit], inflation: f64) -> Option<Finding> {
         let best = self.fits.iter().min_by(|a, b| a.aicc.total_cmp(&b.aicc))?;
         let behind = |fit: &PulseFit| (fit.aicc - best.aicc) / (inflation * inflation);
         let ahead = behind(&self.fits[0]);
         let (other, lower) = (ahead > NO_SUPPORT, self.fits[0].aicc - best.aicc);
         let lead = if other { best } else { &self.fits[0] };
-        // Burnham & Anderson 2002, eq. 4.9, in squares, about what leads; a model that cannot begin as the record does says nothing.
+        // Burnham & Anderson 2002, eq. 4.9, in squares, about what leads; a model that cannot begin as the
+        // record does says nothing.
         let supported: Vec<&PulseFit> =
             self.fits.iter().chain(also).filter(|fit| (-0.5 * behind(fit)).exp() > NEGLIGIBLE).collect();
         let stated = |name: &str, own: Option<&Estimate>| {
@@ -194,7 +198,8 @@ pub struct PulseCurve {
     pub residuals: Vec<(f64, f64)>,
 }
 
-/// A value of a function of parameters and its standard uncertainty by their covariance, linearised by central differences.
+/// A value of a function of parameters and its standard uncertainty by their covariance, linearised by
+/// central differences.
 pub(super) fn propagated(
     parameters: &[f64],
     scale: &[f64],
@@ -254,9 +259,10 @@ const RESOLVED: f64 = 3.0;
 
 /// A Kelvin–Voigt contact from the time to its largest force and its duration, both in s.
 ///
-/// With ρ = time to peak / duration: θ = π(1 − 2ρ)/(2(3 − 2ρ)), ξ = sin θ, f = (π − 2θ)/(2πt cos θ) with the duration t. `std` is the
-/// standard uncertainty of each of the two times, taken as independent; `mass` in kg gives stiffness and damping. Every contact of
-/// ξ ≥ 1/2 has its peak at the onset: where ρ is not resolved from 0, no uncertainty is stated.
+/// With ρ = time to peak / duration: θ = π(1 − 2ρ)/(2(3 − 2ρ)), ξ = sin θ, f = (π − 2θ)/(2πt cos θ) with the
+/// duration t. `std` is the standard uncertainty of each of the two times, taken as independent; `mass` in kg
+/// gives stiffness and damping. Every contact of ξ ≥ 1/2 has its peak at the onset: where ρ is not resolved
+/// from 0, no uncertainty is stated.
 ///
 /// ```
 /// use vibro_measure::pulse::two_times;
@@ -363,7 +369,8 @@ mod two_times {
         assert!(two_times(1.0, 3.0, Some(-1.0), None).is_err());
     }
 
-    /// At both ends of what ρ may be: no uncertainty is stated where ξ may be any of 1/2 and more, and what is stated holds.
+    /// At both ends of what ρ may be: no uncertainty is stated where ξ may be any of 1/2 and more, and what
+    /// is stated holds.
     #[test]
     fn near_the_ends_what_is_stated_holds() {
         let std = 0.005;
@@ -385,8 +392,8 @@ mod two_times {
                 assert!(found.frequency.std.is_none());
             }
             println!("seeds 0 to 999, ξ = {xi}: {beyond} of {stated} beyond, {withheld} withheld");
-            // 2.7 of 1000 normal errors lie beyond, more than 11 in one run of 10 000. Of ρ = 0 half the answers are above it, 1.35 beyond RESOLVED,
-            // more than 7 in one run of 10 000.
+            // 2.7 of 1000 normal errors lie beyond, more than 11 in one run of 10 000. Of ρ = 0 half the
+            // answers are above it, 1.35 beyond RESOLVED, more than 7 in one run of 10 000.
             assert!(beyond <= if xi < 0.5 { 11 } else { 7 }, "{xi}: {beyond}");
             assert!(if xi < 0.46 { withheld == 0 } else { xi < 0.49 || withheld > 100 }, "{xi}: {withheld}");
         }

@@ -4,7 +4,8 @@ use vibro_record::{Axis, Meta, Severity};
 
 const DT: f64 = 1e-6;
 
-/// A record of 200 samples, a contact of ξ 0.2, 10 kHz and 3 m/s at 80.4 µs on it, and a ripple of 0.1 % for noise.
+/// A record of 200 samples, a contact of ξ 0.2, 10 kHz and 3 m/s at 80.4 µs on it, and a ripple of 0.1 % for
+/// noise.
 fn record() -> Vec<f64> {
     let contact = KelvinVoigt::new(0.2, 10e3).unwrap();
     (0..200)
@@ -98,7 +99,8 @@ fn without_an_uncertainty_the_borders_of_xi_are_said_from_afar() {
         let known = PulseOptions { instrument: Instrument::Flat, mass: None };
         [pulse(&record, &PulseOptions::default()).unwrap(), pulse(&record, &known).unwrap()]
     };
-    // 0.44 and 0.05 are each within 0.1 of a border, and not within the uncertainty of about 0.005 of a known instrument.
+    // 0.44 and 0.05 are each within 0.1 of a border, and not within the uncertainty of about 0.005 of a known
+    // instrument.
     let [unknown, known] = of(0.44);
     assert!(
         says(&unknown, "pulse-no-inner-peak") && !says(&known, "pulse-no-inner-peak"),
@@ -168,7 +170,8 @@ fn the_contact_of_hunt_and_crossley_is_preferred_where_it_is_one() {
     assert!(result.xi.std.is_none() && result.frequency.std.is_none(), "{result:?}");
 }
 
-/// Neither is one of spring and damper, or of Hunt and Crossley: its restitution comes out, and nothing is said that is no longer so.
+/// Neither is one of spring and damper, or of Hunt and Crossley: its restitution comes out, and nothing is
+/// said that is no longer so.
 #[test]
 fn contacts_of_a_yielding_spring_and_of_other_exponents_keep_their_restitution() {
     for contact in [Rebound::yielding(0.7).unwrap(), Rebound::power_law(0.4, 2.0, 1.0).unwrap()] {

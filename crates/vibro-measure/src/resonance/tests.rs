@@ -103,10 +103,12 @@ fn a_crossing_at_a_jump_is_as_uncertain_as_the_jump() {
 
 #[test]
 fn a_crossing_beside_a_jump_keeps_its_place_however_the_frequencies_of_the_masses_differ() {
-    // Steps of half a Hz. The second curve jumps from the point at 6.515 + offset to the next; the first goes on.
+    // Steps of half a Hz. The second curve jumps from the point at 6.515 + offset to the next; the first goes
+    // on.
     let grid = |offset: f64| (0..8).map(move |i| 4.515 + 0.5 * f64::from(i) + offset);
     for offset in [0.0, 1e-9, -1e-9, 0.25, 0.25 + 1e-9, 0.25 - 1e-9, -0.25, -0.1] {
-        // They cross at 6.05 on straight lines in the logarithm; behind the jump the second lies above, or below.
+        // They cross at 6.05 on straight lines in the logarithm; behind the jump the second lies above, or
+        // below.
         for (behind, expected) in [(2.0, vec![6.05]), (-2.0, vec![6.05, 6.765 + offset])] {
             let first: Vec<_> = grid(0.0).map(|f| (f, (6.05 - f).exp(), 1e-3)).collect();
             let height = |f: f64| f - 6.05 + if f > 6.6 + offset { 2.0 * behind } else { 0.0 };
@@ -181,8 +183,8 @@ fn oscillator(f: f64, natural: f64, zeta: f64) -> Complex64 {
     Complex64::new(1.0 - r * r, 2.0 * zeta * r).inv()
 }
 
-/// A mass that strikes a stop moves as one on a stiffer spring, until it lets go near the resonance without the stop: the amplitude is no more
-/// than halved there and falls steeply behind, but the motion turns round.
+/// A mass that strikes a stop moves as one on a stiffer spring, until it lets go near the resonance without
+/// the stop: the amplitude is no more than halved there and falls steeply behind, but the motion turns round.
 #[test]
 fn a_motion_that_turns_round_within_a_step_has_jumped() {
     let f: Vec<f64> = (16..27).map(f64::from).collect();
@@ -266,7 +268,8 @@ fn a_minimum_in_the_noise_lies_between_what_stands_out() {
     assert!(resonances(&f, &a, &std, &[jump], Some(1)).iter().all(|r| r.kind == ResonanceKind::Resonance));
 }
 
-/// Going down, mass 2 begins to move at 5.5; mass 1 falls there by less than a jump that stands on its own, or goes on.
+/// Going down, mass 2 begins to move at 5.5; mass 1 falls there by less than a jump that stands on its own,
+/// or goes on.
 #[test]
 fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
     let f: Vec<f64> = (0..11).map(f64::from).collect();
@@ -298,9 +301,10 @@ fn where_one_mass_jumps_the_other_does_if_its_slopes_do_not_tell() {
     }
 }
 
-/// A mode of ζ 0.05 in 25 steps over four bandwidths whose force changes by 1 % from step to step, while each amplitude is known to 0.01 %:
-/// over 400 sweeps the error of the top is as large as the stated uncertainty, within a quarter. (The scatter of nine points is known to about
-/// 30 % once and to 2 % over 400 sweeps; the order of the polynomial adds up to a fifth.)
+/// A mode of ζ 0.05 in 25 steps over four bandwidths whose force changes by 1 % from step to step, while each
+/// amplitude is known to 0.01 %: over 400 sweeps the error of the top is as large as the stated uncertainty,
+/// within a quarter. (The scatter of nine points is known to about 30 % once and to 2 % over 400 sweeps; the
+/// order of the polynomial adds up to a fifth.)
 #[test]
 fn a_force_that_changes_from_step_to_step_is_in_the_uncertainty_of_the_top() {
     let mut random = vibro_math::Noise::new(17);

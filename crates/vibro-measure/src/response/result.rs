@@ -13,7 +13,8 @@ pub struct Harmonic {
     pub order: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the nearest line as it is.
+    /// Amplitude; no value where the frequency lies outside the lines or below the cut-off. In the noise the
+    /// nearest line as it is.
     pub amplitude: Estimate,
     /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
     pub upper_limit: Option<f64>,
@@ -34,8 +35,9 @@ pub struct ResponsePoint {
     pub frequency: f64,
     /// Its standard uncertainty in Hz.
     pub frequency_std: Option<f64>,
-    /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line nearest to the excitation
-    /// as it is: noise lifts it, so a faint amplitude is more likely too large than too small.
+    /// Peak amplitude at the excitation. Where the response does not stand out of the noise, the line
+    /// nearest to the excitation as it is: noise lifts it, so a faint amplitude is more likely too large
+    /// than too small.
     pub amplitude: Estimate,
     /// 95 % upper limit of the true amplitude, where it does not stand out of the noise (Read 2002).
     pub upper_limit: Option<f64>,

@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 use vibro_record::units::Quantity;
 use vibro_record::{Sweep, SweepPoint, Values, Window};
 
-/// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation frequency, where
-/// noise cannot choose the line, and gets an upper limit.
+/// A response peak must stand this factor above the noise of a line; a fainter one is read at the excitation
+/// frequency, where noise cannot choose the line, and gets an upper limit.
 const PEAK_ABOVE: f64 = 5.0;
 /// A response peak lies within this many lines of the excitation.
 const NEAR: f64 = 1.0;
@@ -36,7 +36,8 @@ impl Taker<'_> {
         (frequency - self.sweep.axis.start()) / self.df
     }
 
-    /// An amplitude of the wanted quantity from one of the measured signal at `frequency`, and the same of its upper limit.
+    /// An amplitude of the wanted quantity from one of the measured signal at `frequency`, and the same of
+    /// its upper limit.
     fn estimate(
         &self,
         frequency: f64,
@@ -108,8 +109,8 @@ impl Taker<'_> {
         }
     }
 
-    /// Phase of the response against the force, and their ratio, by the line nearest to the excitation of complex spectra. Both lines have the same
-    /// window, which the ratio is free of.
+    /// Phase of the response against the force, and their ratio, by the line nearest to the excitation of
+    /// complex spectra. Both lines have the same window, which the ratio is free of.
     fn transfer(&self, point: &SweepPoint, excitation: f64) -> Option<(Estimate, Receptance)> {
         let (Values::Complex(response), Values::Complex(force)) = (&point.response.values, &point.force)
         else {
@@ -156,7 +157,8 @@ impl Taker<'_> {
     }
 }
 
-/// Amplitude in the noise, its uncertainty and its upper limit, from one line, because the distribution of its magnitude is known.
+/// Amplitude in the noise, its uncertainty and its upper limit, from one line, because the distribution of
+/// its magnitude is known.
 fn faint(
     measured: &[f64],
     position: f64,

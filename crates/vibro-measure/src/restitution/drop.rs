@@ -1,4 +1,5 @@
-//! Restitution from a drop: R = (Δt/2)√(g/2h), the flight between first and second impact against the fall before.
+//! Restitution from a drop: R = (Δt/2)√(g/2h), the flight between first and second impact against the fall
+//! before.
 
 use super::{Train, Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
@@ -54,7 +55,8 @@ impl Drop {
         Some(flight).filter(|flight| flight.is_finite() && *flight > 0.0)
     }
 
-    /// With the first flights of trains that begin with the fall. One interval has two onsets; of several trains, the root mean square.
+    /// With the first flights of trains that begin with the fall. One interval has two onsets; of several
+    /// trains, the root mean square.
     pub fn beginning(mut self, trains: &[Train]) -> Drop {
         self.intervals.extend(trains.iter().filter_map(|t| t.intervals.first()));
         let onset_std = together(trains.iter().map(|t| t.onset_std));
@@ -91,8 +93,8 @@ impl Drop {
         Ok(())
     }
 
-    /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Every drop shares the height, and each has its own timing: neither stands in for the
-    /// other.
+    /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Every drop shares the height, and each has its own
+    /// timing: neither stands in for the other.
     pub(super) fn answer(&self, findings: &mut Vec<Finding>) -> Result<Way> {
         self.check()?;
         let n = self.intervals.len();

@@ -1,8 +1,10 @@
-//! The most plausible train of bounces among sounds: flights that shrink by a common ratio, and impacts that grow quieter with them.
+//! The most plausible train of bounces among sounds: flights that shrink by a common ratio, and impacts that
+//! grow quieter with them.
 //!
-//! Every pair of sounds may be the first two impacts. The evidence for a pair is the likelihood of the best train that begins with it, over the one that
-//! all sounds are foreign and come at random, averaged over ln R; the train follows by dynamic programming over pairs of sounds. A sound that follows an
-//! impact soon and is quieter is its echo or ringing.
+//! Every pair of sounds may be the first two impacts. The evidence for a pair is the likelihood of the best
+//! train that begins with it, over the one that all sounds are foreign and come at random, averaged over ln
+//! R; the train follows by dynamic programming over pairs of sounds. A sound that follows an impact soon and
+//! is quieter is its echo or ringing.
 
 use crate::impacts::{QUIETER, Sound};
 
@@ -11,7 +13,8 @@ const MOST: usize = 128;
 /// Steps of ln R, and least R.
 const STEP: f64 = 0.015;
 const LEAST: f64 = 0.03;
-/// Largest R of a bounce: a superball returns with 0.92, steel on an anvil with 0.97. Sounds whose intervals shrink less are evenly spaced.
+/// Largest R of a bounce: a superball returns with 0.92, steel on an anvil with 0.97. Sounds whose intervals
+/// shrink less are evenly spaced.
 const LARGEST: f64 = 0.985;
 /// Even trains beside which bounces are sought: a record of more is one of a voice or a machine.
 const EVEN: usize = 4;
@@ -25,7 +28,8 @@ const TIMING: f64 = 3e-4;
 const LOUDNESS: f64 = 0.5;
 /// Standard deviation of ln R by the stated height: 6 % of the height.
 const FALL: f64 = 0.03;
-/// A deviation of loudness, or from the stated height, costs no more: contacts may switch, and heights be in mm.
+/// A deviation of loudness, or from the stated height, costs no more: contacts may switch, and heights be in
+/// mm.
 const CAP: f64 = 4.0;
 /// Within this time in s echoes of a room and ringing follow an impact, so many a second.
 pub const SHADOW: f64 = 0.06;
@@ -34,7 +38,8 @@ const ECHOES: f64 = 50.0;
 const UNHEARD: f64 = 0.2;
 /// First flights in s, evenly likely on a logarithmic scale.
 const FLIGHTS: [f64; 2] = [5e-3, 2.0];
-/// Cost of an end while the next impact is expected to exceed the noise limit by [`HEARD`]: one in ten balls rolls off.
+/// Cost of an end while the next impact is expected to exceed the noise limit by [`HEARD`]: one in ten balls
+/// rolls off.
 const ENDS: f64 = 2.3;
 const HEARD: f64 = 3.0;
 /// Trains whose evidence is less than one in so many of the best one's are ruled out.
@@ -94,7 +99,8 @@ pub fn plausible(sounds: &[Sound], heard: Heard) -> Option<Plausible> {
     even
 }
 
-/// Logarithm of the ratio by which the intervals of a train shrink from one to the next, of four impacts or more.
+/// Logarithm of the ratio by which the intervals of a train shrink from one to the next, of four impacts or
+/// more.
 fn shrinks(sounds: &[Sound], train: &[usize]) -> f64 {
     let interval = |pair: &[usize]| sounds[pair[1]].time - sounds[pair[0]].time;
     match train {
@@ -106,7 +112,8 @@ fn shrinks(sounds: &[Sound], train: &[usize]) -> f64 {
     }
 }
 
-/// The best train; foreign sounds are at first all that are no echoes of louder ones, then those that no impact of the train explains.
+/// The best train; foreign sounds are at first all that are no echoes of louder ones, then those that no
+/// impact of the train explains.
 fn best(sounds: &[Sound], heard: Heard) -> Option<Best> {
     let length = heard.ends.1 - heard.ends.0;
     let of = |count: usize| Pairs::new(sounds, heard, (count as f64 + UNHEARD) / length).best();
@@ -129,7 +136,8 @@ fn added(a: f64, b: f64) -> f64 {
     if most == f64::NEG_INFINITY { most } else { most + ((a - most).exp() + (b - most).exp()).ln() }
 }
 
-/// A train with its ln R, the first two impacts of one that is as plausible, and how many sounds are its echoes.
+/// A train with its ln R, the first two impacts of one that is as plausible, and how many sounds are its
+/// echoes.
 struct Best {
     train: Vec<usize>,
     log_r: f64,
@@ -276,7 +284,8 @@ const TURN: f64 = 2.506_628_274_631_000_5;
 mod tests {
     use super::*;
 
-    /// Three bounces of R 0.8 from 0.5 m, and behind them the pitch of a voice, 7.7 ms apart, whose intervals shrink by 0.2 % each.
+    /// Three bounces of R 0.8 from 0.5 m, and behind them the pitch of a voice, 7.7 ms apart, whose intervals
+    /// shrink by 0.2 % each.
     #[test]
     fn a_voice_is_no_train_whatever_its_intervals_do() {
         let mut sounds: Vec<Sound> =

@@ -1,4 +1,5 @@
-//! What a microphone records of a body that bounces in a room: contact noise, ringing of the plate, echoes, reverberation, mains hum, a voice.
+//! What a microphone records of a body that bounces in a room: contact noise, ringing of the plate, echoes,
+//! reverberation, mains hum, a voice.
 //!
 //! Written from acoustics alone: it knows nothing of the estimators.
 
@@ -113,7 +114,8 @@ impl Room {
 }
 
 impl Sound {
-    /// Adds an impact of this part of the first one's speed. Pressure grows as the speed to the power 1.1 and scatters by a sixth.
+    /// Adds an impact of this part of the first one's speed. Pressure grows as the speed to the power 1.1 and
+    /// scatters by a sixth.
     fn strike(&self, noise: &mut Noise, values: &mut [f64], at: f64, speed: f64) {
         let loud = speed.powf(1.1) * (noise.normal() / 6.0).exp();
         let lasts = (12.0 * self.noise.max(self.ring.1).max(self.tail.0 / 3.0)).min(0.5);

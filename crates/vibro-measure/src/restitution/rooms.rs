@@ -39,7 +39,8 @@ fn drops_in_rooms_are_covered_or_refused() {
         let inside = scores.iter().filter(|z| z.abs() < 1.96).count();
         let largest = scores.iter().fold(0.0, |most: f64, z| z.abs().max(most));
         println!("drops, {room:?} room: {n} of {cases} answered, {inside} within 1.96, largest {largest:.1}");
-        // Of 24 series nine in ten are answered, but for two and a half standard deviations of 1.5; 95 % of these are covered, but for as many of 1.1.
+        // Of 24 series nine in ten are answered, but for two and a half standard deviations of 1.5; 95 % of
+        // these are covered, but for as many of 1.1.
         assert!(n as f64 >= least * cases as f64, "{room:?}: {n}");
         assert!(
             inside as f64 >= 0.95 * n as f64 - 2.7 && largest < 4.0,

@@ -230,7 +230,8 @@ fn methods_that_disagree_are_not_averaged() {
     assert!(finding(&found, "methods-disagree").is_some(), "{:?}", found.findings);
 }
 
-/// A height in mm, and a second impact that was not seen: answers far apart disagree although none has an uncertainty.
+/// A height in mm, and a second impact that was not seen: answers far apart disagree although none has an
+/// uncertainty.
 #[test]
 fn answers_far_apart_disagree_without_uncertainties() {
     for (height, intervals) in [(570.0, vec![0.144, 0.03]), (0.57, vec![0.144, 0.015])] {
@@ -266,14 +267,16 @@ fn two_drops_have_no_uncertainty_and_five_a_bootstrap() {
     let found = drops(&all[..2]);
     assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
-    // Three: s = 2 ms, Student's 4.303 of two degrees of freedom where the normal distribution has 1.960, and half of the height's 1/570.
+    // Three: s = 2 ms, Student's 4.303 of two degrees of freedom where the normal distribution has 1.960, and
+    // half of the height's 1/570.
     let found = drops(&all[..3]).restitution;
     let timing = 4.303 / 1.960 * 2e-3 / 3f64.sqrt() / 0.142;
     let expected = found.value * timing.hypot(0.5e-3 / 0.57);
     assert!((found.std.unwrap() / expected - 1.0).abs() < 1e-12, "{found:?}");
     assert!(drops(&all[..4]).restitution.std.is_some());
     let found = drops(&all);
-    // Variance of the drawn mean: Σd²/n² = 40e-6/25; 2000 drawings scatter by 1/√4000 = 1.6 %, four times that.
+    // Variance of the drawn mean: Σd²/n² = 40e-6/25; 2000 drawings scatter by 1/√4000 = 1.6 %, four times
+    // that.
     let expected = (40e-6f64 / 25.0).sqrt() / 0.144 * found.restitution.value;
     assert!((found.bootstrap_std.unwrap() / expected - 1.0).abs() < 0.064, "{found:?}");
 }
@@ -322,7 +325,8 @@ fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
     assert!(of_drops(Some(1e-4), None, &four).restitution.std.is_some());
 }
 
-/// Five bounces timed as one are from a height that was read 5 mm too high: what is not known cannot disagree.
+/// Five bounces timed as one are from a height that was read 5 mm too high: what is not known cannot
+/// disagree.
 #[test]
 fn drops_without_the_uncertainty_of_their_height_do_not_disagree_with_a_train() {
     let flights = [0.4, 0.248, 0.153_8, 0.095_3, 0.059_1, 0.036_6];
@@ -362,8 +366,8 @@ fn findings_of_steady_trains_do_not_concern_bounces() {
     assert!(found.times.len() == 8 && !irregular(&found.findings), "{:?}", found.findings);
 }
 
-/// The force of a ball of restitution `r`, half sines of `contact` s whose height goes as the speed, after a fall of 0.3 m; seen through noise, and hum that
-/// wanders, which nothing takes off.
+/// The force of a ball of restitution `r`, half sines of `contact` s whose height goes as the speed, after a
+/// fall of 0.3 m; seen through noise, and hum that wanders, which nothing takes off.
 fn force(r: f64, contact: f64, hum: f64, seed: u64) -> Trace {
     let (rate, mut noise) = (20_000.0, vibro_math::Noise::new(seed));
     let (mut speed, mut at, mut begins) = ((2.0 * GRAVITY * 0.3f64).sqrt(), 0.4, Vec::new());
@@ -418,7 +422,8 @@ fn a_contact_that_the_force_shows_is_taken_off() {
     }
 }
 
-/// A contact c adds c/Δt to the logarithm of each flight: over n flights ln R is too large by c(1/Δt_n − 1/Δt₁)/(n − 1).
+/// A contact c adds c/Δt to the logarithm of each flight: over n flights ln R is too large by c(1/Δt_n −
+/// 1/Δt₁)/(n − 1).
 #[test]
 fn the_bias_by_contact_is_that_of_the_fit() {
     let (r, c) = (0.7f64, 1e-4);
@@ -433,7 +438,8 @@ fn the_bias_by_contact_is_that_of_the_fit() {
         panic!()
     };
     let moved = one(c, Some(0.0)).restitution.value / r - 1.0;
-    // Least squares without onset noise is the mean of the ratios; of second order in c over the last flight, 1e-4/0.096, and where the fit weighs.
+    // Least squares without onset noise is the mean of the ratios; of second order in c over the last flight,
+    // 1e-4/0.096, and where the fit weighs.
     assert!((parts[0] * c / 1e-3 / moved - 1.0).abs() < 0.1, "{parts:?} {moved}");
 }
 

@@ -1,15 +1,19 @@
-//! Restitution from a train of bounces: flight times shrink by R from bounce to bounce, `ln Δt_n = ln Δt₁ + (n − 1) ln R`.
+//! Restitution from a train of bounces: flight times shrink by R from bounce to bounce, `ln Δt_n = ln Δt₁ +
+//! (n − 1) ln R`.
 //!
-//! ln R comes from ratios of successive flights, where R scatters from bounce to bounce and the onsets carry noise.
+//! ln R comes from ratios of successive flights, where R scatters from bounce to bounce and the onsets carry
+//! noise.
 //!
-//! Ratios `y = ln(Δt_b/Δt_a)` have the covariance `s²·(b − a) + σ²AAᵀ`, with A the derivative of y by the onsets, s the scatter of ln R from
-//! bounce to bounce and σ that of an onset. ln R follows by generalised least squares (Aitken 1935), averaged over s², or s²/σ² where σ is not
-//! stated, which the restricted likelihood (Patterson and Thompson 1971) weighs with its reference prior, the root of its information (Jeffreys
-//! 1946; Berger and Bernardo, *Bayesian Statistics 4*, 1992, 35): it knows that s shows in the first flights and σ in the last. Where σ is not
-//! stated, scatter of R alone has a probability of one half, and the scale that the residuals give makes Student's distribution.
+//! Ratios `y = ln(Δt_b/Δt_a)` have the covariance `s²·(b − a) + σ²AAᵀ`, with A the derivative of y by the
+//! onsets, s the scatter of ln R from bounce to bounce and σ that of an onset. ln R follows by generalised
+//! least squares (Aitken 1935), averaged over s², or s²/σ² where σ is not stated, which the restricted
+//! likelihood (Patterson and Thompson 1971) weighs with its reference prior, the root of its information
+//! (Jeffreys 1946; Berger and Bernardo, *Bayesian Statistics 4*, 1992, 35): it knows that s shows in the
+//! first flights and σ in the last. Where σ is not stated, scatter of R alone has a probability of one half,
+//! and the scale that the residuals give makes Student's distribution.
 //!
-//! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it: they rule the last flights, and a
-//! scatter that few flights hardly show rules the first.
+//! Where R does not scatter at all the uncertainty is some four times what the onsets alone would make of it:
+//! they rule the last flights, and a scatter that few flights hardly show rules the first.
 
 use super::plausible::{Heard, Plausible, SHADOW, plausible};
 use super::{Way, above_zero, not_negative, repeated, together};
@@ -39,11 +43,12 @@ impl Train {
     /// Lowest bounce as a part of the median one.
     pub const THRESHOLD: f64 = 0.02;
 
-    /// The bounces of a falling body, with its impacts: the most plausible train among what is heard. `full` is the flight in s that would follow the
-    /// fall if R were 1, where the height is known.
+    /// The bounces of a falling body, with its impacts: the most plausible train among what is heard. `full`
+    /// is the flight in s that would follow the fall if R were 1, where the height is known.
     ///
     /// # Errors
-    /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all others.
+    /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all
+    /// others.
     pub fn of(trace: &Trace, options: &ImpactsOptions, full: Option<f64>) -> Result<(Train, Detected)> {
         let (start, rate) = (trace.axis.start(), trace.sampling_rate()?);
         let ends = (start, start + trace.values.len() as f64 / rate);
@@ -70,7 +75,8 @@ impl Train {
     }
 }
 
-/// The train of three impacts or more above the corner that shows most of them, the highest of these: it times them best.
+/// The train of three impacts or more above the corner that shows most of them, the highest of these: it
+/// times them best.
 fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Option<Detected> {
     let octaves: Vec<(f64, f64)> = octaves(trace.sampling_rate().ok()?).collect();
     let high = octaves.first()?.1;
@@ -152,8 +158,9 @@ pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
     (3..9).map(shown).find(|[a, b]| a != b).unwrap_or_else(|| shown(3))
 }
 
-/// The lowest threshold in hundredths from which on one train of three impacts or more is left, all of them impacts of the most plausible `train` of all
-/// sounds: what is found only without the quieter ones may be an echo.
+/// The lowest threshold in hundredths from which on one train of three impacts or more is left, all of them
+/// impacts of the most plausible `train` of all sounds: what is found only without the quieter ones may be an
+/// echo.
 fn cure(sounds: &[Sound], heard: Heard, train: &Plausible) -> Option<f64> {
     let thresholds = (1..100).rev().map(|hundredths| 0.01 * f64::from(hundredths));
     let above = |threshold: f64| {
@@ -183,11 +190,12 @@ fn alone(refused: Error, heard: Heard) -> Error {
     }
 }
 
-/// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in place of it.
+/// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in
+/// place of it.
 const SAME: f64 = 0.05;
 
-/// A pause in s behind each impact, a half more than the `delay` of what follows it, that leaves one train of three impacts or more, or of two behind a fall from a
-/// known height.
+/// A pause in s behind each impact, a half more than the `delay` of what follows it, that leaves one train of
+/// three impacts or more, or of two behind a fall from a known height.
 fn pause(sounds: &[Sound], heard: Heard, delay: f64) -> Option<f64> {
     let pause = (150.0 * delay).ceil() / 100.0;
     let mut kept: Vec<Sound> = Vec::new();
@@ -210,7 +218,8 @@ const LONGER: f64 = 1.2;
 /// So many of them are more than what is heard of a hand before and behind a fall.
 const HANDLED: usize = 2;
 
-/// How many flights among the others are longer than the first, where they are too many for one fall: voices or ringing count as impacts.
+/// How many flights among the others are longer than the first, where they are too many for one fall: voices
+/// or ringing count as impacts.
 pub(super) fn longer(train: &Train) -> Option<usize> {
     let (first, rest) = train.intervals.split_first()?;
     let long = |flight: &&f64| **flight > LONGER * first;
@@ -292,8 +301,8 @@ fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
 /// Quantile 0.9995 of Student's t from 2 degrees of freedom on: what lies beyond is an outlier.
 const OUTSIDE: [f64; 9] = [31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59];
 
-/// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm: by the straight line through the
-/// logarithms, where the variance of a logarithm goes as Δt to −`power`.
+/// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm:
+/// by the straight line through the logarithms, where the variance of a logarithm goes as Δt to −`power`.
 fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
     let free = others.len().checked_sub(4)?;
     let weight = |log: f64| (power * log).exp();
@@ -313,8 +322,9 @@ fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
     Some((score / OUTSIDE[free.min(OUTSIDE.len() - 1)], expected))
 }
 
-/// The flight that fits the others worst, where it is an outlier, and the time that they expect of it: one whether R scatters, which makes the
-/// variances of logarithms alike, or the onsets do, which makes them go as 1/Δt².
+/// The flight that fits the others worst, where it is an outlier, and the time that they expect of it: one
+/// whether R scatters, which makes the variances of logarithms alike, or the onsets do, which makes them go
+/// as 1/Δt².
 fn worst(flights: &[Flight]) -> Option<(usize, f64)> {
     let scored = |i: usize| {
         let mut others = flights.to_vec();
@@ -336,12 +346,14 @@ pub struct Flight {
 
 /// Prior probability that R alone scatters, where nothing is stated of the onsets.
 const SCATTER_ALONE: f64 = 0.5;
-/// Variances of R are averaged over from where they show in ln R to where they outdo all else, and this factor beyond.
+/// Variances of R are averaged over from where they show in ln R to where they outdo all else, and this
+/// factor beyond.
 const WIDE: f64 = 1e3;
 /// Steps of the logarithm (to base 10) of a variance.
 const STEP: f64 = 0.15;
 
-/// ln R of one train and its standard uncertainty, which three degrees of freedom show; `None` without a ratio.
+/// ln R of one train and its standard uncertainty, which three degrees of freedom show; `None` without a
+/// ratio.
 pub fn fit(flights: &[Flight], onset_std: Option<f64>) -> Option<(f64, Option<f64>)> {
     let ratios = Ratios::new(flights);
     let n = ratios.y.len() as f64;
@@ -427,8 +439,9 @@ impl Ratios {
         // Roundings of the ratios are no scatter.
         let rest = (yy - log_r * my).max(1e-15 * yy.abs());
         let free = self.y.len() as f64 - 1.0;
-        // Twice Fisher's information of the restricted likelihood on s², tr(PDPD) with P = C⁻¹ − C⁻¹mmᵀC⁻¹/mᵀC⁻¹m and D the derivative of C by
-        // s² (D. Harville, J. Am. Stat. Assoc. 72 (1977) 320); with a scale of C that is not known, what that leaves of it.
+        // Twice Fisher's information of the restricted likelihood on s², tr(PDPD) with P = C⁻¹ −
+        // C⁻¹mmᵀC⁻¹/mᵀC⁻¹m and D the derivative of C by s² (D. Harville, J. Am. Stat. Assoc. 72
+        // (1977) 320); with a scale of C that is not known, what that leaves of it.
         let pd = (cholesky.inverse() - &wm * wm.transpose() / mm) * by;
         let squares = pd.component_mul(&pd.transpose()).sum();
         let (scale, factor, misfit, taken) = if scaled {

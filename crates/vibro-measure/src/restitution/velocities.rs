@@ -1,4 +1,5 @@
-//! Restitution from velocities before and after: R = (v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻), with the momentum balance where masses are known.
+//! Restitution from velocities before and after: R = (v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻), with the momentum balance where
+//! masses are known.
 
 use super::{Way, above_zero, not_negative};
 use crate::Estimate;
@@ -40,8 +41,8 @@ impl Velocities {
             above_zero("a mass", m2)?;
         }
         let q = self.masses.map(|(m1, m2)| m1 / m2);
-        // R = s/(v₁ − v₂) with s linear in v₁, v₂, v₁⁺, v₂⁺, whose coefficients are given. By momentum v₂⁺ = v₂ + q(v₁ − v₁⁺) or
-        // v₁⁺ = v₁ + (v₂ − v₂⁺)/q.
+        // R = s/(v₁ − v₂) with s linear in v₁, v₂, v₁⁺, v₂⁺, whose coefficients are given. By momentum v₂⁺ =
+        // v₂ + q(v₁ − v₁⁺) or v₁⁺ = v₁ + (v₂ − v₂⁺)/q.
         let both = self.after1.and(self.after2).map(|_| [0.0, 0.0, -1.0, 1.0]);
         let by1 = self.after1.and(q).map(|q| [q, 1.0, -1.0 - q, 0.0]);
         let by2 = self.after2.and(q).map(|q| [-1.0, -1.0 / q, 0.0, 1.0 + 1.0 / q]);

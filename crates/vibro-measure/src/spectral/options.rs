@@ -42,9 +42,11 @@ pub struct SpectralOptions {
     pub force_window: Option<f64>,
     /// What an exponential window leaves of the response at the end of a record.
     pub left_at_end: Option<f64>,
-    /// Time in s by which the response was recorded late, as the decoder of a vibrometer does: its phase is corrected.
+    /// Time in s by which the response was recorded late, as the decoder of a vibrometer does: its phase is
+    /// corrected.
     pub delay: Option<f64>,
-    /// Reference of levels in decibels, in the unit of the trace (of the function, with a reference channel).
+    /// Reference of levels in decibels, in the unit of the trace (of the function, with a reference
+    /// channel).
     pub decibel: Option<f64>,
     /// Sines to be fitted to the whole record, 1 to 10.
     pub tones: Option<usize>,
@@ -61,7 +63,8 @@ impl SpectralOptions {
         self.window.unwrap_or(Window::Hann)
     }
 
-    /// Whether the mean is taken out: that of segments, and what would be divided by nothing, unless told otherwise.
+    /// Whether the mean is taken out: that of segments, and what would be divided by nothing, unless told
+    /// otherwise.
     pub(super) fn detrended(&self) -> bool {
         self.detrend.unwrap_or(self.method() == Method::Welch || self.integrate > 0)
     }

@@ -128,7 +128,8 @@ impl SpectralResult {
         }
     }
 
-    /// Adds levels over a reference: 20 lg of amplitudes in `unit`, 10 lg of powers over its square (ISO 1683).
+    /// Adds levels over a reference: 20 lg of amplitudes in `unit`, 10 lg of powers over its square (ISO
+    /// 1683).
     pub(super) fn over(&mut self, reference: f64, unit: &str) {
         let power = ["power", "psd"].contains(&self.scaling);
         let factor = if power { 10.0 } else { 20.0 };
@@ -143,7 +144,8 @@ impl SpectralResult {
         });
     }
 
-    /// Spectrum, or function and coherence, without the lines that have no value: files have no word for them.
+    /// Spectrum, or function and coherence, without the lines that have no value: files have no word for
+    /// them.
     pub fn records(&self) -> Vec<Record> {
         let known = |spectrum: Spectrum| {
             let (axis, kept) = finite(&spectrum.axis, |k| spectrum.values.magnitude(k).is_finite());
@@ -183,7 +185,8 @@ impl SpectralResult {
         height > self.height(k.wrapping_sub(1)) && height >= self.height(k + 1)
     }
 
-    /// Indices of the largest peaks, at most so many, in order of frequency; of a spectrum those that stand out of the noise.
+    /// Indices of the largest peaks, at most so many, in order of frequency; of a spectrum those that stand
+    /// out of the noise.
     pub fn peaks(&self, most: usize) -> Vec<usize> {
         let listed = |k: &usize| self.clear.get(*k).copied().unwrap_or_else(|| self.is_peak(*k));
         let mut largest: Vec<usize> = (0..self.value.len()).filter(listed).collect();

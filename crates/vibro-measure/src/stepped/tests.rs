@@ -15,8 +15,9 @@ fn receptance(frequency: f64) -> Complex64 {
     1.0 / (MASS * Complex64::new(own * own - omega * omega, 2.0 * ZETA * own * omega))
 }
 
-/// A step at `frequency` of `seconds` at 2000 Hz, the oscillator starting with its steady motion and a transient of the part `transient` of it; noise of
-/// the part `noise` of both amplitudes. The response is its velocity.
+/// A step at `frequency` of `seconds` at 2000 Hz, the oscillator starting with its steady motion and a
+/// transient of the part `transient` of it; noise of the part `noise` of both amplitudes. The response is its
+/// velocity.
 fn step(frequency: f64, seconds: f64, transient: f64, noise: (f64, &mut Noise)) -> StepTraces {
     let rate = 2000.0;
     let n = (seconds * rate) as usize;
@@ -78,7 +79,8 @@ fn taken(steps: &[StepTraces]) -> Response {
     stepped(named(), read(steps), &ResponseOptions::default()).unwrap().1
 }
 
-/// Draws of steps in noise; how many amplitudes, phases and real parts lie within 1.96 of their standard uncertainties, of how many, and the worst in them.
+/// Draws of steps in noise; how many amplitudes, phases and real parts lie within 1.96 of their standard
+/// uncertainties, of how many, and the worst in them.
 fn counted(draws: u64) -> ([usize; 3], usize, f64) {
     let (mut held, mut all, mut worst) = ([0; 3], 0, 0.0_f64);
     for seed in 0..draws {
@@ -105,7 +107,8 @@ fn counted(draws: u64) -> ([usize; 3], usize, f64) {
 #[test]
 fn amplitude_phase_and_receptance_are_those_of_the_oscillator() {
     let (held, all, worst) = counted(20);
-    // Of 60 values of Student's distribution of eleven degrees of freedom none lies beyond six in more than 1 of 100 runs.
+    // Of 60 values of Student's distribution of eleven degrees of freedom none lies beyond six in more than 1
+    // of 100 runs.
     assert!(all >= 15 && worst < 6.0 && held.iter().all(|h| *h + 5 >= all), "{held:?} of {all}, {worst}");
 }
 
@@ -114,7 +117,8 @@ fn amplitude_phase_and_receptance_are_those_of_the_oscillator() {
 fn amplitude_phase_and_receptance_are_covered() {
     let (held, all, worst) = counted(600);
     let least = all - all * 77 / 1000;
-    // Three standard deviations of 500 at 95 % are 2.9 %; of the eleven degrees of freedom of few blocks one value in 1500 lies beyond six.
+    // Three standard deviations of 500 at 95 % are 2.9 %; of the eleven degrees of freedom of few blocks one
+    // value in 1500 lies beyond six.
     assert!(all > 500 && held.iter().all(|h| *h > least) && worst < 6.0, "{held:?} of {all}, {worst}");
 }
 

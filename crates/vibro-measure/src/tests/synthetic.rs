@@ -30,7 +30,8 @@ impl Normal {
     }
 }
 
-/// Sums of twelve uniform numbers from a linear congruential generator (Knuth, MMIX): near enough to normal ones of unit variance.
+/// Sums of twelve uniform numbers from a linear congruential generator (Knuth, MMIX): near enough to normal
+/// ones of unit variance.
 pub struct Twelve(pub u64);
 
 impl Twelve {
@@ -46,8 +47,8 @@ impl Twelve {
 /// Lines of a spectrum.
 pub const LINES: usize = 161;
 
-/// Magnitudes of sines (position, complex amplitude) in white noise of `sigma` a component of a line: noise of lines without
-/// a window, then the window's weights over neighbouring lines.
+/// Magnitudes of sines (position, complex amplitude) in white noise of `sigma` a component of a line: noise
+/// of lines without a window, then the window's weights over neighbouring lines.
 pub fn spectrum(window: Window, sines: &[(f64, Complex64)], sigma: f64, normal: &mut Normal) -> Vec<f64> {
     let a = window.coefficients();
     let reach = a.len() - 1;
@@ -70,7 +71,8 @@ pub fn spectrum(window: Window, sines: &[(f64, Complex64)], sigma: f64, normal: 
         .collect()
 }
 
-/// 1/f noise of standard deviation 1 down to one period of `n` samples: first-order processes an octave apart.
+/// 1/f noise of standard deviation 1 down to one period of `n` samples: first-order processes an octave
+/// apart.
 pub(crate) fn pink(noise: &mut vibro_math::Noise, n: usize) -> Vec<f64> {
     let keep: Vec<f64> = (0..n.ilog2()).map(|k| (-2.0 * 2f64.powi(-(k as i32))).exp()).collect();
     let mut states: Vec<f64> = keep.iter().map(|_| noise.normal()).collect();

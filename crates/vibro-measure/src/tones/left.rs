@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-/// What a sample tells of a fit. What lies beyond an end of the range is only known to be beyond it (J. Tobin, Econometrica 26 (1958)
-/// 24): it counts by the curvature of its likelihood.
+/// What a sample tells of a fit. What lies beyond an end of the range is only known to be beyond it (J.
+/// Tobin, Econometrica 26 (1958) 24): it counts by the curvature of its likelihood.
 pub(super) struct Left {
     /// Weight in the normal matrix, 1 for a whole sample.
     pub weight: f64,
@@ -15,7 +15,8 @@ pub(super) struct Left {
 }
 
 impl Left {
-    /// From what is left of the value, the side on which it is cut off (0 for none), and the standard deviation of the noise.
+    /// From what is left of the value, the side on which it is cut off (0 for none), and the standard
+    /// deviation of the noise.
     pub fn of(left: f64, side: f64, noise: f64) -> Left {
         if side == 0.0 {
             return Left { weight: 1.0, mean: left, square: left * left, known: 1.0 };
@@ -28,8 +29,8 @@ impl Left {
     }
 }
 
-/// Mean of a normal variable that is known to lie beyond `a`: its density over the probability (Abramowitz & Stegun 26.2.17; from 3 on
-/// by the continued fraction 26.2.14).
+/// Mean of a normal variable that is known to lie beyond `a`: its density over the probability (Abramowitz &
+/// Stegun 26.2.17; from 3 on by the continued fraction 26.2.14).
 fn mills(a: f64) -> f64 {
     if a > 3.0 {
         return (1..60).rev().fold(a, |tail, k| a + f64::from(k) / tail);

@@ -46,7 +46,8 @@ fn another_sine_beside_is_said_and_half_the_rate_is_refused() {
     assert!(error.contains("half the sampling rate"), "{error}");
 }
 
-/// What is found of a sine of amplitude 1 with another of amplitude `size` so many lines apart, in noise; frequency and phase of the first.
+/// What is found of a sine of amplitude 1 with another of amplitude `size` so many lines apart, in noise;
+/// frequency and phase of the first.
 fn beside_another(seed: u64, apart: f64, size: f64, floor: f64) -> (Tones, f64, f64) {
     let mut noise = Noise::new(seed);
     let (f, p, q) = (noise.between(50.0, 400.0), noise.between(0.0, TAU), noise.between(0.0, TAU));
@@ -81,7 +82,8 @@ fn a_small_sine_beside_is_allowed_for() {
     }
 }
 
-/// A sine of half the amplitude 5 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to 2 lines off there is none.
+/// A sine of half the amplitude 5 to 40 lines off is noise to this one, and counted in its uncertainty; 1 to
+/// 2 lines off there is none.
 #[test]
 fn what_is_stated_beside_another_sine_holds() {
     for (apart, stated) in [(1.0, 0), (2.0, 0), (5.0, 100), (16.0, 100), (40.0, 100)] {
@@ -113,7 +115,8 @@ fn what_is_no_sine_is_refused() {
     assert!(short.err().unwrap().to_string().contains("periods"));
 }
 
-/// Of three sines two are asked for; what is left stands 1.5 lines beside one of them, 40 lines from the other.
+/// Of three sines two are asked for; what is left stands 1.5 lines beside one of them, 40 lines from the
+/// other.
 #[test]
 fn the_tone_beside_which_another_is_left_has_no_uncertainty() {
     let mut noise = Noise::new(5);
@@ -173,7 +176,8 @@ fn the_amplitude_of_a_clipped_sine_is_covered() {
     assert!(far.iter().all(|sum| *sum < 45.3), "{far:?}");
 }
 
-/// Root mean square of error over uncertainty of frequency, amplitude and phase of a sine in 1/f noise, near a line and over `records`.
+/// Root mean square of error over uncertainty of frequency, amplitude and phase of a sine in 1/f noise, near
+/// a line and over `records`.
 fn spread_in_pink_noise(line: f64, records: u64) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for seed in 0..records {

@@ -65,7 +65,8 @@ impl Compliant {
         Event::Impact(Impact { impulse, ..met })
     }
 
-    /// After a rebound too slow to part the masses against the force that presses them together, they move together.
+    /// After a rebound too slow to part the masses against the force that presses them together, they move
+    /// together.
     pub(super) fn come_to_rest(&mut self, visit: &mut dyn FnMut(Piece<'_>)) {
         if self.law.is_some() || -self.state.approach() >= REST_SPEED {
             return;

@@ -1,5 +1,5 @@
-//! Any motion of the rig with a contact that gives way, or a mass 1 that is loose on its spring: followed from event to event through its
-//! linear modes, and through integrated contacts between them.
+//! Any motion of the rig with a contact that gives way, or a mass 1 that is loose on its spring: followed
+//! from event to event through its linear modes, and through integrated contacts between them.
 
 use super::Law;
 use super::change::Still;
@@ -45,14 +45,14 @@ pub(super) enum Mark {
 
 /// A motion with a contact that gives way: where it is now, and what drives it on.
 ///
-/// Flights and Kelvin–Voigt contacts are linear modes, exact to rounding; Hertz and Hunt–Crossley contacts are integrated to
-/// a relative error of 1e-13 a step. The rig's restitution is not used: the contact's law makes the rebound. Mass 2 may be a
-/// wall (m₂ infinite): the impact oscillator.
+/// Flights and Kelvin–Voigt contacts are linear modes, exact to rounding; Hertz and Hunt–Crossley contacts
+/// are integrated to a relative error of 1e-13 a step. The rig's restitution is not used: the contact's law
+/// makes the rebound. Mass 2 may be a wall (m₂ infinite): the impact oscillator.
 ///
-/// Pieces end with `Touch` where the surfaces meet, `Part` where the force comes to zero before the surfaces are back at
-/// their rest (the damper holds them back), `Touch` again where it returns before that, and with `Impact` once they are
-/// back: it tells the time, the phase and the approach speed of the beginning, and the whole impulse. Long stretches come in
-/// several pieces that end with `Reached`.
+/// Pieces end with `Touch` where the surfaces meet, `Part` where the force comes to zero before the surfaces
+/// are back at their rest (the damper holds them back), `Touch` again where it returns before that, and with
+/// `Impact` once they are back: it tells the time, the phase and the approach speed of the beginning, and the
+/// whole impulse. Long stretches come in several pieces that end with `Reached`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compliant {
     pub(super) rig: Rig,
@@ -68,13 +68,14 @@ pub struct Compliant {
     pub(super) spring_acts: bool,
     /// The contact under way, with the impulse so far.
     pub(super) impact: Impact,
-    /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from rest.
+    /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from
+    /// rest.
     pub(super) slack: f64,
 }
 
 impl Compliant {
-    /// A motion that starts from `state` at time 0 and `phase` (rad) of the excitation's cycle. The masses may be pressed into
-    /// each other.
+    /// A motion that starts from `state` at time 0 and `phase` (rad) of the excitation's cycle. The masses
+    /// may be pressed into each other.
     ///
     /// # Errors
     /// If a parameter is impossible, or the state or the phase is not finite.
@@ -82,12 +83,13 @@ impl Compliant {
         Compliant::start(rig, excitation, Some(law), None, state, phase)
     }
 
-    /// A motion with a loose mass 1, whose contact with mass 2 gives way by a spring and a damper, or rebounds at once with the rig's
-    /// restitution.
+    /// A motion with a loose mass 1, whose contact with mass 2 gives way by a spring and a damper, or
+    /// rebounds at once with the rig's restitution.
     ///
-    /// Behind mass 1, on the side away from mass 2, its spring and damper are a buffer that begins `gap` (m) away from its rest: the force on
-    /// mass 1 is −k₁(x₁ + gap) − c₁v₁ for x₁ < −gap and none elsewhere, or −c₁v₁ there with [`Buffer::damper_always`]. Pieces end with
-    /// `Switch` where it begins and ceases to act; with rebounds at once, with `Impact`, with `Stick` where the masses have chattered to rest
+    /// Behind mass 1, on the side away from mass 2, its spring and damper are a buffer that begins `gap` (m)
+    /// away from its rest: the force on mass 1 is −k₁(x₁ + gap) − c₁v₁ for x₁ < −gap and none elsewhere,
+    /// or −c₁v₁ there with [`Buffer::damper_always`]. Pieces end with `Switch` where it begins and ceases
+    /// to act; with rebounds at once, with `Impact`, with `Stick` where the masses have chattered to rest
     /// against each other and with `Release` where they cease to move together.
     ///
     /// ```
@@ -101,8 +103,8 @@ impl Compliant {
     /// ```
     ///
     /// # Errors
-    /// If a parameter is impossible, the state or the phase is not finite, the masses overlap without a law, or it is not that of Kelvin and
-    /// Voigt.
+    /// If a parameter is impossible, the state or the phase is not finite, the masses overlap without a law,
+    /// or it is not that of Kelvin and Voigt.
     pub fn loose(
         rig: &Rig,
         excitation: &Excitation,
@@ -235,7 +237,8 @@ impl Compliant {
         Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), due, until, visit))
     }
 
-    /// Goes on along `path` for `duration` seconds, to a mark or to what the excitation does; whether it reached the end.
+    /// Goes on along `path` for `duration` seconds, to a mark or to what the excitation does; whether it
+    /// reached the end.
     fn pass(
         &mut self,
         path: &dyn Path,

@@ -1,21 +1,23 @@
 //! What a contact law means for a rebound free of other forces, and the way back.
 //!
-//! Kelvin–Voigt of damping ratio ζ = c₃/2√(k₃M) and ω₀² = k₃/M, left where its force vanishes: with sin ψ = ζ the contact
-//! lasts (π − 2ψ)/(ω₀ cos ψ) and R = exp(−(π − 2ψ) tan ψ); for ζ = 1 it lasts 2/ω₀ and R = e⁻²; for ζ > 1 it lasts
-//! 2 acosh ζ/(ω₀√(ζ² − 1)) and R = exp(−2ζ acosh ζ/√(ζ² − 1)). Derived from the free motion of mass, spring and damper;
-//! the first also in Anagnostopoulos (2004) and Nagurka & Huang (2004). R falls with ζ to 1/(4ζ²) for large ζ.
+//! Kelvin–Voigt of damping ratio ζ = c₃/2√(k₃M) and ω₀² = k₃/M, left where its force vanishes: with sin ψ = ζ
+//! the contact lasts (π − 2ψ)/(ω₀ cos ψ) and R = exp(−(π − 2ψ) tan ψ); for ζ = 1 it lasts 2/ω₀ and R = e⁻²;
+//! for ζ > 1 it lasts 2 acosh ζ/(ω₀√(ζ² − 1)) and R = exp(−2ζ acosh ζ/√(ζ² − 1)). Derived from the free
+//! motion of mass, spring and damper; the first also in Anagnostopoulos (2004) and Nagurka & Huang (2004). R
+//! falls with ζ to 1/(4ζ²) for large ζ.
 //!
-//! Hunt–Crossley F = kδⁿ(1 + αδ̇) loses the same at any k, n and mass (Hunt & Crossley 1975; exact, by integrating
-//! v dv/(1 + αv) over the contact): αv(1 + R) = ln((1 + αv)/(1 − Rαv)).
+//! Hunt–Crossley F = kδⁿ(1 + αδ̇) loses the same at any k, n and mass (Hunt & Crossley 1975; exact, by
+//! integrating v dv/(1 + αv) over the contact): αv(1 + R) = ln((1 + αv)/(1 − Rαv)).
 //!
-//! Hertz F = kδ^{3/2} (Johnson 1985, 11.22 to 11.24): largest indentation (5Mv²/4k)^{2/5}, duration 2.9432 times that over v.
+//! Hertz F = kδ^{3/2} (Johnson 1985, 11.22 to 11.24): largest indentation (5Mv²/4k)^{2/5}, duration 2.9432
+//! times that over v.
 
 use vibro_record::{Error, Result};
 
 /// Duration of a contact times √(k₃/M), for a damping ratio ζ ≥ 0.
 ///
-/// Near ζ = 1 both closed forms tend to 0/0; there the series of their common analytic function is summed, up to a last
-/// term below 1e-19.
+/// Near ζ = 1 both closed forms tend to 0/0; there the series of their common analytic function is summed, up
+/// to a last term below 1e-19.
 fn turn(ratio: f64) -> f64 {
     let x = (1.0 - ratio) / (1.0 + ratio);
     // With tan(π/4 − ψ/2) = √((1 − ζ)/(1 + ζ)) =: √x, π − 2ψ = 4 atan √x and √(1 − ζ²) = (1 + ζ)√x.
@@ -36,7 +38,8 @@ pub fn restitution(damping_ratio: f64) -> f64 {
     if damping_ratio >= 0.0 { (-damping_ratio * turn(damping_ratio)).exp() } else { f64::NAN }
 }
 
-/// Duration in s of a Kelvin–Voigt contact of damping ratio ζ ≥ 0, of stiffness `stiffness` (N/m) and reduced mass `mass` (kg).
+/// Duration in s of a Kelvin–Voigt contact of damping ratio ζ ≥ 0, of stiffness `stiffness` (N/m) and reduced
+/// mass `mass` (kg).
 pub fn duration(damping_ratio: f64, stiffness: f64, mass: f64) -> f64 {
     if damping_ratio >= 0.0 { turn(damping_ratio) / (stiffness / mass).sqrt() } else { f64::NAN }
 }
@@ -66,7 +69,8 @@ pub fn loss(restitution: f64) -> Result<f64> {
     if r == 1.0 {
         return Ok(0.0);
     }
-    // The balance of energies over (αv)² rises from −(1 − R²)/2 at 0 through zero once, before its pole at αv = 1/R.
+    // The balance of energies over (αv)² rises from −(1 − R²)/2 at 0 through zero once, before its pole at αv
+    // = 1/R.
     let balance = |a: f64| if a >= 1.0 / r { f64::INFINITY } else { less(a) - less(-r * a) };
     Ok(solve(0.0, 1.0 / r, 0.0, balance))
 }
@@ -85,12 +89,14 @@ fn less(x: f64) -> f64 {
     }
 }
 
-/// Largest indentation in m of a Hertz contact met at `speed` (m/s) by a reduced mass `mass` (kg): (5Mv²/4k)^{2/5}.
+/// Largest indentation in m of a Hertz contact met at `speed` (m/s) by a reduced mass `mass` (kg):
+/// (5Mv²/4k)^{2/5}.
 pub(crate) fn hertz_depth(stiffness: f64, mass: f64, speed: f64) -> f64 {
     (1.25 * mass * speed * speed / stiffness).powf(0.4)
 }
 
-/// Duration in s of a Hertz contact: 2.9432 times its largest indentation over the speed, the factor being (4√π/5)Γ(2/5)/Γ(9/10).
+/// Duration in s of a Hertz contact: 2.9432 times its largest indentation over the speed, the factor being
+/// (4√π/5)Γ(2/5)/Γ(9/10).
 pub(crate) fn hertz_duration(stiffness: f64, mass: f64, speed: f64) -> f64 {
     2.943_275_184_324_705 * hertz_depth(stiffness, mass, speed) / speed
 }

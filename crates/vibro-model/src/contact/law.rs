@@ -10,7 +10,8 @@ use vibro_record::{Error, Result};
 #[serde(tag = "law", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Law {
-    /// F = k₃δ + c₃δ̇: a spring and a damper side by side. The contact ends where the force does, not where δ = 0.
+    /// F = k₃δ + c₃δ̇: a spring and a damper side by side. The contact ends where the force does, not where δ
+    /// = 0.
     KelvinVoigt {
         /// k₃ in N/m.
         stiffness: f64,
@@ -34,8 +35,8 @@ pub enum Law {
 }
 
 impl Law {
-    /// Kelvin–Voigt contact of a `stiffness` in N/m that rebounds with `restitution` where a reduced mass `mass` (kg) meets it
-    /// free of other forces: c₃ = 2ζ√(k₃M).
+    /// Kelvin–Voigt contact of a `stiffness` in N/m that rebounds with `restitution` where a reduced mass
+    /// `mass` (kg) meets it free of other forces: c₃ = 2ζ√(k₃M).
     ///
     /// # Errors
     /// If the stiffness or the mass is not above 0, or the restitution is outside 0 < R ≤ 1.
@@ -49,7 +50,8 @@ impl Law {
     /// Hunt–Crossley contact that rebounds with `restitution` where it is met at `speed` (m/s).
     ///
     /// # Errors
-    /// If the stiffness or the speed is not above 0, the exponent is below 1, or the restitution is outside 0 < R ≤ 1.
+    /// If the stiffness or the speed is not above 0, the exponent is below 1, or the restitution is outside 0
+    /// < R ≤ 1.
     pub fn hunt_crossley(stiffness: f64, exponent: f64, restitution: f64, speed: f64) -> Result<Law> {
         number("approach speed", speed, "m/s", Least::AboveZero)?;
         let law = Law::HuntCrossley { stiffness, exponent, damping: conversion::loss(restitution)? / speed };
@@ -59,7 +61,8 @@ impl Law {
     /// Checks that the numbers can belong to a contact.
     ///
     /// # Errors
-    /// If a stiffness is not above 0, a damping is negative, an exponent is outside 1 to 10, or a value is not finite.
+    /// If a stiffness is not above 0, a damping is negative, an exponent is outside 1 to 10, or a value is
+    /// not finite.
     pub fn check(&self) -> Result<()> {
         let (stiffness, exponent, damping) = self.numbers();
         let linear = matches!(self, Law::KelvinVoigt { .. });
@@ -81,7 +84,8 @@ impl Law {
         }
     }
 
-    /// Force in N at an indentation (m) and its rate (m/s); 0 where the masses are apart, and where the law would pull.
+    /// Force in N at an indentation (m) and its rate (m/s); 0 where the masses are apart, and where the law
+    /// would pull.
     #[inline]
     pub fn force(&self, indentation: f64, rate: f64) -> f64 {
         if indentation <= 0.0 {

@@ -24,8 +24,8 @@ pub(super) struct Modes {
 }
 
 impl Modes {
-    /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper. Spring and damper of a loose mass 1 act in compression, beyond
-    /// the gap of its `buffer`; its damper may act always.
+    /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper. Spring and damper of a loose
+    /// mass 1 act in compression, beyond the gap of its `buffer`; its damper may act always.
     pub fn new(rig: &Rig, law: Option<Law>, buffer: Option<Buffer>) -> Modes {
         let [first, second] = rig.bodies();
         let inverse = rig.masses().map(|mass| 1.0 / mass);
@@ -67,7 +67,8 @@ impl Modes {
         }
     }
 
-    /// Force in N with which the masses would press on each other if they moved together: M(a₁ − a₂), each without the other.
+    /// Force in N with which the masses would press on each other if they moved together: M(a₁ − a₂), each
+    /// without the other.
     #[inline]
     pub fn pressing(&self, spring_acts: bool) -> Quantity {
         self.apart[usize::from(spring_acts)].closing().times(self.reduced_mass)

@@ -52,9 +52,10 @@ impl Within {
         self.law.map_or((0.0, 1.0), |law| (law.numbers().0, law.numbers().1))
     }
 
-    /// Sizes below which errors need not fall: indentation and speed of the contact, and what roundings of the displacements
-    /// allow. An indentation is known to εX, X = |x₁| + |x₂| + |Δ|, so with ω the contact's frequency a speed is known to εωX;
-    /// a fiftieth of X and ωX, times the relative error, is nine times that.
+    /// Sizes below which errors need not fall: indentation and speed of the contact, and what roundings of
+    /// the displacements allow. An indentation is known to εX, X = |x₁| + |x₂| + |Δ|, so with ω the
+    /// contact's frequency a speed is known to εωX; a fiftieth of X and ωX, times the relative error, is
+    /// nine times that.
     fn floor(&self, state: &State) -> [f64; SIZE] {
         let (stiffness, exponent) = self.spring();
         let depth = (state.x1 - state.x2 - self.gap).max(self.speed * self.scale);
@@ -64,7 +65,8 @@ impl Within {
         [way, speed, way, speed, speed * self.reduced_mass]
     }
 
-    /// One step of at most `span` > 0 seconds from `state`; `mode` holds what acts beside the contact. Its last component is the impulse.
+    /// One step of at most `span` > 0 seconds from `state`; `mode` holds what acts beside the contact. Its
+    /// last component is the impulse.
     pub fn step(&mut self, mode: &Linear, drive: &Forcing, state: &State, span: f64) -> Result<Step<SIZE>> {
         let law = self.law;
         let [inverse1, inverse2] = self.inverse;

@@ -21,7 +21,8 @@ fn the_branch_of_one_impact_a_cycle_is_the_closed_form_through_its_folds() {
             let closed = orbits(&rig, force, point.sine.frequency).unwrap().orbits;
             let off = |o: &Orbit| (o.impulse / beat.impulse - 1.0).abs();
             let off = closed.iter().map(off).fold(f64::INFINITY, f64::min);
-            // Newton's last step is below 1e-10 and squares; near a fold roundings are enlarged by the sensitivity.
+            // Newton's last step is below 1e-10 and squares; near a fold roundings are enlarged by the
+            // sensitivity.
             let amplified = 1.0 + point.peak_to_peak[0] / point.validity.grazing_distance.max(1e-12);
             assert!(off < 1e-12 * amplified, "{off} {beat:?} at {}", point.sine.frequency);
         }
@@ -85,7 +86,8 @@ fn branches_over_force_gap_and_restitution_are_the_closed_form() {
             let amplified = 1.0 + point.peak_to_peak[0] / point.validity.grazing_distance.max(1e-12);
             assert!(off < 1e-12 * amplified, "{over:?} {off} {beat:?}");
         }
-        // Roots come and go at folds, and a root's impulse passes through zero where the branch ends by grazing.
+        // Roots come and go at folds, and a root's impulse passes through zero where the branch ends by
+        // grazing.
         for fold in branch.marks.iter().filter(|m| m.kind == Loss::Fold) {
             let roots = |share: f64| {
                 let (mut rig, mut sine) = (fold.orbit.rig, fold.orbit.sine);
@@ -105,9 +107,10 @@ fn branches_over_force_gap_and_restitution_are_the_closed_form() {
 
 #[test]
 fn the_published_impact_oscillator_grazes_where_its_stop_touches() {
-    // Example 15.2 of "Recipes for Continuation" (H. Dankowicz, F. Schilder 2013), in COCO's folder of the toolbox hspo: ẍ + 0.1ẋ + x = A cos t
-    // with a stop at 1 and restitution 0.8. Its first solution, A = 1, leaves the stop with −1.36 at the phase 0.076, as printed. Its
-    // family over A ends where it grazes: the linear amplitude A/0.1 is the way to the stop.
+    // Example 15.2 of "Recipes for Continuation" (H. Dankowicz, F. Schilder 2013), in COCO's folder of the
+    // toolbox hspo: ẍ + 0.1ẋ + x = A cos t with a stop at 1 and restitution 0.8. Its first solution, A =
+    // 1, leaves the stop with −1.36 at the phase 0.076, as printed. Its family over A ends where it
+    // grazes: the linear amplitude A/0.1 is the way to the stop.
     let rig =
         Rig { m1: 1.0, m2: f64::INFINITY, k1: 1.0, k2: 1.0, c1: 0.1, c2: 0.0, gap: 1.0, restitution: 0.8 };
     let start = one(&rig, 1.0, 1.0 / TAU);
@@ -125,7 +128,8 @@ fn the_published_impact_oscillator_grazes_where_its_stop_touches() {
 
 #[test]
 fn two_impacts_in_two_cycles_turn_back_where_one_impact_flips() {
-    // Between the two flips of one impact a cycle lies the motion of twice the period; round it goes with its impacts in either order.
+    // Between the two flips of one impact a cycle lies the motion of twice the period; round it goes with its
+    // impacts in either order.
     let rig = Rig { restitution: 0.9, ..Rig::thesis() };
     let sine = Sine { force: 0.9, frequency: 6.3 };
     let start = crate::search(&rig, &sine, 2, 2).unwrap().remove(0);
@@ -141,7 +145,8 @@ fn two_impacts_in_two_cycles_turn_back_where_one_impact_flips() {
     assert!(double.len() == 2 && single.len() >= 2, "{double:?} {single:?}");
     for flip in double {
         let off = single.iter().map(|f| (f / flip - 1.0).abs()).fold(1.0, f64::min);
-        // The turn is flat: where halves differ by no more than 1e-2, the frequency is off by the square of that.
+        // The turn is flat: where halves differ by no more than 1e-2, the frequency is off by the square of
+        // that.
         assert!(off < 1e-4, "{flip} {single:?}");
     }
 }

@@ -11,8 +11,9 @@ use vibro_record::{Error, Result};
 const POINTS: usize = 20_000;
 /// Newton's steps of a corrector.
 const CORRECTOR: usize = 12;
-/// Both halves of a motion at a flip are the same to this (rad and shares of an impulse): branches cross there, so the equations are nearly
-/// singular about the place, which is located as nearly as they can be solved.
+/// Both halves of a motion at a flip are the same to this (rad and shares of an impulse): branches cross
+/// there, so the equations are nearly singular about the place, which is located as nearly as they can be
+/// solved.
 const HALVES: f64 = 1e-2;
 /// Where a walk begins, how far it goes, and in what steps.
 pub struct Walk<'a> {
@@ -38,7 +39,8 @@ pub struct Spot {
 }
 
 impl Walk<'_> {
-    /// Coordinate of a value of what is varied: its logarithm, the gap in units of the branch's length, the restitution itself.
+    /// Coordinate of a value of what is varied: its logarithm, the gap in units of the branch's length, the
+    /// restitution itself.
     fn coordinate(&self, value: f64) -> f64 {
         match self.over {
             Parameter::Gap => value / self.length(),
@@ -97,7 +99,8 @@ impl Walk<'_> {
         z.rows(0, z.len() - 1).into_owned()
     }
 
-    /// What is left of the equations, and the Jacobian with the derivative by the coordinate of what is varied as last column.
+    /// What is left of the equations, and the Jacobian with the derivative by the coordinate of what is
+    /// varied as last column.
     fn evaluate(&self, z: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>)> {
         let n = z.len() - 1;
         let (left, jacobian) = self.system(z)?.evaluate(&Self::inner(z));
@@ -144,7 +147,8 @@ impl Walk<'_> {
         Ok(Spot { z, tangent })
     }
 
-    /// The point of the branch at the distance `s` along the tangent; `None` where Newton's method does not settle there.
+    /// The point of the branch at the distance `s` along the tangent; `None` where Newton's method does not
+    /// settle there.
     fn ahead(&self, from: &Spot, s: f64) -> Option<(Spot, usize)> {
         let mut z = &from.z + &from.tangent * s;
         let n = z.len() - 1;
@@ -267,7 +271,8 @@ impl Walk<'_> {
         for (kind, spot) in found {
             let orbit = self.orbit(&spot.z)?;
             if confirmed(kind, &orbit) {
-                // At a motion of half the period, too, it turns back, and goes on with the impacts of the other half.
+                // At a motion of half the period, too, it turns back, and goes on with the impacts of the
+                // other half.
                 let halves = kind == Loss::Fold && orbit.repeats_within(HALVES);
                 let kind = if halves { Loss::Flip } else { kind };
                 way.marks.push(Mark { kind, orbit, after });
@@ -312,8 +317,9 @@ fn flip(orbit: &PeriodicOrbit) -> Option<f64> {
     orbit.monodromy.map(|m| (m + Matrix4::identity()).determinant())
 }
 
-/// det(M ∧ M − I), the product of λᵢλⱼ − 1 over all pairs of multipliers: changes its sign where a complex pair passes the unit circle
-/// (bialternate product; J. Guckenheimer, M. Myers, B. Sturmfels 1997), and where two real multipliers become each other's inverse.
+/// det(M ∧ M − I), the product of λᵢλⱼ − 1 over all pairs of multipliers: changes its sign where a complex
+/// pair passes the unit circle (bialternate product; J. Guckenheimer, M. Myers, B. Sturmfels 1997), and where
+/// two real multipliers become each other's inverse.
 fn pair(orbit: &PeriodicOrbit) -> Option<f64> {
     const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
     let m = orbit.monodromy?;

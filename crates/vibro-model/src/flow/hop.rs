@@ -1,10 +1,11 @@
-//! Short flights from contact to contact, as they follow each other in a chatter: one Taylor series about the start serves for the
-//! proof that the masses land, for the time and for the state.
+//! Short flights from contact to contact, as they follow each other in a chatter: one Taylor series about the
+//! start serves for the proof that the masses land, for the time and for the state.
 
 use super::{Flight, Free, Landing, State};
 
-/// What counts as short, over the fastest rate: twenty terms leave out (1.3)²⁰/20! = 8e-17 of a displacement, eleven (0.2)¹¹/11! =
-/// 5e-16 and six (0.003)⁶/6! = 1e-18, of a speed 2e-15. Whether that is below the rounding of the flight itself is looked at each time.
+/// What counts as short, over the fastest rate: twenty terms leave out (1.3)²⁰/20! = 8e-17 of a displacement,
+/// eleven (0.2)¹¹/11! = 5e-16 and six (0.003)⁶/6! = 1e-18, of a speed 2e-15. Whether that is below the
+/// rounding of the flight itself is looked at each time.
 const LONGEST: f64 = 1.3;
 const SHORT: f64 = 0.2;
 const SHORTEST: f64 = 0.003;
@@ -21,7 +22,8 @@ const fn weights<const N: usize>() -> [f64; N] {
 }
 
 impl Free {
-    /// Displacement and its derivatives at the start, over n!, and a bound on the next one for all later times.
+    /// Displacement and its derivatives at the start, over n!, and a bound on the next one for all later
+    /// times.
     #[inline]
     fn terms<const N: usize>(&self) -> ([f64; N], f64) {
         let mut last = [self.x, self.v];
@@ -49,11 +51,13 @@ fn at<const N: usize>(terms: &[f64; N], t: f64) -> (f64, f64) {
 }
 
 impl Flight {
-    /// The landing of a short flight that begins at contact; nothing where the series proves none within `duration`.
+    /// The landing of a short flight that begins at contact; nothing where the series proves none within
+    /// `duration`.
     ///
-    /// With g = g₀ + t q(t), g₀ being rounding, q falls where −g̈/2 outweighs Σ|gₙ|(n − 1)tⁿ⁻²/n!, n from 3 on. So within twice and a half the
-    /// flight of a constant g̈, if it falls up to there and is below 0 there, q has one root, and g was positive before it. What the series
-    /// leaves out, Mtᴺ/N! of N terms, has to be below `rounding`.
+    /// With g = g₀ + t q(t), g₀ being rounding, q falls where −g̈/2 outweighs Σ|gₙ|(n − 1)tⁿ⁻²/n!, n from 3
+    /// on. So within twice and a half the flight of a constant g̈, if it falls up to there and is below 0
+    /// there, q has one root, and g was positive before it. What the series leaves out, Mtᴺ/N! of N
+    /// terms, has to be below `rounding`.
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;
@@ -75,7 +79,8 @@ impl Flight {
         landing.filter(|l| l.time <= duration)
     }
 
-    /// The landing within `longest` seconds by series of `N` terms, after a separation at `w` (m/s) against an acceleration `pressed` (m/s²).
+    /// The landing within `longest` seconds by series of `N` terms, after a separation at `w` (m/s) against
+    /// an acceleration `pressed` (m/s²).
     #[inline]
     fn summed<const N: usize>(&self, longest: f64, [w, pressed]: [f64; 2], rounding: f64) -> Option<Landing> {
         let [(mut one, first), (two, second)] = [self.free[0].terms::<N>(), self.free[1].terms::<N>()];

@@ -75,7 +75,8 @@ fn the_curvature_bound_is_never_exceeded() {
     }
 }
 
-/// Plain oracle: the gap as a sum of complex exponentials with the roots of each oscillator's characteristic equation.
+/// Plain oracle: the gap as a sum of complex exponentials with the roots of each oscillator's characteristic
+/// equation.
 struct Exponentials {
     gap: f64,
     terms: Vec<(Complex64, Complex64)>,
@@ -251,7 +252,8 @@ fn short_flights_land_where_the_closed_form_is_at_contact_and_not_before() {
             assert!(off <= 4.0 * flight.noise(), "seed 8, {w}: {off:e}");
             let (there, state) = (flight.state(landing.time), landing.state);
             assert!((there.x1 - state.x1).abs() <= 4.0 * flight.noise());
-            // Speeds by the series lose what the displacements lose, times the fastest rate of 250 rad/s, and their own rounding.
+            // Speeds by the series lose what the displacements lose, times the fastest rate of 250 rad/s, and
+            // their own rounding.
             let slack = 250.0 * flight.noise() + 4.0 * f64::EPSILON * (state.v1.abs() + state.v2.abs() + 0.1);
             let apart = [there.v1 - state.v1, there.v2 - state.v2];
             assert!(

@@ -12,7 +12,8 @@ pub const MOST_POINTS: usize = 2000;
 /// Choices along an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Survey {
-    /// The lowest rung that is good enough at every point; `None` where there is none, or nothing is chosen somewhere.
+    /// The lowest rung that is good enough at every point; `None` where there is none, or nothing is chosen
+    /// somewhere.
     pub chosen: Option<Model>,
     /// Each rung over the whole axis.
     pub rungs: Vec<Summary>,
@@ -61,8 +62,8 @@ pub struct Stretch {
 /// [`choose`] at `points` frequencies with equal distances between `from` and `to` (Hz), in parallel.
 ///
 /// # Errors
-/// As [`choose`]; if the ends are not finite and above 0 with the lower one first, or there are fewer than 2 or more than
-/// [`MOST_POINTS`] points.
+/// As [`choose`]; if the ends are not finite and above 0 with the lower one first, or there are fewer than 2
+/// or more than [`MOST_POINTS`] points.
 pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &Question) -> Result<Survey> {
     let at = axis(from, to, points, MOST_POINTS)?;
     let mut all: Vec<Choice> = parallel::each(points, |i| chosen(scene, at(i), question, false))
@@ -83,7 +84,8 @@ pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &
     })
 }
 
-/// Points at which a contact of spring and damper that is chosen, or the correction for one, is held against curved bodies: the ends of each stretch and its peak.
+/// Points at which a contact of spring and damper that is chosen, or the correction for one, is held against
+/// curved bodies: the ends of each stretch and its peak.
 fn probes(all: &[Choice]) -> Vec<usize> {
     let size = |i: &usize| all[*i].answer().map_or(0.0, |a| a[0].abs().max(a[1].abs()));
     let mut probes = Vec::new();

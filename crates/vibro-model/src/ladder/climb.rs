@@ -11,8 +11,8 @@ use crate::contact::conversion;
 use std::f64::consts::PI;
 use vibro_record::{Finding, Result};
 
-/// Parts of the cycle in contact between which stiffnesses are tried: in half of the softest the masses would hardly part, and the
-/// stiffest is no different from none.
+/// Parts of the cycle in contact between which stiffnesses are tried: in half of the softest the masses would
+/// hardly part, and the stiffest is no different from none.
 const SHARES: (f64, f64) = (0.1, 1e-4);
 /// Decades tried at most.
 const DECADES: i32 = 7;
@@ -53,7 +53,8 @@ impl<'a> Climb<'a> {
         self.of(model).full()
     }
 
-    /// Rungs at which the answer of `model` is looked at again: the next one that knows more, and the next one that follows the motion.
+    /// Rungs at which the answer of `model` is looked at again: the next one that knows more, and the next
+    /// one that follows the motion.
     fn above(&self, model: Model) -> Vec<Model> {
         let valid = |model: &Model| self.of(*model).valid;
         let soft = Some(Model::SoftCorrected).filter(valid);
@@ -107,8 +108,8 @@ impl<'a> Climb<'a> {
         rung
     }
 
-    /// Whether no law of the contact matters: masses stay in contact, and no spring between them is stated, or a curved contact is stated and
-    /// nothing strikes.
+    /// Whether no law of the contact matters: masses stay in contact, and no spring between them is stated,
+    /// or a curved contact is stated and nothing strikes.
     fn is_lawless(&self) -> bool {
         self.motions.as_ref().is_some_and(|Motions { reading, .. }| match keys(self.stage.scene).stiffness {
             None => reading.end == End::Pressed,
@@ -120,7 +121,8 @@ impl<'a> Climb<'a> {
         self.answer(model).is_some_and(|a| a.known(self.stage.question))
     }
 
-    /// Chooses. Where `bend` says so, a contact of spring and damper that is chosen is compared with curved bodies that meet for as long.
+    /// Chooses. Where `bend` says so, a contact of spring and damper that is chosen is compared with curved
+    /// bodies that meet for as long.
     pub fn choose(mut self, bend: bool) -> Choice {
         let mut choice = Choice {
             frequency: self.stage.excitation.frequency(),
@@ -178,8 +180,8 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// Answers over the stiffnesses, in decades, that keep the masses in contact for 10 % to 0.01 % of the cycle; none where none rebounds with
-    /// the scene's restitution, or one cannot be computed.
+    /// Answers over the stiffnesses, in decades, that keep the masses in contact for 10 % to 0.01 % of the
+    /// cycle; none where none rebounds with the scene's restitution, or one cannot be computed.
     fn sensitivity(&self, base: &Answer) -> Option<Vec<Sensitivity>> {
         let (scene, frequency) = (self.stage.scene, self.stage.excitation.frequency());
         let mass = scene.rig.reduced_mass();

@@ -30,10 +30,12 @@ pub struct Known {
     pub answer: [f64; 2],
     /// Standard error of that, where it is a mean over a motion that does not repeat; else 0.
     pub spread: [f64; 2],
-    /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others with impacts round it.
+    /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others
+    /// with impacts round it.
     pub stable: bool,
-    /// Whether it strikes less than once a cycle, and was found beside the motion to which the rig comes from rest, or the way it came, and to which
-    /// no contact that gives way comes from rest. It is warned of, and asks for no history.
+    /// Whether it strikes less than once a cycle, and was found beside the motion to which the rig comes
+    /// from rest, or the way it came, and to which no contact that gives way comes from rest. It is
+    /// warned of, and asks for no history.
     pub rare: bool,
 }
 
@@ -48,7 +50,8 @@ impl Known {
         Known { pattern: reading.regime, model, answer: value, spread, stable: true, rare }
     }
 
-    /// Whether it may be the motion that was read: both without impacts, or their answers no farther apart than is allowed.
+    /// Whether it may be the motion that was read: both without impacts, or their answers no farther apart
+    /// than is allowed.
     fn may_be(&self, reading: &Reading, question: &Question) -> bool {
         let still = reading.regime == Regime::NoImpact && self.pattern == Regime::NoImpact;
         let own = Answer { spread: self.spread, ..Answer::exact(self.answer) };
@@ -74,7 +77,8 @@ pub struct Motions {
     pub closed: Result<Orbits>,
     /// Time in ns that that took.
     pub closed_cost: f64,
-    /// In closed form with one impact in 2 to [`MOST_CYCLES`] cycles: those whose masses do not pass through each other.
+    /// In closed form with one impact in 2 to [`MOST_CYCLES`] cycles: those whose masses do not pass through
+    /// each other.
     longer: Vec<Orbit>,
     pub known: Vec<Known>,
     pub on: On,
@@ -93,7 +97,8 @@ pub struct Motions {
 }
 
 impl Motions {
-    /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other states.
+    /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other
+    /// states.
     pub fn new(stage: &Stage<'_>) -> Result<Motions> {
         let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
         let (closed, closed_cost) = timed(|| orbits_of(rig, excitation, 1));
@@ -120,7 +125,8 @@ impl Motions {
         Ok(motions)
     }
 
-    /// Looks for a second motion from other states: near orbits that have lost their stability, and those of [`starts`].
+    /// Looks for a second motion from other states: near orbits that have lost their stability, and those of
+    /// [`starts`].
     fn seek(&mut self, stage: &Stage<'_>, reader: &Reader) {
         let (rig, excitation) = (&stage.scene.rig, stage.excitation);
         let orbits = self.closed.iter().flat_map(|found| &found.orbits).chain(&self.longer);
@@ -141,7 +147,8 @@ impl Motions {
         self.followed = Some(Followed { states: followed, of });
     }
 
-    /// Whether a contact that gives way leads from `rest` to another motion than the one that its `answer` is read from.
+    /// Whether a contact that gives way leads from `rest` to another motion than the one that its `answer` is
+    /// read from.
     pub fn differs(&mut self, answer: &Answer, rest: &Reading, model: Model, question: &Question) {
         if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;
@@ -156,7 +163,8 @@ impl Motions {
         }
     }
 
-    /// Adds a motion with impacts at once, where that is not on its way and answers differently from those known.
+    /// Adds a motion with impacts at once, where that is not on its way and answers differently from those
+    /// known.
     fn add(&mut self, reading: &Reading, question: &Question) {
         let settled = |reading: &Reading| reading.end != End::Under;
         let own = settled(&self.reading) && self.reading.answer.agrees(&reading.answer, question, APART);
@@ -171,7 +179,8 @@ impl Motions {
         self.closed.iter().flat_map(|found| &found.orbits).filter(|orbit| orbit.validity.real())
     }
 
-    /// The orbit that the motion which was followed is on; `fine` is the part of its states to which it has settled.
+    /// The orbit that the motion which was followed is on; `fine` is the part of its states to which it has
+    /// settled.
     fn own(&self, fine: f64) -> Option<&Orbit> {
         let (strike, Regime::Periodic { impacts: 1, cycles }) = (self.reading.strike?, self.reading.regime)
         else {
@@ -210,7 +219,8 @@ impl Motions {
         if on == On::Other && self.reading.end != End::Under && own.is_none() {
             known.push(Known::followed(&self.reading, Model::Restitution, false));
         }
-        // Where nothing else is known with impacts, orbits that have lost their stability tell of others round them.
+        // Where nothing else is known with impacts, orbits that have lost their stability tell of others
+        // round them.
         if let Some(found) = found.filter(|found| common(&known) == 1 && several(found)) {
             known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
@@ -223,7 +233,8 @@ impl Motions {
         if speed > 0.0 { Ok(speed) } else { Err(Finding::note("impacts-missing")) }
     }
 
-    /// The orbit to speak of: the one the rig is in, else the first that can be and stay, else the first that exists.
+    /// The orbit to speak of: the one the rig is in, else the first that can be and stay, else the first that
+    /// exists.
     pub fn orbit(&self) -> std::result::Result<Option<&Orbit>, &Error> {
         if let On::Orbit(orbit) = &self.on {
             return Ok(Some(orbit));
@@ -266,9 +277,10 @@ fn speed(orbit: &Orbit) -> f64 {
     [s.x1 * omega, s.v1, s.x2 * omega, s.v2].iter().fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs()))
 }
 
-/// How far from its orbit the impact of a motion may be whose state is off by the part `fine` once a cycle. Both masses are off, by that of
-/// what each moves at most: some twice what they do at the impact. They meet earlier or later by the distance over the approach speed, which turns
-/// the phase, and the speeds by as much again.
+/// How far from its orbit the impact of a motion may be whose state is off by the part `fine` once a cycle.
+/// Both masses are off, by that of what each moves at most: some twice what they do at the impact. They meet
+/// earlier or later by the distance over the approach speed, which turns the phase, and the speeds by as much
+/// again.
 fn reach(fine: f64, orbit: &Orbit) -> f64 {
     let moves = orbit.peak_to_peak[0].max(orbit.peak_to_peak[1]) * TAU * orbit.frequency;
     let size = moves.max(speed(orbit));

@@ -6,14 +6,16 @@ use crate::scales::{Least, number};
 use serde::Serialize;
 use vibro_record::{Direction, Error, Result};
 
-/// Readings of followed motions err by some 4e-6 of themselves, and are taken as settled at a fiftieth of the tolerance.
+/// Readings of followed motions err by some 4e-6 of themselves, and are taken as settled at a fiftieth of the
+/// tolerance.
 const FINEST: f64 = 1e-4;
 /// A mass that moves less than this part of what the other does is not measured by its own motion.
 const STILL: f64 = 1e-3;
 /// Standard errors by which a change between two rungs may be due to means over motions that do not repeat.
 const SAME: f64 = 2.0;
-/// Standard errors beyond which two means are of two motions. Of a normal distribution less than e^{−z²/2} lies farther than z on either
-/// side; a search compares some thirty pairs, so that one motion is taken for two in 1 % of the searches at most.
+/// Standard errors beyond which two means are of two motions. Of a normal distribution less than e^{−z²/2}
+/// lies farther than z on either side; a search compares some thirty pairs, so that one motion is taken for
+/// two in 1 % of the searches at most.
 pub const APART: f64 = 4.0;
 
 /// What is looked at, and how exactly it is wanted.
@@ -57,11 +59,13 @@ impl Question {
 pub struct Change {
     /// The other rung.
     pub at: Model,
-    /// Its answer less this one, over this one: of the mass for which that is the larger against what is allowed. For a mass that moves
-    /// less than a thousandth of what the other does, over the largest of all answers.
+    /// Its answer less this one, over this one: of the mass for which that is the larger against what is
+    /// allowed. For a mass that moves less than a thousandth of what the other does, over the largest of
+    /// all answers.
     pub change: f64,
-    /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are uncertain by allow; never where one of
-    /// them comes from a motion that has not settled, or has a standard error above tolerance and noise floor.
+    /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are
+    /// uncertain by allow; never where one of them comes from a motion that has not settled, or has a
+    /// standard error above tolerance and noise floor.
     pub enough: bool,
 }
 
@@ -72,7 +76,8 @@ pub struct Answer {
     pub value: [f64; 2],
     /// Its standard error.
     pub spread: [f64; 2],
-    /// Whether the motion that it was read from had settled, or has means that are steady. Else the answer may be any.
+    /// Whether the motion that it was read from had settled, or has means that are steady. Else the answer
+    /// may be any.
     pub steady: bool,
 }
 
@@ -93,28 +98,30 @@ impl Answer {
         part(0).max(part(1))
     }
 
-    /// Whether it comes from a motion that has settled, or is a mean that is known as exactly as is asked for.
+    /// Whether it comes from a motion that has settled, or is a mean that is known as exactly as is asked
+    /// for.
     pub fn known(&self, question: &Question) -> bool {
         self.steady && self.unsure(question) <= 1.0
     }
 
-    /// Whether `other` may be an answer of the same motion: of both masses no farther off than tolerance, noise floor or this many standard
-    /// errors allow.
+    /// Whether `other` may be an answer of the same motion: of both masses no farther off than tolerance,
+    /// noise floor or this many standard errors allow.
     pub fn agrees(&self, other: &Answer, question: &Question, errors: f64) -> bool {
         self.farthest(other, question, errors).is_none_or(|(ratio, _)| ratio <= 1.0)
     }
 
     /// How far it moves to `other`, the answer of the rung `at`.
     pub fn change(&self, other: &Answer, at: Model, question: &Question) -> Change {
-        // What is hardly known bears nothing out. Nor does a motion on its way somewhere widen what is allowed.
+        // What is hardly known bears nothing out. Nor does a motion on its way somewhere widen what is
+        // allowed.
         let known = self.known(question) && other.known(question);
         let (ratio, change) =
             self.farthest(other, question, if known { SAME } else { 0.0 }).unwrap_or_default();
         Change { at, change, enough: known && ratio <= 1.0 }
     }
 
-    /// The change to `other` over what is allowed, and the relative change, of the mass for which the first is larger; `None` where neither
-    /// moves. So many standard errors are allowed.
+    /// The change to `other` over what is allowed, and the relative change, of the mass for which the first
+    /// is larger; `None` where neither moves. So many standard errors are allowed.
     fn farthest(&self, other: &Answer, question: &Question, errors: f64) -> Option<(f64, f64)> {
         let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
         let far = |i: usize| {

@@ -7,11 +7,13 @@ use crate::{Event, Motion, Observable, Rig};
 use std::f64::consts::TAU;
 use vibro_record::Result;
 
-/// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles. Of others several blocks are.
+/// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles. Of
+/// others several blocks are.
 const BLOCK: u32 = 60;
 /// The multiple at most.
 const MULTIPLE: f64 = 50.0;
-/// A block lasts this part of the longest time in which free motion falls by e, so that the way to the end is seen in it.
+/// A block lasts this part of the longest time in which free motion falls by e, so that the way to the end is
+/// seen in it.
 const DECAY: f64 = 0.3;
 /// Blocks at most, and at least where a cycle holds many swings of a mass.
 const BLOCKS: (usize, usize) = (6, 64);
@@ -19,9 +21,11 @@ const BLOCKS: (usize, usize) = (6, 64);
 pub const MOST_CYCLES: f64 = BLOCK as f64 * MULTIPLE * BLOCKS.1 as f64;
 /// Blocks at most of motions whose contacts are integrated: no more than can be had in a second or so.
 pub const BRIEF: usize = 12;
-/// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five in a cycle.
+/// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five
+/// in a cycle.
 const SWINGS: f64 = 5.0 * 60.0 * 64.0;
-/// The motion has settled where what is left of its way is this part of the tolerance, and of no more than this tolerance.
+/// The motion has settled where what is left of its way is this part of the tolerance, and of no more than
+/// this tolerance.
 const SETTLED: f64 = 0.02;
 /// Of both masses, less than this part of what the larger one does is nothing.
 const NOTHING: f64 = 1e-3;
@@ -29,7 +33,8 @@ const NOTHING: f64 = 1e-3;
 const LONGEST: usize = 32;
 /// Differences below this part of the state are roundings and what integrators leave.
 const ROUNDING: f64 = 1e-11;
-/// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred steady motions less than one.
+/// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred
+/// steady motions less than one.
 const DRIFT: f64 = 2.5;
 
 /// What a motion shows.
@@ -43,7 +48,8 @@ pub struct Reading {
     pub end: End,
     /// Cycles followed.
     pub cycles: u32,
-    /// Mean over the cycles with impacts of the fastest one's approach speed in m/s, in the last block; 0 without impacts.
+    /// Mean over the cycles with impacts of the fastest one's approach speed in m/s, in the last block; 0
+    /// without impacts.
     pub speed: f64,
 }
 
@@ -69,8 +75,8 @@ pub struct Reader {
     pub block: u32,
     /// Blocks at most.
     pub blocks: usize,
-    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0 there is none. No motion without
-    /// impacts is taken as settled that may yet come nearer.
+    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0
+    /// there is none. No motion without impacts is taken as settled that may yet come nearer.
     pub clearance: Option<f64>,
 }
 
@@ -102,8 +108,8 @@ impl Reader {
         SETTLED * self.tolerance.min(SETTLED)
     }
 
-    /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of it holds still; where it does
-    /// not settle, the second half of all is averaged.
+    /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of
+    /// it holds still; where it does not settle, the second half of all is averaged.
     pub fn read(&self, motion: &mut dyn Motion) -> Result<Reading> {
         let mut blocks: Vec<Block> = Vec::with_capacity(self.blocks);
         let mut watch = Watch::new(motion);
@@ -212,18 +218,20 @@ impl Strobe<'_> {
         [0, 2].map(|i| last.iter().map(|s| s[i].hypot(s[i + 1])).fold(0.0, f64::max))
     }
 
-    /// Whether the masses, `gap` (m) apart at rest, were in contact at the end of each cycle of the last block.
+    /// Whether the masses, `gap` (m) apart at rest, were in contact at the end of each cycle of the last
+    /// block.
     fn pressed(&self, gap: f64) -> bool {
         let sizes = self.sizes();
         let noise = ROUNDING * (sizes[0] + sizes[1] + gap.abs());
         self.states[self.states.len() - self.block..].iter().all(|s| s[0] - s[2] >= gap - noise)
     }
 
-    /// How far the masses together still go, in m, where the motion repeats in `q` cycles and that is the part `fine` of what each moves at
-    /// most; `None` where it is more, or cannot be told.
+    /// How far the masses together still go, in m, where the motion repeats in `q` cycles and that is the
+    /// part `fine` of what each moves at most; `None` where it is more, or cannot be told.
     ///
-    /// What falls by the ratio ρ from one repetition to the next has dρ/(1 − ρ) of its last step d before it. Steps are the largest of a
-    /// block, and ρ is taken from those of the block before: so that neither beats nor a turning point look like the end.
+    /// What falls by the ratio ρ from one repetition to the next has dρ/(1 − ρ) of its last step d before it.
+    /// Steps are the largest of a block, and ρ is taken from those of the block before: so that neither
+    /// beats nor a turning point look like the end.
     fn left(&self, q: usize, fine: f64) -> Option<f64> {
         let end = self.states.len();
         if end < 2 * self.block + q {
@@ -270,7 +278,8 @@ fn mean_of(blocks: &[Block]) -> [f64; 2] {
     })
 }
 
-/// Whether the last of these values is the end of the way: what falls by the ratio ρ a block has ρ/(1 − ρ) of its last step before it.
+/// Whether the last of these values is the end of the way: what falls by the ratio ρ a block has ρ/(1 − ρ) of
+/// its last step before it.
 fn still(values: &[[f64; 2]], fine: f64) -> bool {
     let [.., a, b, c] = values else { return false };
     let largest = c[0].abs().max(c[1].abs());
@@ -283,13 +292,15 @@ fn still(values: &[[f64; 2]], fine: f64) -> bool {
     })
 }
 
-/// Mean of several blocks with its standard error: s²(1 + ρ)/(1 − ρ)/n, ρ being their correlation with the next one.
+/// Mean of several blocks with its standard error: s²(1 + ρ)/(1 − ρ)/n, ρ being their correlation with the
+/// next one.
 fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
     let n = values.len() as f64;
     let mut answer = Answer { steady, ..Answer::exact([0.0; 2]) };
     for i in 0..2 {
         let (mean, square, eta) = scatter(values, i);
-        // η = 2(1 − ρ). Blocks that take turns are not trusted to make the mean better than independent ones would.
+        // η = 2(1 − ρ). Blocks that take turns are not trusted to make the mean better than independent ones
+        // would.
         let rho = (1.0 - eta / 2.0).clamp(0.0, 0.99);
         answer.value[i] = mean;
         answer.spread[i] = (square / (n - 1.0) / n * (1.0 + rho) / (1.0 - rho)).sqrt();
@@ -297,8 +308,8 @@ fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
     answer
 }
 
-/// Whether successive values are nearer to each other than independent ones are: Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)² has the mean 2 and the variance
-/// 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).
+/// Whether successive values are nearer to each other than independent ones are: Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)²
+/// has the mean 2 and the variance 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).
 fn drifts(values: &[[f64; 2]]) -> bool {
     let n = values.len() as f64;
     let least = 2.0 - DRIFT * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();

@@ -40,7 +40,8 @@ impl Model {
         Model::LooseMass,
     ];
 
-    /// The name of each, and the parameters that it needs beside those of mass 1, the gap and the excitation; in their order.
+    /// The name of each, and the parameters that it needs beside those of mass 1, the gap and the excitation;
+    /// in their order.
     const TABLE: [(&'static str, &'static [Need]); 7] = [
         ("linear", &[]),
         ("closed-form", &[Need::Mass2, Need::Restitution]),
@@ -51,7 +52,8 @@ impl Model {
         ("loose-mass", &[Need::Mass2, Need::Restitution, Need::Buffer]),
     ];
 
-    /// `linear`, `closed-form`, `soft-corrected`, `restitution`, `kelvin-voigt`, `hunt-crossley` or `loose-mass`.
+    /// `linear`, `closed-form`, `soft-corrected`, `restitution`, `kelvin-voigt`, `hunt-crossley` or
+    /// `loose-mass`.
     pub fn name(self) -> &'static str {
         Model::TABLE[self as usize].0
     }
@@ -136,16 +138,16 @@ pub struct Needed {
 pub struct Rung {
     /// The model.
     pub model: Model,
-    /// Time in ns that its answer took on this machine; of models that are followed until they settle, all of it. `None` without an
-    /// answer.
+    /// Time in ns that its answer took on this machine; of models that are followed until they settle, all
+    /// of it. `None` without an answer.
     pub cost_ns: Option<f64>,
-    /// Largest change of its answer at the rungs above that answer, over the answer: at the next one, and at the next one that follows
-    /// the motion. `None` where there is none.
+    /// Largest change of its answer at the rungs above that answer, over the answer: at the next one, and at
+    /// the next one that follows the motion. `None` where there is none.
     pub error: Option<f64>,
     /// Whether its own checks pass.
     pub valid: bool,
-    /// Whether it is good enough: valid, its answer known as exactly as is asked for, and within what is allowed at the rungs above, or over all
-    /// stiffnesses of a contact of which nothing is known.
+    /// Whether it is good enough: valid, its answer known as exactly as is asked for, and within what is
+    /// allowed at the rungs above, or over all stiffnesses of a contact of which nothing is known.
     pub sufficient: bool,
     /// Whether its answer comes from a motion that has settled, or is a mean over one that does not repeat.
     pub settled: bool,
@@ -153,7 +155,8 @@ pub struct Rung {
     pub reasons: Vec<Finding>,
     /// The error that left it without an answer.
     pub refused: Option<String>,
-    /// Parameters it needs beside those of mass 1, the gap and the excitation, and whether the scene has them.
+    /// Parameters it needs beside those of mass 1, the gap and the excitation, and whether the scene has
+    /// them.
     pub needs: Vec<Needed>,
     /// Its answer: of x₁ and x₂; of impacts the same number twice.
     pub answer: Option<[f64; 2]>,

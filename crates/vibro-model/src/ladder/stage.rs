@@ -41,7 +41,8 @@ pub fn is_curved(scene: &Scene) -> bool {
     keys(scene).exponent.is_some_and(|n| n != 1.0)
 }
 
-/// The curved law that the scene states; losses that are not stated rebound with the rig's restitution at `speed` (m/s).
+/// The curved law that the scene states; losses that are not stated rebound with the rig's restitution at
+/// `speed` (m/s).
 ///
 /// # Errors
 /// If the stiffness is missing, or a number is impossible.
@@ -56,7 +57,8 @@ pub fn curved(scene: &Scene, speed: f64) -> Result<Law> {
     law.check().map(|()| law)
 }
 
-/// The contact of two curved bodies that lasts as long as this spring and damper where it is met at `speed` (m/s), and rebounds alike.
+/// The contact of two curved bodies that lasts as long as this spring and damper where it is met at `speed`
+/// (m/s), and rebounds alike.
 ///
 /// Without losses it lasts 2.9432 (5Mv²/4k)^{2/5}/v, which gives k.
 fn as_long(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
@@ -201,7 +203,8 @@ impl Stage<'_> {
         self.contact(Model::HuntCrossley, motions, curved(self.scene, speed)?)
     }
 
-    /// Curved bodies that meet for as long as the spring that is stated and rebound alike, in place of an exponent that is not stated.
+    /// Curved bodies that meet for as long as the spring that is stated and rebound alike, in place of an
+    /// exponent that is not stated.
     pub fn curved_alike(&self, motions: &Motions) -> Found {
         let speed = motions.speed()?;
         let stiffness = keys(self.scene).stiffness.ok_or_else(|| Finding::note("impacts-missing"))?;
@@ -211,7 +214,8 @@ impl Stage<'_> {
         Ok(Rung::answering(reading.answer, cost, false, vec![reason]))
     }
 
-    /// A contact whose law is known: followed the way the rig came, else from where the motion with impacts at once had settled and from rest.
+    /// A contact whose law is known: followed the way the rig came, else from where the motion with impacts
+    /// at once had settled and from rest.
     fn contact(&self, model: Model, motions: &mut Motions, law: Law) -> Found {
         if let Some(way) = &motions.way {
             let (reading, cost) = self.follow(motions, way.with(law)?)?;
@@ -229,7 +233,8 @@ impl Stage<'_> {
         Ok(found)
     }
 
-    /// What a contact of this law shows, from where the motion with impacts at once had settled, and the time in ns that it took.
+    /// What a contact of this law shows, from where the motion with impacts at once had settled, and the time
+    /// in ns that it took.
     pub fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, f64)> {
         let end = &motions.end;
         self.follow(motions, Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?)

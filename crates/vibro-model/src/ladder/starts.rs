@@ -18,7 +18,8 @@ const STARTS: u32 = 8;
 /// Their size at least and at most, in units of the gap or of what mass 1 does alone, the larger.
 const SIZES: (f64, f64) = (1.0, 6.0);
 
-/// The way to an excitation after its frequency rose or fell to it: from where only one motion is known, in steps of 1 %.
+/// The way to an excitation after its frequency rose or fell to it: from where only one motion is known, in
+/// steps of 1 %.
 #[derive(Debug)]
 pub struct Way {
     rig: Rig,
@@ -69,8 +70,8 @@ impl Way {
     }
 }
 
-/// Whether the motion without impacts and one with impacts are both possible. One that has lost its stability counts: round it lies
-/// another motion with impacts, as behind a flip or a Neimark–Sacker loss.
+/// Whether the motion without impacts and one with impacts are both possible. One that has lost its stability
+/// counts: round it lies another motion with impacts, as behind a flip or a Neimark–Sacker loss.
 pub fn several(found: &Orbits) -> bool {
     found.no_impact.possible && found.orbits.iter().any(|o| o.validity.admissible)
 }
@@ -92,13 +93,14 @@ fn outset(rig: &Rig, excitation: &Excitation) -> Result<State> {
 pub struct Followed {
     /// Those that were.
     pub states: u32,
-    /// All that there are. Fewer are followed once a second motion is found, where it takes too many cycles, and where some lead beyond what can
-    /// be followed.
+    /// All that there are. Fewer are followed once a second motion is found, where it takes too many cycles,
+    /// and where some lead beyond what can be followed.
     pub of: u32,
 }
 
-/// States with the phase 0 of the excitation, of sizes that rise from one to the next and in directions spread evenly (the additive recurrence
-/// of the generalised golden ratio, M. Roberts, 2018). Masses that would overlap are mirrored at their contact.
+/// States with the phase 0 of the excitation, of sizes that rise from one to the next and in directions
+/// spread evenly (the additive recurrence of the generalised golden ratio, M. Roberts, 2018). Masses that
+/// would overlap are mirrored at their contact.
 pub fn starts(rig: &Rig, excitation: &Excitation) -> impl Iterator<Item = (State, f64)> {
     let unit = no_impact(rig, excitation).map_or(0.0, |free| free.largest).max(rig.gap.abs());
     let omega = TAU * excitation.frequency();

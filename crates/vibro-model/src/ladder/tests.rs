@@ -50,8 +50,8 @@ fn change(choice: &Choice, from: Model, to: Model) -> f64 {
     choice.rung(from).changes.iter().find(|c| c.at == to).unwrap().change
 }
 
-/// Impact speed of scene B from the quadratic (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0 with C + t*/(M(1+R)) in the place of C (Babitsky's
-/// periodic Green's functions; no acceleration within the contact).
+/// Impact speed of scene B from the quadratic (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0 with C + t*/(M(1+R)) in
+/// the place of C (Babitsky's periodic Green's functions; no acceleration within the contact).
 fn plain_speed(delay: f64) -> f64 {
     let rig = Rig::thesis();
     let (omega, period) = (TAU * hz(2.1), 1.0 / hz(2.1));
@@ -69,12 +69,13 @@ fn scene_b_takes_the_corrected_closed_form() {
     let choice = scene_b(Some(1e6));
     assert_eq!(choice.chosen, Some(Model::SoftCorrected));
     assert!(choice.rung(Model::ClosedForm).valid && !choice.rung(Model::Linear).valid);
-    // The delay of the contact alone moves the speed by −20.7 %, which is known independently to its last digit.
+    // The delay of the contact alone moves the speed by −20.7 %, which is known independently to its last
+    // digit.
     let delay = Compliance::new(&Rig::thesis(), 1e6, None).unwrap().delay;
     let plain = plain_speed(delay) / plain_speed(0.0) - 1.0;
     assert!((plain + 0.207).abs() < 5e-4, "{plain}");
-    // The correction also takes the acceleration within the contact into account: a change of the order of the share in contact,
-    // 0.74 %, of the speed, and less than half of that.
+    // The correction also takes the acceleration within the contact into account: a change of the order of
+    // the share in contact, 0.74 %, of the speed, and less than half of that.
     let moved = change(&choice, Model::ClosedForm, Model::SoftCorrected);
     assert!((moved - plain).abs() < 0.0037, "{moved} {plain}");
     // Audit by the motion itself: promised within 0.3 %.
@@ -301,7 +302,8 @@ fn a_gap_that_is_hardly_known_lets_no_mass_stay_clear() {
 
 #[test]
 fn what_is_good_enough_along_an_axis_is_so_at_each_point() {
-    // From one motion with one impact a cycle to the one without: each has its own closed form, and neither holds on the other side.
+    // From one motion with one impact a cycle to the one without: each has its own closed form, and neither
+    // holds on the other side.
     let question = Question { history: Some(Direction::Down), ..Question::new(Observable::Fundamental) };
     let over =
         |stiffness, points| choose_over(&scene(0.3, Some(stiffness)), 9.0, 14.0, points, &question).unwrap();
@@ -343,7 +345,8 @@ fn a_motion_on_its_way_widens_nothing() {
     let enough = |a: Answer, b: Answer| a.change(&b, Model::KelvinVoigt, &question).enough;
     // 4 % apart, standard errors of 1.5 %, 2.1 % together: no difference is told where the means are steady.
     assert!(enough(of(1.0, 0.015, true), of(1.04, 0.015, true)));
-    // Nor is anything else told where they are known no better than to 3 % or a third: not that they agree within 2 %.
+    // Nor is anything else told where they are known no better than to 3 % or a third: not that they agree
+    // within 2 %.
     for spread in [0.03, 0.3] {
         assert!(!enough(of(1.0, spread, true), of(1.0, 0.0, true)));
         assert!(!enough(of(1.0, 0.0, true), of(1.0, spread, true)));
@@ -356,7 +359,8 @@ fn a_motion_on_its_way_widens_nothing() {
         // Nor does equality tell anything: both may have left from the same state.
         assert!(!enough(of(1.0, 0.0, a), of(1.0, 0.0, b)));
     }
-    // Hardly damped near its resonance the rig takes thousands of cycles to the gap and does not come to rest again.
+    // Hardly damped near its resonance the rig takes thousands of cycles to the gap and does not come to rest
+    // again.
     let rig = Rig { c1: 1e-3, c2: 1e-3, ..Rig::thesis() };
     let excitation = Some(Excitation::Sine(Sine { force: 4.272_235_95e-5, frequency: 5.230_365_15 }));
     let slow = Scene { rig, excitation, ..scene(0.1, Some(1e9)) };
@@ -421,7 +425,8 @@ fn impossible_questions_are_named() {
 
 #[test]
 fn a_mean_that_is_hardly_known_is_not_enough() {
-    // Without losses the motion never repeats; its mean after some thousand cycles is known to more than 1 %, and less than 20 %.
+    // Without losses the motion never repeats; its mean after some thousand cycles is known to more than 1 %,
+    // and less than 20 %.
     let rig = Rig { restitution: 1.0, c1: 0.0, c2: 0.0, ..Rig::thesis() };
     let asked = |tolerance: f64| {
         let question =

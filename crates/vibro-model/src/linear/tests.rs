@@ -68,7 +68,8 @@ fn a_mode_is_the_matrix_exponential_at_any_damping() {
                 let expected: [f64; 4] =
                     std::array::from_fn(|i| y[i] + (0..5).map(|j| e[i][j] * y[j]).sum::<f64>());
                 let found = fly_far(&mode, start, t);
-                // In the norm of max(s|x|, |v|), 0.5 + s·2 mm: some 30 squarings of the oracle, each with a few roundings.
+                // In the norm of max(s|x|, |v|), 0.5 + s·2 mm: some 30 squarings of the oracle, each with a
+                // few roundings.
                 let s = mode.rate;
                 let size = (0.5 + 3e-3 * s) * f64::max(1.0, turns);
                 let tolerance = 200.0 * f64::EPSILON * size;

@@ -25,7 +25,8 @@ fn cells_are_the_simulation_and_the_orbit() {
         let mut motion = Simulation::new(&rig, &sine).unwrap();
         let Ok(long) = regime(&mut motion, 4000, 200) else { continue };
         if let (true, Regime::Periodic { cycles, .. }) = (long.settled, long.regime) {
-            // What has settled after 4000 cycles may not yet after 200; a pattern named must be the right one.
+            // What has settled after 4000 cycles may not yet after 200; a pattern named must be the right
+            // one.
             if cell.regime != Some(Regime::Irregular) {
                 assert_eq!(cell.regime, Some(long.regime), "{rig:?} {sine:?}");
                 let orbit = PeriodicOrbit::from_strikes(&rig, &sine, cycles, &long.strikes).unwrap();

@@ -30,7 +30,8 @@ fn exponential(rig: &Rig, t: f64) -> [[f64; 2]; 2] {
     (0..10).fold(sum, |e, _| times(e, e))
 }
 
-/// A sweep over the impulse is z ← e^{AT}(z + (0, J/m₁)), J being that of the step to which the cycle belongs.
+/// A sweep over the impulse is z ← e^{AT}(z + (0, J/m₁)), J being that of the step to which the cycle
+/// belongs.
 fn swept<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
     let rig = Rig::thesis();
     for frequency in FREQUENCIES {
@@ -43,8 +44,8 @@ fn swept<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
             let (mut z, mut steps): ([f64; 2], _) = ([0.0, 0.0], 0);
             let mut compare = |motion: &dyn Motion, impulse: Option<f64>| {
                 let State { x1, v1, x2, v2 } = motion.state();
-                // Some 60 cycles, each with a few roundings of at most 0.1 mm and 4 mm/s (1e-20 m and 1e-18 m/s), the exponential's
-                // ten squarings with a relative 1e-13.
+                // Some 60 cycles, each with a few roundings of at most 0.1 mm and 4 mm/s (1e-20 m and 1e-18
+                // m/s), the exponential's ten squarings with a relative 1e-13.
                 let close = (x1 - z[0]).abs() < 1e-17 + 1e-12 * z[0].abs().max(1e-5)
                     && (v1 - z[1]).abs() < 1e-15 + 1e-12 * z[1].abs().max(1e-4);
                 assert!(close && x2 == 0.0 && v2 == 0.0, "{frequency} Hz, step {steps}: {x1} {v1} {z:?}");
@@ -89,7 +90,8 @@ fn resumed<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
                 let mut second = make(&rig, &excitation, first.state(), first.phase());
                 second.advance((3.0 - stop) / frequency, &mut |_| {}).unwrap();
                 let (a, b) = (whole.state(), second.state());
-                // Roundings of 1 mm and 0.1 m/s, enlarged by some impacts in three cycles; an impulse is worth 8 mm/s.
+                // Roundings of 1 mm and 0.1 m/s, enlarged by some impacts in three cycles; an impulse is
+                // worth 8 mm/s.
                 let close = (a.x1 - b.x1).abs() < 1e-13 && (a.v1 - b.v1).abs() < 1e-10;
                 assert!(close && (a.v2 - b.v2).abs() < 1e-10, "{excitation:?} {stop}: {a:?} {b:?}");
             }

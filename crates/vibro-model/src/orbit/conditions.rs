@@ -9,8 +9,8 @@ use vibro_record::{Error, Result};
 /// The most swings of a mass that a period may hold.
 const MOST_SWINGS: f64 = 5e4;
 
-/// With y the steady motion of mass 1 alone, the masses meet where y = Δ + JC and part as the impact law says where ẏ = JP (Babitsky,
-/// *Theory of Vibro-Impact Systems* (1998), periodic Green's functions).
+/// With y the steady motion of mass 1 alone, the masses meet where y = Δ + JC and part as the impact law says
+/// where ẏ = JP (Babitsky, *Theory of Vibro-Impact Systems* (1998), periodic Green's functions).
 #[derive(Debug, Clone, Copy)]
 pub struct Conditions {
     pub rig: Rig,
@@ -42,8 +42,8 @@ pub struct Root {
 }
 
 impl Conditions {
-    /// Conditions of one impact in `cycles` cycles at `frequency` (Hz), each `delay` (s) after the first touch: the ways then overlap by
-    /// vᵣ times it.
+    /// Conditions of one impact in `cycles` cycles at `frequency` (Hz), each `delay` (s) after the first
+    /// touch: the ways then overlap by vᵣ times it.
     ///
     /// # Errors
     /// If `cycles` is 0, the period holds too many swings, or an undamped mass meets its own period.

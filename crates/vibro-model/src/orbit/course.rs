@@ -43,7 +43,8 @@ impl Course {
 
     /// How far both masses move, and every smallest gap inside the period, the impact left out.
     pub fn survey(&self) -> Survey {
-        // What lies nearer to the impact than this is the impact itself (without rebound the gap starts at zero rate).
+        // What lies nearer to the impact than this is the impact itself (without rebound the gap starts at
+        // zero rate).
         let margin = 1e-9 * self.period;
         let inside = |t: f64| t > margin && t < self.period - margin;
         let mut survey = Survey { ranges: [(f64::INFINITY, f64::NEG_INFINITY); 2], closest: None };

@@ -4,7 +4,8 @@ use crate::{Green, NoImpact};
 use vibro_math::Oscillator;
 use vibro_record::Result;
 
-/// The steady motion, piece by piece free: during the pulse about f/k₁, after it about 0. An impulse is a pulse of no width.
+/// The steady motion, piece by piece free: during the pulse about f/k₁, after it about 0. An impulse is a
+/// pulse of no width.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
     pub oscillator: Oscillator,
@@ -114,7 +115,8 @@ fn ramp(oscillator: &Oscillator, width: f64, c: f64, s: f64) -> f64 {
     if omega2.sqrt() * width > 0.5 || b * width > 0.25 {
         return (1.0 - c - b * s) / omega2;
     }
-    // S = Σ sₙtⁿ with s₀ = 0, s₁ = 1, (n + 1)(n + 2)sₙ₊₂ = −2b(n + 1)sₙ₊₁ − Ω²sₙ. Terms fall faster than 0.5ⁿ/n!.
+    // S = Σ sₙtⁿ with s₀ = 0, s₁ = 1, (n + 1)(n + 2)sₙ₊₂ = −2b(n + 1)sₙ₊₁ − Ω²sₙ. Terms fall faster than
+    // 0.5ⁿ/n!.
     let (mut before, mut term, mut sum) = (0.0, width, 0.0);
     for n in 1..20_u32 {
         let n = f64::from(n);

@@ -14,7 +14,8 @@ fn wall() -> Rig {
 
 #[test]
 fn an_impact_oscillator_without_losses_has_its_textbook_impulse() {
-    // Undamped, R = 1: x = A cos ωt at φ = 0 or π less J times Green's function cot(πΩ/ω)/(2mΩ), so J = 2mΩ tan(πΩ/ω)(±|A| − Δ).
+    // Undamped, R = 1: x = A cos ωt at φ = 0 or π less J times Green's function cot(πΩ/ω)/(2mΩ), so J = 2mΩ
+    // tan(πΩ/ω)(±|A| − Δ).
     let rig = Rig { c1: 0.0, restitution: 1.0, ..wall() };
     let natural = (rig.k1 / rig.m1).sqrt();
     for nu in [0.7, 1.3, 1.72, 2.4] {
@@ -57,7 +58,8 @@ fn a_very_heavy_mass_is_a_wall() {
     }
 }
 
-/// Impulse, phase and approach speed of the last impact of a simulation of the `excitation` after `settle` seconds.
+/// Impulse, phase and approach speed of the last impact of a simulation of the `excitation` after `settle`
+/// seconds.
 fn settled(rig: &Rig, excitation: &Excitation, start: State, phase: f64, settle: f64) -> crate::Impact {
     let mut motion = Simulation::from_state(rig, excitation, start, phase).unwrap();
     let mut last = None;
@@ -99,7 +101,8 @@ fn simulations_stay_on_stable_orbits_of_every_excitation() {
                         start.v1 += 1e-6;
                         let phase = orbit.force_phase + TAU * f64::from(cycles) * 0.47;
                         let impact = settled(rig, excitation, start, phase, 800.0 / frequency);
-                        // Rounding of some 10 mm and 1 m/s, enlarged by 1/(1 − 0.97) and by the reciprocal of the speed.
+                        // Rounding of some 10 mm and 1 m/s, enlarged by 1/(1 − 0.97) and by the reciprocal of
+                        // the speed.
                         assert!(
                             (impact.impulse / orbit.impulse - 1.0).abs() < 1e-10,
                             "{excitation:?} {cycles}: {impact:?} {orbit:?}"
@@ -122,7 +125,8 @@ fn the_backbone_is_the_limit_of_small_losses_and_forces() {
         let frequency = at(&rig, nu);
         let Some(free) = backbone(&rig, frequency).unwrap() else { continue };
         met += 1;
-        // Small losses and a force in balance with them leave both roots near the free motion; their middle to second order.
+        // Small losses and a force in balance with them leave both roots near the free motion; their middle
+        // to second order.
         let slight = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..rig };
         let pair = orbits(&slight, 1e-7, frequency).unwrap().orbits;
         let middle = f64::midpoint(pair[0].impulse, pair[1].impulse);
@@ -151,7 +155,8 @@ fn the_backbone_is_the_limit_of_small_losses_and_forces() {
     assert!(backbone(&rig, -1.0).is_err() && backbone(&rig, 1e-9).is_err());
 }
 
-/// The rig with a contact of spring and damper that cannot pull, by Runge and Kutta's fourth-order steps that end at touch and release.
+/// The rig with a contact of spring and damper that cannot pull, by Runge and Kutta's fourth-order steps that
+/// end at touch and release.
 struct Slow<'a> {
     rig: &'a Rig,
     contact: Compliance,

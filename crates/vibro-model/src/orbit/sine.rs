@@ -16,7 +16,8 @@ struct Quadratic {
     a: f64,
     /// ΔC.
     half: f64,
-    /// Square of the half distance of the roots times a, written so that it does not cancel; negative beyond the fold.
+    /// Square of the half distance of the roots times a, written so that it does not cancel; negative beyond
+    /// the fold.
     discriminant: f64,
     /// Product of the roots.
     product: f64,
@@ -92,19 +93,22 @@ pub fn orbits(conditions: &Conditions, steady: &Steady, sine: &Sine) -> Vec<Orbi
     [(larger, true), (smaller, false)].map(one).into()
 }
 
-/// The orbit of the larger root as a spectrum shows it, without its verdicts: for fits, which ask for it a million times.
+/// The orbit of the larger root as a spectrum shows it, without its verdicts: for fits, which ask for it a
+/// million times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown {
     /// Impulse J in N s.
     pub impulse: f64,
     /// Amplitudes of x₁ and x₂ in m at the excitation frequency.
     pub amplitude: [f64; 2],
-    /// Whether the orbit exists: its root is real and J > 0. Beyond the fold the numbers are those of the place where the roots would
-    /// have met, so that they change continuously; whether the orbit is admissible and stable, [`super::orbits`] tells.
+    /// Whether the orbit exists: its root is real and J > 0. Beyond the fold the numbers are those of the
+    /// place where the roots would have met, so that they change continuously; whether the orbit is
+    /// admissible and stable, [`super::orbits`] tells.
     pub exists: bool,
 }
 
-/// The orbit of the larger root with one impact a cycle under a sine force; X₁ = Ae^{iφ} − (2J/T)L₁, X₂ = (2J/T)L₂.
+/// The orbit of the larger root with one impact a cycle under a sine force; X₁ = Ae^{iφ} − (2J/T)L₁, X₂ =
+/// (2J/T)L₂.
 ///
 /// # Errors
 /// As [`super::orbits`].
@@ -127,11 +131,11 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<Shown> {
     })
 }
 
-/// The motion with one impact a cycle at `frequency` (Hz) that the rig would keep up without force, dampers and losses in the impact;
-/// `None` where there is none.
+/// The motion with one impact a cycle at `frequency` (Hz) that the rig would keep up without force, dampers
+/// and losses in the impact; `None` where there is none.
 ///
-/// Without losses P = 0, any size goes with the impact law, and the masses meet where Δ + JC = 0 (Babitsky, *Theory of Vibro-Impact
-/// Systems* (1998)). Resonances of the driven rig lie along this curve.
+/// Without losses P = 0, any size goes with the impact law, and the masses meet where Δ + JC = 0 (Babitsky,
+/// *Theory of Vibro-Impact Systems* (1998)). Resonances of the driven rig lie along this curve.
 ///
 /// # Errors
 /// If a parameter is impossible, or the frequency is a whole part of a natural frequency.
@@ -175,7 +179,8 @@ mod tests {
                 continue;
             };
             assert_eq!(shown.exists, orbit.validity.exists);
-            // The phase goes through an angle and back there: rounded to ε, and x₁ is a difference of parts that are up to so much larger.
+            // The phase goes through an angle and back there: rounded to ε, and x₁ is a difference of parts
+            // that are up to so much larger.
             for (a, x) in shown.amplitude.iter().zip(orbit.fundamental) {
                 let parts = 1.0 + all.no_impact.amplitude / x.norm();
                 assert!((a / x.norm() - 1.0).abs() < 64.0 * f64::EPSILON * parts, "{frequency}: {a} {x}");

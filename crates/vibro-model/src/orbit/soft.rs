@@ -23,21 +23,25 @@ pub struct Compliance {
     pub restitution: f64,
     /// Duration of the contact in s.
     pub duration: f64,
-    /// Time t* in s by which an impact without duration would follow the first touch, to leave the masses on the same ways.
+    /// Time t* in s by which an impact without duration would follow the first touch, to leave the masses on
+    /// the same ways.
     pub delay: f64,
-    /// Change of the restitution in s by the acceleration a that presses the masses together, per a/v: `(1 − R)t_c − 2d_r/v`.
+    /// Change of the restitution in s by the acceleration a that presses the masses together, per a/v: `(1 −
+    /// R)t_c − 2d_r/v`.
     #[serde(skip)]
     pressed: f64,
 }
 
 impl Compliance {
-    /// Contact of stiffness k₃ (N/m) on a rig; without `damping` (N s/m) the damper is the one that gives the rig's restitution.
+    /// Contact of stiffness k₃ (N/m) on a rig; without `damping` (N s/m) the damper is the one that gives the
+    /// rig's restitution.
     ///
-    /// With ψ = asin ζ: `t_c = (π − 2ψ)/ω_d`, `R = e^{−ζω₀t_c}`; the masses part at the indentation `d_r = vR sin(2ψ)/ω_d`, where the
-    /// force vanishes, and `t* = (d_r/v + Rt_c)/(1 + R)`.
+    /// With ψ = asin ζ: `t_c = (π − 2ψ)/ω_d`, `R = e^{−ζω₀t_c}`; the masses part at the indentation `d_r = vR
+    /// sin(2ψ)/ω_d`, where the force vanishes, and `t* = (d_r/v + Rt_c)/(1 + R)`.
     ///
     /// # Errors
-    /// If stiffness or damping are impossible, the damper is critical or more, or no damper gives the rig's restitution.
+    /// If stiffness or damping are impossible, the damper is critical or more, or no damper gives the rig's
+    /// restitution.
     pub fn new(rig: &Rig, stiffness: f64, damping: Option<f64>) -> Result<Compliance> {
         rig.check()?;
         Law::KelvinVoigt { stiffness, damping: damping.unwrap_or(0.0) }.check()?;
@@ -77,7 +81,8 @@ pub struct Softened {
     pub timing: f64,
     /// Approach speed in m/s at the first touch.
     pub approach_velocity: f64,
-    /// Restitution in m/s over m/s of the impact without duration: that of the contact, changed by what presses the masses together.
+    /// Restitution in m/s over m/s of the impact without duration: that of the contact, changed by what
+    /// presses the masses together.
     pub restitution: f64,
     /// Largest minus smallest x₁ and x₂ in m; the way within the contact is not in it.
     pub peak_to_peak: [f64; 2],
@@ -89,15 +94,17 @@ pub struct Softened {
     pub share: f64,
 }
 
-/// What `compliance` changes in each of the orbits `found` of this rig and excitation; `None` where the orbit has no counterpart left, or only one whose restitution
-/// is none (above 1 or below 0).
+/// What `compliance` changes in each of the orbits `found` of this rig and excitation; `None` where the orbit
+/// has no counterpart left, or only one whose restitution is none (above 1 or below 0).
 ///
-/// The contact's force f over the masses' reduced one gives I = ∫f dt at the time t* = ∫tf dt/I after the touch: an impact without
-/// duration then and of that size leaves the masses on the same ways. At that time the ways already overlap by vt*, so C + t*/(M(1+R))
-/// takes the place of C = χ₁(0) + χ₂(0). An acceleration a that presses the masses together (to first order) lets them meet at the speed
-/// v + at* then, and makes the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ = M(c₁/m₁² + c₂/m₂²): between
-/// touch and parting the two ways without duration lose `κt_c` of it, while in the contact, where it turns round, its envelope falls by
-/// `κt_c/2`; so `R(1 + κt_c/2)` takes the place of R, and a is what presses without the dampers.
+/// The contact's force f over the masses' reduced one gives I = ∫f dt at the time t* = ∫tf dt/I after the
+/// touch: an impact without duration then and of that size leaves the masses on the same ways. At that time
+/// the ways already overlap by vt*, so C + t*/(M(1+R)) takes the place of C = χ₁(0) + χ₂(0). An acceleration
+/// a that presses the masses together (to first order) lets them meet at the speed v + at* then, and makes
+/// the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ =
+/// M(c₁/m₁² + c₂/m₂²): between touch and parting the two ways without duration lose `κt_c` of it, while in
+/// the contact, where it turns round, its envelope falls by `κt_c/2`; so `R(1 + κt_c/2)` takes the place of
+/// R, and a is what presses without the dampers.
 ///
 /// # Errors
 /// If the contact lasts longer than `LONGEST_CONTACT` of the period.
@@ -127,7 +134,8 @@ pub fn softened(
         let drag = rig.reduced_mass() * (first + second);
         // Each round leaves about the share in contact of the change that is left: 0.025⁸ is nothing.
         for _ in 0..8 {
-            // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by half of that.
+            // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by
+            // half of that.
             let turned = rig.restitution * (1.0 + 0.5 * drag * compliance.duration);
             let [_, steady] = pressing(&at, drag);
             let changed = turned + compliance.pressed * steady / at.approach_velocity;
@@ -156,8 +164,8 @@ pub fn softened(
     found.orbits.iter().map(soften).collect()
 }
 
-/// Accelerations in m/s² that would press the masses together if they did not meet: just before the impact, and that part of it
-/// that their approach, slowed by `drag` (1/s), does not change.
+/// Accelerations in m/s² that would press the masses together if they did not meet: just before the impact,
+/// and that part of it that their approach, slowed by `drag` (1/s), does not change.
 fn pressing(orbit: &Orbit, drag: f64) -> [f64; 2] {
     let (before, after) = orbit.course.rates();
     let [first, last] = [before, after].map(|rate| rate[1] - rate[3]);

@@ -71,7 +71,8 @@ fn both_masses_meet_and_part_as_the_impact_law_says() {
 #[test]
 fn work_of_the_force_is_what_dampers_and_impact_take() {
     each(|rig, excitation, orbit| {
-        // Simpson errs by (hβ)⁴/180 of the whole, β = 192/s for the square of the fastest decay, h below 0.1 ms.
+        // Simpson errs by (hβ)⁴/180 of the whole, β = 192/s for the square of the fastest decay, h below 0.1
+        // ms.
         let n = 10_000_u32;
         let omega = TAU * orbit.frequency;
         let (mut work, mut loss, mut put_in, mut before) = (0.0, 0.0, 0.0, None::<State>);
@@ -113,8 +114,8 @@ fn work_of_the_force_is_what_dampers_and_impact_take() {
 fn lines_are_the_dft_of_the_trace() {
     each(|rig, excitation, orbit| {
         let n = 4096_u32;
-        // Kinks of J/m (and F/m) in slope: harmonics fall like 2J/(T m ω²), and those near multiples of 4096 fold; steps of the
-        // acceleration count less.
+        // Kinks of J/m (and F/m) in slope: harmonics fall like 2J/(T m ω²), and those near multiples of 4096
+        // fold; steps of the acceleration count less.
         let kick = match excitation {
             Excitation::Impulse(train) => train.impulse.abs() * f64::from(orbit.cycles),
             Excitation::Pulse(pulse) => pulse.force.abs() * pulse.width * f64::from(orbit.cycles),
@@ -175,8 +176,8 @@ fn peaks_and_gaps_are_those_of_a_dense_trace() {
 
 #[test]
 fn pulses_are_impulses_summed() {
-    // The steady motion under a pulse is the Green's function summed over it: 10-point Gauss-Legendre in 8 parts of the pulse, with
-    // error (ΩΔ)²⁰/(20!…), far below rounding.
+    // The steady motion under a pulse is the Green's function summed over it: 10-point Gauss-Legendre in 8
+    // parts of the pulse, with error (ΩΔ)²⁰/(20!…), far below rounding.
     let nodes = [
         (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
         (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
@@ -203,7 +204,8 @@ fn pulses_are_impulses_summed() {
                     }
                 }
                 let [y, dy, _] = response.at(at);
-                // Rounding of the Green's function, enlarged towards a period (1 − e^{−bT} ≥ 0.06 here; undamped sin λT/2 = 0.3).
+                // Rounding of the Green's function, enlarged towards a period (1 − e^{−bT} ≥ 0.06 here;
+                // undamped sin λT/2 = 0.3).
                 let size = force * width / 0.125 * 1e3 * f64::EPSILON;
                 assert!(
                     (y - x).abs() * omega < size && (dy - v).abs() < size,
@@ -233,7 +235,8 @@ fn a_vanishing_pulse_is_an_impulse() {
         for width in [1e-3, 1e-4] {
             let pulse = Pulses { force: 0.02 / width, width, frequency };
             let mut pulses = orbits_of(&rig, &Excitation::Pulse(pulse), 1).unwrap().orbits;
-            // Where the impulse makes G jump across zero, the pulse makes it pass through: an impact during the pulse.
+            // Where the impulse makes G jump across zero, the pulse makes it pass through: an impact during
+            // the pulse.
             pulses.retain(|orbit| orbit.timing > width);
             assert_eq!(train.len(), pulses.len(), "ν {nu}");
             let mut error = 0.0_f64;
@@ -345,7 +348,8 @@ fn golden_numbers_of_the_clapping_scene() {
     let rig = Rig::thesis();
     let found = orbits(&rig, 0.5, at(&rig, 2.1)).unwrap();
     let [first, second] = [&found.orbits[0], &found.orbits[1]];
-    // ν goes through a frequency in Hz and back, three roundings, and J changes by some 30 % per percent of ν.
+    // ν goes through a frequency in Hz and back, three roundings, and J changes by some 30 % per percent of
+    // ν.
     let tolerance = 100.0 * f64::EPSILON;
     assert!((first.impulse / 0.026_238_325_207_374_714 - 1.0).abs() < tolerance, "{:.17}", first.impulse);
     assert!((second.impulse / -0.008_944_428_353_726_752 - 1.0).abs() < tolerance);
@@ -382,8 +386,9 @@ fn golden_losses_of_stability() {
     assert!((deep.validity.min_gap + 6.2e-3).abs() < 0.05e-3 && !deep.validity.admissible);
 }
 
-/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1 with w = z + 1/z from w² − aw + b − 2. All lie on the
-/// circle where both w are real and within ±2; else one lies outside. None is ever stable.
+/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1 with w = z + 1/z from w² − aw
+/// + b − 2. All lie on the circle where both w are real and within ±2; else one lies outside. None is ever
+/// stable.
 #[test]
 fn a_rig_without_losses_is_neutral_or_unstable() {
     let rig = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..Rig::thesis() };
@@ -435,7 +440,8 @@ fn the_clapping_peak_is_where_it_was_found() {
 
 #[test]
 fn grazing_distance_is_the_change_of_gap_that_grazes() {
-    // The positive root vanishes at Δ = A where C > 0, as at ν = 1: near there the first-order distance is A − Δ.
+    // The positive root vanishes at Δ = A where C > 0, as at ν = 1: near there the first-order distance is A
+    // − Δ.
     let rig = Rig::thesis();
     let frequency = at(&rig, 1.0);
     let amplitude = orbits(&rig, 0.1, frequency).unwrap().no_impact.amplitude;
@@ -449,8 +455,8 @@ fn grazing_distance_is_the_change_of_gap_that_grazes() {
 
 #[test]
 fn a_motion_that_a_little_more_gap_makes_unstable_is_not_robust() {
-    // To first order its impact grazes 38 mm away, but it has lost its stability when the gap is 1.6 mm wider (found by solving at gaps
-    // 0.01 mm apart).
+    // To first order its impact grazes 38 mm away, but it has lost its stability when the gap is 1.6 mm wider
+    // (found by solving at gaps 0.01 mm apart).
     let rig =
         Rig { m1: 0.5, m2: 1.0, k1: 3e4, k2: 8e4, c1: 10.0, c2: 20.0, restitution: 0.5, ..Rig::thesis() };
     let orbit = orbits(&rig, 30.0, 45.0).unwrap().orbits.remove(0);

@@ -8,10 +8,12 @@ use crate::{Excitation, Flight};
 use std::f64::consts::TAU;
 use vibro_math::root::bracketed;
 
-/// Orbits under the excitation whose steady motion is `response`, in the order of their timing τ in 0 < τ < T.
+/// Orbits under the excitation whose steady motion is `response`, in the order of their timing τ in 0 < τ <
+/// T.
 ///
-/// Both conditions together, y(τ) = Δ + JC and ẏ(τ) = JP, ask for G(τ) = P(y − Δ) − Cẏ = 0. In each piece Py − Cẏ is a free motion of
-/// mass 1 itself, so its stationary points are known in closed form, and between two of them lies one root at most.
+/// Both conditions together, y(τ) = Δ + JC and ẏ(τ) = JP, ask for G(τ) = P(y − Δ) − Cẏ = 0. In each piece Py
+/// − Cẏ is a free motion of mass 1 itself, so its stationary points are known in closed form, and between two
+/// of them lies one root at most.
 pub fn orbits(conditions: &Conditions, response: &Response, excitation: &Excitation) -> Vec<Orbit> {
     let mut orbits = Vec::new();
     let Conditions { c, p, rig, .. } = *conditions;
@@ -39,7 +41,8 @@ pub fn orbits(conditions: &Conditions, response: &Response, excitation: &Excitat
     orbits
 }
 
-/// The steady motion less that of the impacts, from an impact that follows the beginning of the pulse by `delay` (s).
+/// The steady motion less that of the impacts, from an impact that follows the beginning of the pulse by
+/// `delay` (s).
 fn course(conditions: &Conditions, response: &Response, impulse: f64, delay: f64) -> Course {
     let (period, gap) = (conditions.period(), conditions.rig.gap);
     let oscillators = conditions.rig.oscillators();

@@ -32,12 +32,13 @@ impl Flight {
         [if signal == Signal::Gap { self.gap + value } else { value }, slope, bend]
     }
 
-    /// Visits every smallest and largest value of x₁, x₂ and the gap inside `0..duration`: its time, its value, and the signal's
-    /// acceleration there.
+    /// Visits every smallest and largest value of x₁, x₂ and the gap inside `0..duration`: its time, its
+    /// value, and the signal's acceleration there.
     ///
-    /// The rates are carried over a grid fine against the motion by the matrices of one step. Between two points with the rates f and
-    /// slopes s lies no zero where parabolas of the largest curvature M cannot bring both ends down to it, one where f changes its sign
-    /// and s cannot; what is neither is halved. Pairs closer than a millionth of the duration may be taken for none: between them the
+    /// The rates are carried over a grid fine against the motion by the matrices of one step. Between two
+    /// points with the rates f and slopes s lies no zero where parabolas of the largest curvature M
+    /// cannot bring both ends down to it, one where f changes its sign and s cannot; what is neither is
+    /// halved. Pairs closer than a millionth of the duration may be taken for none: between them the
     /// signal changes by less than M(1e-6 duration)³.
     pub(crate) fn each_turn(&self, duration: f64, mut visit: impl FnMut(Signal, f64, f64, f64)) {
         let own = self.free.map(|part| part.oscillator.omega2().sqrt());
@@ -143,7 +144,8 @@ struct Part {
     duration: f64,
 }
 
-/// Rates and slopes of both masses at a point of the grid, with bounds on the curvature of the rates for all later times.
+/// Rates and slopes of both masses at a point of the grid, with bounds on the curvature of the rates for all
+/// later times.
 #[derive(Clone, Copy)]
 struct Rates {
     rate: [f64; 2],
@@ -168,7 +170,8 @@ impl Carry {
     }
 }
 
-/// How far a value f > 0 with this slope stays above zero, whatever it does with a curvature of up to `limit`.
+/// How far a value f > 0 with this slope stays above zero, whatever it does with a curvature of up to
+/// `limit`.
 #[inline]
 fn reach(value: f64, slope: f64, limit: f64) -> f64 {
     let root = (slope * slope + 2.0 * limit * value).sqrt();

@@ -16,13 +16,16 @@ pub const MOST: u32 = 32;
 /// Motions whose phases (rad) and impulses (relatively) differ by less are one.
 const SAME: f64 = 1e-6;
 
-/// Motions with `impacts` impacts in `cycles` cycles, the largest impulse first; those that repeat after fewer are left out.
+/// Motions with `impacts` impacts in `cycles` cycles, the largest impulse first; those that repeat after
+/// fewer are left out.
 ///
-/// Simulations from rest and from states all around are searched for p impacts after which nearly q cycles have passed (close returns;
-/// D. Auerbach et al. 1987), and Newton's method goes on from there. That finds unstable motions, too, but proves of none that there are no more.
+/// Simulations from rest and from states all around are searched for p impacts after which nearly q cycles
+/// have passed (close returns; D. Auerbach et al. 1987), and Newton's method goes on from there. That finds
+/// unstable motions, too, but proves of none that there are no more.
 ///
 /// # Errors
-/// If a parameter is impossible, nothing drives the rig, or no or more than 32 impacts or cycles are asked for.
+/// If a parameter is impossible, nothing drives the rig, or no or more than 32 impacts or cycles are asked
+/// for.
 pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<PeriodicOrbit>> {
     for (key, count) in [("impacts", impacts), ("cycles", cycles)] {
         if !(1..=MOST).contains(&count) {

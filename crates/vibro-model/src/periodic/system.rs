@@ -8,10 +8,12 @@ use vibro_record::Result;
 
 /// What impacts at the phases θᵢ with the impulses Jᵢ must fulfil, tᵢ = θᵢ/ω, T = 2πq/ω:
 ///
-/// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and velocity Fᵢ = Jᵢ/M(1+R) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ, before) = 0,
+/// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and velocity Fᵢ = Jᵢ/M(1+R) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ,
+/// before) = 0,
 ///
-/// where a = Re(Xe^{iωt}), χ = χ₁ + χ₂ (periodic Green's functions over T; Babitsky 1998). For p = 1 these are the two conditions of
-/// the closed form. Impacts are linear in the impulses, so nothing is flown and every derivative is known.
+/// where a = Re(Xe^{iωt}), χ = χ₁ + χ₂ (periodic Green's functions over T; Babitsky 1998). For p = 1 these
+/// are the two conditions of the closed form. Impacts are linear in the impulses, so nothing is flown and
+/// every derivative is known.
 pub(crate) struct System {
     pub rig: Rig,
     pub omega: f64,
@@ -64,7 +66,8 @@ impl System {
         sum
     }
 
-    /// What is left of the 2p equations at `u` = (θ₁ … θₚ, J₁ … Jₚ in units of [`System::impulse`]), and the Jacobian.
+    /// What is left of the 2p equations at `u` = (θ₁ … θₚ, J₁ … Jₚ in units of [`System::impulse`]), and the
+    /// Jacobian.
     pub(crate) fn evaluate(&self, u: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let p = u.len() / 2;
         let unit = self.impulse();

@@ -15,7 +15,8 @@ fn one_impact_a_cycle_is_the_closed_form() {
             let guess = (orbit.force_phase + 0.02, orbit.impulse * 1.03);
             let found = PeriodicOrbit::near(&rig, &Sine { force, frequency }, 1, &[guess]).unwrap();
             let beat = found.beats[0];
-            // Both solve the same two equations; their roundings (a few ε of A) reach J through its sensitivity.
+            // Both solve the same two equations; their roundings (a few ε of A) reach J through its
+            // sensitivity.
             let amplified =
                 rig.gap.max(orbit.fundamental[0].norm()) / orbit.validity.grazing_distance.max(1e-9);
             let tolerance = 1e-12_f64.max(64.0 * f64::EPSILON * amplified);

@@ -115,8 +115,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Sets a key to a number or a text; a table's key with a dot. Keys of an excitation that do not belong to a new kind of it are
-    /// dropped.
+    /// Sets a key to a number or a text; a table's key with a dot. Keys of an excitation that do not belong
+    /// to a new kind of it are dropped.
     pub fn put(&mut self, key: &str, value: impl Into<Value>) {
         let value = value.into();
         self.later.push(key.to_owned());
@@ -151,8 +151,8 @@ impl Draft {
     /// The scene, checked.
     ///
     /// # Errors
-    /// If a value is impossible, or a key of the excitation is missing or belongs to another kind; the complaint points at its line
-    /// where it stands in the file.
+    /// If a value is impossible, or a key of the excitation is missing or belongs to another kind; the
+    /// complaint points at its line where it stands in the file.
     pub fn scene(&self) -> Result<Scene> {
         let (sections, own): (Table, Table) =
             self.table.clone().into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.as_str()));
@@ -260,7 +260,8 @@ fn complaint(error: &toml::de::Error, text: &str) -> Error {
     Error::usage(found, expected).excerpt(text, error.span().unwrap_or(0..0))
 }
 
-/// The complaint about a campaign where a rig file should stand: it has the rig in a table, or lists of tables.
+/// The complaint about a campaign where a rig file should stand: it has the rig in a table, or lists of
+/// tables.
 fn campaign(path: &Path, text: &str) -> Option<Error> {
     let table: Table = toml::from_str(text).ok()?;
     let (key, _) = table.iter().find(|(key, value)| *key == "rig" || value.is_array())?;

@@ -7,9 +7,11 @@ use crate::{Event, State};
 use std::f64::consts::TAU;
 use vibro_record::Result;
 
-/// Approach speed in m/s below which the end of a chatter is looked for; above it, impacts do not yet accumulate closely enough.
+/// Approach speed in m/s below which the end of a chatter is looked for; above it, impacts do not yet
+/// accumulate closely enough.
 const SLOW: f64 = 1e-3;
-/// The same over the speeds of the masses: a bounce at 6e-8 of them, √(16ε), rises no higher than the rounding of the gap, which is rest.
+/// The same over the speeds of the masses: a bounce at 6e-8 of them, √(16ε), rises no higher than the
+/// rounding of the gap, which is rest.
 const SLOW_PART: f64 = 1e-7;
 
 impl Simulation {

@@ -16,7 +16,8 @@ fn scene_b() -> Simulation {
 
 #[test]
 fn a_start_from_rest_meets_its_golden_impacts() {
-    // Number, time and approach speed by arithmetic with 40 digits (Newton on the same equations of motion), cut to 17.
+    // Number, time and approach speed by arithmetic with 40 digits (Newton on the same equations of motion),
+    // cut to 17.
     let golden = [
         (1_u16, 0.030_744_282_246_676_34, 0.078_330_829_224_466_23),
         (2, 0.144_162_776_471_947_4, 0.147_727_906_853_932_83),
@@ -29,8 +30,9 @@ fn a_start_from_rest_meets_its_golden_impacts() {
     motion.run(100.0, |leg| impacts.extend(leg.impact())).unwrap();
     for (number, time, speed) in golden {
         let impact = impacts[usize::from(number) - 1];
-        // Time is summed without loss; roundings of the gap (terms up to 10 mm) over the speed, 1e-17 s, and of the phase, over ω
-        // 3e-18 s, are enlarged before they decay and add up over the 33 impacts of a multiplier of 0.97.
+        // Time is summed without loss; roundings of the gap (terms up to 10 mm) over the speed, 1e-17 s, and
+        // of the phase, over ω 3e-18 s, are enlarged before they decay and add up over the 33 impacts
+        // of a multiplier of 0.97.
         let tolerance: f64 = if time < 2.0 { 1e-14 } else { 1e-12 };
         assert!((impact.time - time).abs() < tolerance, "{number}: {:.17} {time:.17}", impact.time);
         // Accelerations reach 20 m/s²; the speed does not suffer from the sum of times, but from the phase's.
@@ -172,8 +174,9 @@ fn chatter_ends_in_sticking_and_release() {
     assert_eq!(found.len(), 3, "{found:?}");
     for ((event, time), (expected, golden)) in found.iter().zip(&golden) {
         assert_eq!(event, expected);
-        // Displacements near 2 mm are rounded to 1e-18 m, which shifts an impact at 1e-7 m/s, the last that are computed, by 1e-11 s,
-        // and the end of the chatter by (1 + R)/(1 − R) = 5.7 times as much.
+        // Displacements near 2 mm are rounded to 1e-18 m, which shifts an impact at 1e-7 m/s, the last that
+        // are computed, by 1e-11 s, and the end of the chatter by (1 + R)/(1 − R) = 5.7 times as
+        // much.
         assert!((time - golden).abs() < 1e-10, "{event:?} {time:.17} {golden:.17}");
     }
     assert_eq!(motion.counts().sticks, 2);

@@ -14,7 +14,8 @@ pub enum Observable {
     Fundamental,
     /// Half of the peak-to-peak value: what a displacement trace shows.
     Peak,
-    /// Running root mean square: x² through a first-order low-pass of 10 rad/s, square root; the mean of that over the point.
+    /// Running root mean square: x² through a first-order low-pass of 10 rad/s, square root; the mean of that
+    /// over the point.
     Rms,
 }
 
@@ -28,9 +29,11 @@ impl Observable {
 /// Corner of the running mean square's low-pass in rad/s.
 pub(crate) const LOW_PASS: f64 = 10.0;
 
-/// Samples a cycle of the excitation, or a swing of the faster mass where that is shorter. Displacements and velocities are both sampled, so between two samples the motion is a cubic (its peaks err by
-/// h⁴/384 of the fourth derivative, 4e-6 of the amplitude for h = 2π/32) and integrals are trapezes with end corrections, whose
-/// error is h⁴/720 of the third derivative's step at each impact (Euler–Maclaurin): 3e-6 of the amplitude.
+/// Samples a cycle of the excitation, or a swing of the faster mass where that is shorter. Displacements and
+/// velocities are both sampled, so between two samples the motion is a cubic (its peaks err by h⁴/384 of the
+/// fourth derivative, 4e-6 of the amplitude for h = 2π/32) and integrals are trapezes with end corrections,
+/// whose error is h⁴/720 of the third derivative's step at each impact (Euler–Maclaurin): 3e-6 of the
+/// amplitude.
 const SAMPLES: f64 = 32.0;
 
 /// What was summed over a stretch of time, of each mass.
@@ -150,7 +153,8 @@ impl Gauge {
         *cycles += 1.0;
     }
 
-    /// Value over all cycles since [`Gauge::clear`] and standard deviation from cycle to cycle, for each mass.
+    /// Value over all cycles since [`Gauge::clear`] and standard deviation from cycle to cycle, for each
+    /// mass.
     pub fn read(&self) -> [(f64, f64); 2] {
         let Gauge { observable, total, cycles, scatter, .. } = self;
         [0, 1].map(|mass| {

@@ -30,7 +30,8 @@ fn rational(measured: &Measured) -> Result<Answer> {
     Ok(Answer::found(&mode.zeta, &found.findings))
 }
 
-/// The ζ of the first mode of a receptance on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of this part of the highest line.
+/// The ζ of the first mode of a receptance on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of
+/// this part of the highest line.
 fn case(modes: &[Pole], (from, to, step): (f64, f64, f64), part: f64, noise: &mut Noise) -> Case<Measured> {
     let count = ((to - from) / step) as usize;
     let frequency: Vec<f64> = (0..count).map(|i| from + i as f64 * step).collect();
@@ -49,8 +50,8 @@ fn mode(frequency: f64, zeta: f64) -> Pole {
     Pole { frequency, zeta, constant: Complex64::new(1.0, 0.0) }
 }
 
-/// So many lines in the bandwidth, the mode anywhere between two, in a band of 24 Hz or 24 lines about it as far as there are any above 0 Hz;
-/// noise of this part of the highest line.
+/// So many lines in the bandwidth, the mode anywhere between two, in a band of 24 Hz or 24 lines about it as
+/// far as there are any above 0 Hz; noise of this part of the highest line.
 fn lines(in_bandwidth: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Measured> {
     move |noise| {
         let step = 2.0 * ZETA * OWN / in_bandwidth;
@@ -60,8 +61,8 @@ fn lines(in_bandwidth: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Measured> 
     }
 }
 
-/// Bound of the relative error of ζ from the lines within six bandwidths, beyond which other modes would be: a complex modal constant and
-/// two complex residual terms are not known either.
+/// Bound of the relative error of ζ from the lines within six bandwidths, beyond which other modes would be:
+/// a complex modal constant and two complex residual terms are not known either.
 fn bound(in_bandwidth: f64, part: f64) -> f64 {
     let width = 2.0 * ZETA * OWN;
     let stiffness = (TAU * OWN).powi(2);

@@ -202,7 +202,8 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
 mod tests {
     use super::*;
 
-    /// In noise of a tenth no impact is lost; where noise hides them no uncertainty is stated, whatever the intervals seem to say.
+    /// In noise of a tenth no impact is lost; where noise hides them no uncertainty is stated, whatever the
+    /// intervals seem to say.
     #[test]
     fn impacts_in_noise_are_all_found_or_no_uncertainty_is_stated() {
         in_noise(4);

@@ -57,7 +57,8 @@ fn with_cut_off(v: &Vibration) -> Result<Answer> {
     Ok(Answer::found(&point.amplitude, &found.findings))
 }
 
-/// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges, over the gain of filter and trapezoid.
+/// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges,
+/// over the gain of filter and trapezoid.
 fn filtered(v: &Vibration) -> Result<Answer> {
     let f = v.frequency;
     let how = InTime { times: 1, corner: 0.5 * f, order: 4, period: Some(1.0 / f) };
@@ -78,8 +79,8 @@ fn filtered(v: &Vibration) -> Result<Answer> {
     Ok(Answer { value: value / gain, std: std.map(|s| s / gain), doubt })
 }
 
-/// A vibration between two frequencies in Hz, in noise so many decibels below it; on the velocity, in its amplitudes, a level and a slope over the
-/// whole record.
+/// A vibration between two frequencies in Hz, in noise so many decibels below it; on the velocity, in its
+/// amplitudes, a level and a slope over the whole record.
 #[derive(Clone, Copy)]
 struct Made {
     n: usize,

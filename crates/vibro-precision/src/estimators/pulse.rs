@@ -11,8 +11,8 @@ use vibro_record::{Axis, Trace};
 /// Contact frequency in Hz, as in the runs of the thesis.
 const FREQUENCY: f64 = 25e3;
 
-/// A pulse, what is known of the instrument, and its two times as read elsewhere: to the peak, the duration, and their standard
-/// uncertainty, in s.
+/// A pulse, what is known of the instrument, and its two times as read elsewhere: to the peak, the duration,
+/// and their standard uncertainty, in s.
 struct Pulse {
     trace: Trace,
     instrument: Instrument,
@@ -59,7 +59,8 @@ fn duration(xi: f64) -> f64 {
     (2.0 * xi * turn).atan2(xi * xi - turn * turn) / (TAU * FREQUENCY * turn)
 }
 
-/// Samples of a record of `n`, sampled every `dt` seconds, of a pulse that begins at `onset`; `first` is its first sample.
+/// Samples of a record of `n`, sampled every `dt` seconds, of a pulse that begins at `onset`; `first` is its
+/// first sample.
 fn clean(xi: f64, onset: f64, (n, dt, first): (usize, f64, usize)) -> Vec<f64> {
     let at = |i: usize| {
         let t = i as f64 * dt - onset;
@@ -87,7 +88,8 @@ fn pulses(xi: f64, samples: f64, part: f64) -> impl Fn(&mut Noise) -> Case<Pulse
     }
 }
 
-/// Bound of ξ with onset, level, height and frequency unknown, for an onset in the middle between two samples.
+/// Bound of ξ with onset, level, height and frequency unknown, for an onset in the middle between two
+/// samples.
 fn bound(xi: f64, samples: f64, part: f64) -> f64 {
     let length = duration(xi);
     let (dt, n) = (length / samples, (5.8 * samples) as usize);

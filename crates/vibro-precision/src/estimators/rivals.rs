@@ -1,4 +1,5 @@
-//! What people write by hand, and the toolkit replaces: a few lines each, as they stand in scripts and spreadsheets.
+//! What people write by hand, and the toolkit replaces: a few lines each, as they stand in scripts and
+//! spreadsheets.
 
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -100,7 +101,8 @@ pub fn half_swing(values: &[f64]) -> f64 {
     0.5 * (high - low)
 }
 
-/// Magnitudes of the lines, the largest, the half-power level, and the next lines below and above that are under it.
+/// Magnitudes of the lines, the largest, the half-power level, and the next lines below and above that are
+/// under it.
 fn peak(values: &[Complex64]) -> Option<(Vec<f64>, usize, f64, usize, usize)> {
     let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
     let at = largest(&size);
@@ -110,7 +112,8 @@ fn peak(values: &[Complex64]) -> Option<(Vec<f64>, usize, f64, usize, usize)> {
     Some((size, at, level, left, right))
 }
 
-/// ζ from the lines nearest to the half-power points of the largest line, or from points interpolated between lines.
+/// ζ from the lines nearest to the half-power points of the largest line, or from points interpolated between
+/// lines.
 pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64 {
     let Some((size, at, level, left, right)) = peak(values) else { return f64::NAN };
     let cross = |out: usize, inside: usize| {
@@ -120,8 +123,9 @@ pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64
     (cross(right, right - 1) - cross(left, left + 1)) / (2.0 * frequency[at])
 }
 
-/// ζ from a circle through the mobility at the lines above half power and two more on either side (Kåsa 1976), by the angle that the lines
-/// below and above the largest one turn: ζ = (ω₂² − ω₁²)/(2ωᵣ(ω₁ tan(α₁/2) + ω₂ tan(α₂/2))).
+/// ζ from a circle through the mobility at the lines above half power and two more on either side (Kåsa
+/// 1976), by the angle that the lines below and above the largest one turn: ζ = (ω₂² − ω₁²)/(2ωᵣ(ω₁ tan(α₁/2)
+/// + ω₂ tan(α₂/2))).
 pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
     let Some((size, at, _, left, right)) = peak(values) else { return f64::NAN };
     let (low, high) = (left.saturating_sub(1), (right + 1).min(size.len() - 1));
@@ -144,8 +148,8 @@ pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
     (w2 * w2 - w1 * w1) / (2.0 * own * (w1 * (0.5 * below).tan() + w2 * (0.5 * above).tan()))
 }
 
-/// Time to the peak over duration of a pulse, read as on a screen: level of the first tenth of the record, highest sample,
-/// and where 3 % of its height is passed before and after.
+/// Time to the peak over duration of a pulse, read as on a screen: level of the first tenth of the record,
+/// highest sample, and where 3 % of its height is passed before and after.
 pub fn instants(values: &[f64]) -> f64 {
     let level = mean(&values[..(values.len() / 10).max(1)]);
     let peak = largest(values);
@@ -159,8 +163,8 @@ pub fn instants(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A mode of ζ = 0.01 without noise, 20 lines in its bandwidth: half power is good to the lines, the circle of one mode exact but
-    /// for the place of the largest line.
+    /// A mode of ζ = 0.01 without noise, 20 lines in its bandwidth: half power is good to the lines, the
+    /// circle of one mode exact but for the place of the largest line.
     #[test]
     fn methods_of_paper_and_pencil_find_a_clean_mode() {
         let (own, zeta) = (100.0, 0.01);

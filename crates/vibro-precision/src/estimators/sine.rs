@@ -15,7 +15,8 @@ const RATE: f64 = 1024.0;
 /// Samples of a record where its length is not what is varied.
 const N: usize = 1024;
 
-/// A record of sines (frequency in lines, amplitude, phase) on a level, in noise so many decibels below a sine of amplitude 1.
+/// A record of sines (frequency in lines, amplitude, phase) on a level, in noise so many decibels below a
+/// sine of amplitude 1.
 fn record(n: usize, sines: &[(f64, f64, f64)], level: f64, decibel: f64, noise: &mut Noise) -> Trace {
     let (step, sigma) = (TAU / n as f64, sigma(decibel));
     let sum = |i: usize| -> f64 { sines.iter().map(|(k, a, p)| a * (step * k * i as f64 + p).cos()).sum() };
@@ -33,8 +34,8 @@ fn bound(n: usize, decibel: f64) -> f64 {
     n / TAU * (12.0 / (eta * n * (n * n - 1.0))).sqrt()
 }
 
-/// Three lines under a Hann window, as in `vibro excitation`. They say no word: where they have no uncertainty, they are held to what is
-/// allowed to all.
+/// Three lines under a Hann window, as in `vibro excitation`. They say no word: where they have no
+/// uncertainty, they are held to what is allowed to all.
 fn three_lines(trace: &Trace, read: fn(&Excitation) -> (f64, Option<f64>)) -> Result<Answer> {
     let response = spectrum::plain(trace, Window::Hann, Scaling::Peak, false)?;
     let force = response.values.magnitudes();
@@ -105,7 +106,8 @@ fn anywhere(n: usize, decibel: f64, unit: f64) -> impl Fn(&mut Noise) -> Case<Tr
     }
 }
 
-/// Two sines `apart` lines from each other, the second of half the amplitude, whose frequency is asked for; 40 dB.
+/// Two sines `apart` lines from each other, the second of half the amplitude, whose frequency is asked for;
+/// 40 dB.
 fn pair(apart: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
     move |noise| {
         let first = noise.between(20.0, 200.0);

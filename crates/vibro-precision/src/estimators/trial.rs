@@ -124,8 +124,8 @@ const TIMED: [usize; 2] = [24, 3];
 /// Seeds from one setting of a scene to the next: each has records of its own, the same for all methods.
 const APART: usize = 1_000_000;
 
-/// Every method with every setting: the error is the root mean square over the answers, so that it compares with a standard deviation. A
-/// method that answers to fewer than half of the records has failed.
+/// Every method with every setting: the error is the root mean square over the answers, so that it compares
+/// with a standard deviation. A method that answers to fewer than half of the records has failed.
 pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> Vec<Measured> {
     let (records, clocked) = (RECORDS[usize::from(quick)], TIMED[usize::from(quick)]);
     let one = |method: &Method<D>, place: usize, setting: &Kind<D>| {
@@ -152,8 +152,9 @@ pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: 
 const TRIALS: [usize; 2] = [40, 6];
 /// An answer within so many of its standard uncertainties is right.
 const WITHIN: f64 = 3.0;
-/// How many answers of a cell may lie further off, in full and quick; and the standard uncertainties beyond which a single one is wrong. In a full map
-/// of 500 cells each calls a method whose errors are as it states them wrong somewhere in fewer than one of 200 runs.
+/// How many answers of a cell may lie further off, in full and quick; and the standard uncertainties beyond
+/// which a single one is wrong. In a full map of 500 cells each calls a method whose errors are as it states
+/// them wrong somewhere in fewer than one of 200 runs.
 const OUTLIERS: [usize; 2] = [3, 2];
 const FAR: f64 = 5.2;
 
@@ -173,8 +174,9 @@ pub fn questions<D: Send + 'static>(
     kinds.flat_map(|k| methods.iter().map(move |m| question(m, Arc::clone(&k)))).collect()
 }
 
-/// How far off an answer is in parts of what is right, or why it claims to be none. One that states its uncertainty is held to it, whatever is found
-/// beside: what is doubted has none. One without is held to what is allowed, and so is the uncertainty itself.
+/// How far off an answer is in parts of what is right, or why it claims to be none. One that states its
+/// uncertainty is held to it, whatever is found beside: what is doubted has none. One without is held to what
+/// is allowed, and so is the uncertainty itself.
 fn off(answer: &Answer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
     let off = (answer.value - truth).abs();
     match (answer.std, &answer.doubt) {

@@ -51,8 +51,8 @@ enum Can {
 /// Cycles beyond which other methods are not asked: they would take minutes.
 const LONG: f64 = 1e4;
 
-/// Methods in the order of the picture, with their setting, and what they can. The stiff spring stands for an impact at once: it is in
-/// contact for 0.07 % of the period.
+/// Methods in the order of the picture, with their setting, and what they can. The stiff spring stands for an
+/// impact at once: it is in contact for 0.07 % of the period.
 const METHODS: &[(Method, f64, Can)] = &[
     (by::CLOSED, 0.0, Can::Orbits),
     (Method { name: "soft-corrected form", ..by::SOFT }, 0.0, Can::SoftOrbits),
@@ -81,7 +81,8 @@ fn chatter(restitution: f64) -> Task {
     Task { rig: Rig { restitution, ..task.rig }, until: 1.2, most: 100_000, rests: false, ..task }
 }
 
-/// Restitution up to which the first chatter ends in rest, by halving: with more the masses are let go while they still bounce.
+/// Restitution up to which the first chatter ends in rest, by halving: with more the masses are let go while
+/// they still bounce.
 fn onset() -> f64 {
     // The first release is at a quarter of a second whatever R is, the next chatter begins behind 0.4 s.
     let rests = |r| motion(&Task { until: 0.3, ..chatter(r) }, None).is_ok_and(|log| !log.sticks.is_empty());
@@ -161,7 +162,8 @@ fn borders(quick: bool) -> Result<Vec<Border>> {
     Ok(all)
 }
 
-/// What would be told rightly at a border, with impacts at once or with a contact; nothing where it is not known.
+/// What would be told rightly at a border, with impacts at once or with a contact; nothing where it is not
+/// known.
 fn truth(border: &Border, soft: bool) -> Option<Log> {
     let task = &border.task;
     let contact = soft.then(|| task.spring());
@@ -266,9 +268,11 @@ mod tests {
                 let (fast_log, fast_truth) = (fast(&log), fast(&truth));
                 assert_eq!(fast_log.len(), fast_truth.len(), "{place}");
                 for (a, b) in fast_log.iter().zip(&fast_truth) {
-                    // The truth's own 2e-13 s (its tests), enlarged tenfold by impacts that are nearly missed.
+                    // The truth's own 2e-13 s (its tests), enlarged tenfold by impacts that are nearly
+                    // missed.
                     assert!((a.0 - b.0).abs() < 1e-11, "{place}: {a:?} {b:?}");
-                    // In that time accelerations, up to 1e3 m/s² behind a contact, change a speed by 1e-8 m/s.
+                    // In that time accelerations, up to 1e3 m/s² behind a contact, change a speed by 1e-8
+                    // m/s.
                     assert!((a.1 - b.1).abs() < 1e-8, "{place}: {a:?} {b:?}");
                     compared[which] += 1;
                 }
@@ -280,8 +284,8 @@ mod tests {
                     truth.sticks
                 );
                 for (a, b) in log.sticks.iter().zip(&truth.sticks) {
-                    // The truth's own 1e-10 s at the ends of a chatter (its tests), and what the dampers' rates c/m change in what
-                    // it leaves to a series, up to 1e-6 s.
+                    // The truth's own 1e-10 s at the ends of a chatter (its tests), and what the dampers'
+                    // rates c/m change in what it leaves to a series, up to 1e-6 s.
                     let rig = border.task.rig;
                     let allowed = 1e-9 + 1e-12 * (rig.c1 / rig.m1).max(rig.c2 / rig.m2);
                     let apart = |i: usize| (a[i].min(border.task.until) - b[i].min(border.task.until)).abs();
@@ -289,7 +293,8 @@ mod tests {
                 }
             }
         }
-        // No damper gives R = 0, and a resonance without dampers has no forced motion that a flight could be told by.
+        // No damper gives R = 0, and a resonance without dampers has no forced motion that a flight could be
+        // told by.
         assert_eq!(refused, [(1, "restitution R 0".into()), (0, "resonance mass 1, no dampers".into())]);
         assert!(compared.iter().all(|n| *n > 200), "{compared:?}");
     }

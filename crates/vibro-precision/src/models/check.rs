@@ -8,8 +8,9 @@ use std::f64::consts::TAU;
 use std::fmt::Debug;
 use vibro_model::{Orbit, State, orbits};
 
-/// What every method may be off: this part of a cycle in times, this part of the fastest approach speed in all of them. It is what a fixed step of a
-/// thousandth of a cycle comes to within some impacts, and twenty times what a millimetre scale would show.
+/// What every method may be off: this part of a cycle in times, this part of the fastest approach speed in
+/// all of them. It is what a fixed step of a thousandth of a cycle comes to within some impacts, and twenty
+/// times what a millimetre scale would show.
 const ALLOWED: f64 = 0.01;
 /// Approach speed in m/s from which an impact must be told.
 const SLOW: f64 = 1e-3;
@@ -19,8 +20,9 @@ pub const SETTLED: f64 = 400.0;
 const CLOSES: f64 = 1e-8;
 /// The same with what a motion has settled on.
 const NEAR: f64 = 1e-4;
-/// Impacts and rests of either list one by one in their order: every impact that is not slow, within [`ALLOWED`] of a cycle and of the fastest approach
-/// speed; every rest that lasts longer than twice that part of a cycle, begun and ended within it.
+/// Impacts and rests of either list one by one in their order: every impact that is not slow, within
+/// [`ALLOWED`] of a cycle and of the fastest approach speed; every rest that lasts longer than twice that
+/// part of a cycle, begun and ended within it.
 pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     let off = ALLOWED * task.cycle();
     let seen = task.until - 2.0 * off;
@@ -44,8 +46,8 @@ pub fn motion(log: &Log, truth: &Log, task: &Task) -> Found {
     }
 }
 
-/// How many of `truth` and `log`, each in its order, are `close`; nothing that `counts` may be left over in either, what does not
-/// count may be in a pair or not.
+/// How many of `truth` and `log`, each in its order, are `close`; nothing that `counts` may be left over in
+/// either, what does not count may be in a pair or not.
 fn in_order<T: Debug>(
     truth: &[T],
     log: &[T],
@@ -84,8 +86,9 @@ pub fn speed(log: &Log, truth: &Log) -> Found {
     Found::right_if(error <= ALLOWED, format!("approach speed {error:.0e} off, allowed {ALLOWED:.0e}"))
 }
 
-/// Orbits in closed form by the motion itself: it repeats each that is called admissible, and none that is not, in which the masses would pass through
-/// each other, slow impacts aside; and what it settles on with one impact a cycle is among the stable ones.
+/// Orbits in closed form by the motion itself: it repeats each that is called admissible, and none that is
+/// not, in which the masses would pass through each other, slow impacts aside; and what it settles on with
+/// one impact a cycle is among the stable ones.
 pub fn closed_form(task: &Task) -> Result<Found, Found> {
     let found = orbits(&task.rig, task.force, task.frequency)?;
     judged(task, &found.orbits.iter().filter(|o| o.validity.exists).collect::<Vec<_>>())
@@ -117,9 +120,10 @@ fn rigid(orbit: &Orbit) -> Repeats {
     Repeats { before: [x1, v1, x2, v2], phase: orbit.force_phase }
 }
 
-/// Every orbit that does not pass through the other mass, corrected, against the motion with the contact that repeats. The correction is of first order
-/// in the phase `ωt_c` that passes in the contact, and exact in all that follows from it: restitution, delay and speed at the touch each leave a second
-/// order. It may never be half of the change: no correction at all is wrong.
+/// Every orbit that does not pass through the other mass, corrected, against the motion with the contact that
+/// repeats. The correction is of first order in the phase `ωt_c` that passes in the contact, and exact in all
+/// that follows from it: restitution, delay and speed at the touch each leave a second order. It may never be
+/// half of the change: no correction at all is wrong.
 pub fn corrected(task: &Task) -> Result<Found, Found> {
     let (found, soft, compliance) = soft_forms(task)?;
     let omega = TAU * task.frequency;

@@ -25,7 +25,8 @@ pub fn flights(task: &Task) -> Result<Log, Found> {
     Ok(log)
 }
 
-/// As [`flights`], the frequency changing at the task's rate in steps whose phase deviates by up to `deviation` (rad).
+/// As [`flights`], the frequency changing at the task's rate in steps whose phase deviates by up to
+/// `deviation` (rad).
 pub fn swept(task: &Task, deviation: f64) -> Result<Log, Found> {
     let mut motion = Simulation::from_state(&task.rig, &sine(task), start(task), task.phase)?;
     let mut log = Log::default();
@@ -40,7 +41,8 @@ pub fn kelvin_voigt(task: &Task) -> Result<Log, Found> {
     let law = Law::KelvinVoigt { stiffness, damping };
     let mut motion = Compliant::new(&task.rig, &Excitation::Sine(sine(task)), law, start(task), task.phase)?;
     let mut log = Log::default();
-    // A contact that gives way is told when it is over: the motion is followed for longer, and what began too late left out.
+    // A contact that gives way is told when it is over: the motion is followed for longer, and what began too
+    // late left out.
     motion.advance(task.until + 3.0 * task.cycle(), &mut |piece| {
         if let Event::Impact(impact) = piece.event
             && impact.time < task.until

@@ -1,4 +1,5 @@
-//! Ways to follow a motion: the library's own, and what else is done, each written here as it usually is, and correctly.
+//! Ways to follow a motion: the library's own, and what else is done, each written here as it usually is, and
+//! correctly.
 
 #[cfg(feature = "diffsol")]
 mod diffsol;

@@ -89,7 +89,8 @@ pub(super) fn at(rig: &Rig, nu: f64) -> f64 {
     nu * (rig.k1 / rig.m1).sqrt() / TAU
 }
 
-/// Number and time in s of impacts of scene B, by arithmetic with 40 digits (Newton on the equations of motion).
+/// Number and time in s of impacts of scene B, by arithmetic with 40 digits (Newton on the equations of
+/// motion).
 pub(super) const GOLDEN_B: [(usize, f64); 5] = [
     (1, 0.030_744_282_246_676_34),
     (2, 0.144_162_776_471_947_4),
@@ -98,7 +99,8 @@ pub(super) const GOLDEN_B: [(usize, f64); 5] = [
     (1098, 99.932_500_537_538_15),
 ];
 
-/// How far the truth of all impacts may be off, in s: ten times what its own test finds up to 2 s, behind which errors die away.
+/// How far the truth of all impacts may be off, in s: ten times what its own test finds up to 2 s, behind
+/// which errors die away.
 const FOLLOWED: f64 = 1e-11;
 
 /// Impacts from rest that are crossed at speed.
@@ -154,10 +156,12 @@ fn scene_b(seconds: f64) -> Result<Setup> {
 /// Starts in each direction of a grazing motion.
 const STARTS: usize = 8;
 
-/// A motion that reaches `depth` (m) into the other mass, or misses it by −`depth`, and the time of its impact in s.
+/// A motion that reaches `depth` (m) into the other mass, or misses it by −`depth`, and the time of its
+/// impact in s.
 ///
 /// Mass 1 is on its forced motion `A cos ω(t − t_p)` and mass 2 rests, so with the gap A − d they meet at
-/// `t_p − 2 asin(√(d/2A))/ω`, or never. The difference A − Δ is exact, so the truth knows the d that the rounded gap leaves.
+/// `t_p − 2 asin(√(d/2A))/ω`, or never. The difference A − Δ is exact, so the truth knows the d that the
+/// rounded gap leaves.
 pub(super) fn grazing_task(depth: f64, start: usize) -> Result<(Task, Option<f64>)> {
     let rig = Rig::thesis();
     let frequency = at(&rig, 2.1);
@@ -213,7 +217,8 @@ fn grazing(depth: f64) -> Result<Setup> {
     Ok(Setup { scene: Scene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) })
 }
 
-/// End of the first chatter of scene C, release, and end of the second chatter in s, by arithmetic with 40 digits.
+/// End of the first chatter of scene C, release, and end of the second chatter in s, by arithmetic with 40
+/// digits.
 pub(super) const GOLDEN_C: [f64; 3] =
     [0.152_721_089_353_360_45, 0.220_247_418_265_660_51, 0.574_521_373_816_090_7];
 
@@ -257,9 +262,9 @@ fn scene_c() -> Setup {
     Setup { scene, tasks: vec![task_c()], methods, judge: Box::new(judge) }
 }
 
-/// Stiffness in N/m of contacts, and cycles until the motion is read: the slowest multiplier of the rigid orbit, 0.970, is then below
-/// 1e-16; with a contact of 7 % of the period it is −0.9945, and what is left turns round from impact to impact: the mean of sixteen
-/// keeps 2.6e-3 of it, 2e-10 of the start.
+/// Stiffness in N/m of contacts, and cycles until the motion is read: the slowest multiplier of the rigid
+/// orbit, 0.970, is then below 1e-16; with a contact of 7 % of the period it is −0.9945, and what is left
+/// turns round from impact to impact: the mean of sixteen keeps 2.6e-3 of it, 2e-10 of the start.
 const SOFT_CONTACTS: [(f64, f64); 3] = [(1e8, 1250.0), (1e6, 1250.0), (1e4, 3000.0)];
 /// Impacts whose mean speed is read.
 const READ: usize = 16;
@@ -310,7 +315,8 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
     Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
-/// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which its start is still felt.
+/// Ends in Hz and rate in Hz/s of a slow sweep over a vibro-impact resonance, and the time in s before which
+/// its start is still felt.
 const FROM: f64 = 10.2;
 const TO: f64 = 10.8;
 const RATE: f64 = 0.02;

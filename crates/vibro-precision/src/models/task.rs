@@ -26,7 +26,8 @@ pub struct Task {
     pub until: f64,
     /// The most steps that a method may take before it counts as stalled.
     pub most: u64,
-    /// Methods with events let masses that press each other rest where they meet more slowly than the tolerance resolves.
+    /// Methods with events let masses that press each other rest where they meet more slowly than the
+    /// tolerance resolves.
     pub rests: bool,
 }
 
@@ -35,7 +36,8 @@ pub struct Task {
 pub struct Log {
     /// Time in s and approach speed in m/s of each impact.
     pub impacts: Vec<(f64, f64)>,
-    /// Times in s at which the masses come to rest against each other and part again; the last may be infinite.
+    /// Times in s at which the masses come to rest against each other and part again; the last may be
+    /// infinite.
     pub sticks: Vec<[f64; 2]>,
 }
 
@@ -68,7 +70,8 @@ pub struct Spring {
 const RESTS: f64 = 10.0;
 
 impl Spring {
-    /// A spring that rebounds as the rig does; at R = 0, which no damper gives, with the critical one, as is usual: it rebounds with e⁻².
+    /// A spring that rebounds as the rig does; at R = 0, which no damper gives, with the critical one, as is
+    /// usual: it rebounds with e⁻².
     pub fn new(rig: &Rig, stiffness: f64) -> Spring {
         let mass = rig.reduced_mass();
         let ratio = damping_ratio(rig.restitution).unwrap_or(1.0);
@@ -88,7 +91,8 @@ impl Spring {
 }
 
 impl Task {
-    /// A motion under F₀ sin ωt from rest, in twenty million steps at most, with a contact of 1e6 N/m where it has one.
+    /// A motion under F₀ sin ωt from rest, in twenty million steps at most, with a contact of 1e6 N/m where
+    /// it has one.
     pub fn sine(rig: Rig, force: f64, frequency: f64, until: f64) -> Task {
         Task {
             rig,

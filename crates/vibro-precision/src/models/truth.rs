@@ -1,4 +1,5 @@
-//! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event, and Newton's method.
+//! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event,
+//! and Newton's method.
 
 use super::rivals::{Course, Kind, Locate, events};
 use super::task::{Log, Spring, Task};
@@ -14,8 +15,8 @@ const LENGTH: f64 = 1e-3;
 const ROUNDS: usize = 30;
 /// Change of the unknowns for a derivative, in units of 1 mm, 1 mm·ω and 1 rad: half the digits.
 const SMALL: f64 = 1e-7;
-/// A motion closes where it misses by no more than this in these units: errors of some ten steps, enlarged by what near grazing
-/// does so.
+/// A motion closes where it misses by no more than this in these units: errors of some ten steps, enlarged by
+/// what near grazing does so.
 const CLOSED: f64 = 1e-9;
 /// Part of the period within which an impact after another is the same.
 const AT_ONCE: f64 = 1e-6;
@@ -42,8 +43,8 @@ impl Repeats {
         self.before[1] - self.before[3]
     }
 
-    /// How far off an impact of this approach speed (m/s) at this phase (rad) is: relative and in rad together, so that no single one
-    /// of them is small by chance.
+    /// How far off an impact of this approach speed (m/s) at this phase (rad) is: relative and in rad
+    /// together, so that no single one of them is small by chance.
     pub fn off(&self, speed: f64, phase: f64) -> f64 {
         let turn = (phase - self.phase + PI).rem_euclid(TAU) - PI;
         (speed / self.speed() - 1.0).hypot(turn)
@@ -62,7 +63,8 @@ fn meeting(course: &mut Course<'_>) -> Result<Option<(f64, [f64; 4])>, Found> {
     Ok(None)
 }
 
-/// The motion with one impact in `period` (s) of a task, with impacts at once or a contact, that Newton's method reaches from `guess`.
+/// The motion with one impact in `period` (s) of a task, with impacts at once or a contact, that Newton's
+/// method reaches from `guess`.
 pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeats) -> Option<Repeats> {
     let omega = TAU * task.frequency;
     let speed = LENGTH * omega;
@@ -96,7 +98,8 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
             slope.set_column(i, &((missed(&up)? - missed(&down)?) / (2.0 * SMALL)));
         }
         let step = slope.lu().solve(&off)?;
-        // Half the way, and half of that, where the whole leads further off; until rounding is all that is left.
+        // Half the way, and half of that, where the whole leads further off; until rounding is all that is
+        // left.
         let nearer = (0..8).find_map(|halvings| {
             let tried = u - step * 0.5_f64.powi(halvings);
             let missed = missed(&tried)?;
@@ -143,8 +146,8 @@ mod tests {
         ];
         for ((number, time), speed) in GOLDEN_B.into_iter().zip(speeds) {
             let found = log.impacts[number - 1];
-            // A few roundings (1e-15) in each of 512 steps a cycle over 22 cycles, all to one side: 1e-11 rad of the cycle, 2e-13 s; five times
-            // that.
+            // A few roundings (1e-15) in each of 512 steps a cycle over 22 cycles, all to one side: 1e-11 rad
+            // of the cycle, 2e-13 s; five times that.
             assert!((found.0 - time).abs() < 1e-12, "{number}: {:e}", found.0 - time);
             assert!((found.1 / speed - 1.0).abs() < 5e-11, "{number}: {:e}", found.1 / speed - 1.0);
         }
@@ -155,13 +158,14 @@ mod tests {
         let log = motion(&task_c(), None).unwrap();
         let found = [log.sticks[0][0], log.sticks[0][1], log.sticks[1][0]];
         for (found, golden) in found.iter().zip(GOLDEN_C) {
-            // The series leaves out what the pressing acceleration changes in the 2w/(a(1 − R)) = 7e-7/a s after the last rebound.
+            // The series leaves out what the pressing acceleration changes in the 2w/(a(1 − R)) = 7e-7/a s
+            // after the last rebound.
             assert!((found - golden).abs() < 1e-10, "{found} {golden}");
         }
     }
 
-    /// Work of the exciting force over a cycle of the settled motion, and what dampers and impact take: by Simpson's rule on the
-    /// states, which the follower does not use.
+    /// Work of the exciting force over a cycle of the settled motion, and what dampers and impact take: by
+    /// Simpson's rule on the states, which the follower does not use.
     #[test]
     fn a_settled_cycle_spends_what_the_force_gives() {
         let task = task_b(2.0);

@@ -23,7 +23,8 @@ pub fn power_of_ten(exponent: i32) -> String {
     "10".chars().chain(exponent.to_string().chars().map(raised)).collect()
 }
 
-/// A text whose numbers are written as programs write them, with powers of ten and true minus signs: `1e-9 m` becomes `10⁻⁹ m`.
+/// A text whose numbers are written as programs write them, with powers of ten and true minus signs: `1e-9 m`
+/// becomes `10⁻⁹ m`.
 pub fn typeset(text: &str) -> String {
     let word = |word: &str| {
         let number = word.trim_end_matches([',', ';', ':']);
@@ -64,7 +65,8 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}×{}", mantissa.replace('-', MINUS), power_of_ten(exponent))
 }
 
-/// The shortest text of a number to twelve significant digits: what computing leaves in the last ones is no one's input.
+/// The shortest text of a number to twelve significant digits: what computing leaves in the last ones is no
+/// one's input.
 pub fn shortest(value: f64) -> String {
     format!("{value:.11e}").parse().unwrap_or(value).to_string()
 }
@@ -75,7 +77,8 @@ const DIGITS: i32 = 10;
 /// A value with its standard uncertainty, both rounded to two significant digits of the uncertainty (GUM,
 /// 7.2.6).
 ///
-/// Without a usable uncertainty the value is given to five significant digits, beside a very small one to ten.
+/// Without a usable uncertainty the value is given to five significant digits, beside a very small one to
+/// ten.
 ///
 /// ```
 /// use vibro_record::units::notation::estimate;
@@ -141,7 +144,8 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     [number.as_str(), between, &unit].concat()
 }
 
-/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`; 0.1 is 100 of the smaller unit.
+/// The reference of a level: a number from 1 to below 1000 in a unit with a prefix, as `1 µm/s`; 0.1 is 100
+/// of the smaller unit.
 ///
 /// ```
 /// use vibro_record::units::notation::reference;
@@ -186,8 +190,8 @@ pub fn scaled_unit(unit: &str, exponent: i32) -> String {
     if unit.is_empty() { power_of_ten(exponent) } else { format!("{} {unit}", power_of_ten(exponent)) }
 }
 
-/// Label of an axis or a column: `Displacement amplitude (mm)`. A quotient in a unit is written as a product, so that no brackets
-/// stand in brackets: `(m/s²)/N` as `m s⁻²/N`.
+/// Label of an axis or a column: `Displacement amplitude (mm)`. A quotient in a unit is written as a product,
+/// so that no brackets stand in brackets: `(m/s²)/N` as `m s⁻²/N`.
 pub fn labelled(label: &str, unit: &str) -> String {
     match (label.is_empty(), unit.is_empty() || unit == "1") {
         (_, true) => label.to_owned(),

@@ -1,13 +1,14 @@
-//! Grammar of unit texts: `product := number? factor (('*' | '·' | ' ' | '/') factor)*`, `factor := atom power?`,
-//! `atom := '(' product ')' | 'sqrt(' product ')' | '√' factor | '1' | symbol`.
+//! Grammar of unit texts: `product := number? factor (('*' | '·' | ' ' | '/') factor)*`, `factor := atom
+//! power?`, `atom := '(' product ')' | 'sqrt(' product ')' | '√' factor | '1' | symbol`.
 //!
-//! A number before a product is a factor, as in `100 mV/g`. A negative exponent behind `/` is not understood: whoever
-//! writes `m/s-2` may mean either power.
+//! A number before a product is a factor, as in `100 mV/g`. A negative exponent behind `/` is not understood:
+//! whoever writes `m/s-2` may mean either power.
 
 use super::Dimension;
 use super::notation::RAISED;
 
-/// Symbols of a unit with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether a prefix may stand before them.
+/// Symbols of a unit with their dimension (m, kg, s, A, K, rad; not doubled), factor to SI, and whether a
+/// prefix may stand before them.
 const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
     ("m", [1, 0, 0, 0, 0, 0], 1.0, true),
     ("s sec", [0, 0, 1, 0, 0, 0], 1.0, true),

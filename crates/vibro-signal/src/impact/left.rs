@@ -10,20 +10,23 @@ use vibro_record::Finding;
 const PARTS: usize = 4;
 /// Fewest samples of a part.
 const FEWEST: usize = 16;
-/// So many times the scatter of a mean power is no noise: in white noise less than one record in a hundred is then said to ring on.
+/// So many times the scatter of a mean power is no noise: in white noise less than one record in a hundred is
+/// then said to ring on.
 const BEYOND: f64 = 6.0;
 /// Lines with less than this part of the highest power are not those of the response.
 const STRONG: f64 = 0.01;
-/// Less than this part of a response at the end of its record is not worth a finding: sensors are not as good.
+/// Less than this part of a response at the end of its record is not worth a finding: sensors are not as
+/// good.
 const LEAST: f64 = 1e-3;
 
-/// Takes into the standard deviations of a function, line by line, what is left of a response when its weighted record ends, relative to its
-/// beginning, from the blows that begin at `kept`, with a finding where it is most. Nothing where records are too short to tell.
+/// Takes into the standard deviations of a function, line by line, what is left of a response when its
+/// weighted record ends, relative to its beginning, from the blows that begin at `kept`, with a finding where
+/// it is most. Nothing where records are too short to tell.
 ///
-/// The last quarter of a mode that decays as e^(−σt) has the transform of the first one times r = e^(−3σT/4); what is left
-/// at T is r^(4/3). A mode whose record ends there has lost e^((s − iω)T) of its transform, s its pole: that is also the size of the
-/// relative error of its part of H. The noise is that before the quietest blow, taken for white; before the others the blow
-/// before may still ring.
+/// The last quarter of a mode that decays as e^(−σt) has the transform of the first one times r = e^(−3σT/4);
+/// what is left at T is r^(4/3). A mode whose record ends there has lost e^((s − iω)T) of its transform, s
+/// its pole: that is also the size of the relative error of its part of H. The noise is that before the
+/// quietest blow, taken for white; before the others the blow before may still ring.
 pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how: &Blows, weights: &[f64]) {
     let quarter = (how.length - how.before) / PARTS;
     if quarter < FEWEST || how.before < 2 || kept.is_empty() {

@@ -65,8 +65,8 @@ fn blows_give_the_receptance_and_the_decay_that_the_window_adds() {
         (plain.transfer.frf.meta.quantity, plain.transfer.averages, plain.added_decay),
         (Quantity::Receptance, 3, 0.0)
     );
-    // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, at 200 Hz below 1 %; what the last
-    // blow left is e^(−ζωt) of it after four seconds.
+    // Sampled impulses against a continuous system: half a sample of delay and (ωΔt)²/12, at 200 Hz below 1
+    // %; what the last blow left is e^(−ζωt) of it after four seconds.
     near(&plain, 0.01);
     // A quarter of the time: the response has not died away, the window sees to it.
     let how = Blows { length: 2048, left_at_end: Some(0.001), ..how };
@@ -85,7 +85,8 @@ fn double_hits_and_overload_are_left_out_by_name() {
     let [mut force, response] = bench(&blows, 70_000);
     force.values.iter_mut().for_each(|v| *v = v.min(78.0));
     let how = Blows { length: 8192, before: 100, force_window: None, left_at_end: None };
-    // The blows of 100 and 120 N pass 78 N with the sample in the middle and both its neighbours: three equal ones.
+    // The blows of 100 and 120 N pass 78 N with the sample in the middle and both its neighbours: three equal
+    // ones.
     let found = from_blows(&force, &response, &how, Estimator::H1).err().unwrap().to_string();
     assert!(
         found.contains("double hit") && found.contains("overload") && found.contains("cuts it off"),
@@ -138,7 +139,8 @@ fn where_the_blow_is_below_its_noise_there_is_no_function() {
             seen += usize::from(value.is_finite());
         }
     }
-    // Noise alone is ten times its mean at one of e^10 lines; that much and the blow's tenth of a part at one of e^8.
+    // Noise alone is ten times its mean at one of e^10 lines; that much and the blow's tenth of a part at one
+    // of e^8.
     assert!(loud > 1000 && quiet > 500 && seen <= 3, "{loud} {quiet} {seen}");
 }
 
@@ -233,7 +235,8 @@ fn each_rail_of_the_response_is_watched_on_its_own() {
     }
 }
 
-/// 60 Hz at 4096 Hz in steps of 1/100 of the peak stays up to five samples at its extreme, but nothing is clipped.
+/// 60 Hz at 4096 Hz in steps of 1/100 of the peak stays up to five samples at its extreme, but nothing is
+/// clipped.
 #[test]
 fn coarse_steps_are_no_overload() {
     let [force, mut response] = bench(&[(500, 100.0), (8000, 100.0), (15_500, 100.0)], 23_000);
@@ -258,7 +261,8 @@ fn the_windows_applied_are_named() {
     };
     assert_eq!(with(None, None), ("rectangular", 1.0));
     assert_eq!(with(Some(0.01), None), ("force", 1.0));
-    // e^(−at) to L = e^(−aT) at the end: T∫e^(−2at)/(∫e^(−at))² = ln(1/L)/2 · (1 + L)/(1 − L); sampled, a/N² less.
+    // e^(−at) to L = e^(−aT) at the end: T∫e^(−2at)/(∫e^(−at))² = ln(1/L)/2 · (1 + L)/(1 − L); sampled, a/N²
+    // less.
     let closed = 0.5 * 100f64.ln() * 1.01 / 0.99;
     for (force_window, name) in [(None, "exponential"), (Some(0.01), "force and exponential")] {
         let (found, enbw) = with(force_window, Some(0.01));
@@ -267,8 +271,8 @@ fn the_windows_applied_are_named() {
     }
 }
 
-/// A record that ends too early: the error near the resonance is what is left of the response, which is measured and in the
-/// standard deviations.
+/// A record that ends too early: the error near the resonance is what is left of the response, which is
+/// measured and in the standard deviations.
 #[test]
 fn what_is_left_at_the_end_of_a_record_is_said() {
     let [force, response] = bench(&[(500, 100.0), (18_000, 80.0), (36_000, 120.0)], 53_000);
@@ -359,7 +363,8 @@ enum AntiAlias {
 }
 
 impl AntiAlias {
-    /// Poles of a Butterworth filter, or with a ripple of a Chebyshev filter (Oppenheim & Schafer, appendix B), that cut off at this part of the rate.
+    /// Poles of a Butterworth filter, or with a ripple of a Chebyshev filter (Oppenheim & Schafer, appendix
+    /// B), that cut off at this part of the rate.
     fn poles(order: usize, corner: f64, ripple_db: Option<f64>) -> AntiAlias {
         let stretch = ripple_db.map_or([1.0, 1.0], |db| {
             let a = (1.0 / (10f64.powf(0.1 * db) - 1.0).sqrt()).asinh() / order as f64;
@@ -418,8 +423,8 @@ impl AntiAlias {
 /// Values before the filter to one behind it.
 const OVER: usize = 16;
 
-/// Of single blows behind anti-alias filters those that are called double hits, and of blows with a second hit of 10 to 60 % after 3 to 60 ms those that
-/// are not. Blows last 0.2 to 2 ms at 4096 Hz.
+/// Of single blows behind anti-alias filters those that are called double hits, and of blows with a second
+/// hit of 10 to 60 % after 3 to 60 ms those that are not. Blows last 0.2 to 2 ms at 4096 Hz.
 fn double_hits(draws: u64) -> (usize, usize) {
     let (mut false_doubles, mut lost) = (0, 0);
     for seed in 0..draws {

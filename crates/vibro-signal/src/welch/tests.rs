@@ -68,7 +68,8 @@ fn products_agree_with_scipy() {
     }
 }
 
-/// Batches, groups and cores must not be seen in the result: more segments than one group, against one segment after the other.
+/// Batches, groups and cores must not be seen in the result: more segments than one group, against one
+/// segment after the other.
 #[test]
 fn long_records_are_averaged_like_short_ones() {
     let n = 300_001;
@@ -94,7 +95,8 @@ fn long_records_are_averaged_like_short_ones() {
 #[test]
 fn overlapping_segments_are_not_independent() {
     let w = window::samples(Window::Hann, 4096);
-    // Half overlap of Hann windows: squared correlation 1/36, so that many segments lose 2/36 of their number.
+    // Half overlap of Hann windows: squared correlation 1/36, so that many segments lose 2/36 of their
+    // number.
     let many = effective(&w, 2048, 10_000) / 10_000.0;
     assert!((many - 1.0 / (1.0 + 2.0 / 36.0)).abs() < 1e-5, "{many}");
     assert_eq!(effective(&w, 4096, 50), 50.0);

@@ -44,8 +44,8 @@ impl Pieces {
     }
 }
 
-/// Half the peak-to-peak values of both masses over frequency: stable motions solid, unstable ones dashed, those in which the masses would
-/// pass through each other thin and grey.
+/// Half the peak-to-peak values of both masses over frequency: stable motions solid, unstable ones dashed,
+/// those in which the masses would pass through each other thin and grey.
 pub fn branches(title: &str, response: &Response) -> Figure {
     let mut figure = Figure::double(title).height(150.0).shared_x();
     for mass in 0..2 {
@@ -118,7 +118,8 @@ fn panel(response: &Response, mass: usize) -> Plot {
     plot
 }
 
-/// Half the peak-to-peak values of both masses along branches over a value, those with one impact a cycle `beside` them.
+/// Half the peak-to-peak values of both masses along branches over a value, those with one impact a cycle
+/// `beside` them.
 pub fn continued(over: Parameter, branches: &[Branch], beside: &[Branch]) -> Figure {
     let mut figure = Figure::double("Branches").height(150.0).shared_x();
     for (mass, label) in ["Amplitude of x₁", "Amplitude of x₂"].into_iter().enumerate() {

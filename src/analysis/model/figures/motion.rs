@@ -75,8 +75,8 @@ fn whole(portrait: &Portrait) -> Vec<State> {
     all
 }
 
-/// An axis over these values with a tenth of room at both ends, and not finer than a hundredth of the largest: what repeats is a point, not
-/// its roundings.
+/// An axis over these values with a tenth of room at both ends, and not finer than a hundredth of the
+/// largest: what repeats is a point, not its roundings.
 fn roomy(axis: AxisSpec, values: &[f64]) -> AxisSpec {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
@@ -131,8 +131,8 @@ pub fn poincare(title: &str, portrait: &Portrait) -> Figure {
 /// Samples of a period.
 const POINTS: usize = 800;
 
-/// Both masses over two periods, x₂ counted from the rest of x₁'s contact face, so that the curves meet at the impacts; velocities over
-/// displacements beside it.
+/// Both masses over two periods, x₂ counted from the rest of x₁'s contact face, so that the curves meet at
+/// the impacts; velocities over displacements beside it.
 pub fn orbit(title: &str, rig: &Rig, orbit: &Orbit) -> Figure {
     let at = |i: usize| orbit.period() * i as f64 / POINTS as f64;
     let states: Vec<(f64, State)> =

@@ -53,7 +53,8 @@ pub fn sweep(
     )
 }
 
-/// The force between the masses over frequency or force: peak and RMS where contacts last, and the impulse a cycle.
+/// The force between the masses over frequency or force: peak and RMS where contacts last, and the impulse a
+/// cycle.
 pub fn forces(swept: &Swept, over_force: bool) -> Figure {
     let (over, unit) = if over_force { ("Force", "N") } else { ("Excitation frequency", "Hz") };
     let lasting = swept.up.iter().chain(&swept.down).any(|p| p.reaction.peak.is_some());

@@ -6,7 +6,8 @@ use crate::report::layout::{lettered, line, points};
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use std::fmt::Write as _;
 
-/// Residuals over frequency, by mass and direction, and the profile of the parameter with the largest relative uncertainty.
+/// Residuals over frequency, by mass and direction, and the profile of the parameter with the largest
+/// relative uncertainty.
 pub fn fit(title: &str, fit: &Fit) -> Figure {
     let mut above =
         Plot::new(AxisSpec::new("Excitation frequency", "Hz"), AxisSpec::new("Residual / stated std", ""))

@@ -11,9 +11,9 @@ use crate::units::notation::significant;
 /// Height of a panel in mm.
 const PANEL: f64 = 85.0;
 
-/// One panel a mass and level of force: branches that can be seen solid, unstable ones dashed, neutral ones dash-dotted, the
-/// motion without impacts thin; measured points on top. Branches on which the masses would pass through each other are left
-/// out.
+/// One panel a mass and level of force: branches that can be seen solid, unstable ones dashed, neutral ones
+/// dash-dotted, the motion without impacts thin; measured points on top. Branches on which the masses would
+/// pass through each other are left out.
 pub fn overlay(title: &str, overlay: &Overlay, responses: &[Response]) -> Figure {
     let force = match overlay.force {
         Some(force) => format!("a force of {force:.4} N"),
@@ -99,8 +99,8 @@ fn free(motions: &[Motion]) -> f64 {
     motions.iter().find(|m| m.kind == Kind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[0])
 }
 
-/// Amplitudes of the impacting motion of this rank where this is its verdict, and NaN elsewhere. Parts that cannot be seen
-/// reach one point into those that can, so that no gap opens between them.
+/// Amplitudes of the impacting motion of this rank where this is its verdict, and NaN elsewhere. Parts that
+/// cannot be seen reach one point into those that can, so that no gap opens between them.
 fn branch(curve: &Prediction, mass: u8, rank: usize, verdict: Verdict) -> Vec<f64> {
     let motion = |i: usize| curve.motions[i].iter().filter(|m| m.kind == Kind::Impacting).nth(rank);
     let is = |i: usize| i < curve.motions.len() && motion(i).is_some_and(|m| m.verdict == verdict);

@@ -39,8 +39,8 @@ fn level(points: &[(f64, f64)]) -> [(f64, f64); 2] {
     [(re - WIDE * half, re + WIDE * half), (im - half, im + half)]
 }
 
-/// Magnitude (logarithmic) and phase of the receptances over frequency, and their imaginary over their real part; `None` where no
-/// sweep has a phase.
+/// Magnitude (logarithmic) and phase of the receptances over frequency, and their imaginary over their real
+/// part; `None` where no sweep has a phase.
 pub fn receptance(title: &str, responses: &[Response]) -> Option<Figure> {
     let all = responses.iter().enumerate().map(|(i, r)| (r, rank(responses, i), points(r)));
     let known: Vec<(&Response, usize, Vec<_>)> = all.filter(|(.., points)| !points.is_empty()).collect();

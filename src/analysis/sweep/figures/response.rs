@@ -54,8 +54,8 @@ fn plot(responses: &[Response], log: bool) -> Plot {
 pub(super) const MARKS: &str = "Bars: one standard uncertainty, where larger than the marker. \
     Downward triangles: upper limits of amplitudes below the noise; at the lower edge, the limit is off the scale.";
 
-/// Limits of a logarithmic axis that shows all points that stand out of the noise, with their uncertainties but for those that
-/// reach down to nothing; of upper limits where there are no others.
+/// Limits of a logarithmic axis that shows all points that stand out of the noise, with their uncertainties
+/// but for those that reach down to nothing; of upper limits where there are no others.
 pub(super) fn log_limits<'a>(responses: impl Iterator<Item = &'a Response>) -> Option<(f64, f64)> {
     let (mut clear, mut faint) = (Vec::new(), Vec::new());
     for point in responses.flat_map(|r| &r.points) {
@@ -79,9 +79,10 @@ pub(super) fn rank(responses: &[Response], i: usize) -> usize {
     responses.get(i).map_or(0, |own| earlier.filter(|r| of(r) == of(own)).count())
 }
 
-/// Measured points and upper limits of one curve, in the ink of its mass and `rank` and the marker of its mass (circles or
-/// squares) and direction (filled or open). A line through the points is broken at these jumps of either mass, and at faint
-/// points. Upper limits below a logarithmic axis with these limits stand at its lower edge.
+/// Measured points and upper limits of one curve, in the ink of its mass and `rank` and the marker of its
+/// mass (circles or squares) and direction (filled or open). A line through the points is broken at these
+/// jumps of either mass, and at faint points. Upper limits below a logarithmic axis with these limits stand
+/// at its lower edge.
 pub(super) fn series(
     response: &Response,
     rank: usize,
@@ -116,7 +117,8 @@ pub(super) fn series(
     [measured, limits].map(|series| series.ink(ink))
 }
 
-/// Marker and ink of a sweep, the same in all figures; the marker is that of the ink where the mass is not known.
+/// Marker and ink of a sweep, the same in all figures; the marker is that of the ink where the mass is not
+/// known.
 pub(super) fn look(response: &Response, rank: usize) -> (Option<Marker>, Ink) {
     let down = response.direction == Some(Direction::Down);
     let marker = match (response.mass, down) {

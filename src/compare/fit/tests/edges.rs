@@ -116,7 +116,8 @@ fn larger(data: &mut Data, factor: f64) {
     }
 }
 
-/// Only the calibration tells one factor on lengths and forces, or on lengths and, where the force is held, masses and stiffnesses.
+/// Only the calibration tells one factor on lengths and forces, or on lengths and, where the force is held,
+/// masses and stiffnesses.
 #[test]
 fn a_scale_is_as_uncertain_as_the_calibration() {
     let both = "parameters = [\"force\", \"restitution\", \"c1\", \"gap\"]";
@@ -134,7 +135,8 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
             let Estimate { value, std, .. } = found.estimate;
             let off = (value - setting.get(found.parameter)).abs();
             println!("{found:?}");
-            // The factor is one standard uncertainty of each mass' calibration, √2 of both together; 2.5 more are chance of one in 80.
+            // The factor is one standard uncertainty of each mass' calibration, √2 of both together; 2.5 more
+            // are chance of one in 80.
             assert!(off < 3.9 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
         let Estimate { value, std, .. } = of(&fit, scale).estimate;
@@ -153,7 +155,8 @@ fn a_scale_is_as_uncertain_as_the_calibration() {
     assert!(finding(&far, "calibration-assumed").is_none(), "{:?}", far.findings);
 }
 
-/// A load cell that reads 1 % too much: nothing tells the gap from one that is 1 % larger, unless the force is looked for.
+/// A load cell that reads 1 % too much: nothing tells the gap from one that is 1 % larger, unless the force
+/// is looked for.
 #[test]
 fn the_gap_is_as_uncertain_as_a_fixed_force() {
     let rest = "\"restitution\", \"c1\", \"c2\", \"gap\"]";
@@ -175,13 +178,14 @@ fn the_gap_is_as_uncertain_as_a_fixed_force() {
             assert!(off < 3.5 * std.unwrap_or(0.0), "{names}: {found:?}");
         }
         let Estimate { value, std, .. } = of(&fit, Parameter::Gap).estimate;
-        // 1 % of the force together with two masses' 1 %, which tell it as well: 1 %/√3, a little more with their slopes. With the force fitted,
-        // 1 %/√2.
+        // 1 % of the force together with two masses' 1 %, which tell it as well: 1 %/√3, a little more with
+        // their slopes. With the force fitted, 1 %/√2.
         assert!((0.005..0.012).contains(&(std.unwrap() / value)), "{names}: {std:?}");
     }
 }
 
-/// Amplitudes 1 % too large that are said to be exact, and a force that is held: the masses cannot be what they weigh.
+/// Amplitudes 1 % too large that are said to be exact, and a force that is held: the masses cannot be what
+/// they weigh.
 #[test]
 fn masses_far_from_what_they_weigh_are_named() {
     let weighed = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\", \"k1\", \"k2\", \"m1\", \"m2\"]\n\
@@ -191,7 +195,8 @@ fn masses_far_from_what_they_weigh_are_named() {
     assert_eq!(finding(&fit, "prior-contradicted").unwrap().subject.as_deref(), Some("m1"));
 }
 
-/// Amplitudes that stray by a thousandth, up to sixteen times what the noise in their spectra shows: doubted, and right where it is stated.
+/// Amplitudes that stray by a thousandth, up to sixteen times what the noise in their spectra shows: doubted,
+/// and right where it is stated.
 #[test]
 fn amplitudes_that_stray_need_their_scatter() {
     let names = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
@@ -221,7 +226,8 @@ fn amplitudes_that_stray_need_their_scatter() {
     }
 }
 
-/// Hardly any loss in the impact: a search that begins at 0.95 must not end at 1, nor say more than the points hold.
+/// Hardly any loss in the impact: a search that begins at 0.95 must not end at 1, nor say more than the
+/// points hold.
 #[test]
 fn a_restitution_near_one_is_found_or_doubted() {
     let setting = example().with(Parameter::Restitution, 0.999);

@@ -27,8 +27,9 @@ fn off(setting: &Setting, draw: u64) -> Setting {
     })
 }
 
-/// Half of the steps show other patterns, and every parameter starts wrong. An answer is right where no parameter lies four standard
-/// deviations off (six of them, eight times: one in three hundred), and each answer is right or doubted.
+/// Half of the steps show other patterns, and every parameter starts wrong. An answer is right where no
+/// parameter lies four standard deviations off (six of them, eight times: one in three hundred), and each
+/// answer is right or doubted.
 #[test]
 fn points_of_other_patterns_pull_nothing_away() {
     other_patterns(2..3, 1);
@@ -69,8 +70,9 @@ fn other_patterns(draws: std::ops::Range<u64>, rigs: usize) {
     }
 }
 
-/// A gap stated in metres that was meant in millimetres, or the other way round: starts are spread no farther than by a half, and simulated
-/// rigs of that kind strike a million times a cycle. The fit ends all the same, here at the truth.
+/// A gap stated in metres that was meant in millimetres, or the other way round: starts are spread no farther
+/// than by a half, and simulated rigs of that kind strike a million times a cycle. The fit ends all the same,
+/// here at the truth.
 #[test]
 fn a_gap_a_thousand_times_off_is_found() {
     gaps_far_off(&[1e-6]);

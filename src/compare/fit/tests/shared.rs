@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// The undoubted answer from this start: what is left over freedom, and how many standard deviations each parameter lies off `setting`.
+/// The undoubted answer from this start: what is left over freedom, and how many standard deviations each
+/// parameter lies off `setting`.
 fn answer(data: &Data, setting: &Setting, start: &Setting, names: &[&str]) -> (f64, Vec<f64>) {
     let (settled, _) = identify(&Problem::new(data, start, unknowns(names, start)), STARTS).unwrap();
     let found = (settled.least.reduced, away(&settled, setting));
@@ -29,7 +30,8 @@ fn a_poor_calibration_leads_to_no_other_rig() {
     }
 }
 
-/// One point that shows another motion 2.7 % off is nine times the noise, and less than three times a calibration of 1 %.
+/// One point that shows another motion 2.7 % off is nine times the noise, and less than three times a
+/// calibration of 1 %.
 #[test]
 fn a_lone_point_does_not_hide_behind_the_calibration() {
     let setting = example();

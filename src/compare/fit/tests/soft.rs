@@ -33,7 +33,8 @@ fn soft(setting: &Setting, stiffness: f64, seed: u64) -> Data {
 
 const NAMES: &str = "parameters = [\"restitution\", \"c1\", \"c2\", \"gap\"]";
 
-/// Kelvin–Voigt contacts that last 0.5 and 0.15 % of the period at resonance: with the stiffness stated the rig is found, without it nothing is claimed.
+/// Kelvin–Voigt contacts that last 0.5 and 0.15 % of the period at resonance: with the stiffness stated the
+/// rig is found, without it nothing is claimed.
 #[test]
 fn the_stiffness_of_the_contact_is_allowed_for() {
     allowed_for(&[(1e7, 42)], Some(1));

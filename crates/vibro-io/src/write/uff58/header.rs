@@ -8,7 +8,8 @@ use vibro_record::{ADDED_DECAY, AVERAGED_WITH, Axis, AxisKind, FROM_BLOWS, Meta,
 /// Record 6 behind the function type, of a record without a degree of freedom.
 const NOWHERE: &str = "         0    0         0 NONE               0   0 NONE               0   0";
 
-/// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in record 7.
+/// Delimiter, number line and header; `bytes` is the size of binary values, `start` and `step` stand in
+/// record 7.
 pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]: &[String; 2]) -> String {
     let meta = record.meta();
     let note = |key: &str| meta.notes.iter().find(|(k, _)| k == key).map(|(_, text)| text.as_str());
@@ -67,8 +68,8 @@ pub fn text(record: &Record, layout: Layout, bytes: Option<usize>, [start, step]
     lines.map(|line| format!("{line:80}")).collect::<Vec<_>>().join("\n") + "\n"
 }
 
-/// Function type of record 6; `before` is that of the file the record was read from, and stands where the record still
-/// is what it was.
+/// Function type of record 6; `before` is that of the file the record was read from, and stands where the
+/// record still is what it was.
 fn function(record: &Record, before: Option<u8>) -> u8 {
     let keep = |same: fn(u8) -> bool, otherwise: u8| before.filter(|code| same(*code)).unwrap_or(otherwise);
     match record {
@@ -132,7 +133,8 @@ fn ordinate(meta: &Meta) -> [String; 2] {
     }
 }
 
-/// A unit in at most 20 ASCII characters where that says the same: others count bytes where characters are meant.
+/// A unit in at most 20 ASCII characters where that says the same: others count bytes where characters are
+/// meant.
 fn unit_text(unit: &Unit) -> String {
     const PLAIN: [(&str, &str); 8] = [
         ("²", "^2"),
@@ -152,7 +154,8 @@ fn unit_text(unit: &Unit) -> String {
     if unit.is_known() && chosen.chars().count() > 20 { String::new() } else { chosen }
 }
 
-/// Text of at most `width` characters on one line; `NONE` for nothing, and never a line that would end the data set.
+/// Text of at most `width` characters on one line; `NONE` for nothing, and never a line that would end the
+/// data set.
 fn plain(text: &str, width: usize) -> String {
     let line: String = text.trim().replace(char::is_control, " ").chars().take(width).collect();
     match line.trim() {

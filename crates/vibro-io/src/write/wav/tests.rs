@@ -141,8 +141,8 @@ proptest! {
                 prop_assert!((dt * rate - 1.0).abs() < 4.0 * f64::EPSILON);
                 let factor = scale(was).factor;
                 for (a, b) in was.values.iter().zip(&is.values) {
-                    // Half an ulp of a float of the value, or half the smallest one; a double loses only what is
-                    // below the smallest double when divided by full scale.
+                    // Half an ulp of a float of the value, or half the smallest one; a double loses only what
+                    // is below the smallest double when divided by full scale.
                     let bound = match sample {
                         Precision::Single => a.abs() * 2f64.powi(-24) + factor * 2f64.powi(-150),
                         Precision::Double if factor > 1.0 => factor * 5e-324,

@@ -170,8 +170,8 @@ fn what_has_no_uncertainty_explains_nothing() {
 
 #[test]
 fn a_striker_whose_speed_varies_by_half_still_strikes() {
-    // Speeds from 1.1 to 9 m/s in no order, each sent back with 0.3 of it, mean 5 m/s: the sum of twenty is known to 11 %, the
-    // quotient is the same in all.
+    // Speeds from 1.1 to 9 m/s in no order, each sent back with 0.3 of it, mean 5 m/s: the sum of twenty is
+    // known to 11 %, the quotient is the same in all.
     let mut all = twenty(5.0, -1.5, 0.02);
     for (k, impact) in all.iter_mut().enumerate() {
         impact.before = 1.1 + 7.9 * ((k * 7) % 20) as f64 / 19.0;
@@ -189,7 +189,8 @@ fn what_is_not_known_of_an_offset_is_in_all_means_and_a_large_one_leaves_no_unce
     };
     let small = group(0.4);
     let std = |e: &Option<Estimate>| e.as_ref().unwrap().std.unwrap();
-    // Speeds scatter by 0.001: all is of the offset. Of R by (1 + R)/v, of the energies by m v and m (v − v′).
+    // Speeds scatter by 0.001: all is of the offset. Of R by (1 + R)/v, of the energies by m v and m (v −
+    // v′).
     let r = small.restitution.as_ref().unwrap().value;
     let expected = [0.2, 0.2, (1.0 + r) / 5.0 * 0.2, 0.1 * 5.0 * 0.2, 0.1 * 6.0 * 0.2];
     let (before, after) = (small.before.std.unwrap(), small.after.std.unwrap());
@@ -233,7 +234,8 @@ fn fits_that_lead_beyond_the_record_give_no_velocities() {
     assert!(refused.findings.iter().any(|found| found.code == "drill-velocity-impossible"));
 }
 
-/// Residuals of −√7 P₃, as a parabola leaves of a cubic, in parts of the fit: the bias is that cubic at the contact.
+/// Residuals of −√7 P₃, as a parabola leaves of a cubic, in parts of the fit: the bias is that cubic at the
+/// contact.
 #[test]
 fn what_parabolas_leave_in_common_is_in_the_uncertainty() {
     let places = 40;

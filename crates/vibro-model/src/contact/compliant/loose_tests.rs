@@ -119,8 +119,9 @@ fn agrees(buffer: Buffer) {
 
 #[test]
 fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
-    // The thesis' contact: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. An independent integration (Runge–Kutta of
-    // fourth order, 10 µs) has its highest running RMS through a 10 rad/s low-pass at 4.62 to 4.66 Hz: irregular there, so by its start.
+    // The thesis' contact: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. An
+    // independent integration (Runge–Kutta of fourth order, 10 µs) has its highest running RMS through a
+    // 10 rad/s low-pass at 4.62 to 4.66 Hz: irregular there, so by its start.
     let law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
     let mut motion =
         Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), Buffer::thesis(), Some(law), State::REST, 0.0)

@@ -43,7 +43,8 @@ fn thirty_contacts_agree_with_arithmetic_of_forty_digits() {
         for (time, expected) in [(impact.time, row[0]), (*part, row[1]), (*back, row[2])] {
             worst = worst.max((time - expected).abs());
         }
-        // Roundings of 10 mm enlarged by some hundred of contacts that repel, over speeds of 0.1 m/s; the goal is 1e-9 s.
+        // Roundings of 10 mm enlarged by some hundred of contacts that repel, over speeds of 0.1 m/s; the
+        // goal is 1e-9 s.
         assert!(worst < 1e-13, "{worst:e} at {}", row[0]);
         assert!((impact.approach_velocity - row[3]).abs() < 1e-12, "{impact:?} {}", row[3]);
         assert!((impact.impulse / row[4] - 1.0).abs() < 1e-12, "{impact:?} {}", row[4]);
@@ -51,7 +52,8 @@ fn thirty_contacts_agree_with_arithmetic_of_forty_digits() {
     println!("worst time {worst:e} s");
 }
 
-/// Work of the force less what the dampers and the contact take, by quadrature over each piece, against the energy.
+/// Work of the force less what the dampers and the contact take, by quadrature over each piece, against the
+/// energy.
 fn check_balance(law: Law, rig: &Rig, seconds: f64) {
     let (force, frequency) = (0.5, 9.0);
     let mut motion = Compliant::new(rig, &sine(force, frequency), law, State::REST, 0.0).unwrap();
@@ -146,7 +148,8 @@ fn a_stiff_contact_approaches_the_rebound() {
             .zip(&hard)
             .map(|(s, h)| (s.approach_velocity - h.approach_velocity).abs())
             .fold(0.0, f64::max);
-        // The contact's duration falls as 1/√k, and with it what it leaves out: tenfold for a hundredfold stiffness.
+        // The contact's duration falls as 1/√k, and with it what it leaves out: tenfold for a hundredfold
+        // stiffness.
         assert!(off < before / 5.0, "{stiffness}: {off} after {before}");
         // The forces outside the contact accelerate the masses by less than 20 m/s² while it lasts.
         let lasts = conversion::duration(
@@ -185,7 +188,8 @@ fn an_isolated_contact_has_its_restitution_and_duration() {
     };
     for r in [1.0, 0.9, 0.5, 0.2, 0.05] {
         let (found, duration, impact) = rebound(Law::kelvin_voigt(1e5, r, mass).unwrap());
-        // The springs change the speed by 1e-12 N/m · 30 mm · 0.1 s/m₁ = 2e-14 m/s; integrated contacts err by 1e-13 a step.
+        // The springs change the speed by 1e-12 N/m · 30 mm · 0.1 s/m₁ = 2e-14 m/s; integrated contacts err
+        // by 1e-13 a step.
         assert!((found - r).abs() < 1e-11, "{r} {found}");
         let expected = conversion::duration(conversion::damping_ratio(r).unwrap(), 1e5, mass);
         assert!((duration - expected).abs() < 1e-12, "{r} {duration} {expected}");

@@ -28,7 +28,8 @@ fn speeds(restitution: f64, force: f64, frequency: f64, stiffness: f64) -> Choic
     choose(&scene, frequency, &Question::new(Observable::ImpactSpeed)).unwrap()
 }
 
-/// Impacts of a rig in the second half of the last of `stations` (Hz, cycles), integrated from rest through all of them.
+/// Impacts of a rig in the second half of the last of `stations` (Hz, cycles), integrated from rest through
+/// all of them.
 fn impacts_at_the_end(rig: &Rig, force: f64, stations: &[(f64, f64)]) -> usize {
     let mut y = [0.0; 4];
     let mut phase = 0.0;
@@ -72,8 +73,8 @@ fn impacts_at_the_end(rig: &Rig, force: f64, stations: &[(f64, f64)]) -> usize {
 
 #[test]
 fn impacts_that_a_rising_frequency_keeps_are_followed() {
-    // At 6.8 Hz every orbit with one impact a cycle is unstable, the motion without impacts is possible, and from rest it is met; but led up
-    // from 5.5 Hz, where the masses must meet, the impacts last.
+    // At 6.8 Hz every orbit with one impact a cycle is unstable, the motion without impacts is possible, and
+    // from rest it is met; but led up from 5.5 Hz, where the masses must meet, the impacts last.
     let rig = Rig { restitution: 0.7, ..Rig::thesis() };
     let mut stations: Vec<(f64, f64)> = (0..13).map(|i| (5.5 + 0.1 * f64::from(i), 60.0)).collect();
     stations.push((6.8, 600.0));
@@ -122,8 +123,9 @@ fn impacts_from(restitution: f64, force: f64, frequency: f64, state: State) -> u
 
 #[test]
 fn motions_that_strike_less_than_once_a_cycle_are_warned_of() {
-    // None strikes once a cycle, and from rest nothing strikes. At 32.98 Hz an orbit of 4 cycles is stable; at 12.97 Hz and at ν 2.6 one of
-    // 2 cycles has lost its stability by a flip, and patterns of 8 and of 4 cycles lie round it.
+    // None strikes once a cycle, and from rest nothing strikes. At 32.98 Hz an orbit of 4 cycles is stable;
+    // at 12.97 Hz and at ν 2.6 one of 2 cycles has lost its stability by a flip, and patterns of 8 and of
+    // 4 cycles lie round it.
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     assert!(impacts_from(0.7, 0.3, 12.9701, state) > 100);
     for (restitution, force, frequency, pattern) in
@@ -190,7 +192,8 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
 
 #[test]
 fn one_motion_is_read_alike_from_wherever_it_starts() {
-    // Started beside an orbit, at the phase of its impact, cycles that begin there hold both impacts of 2/2, or other ones of 5/6.
+    // Started beside an orbit, at the phase of its impact, cycles that begin there hold both impacts of 2/2,
+    // or other ones of 5/6.
     for (restitution, frequency, cycles, pattern) in
         [(0.97, 5.85, 2, "2/2"), (0.9, 13.700_000_000_000_001, 6, "5/6")]
     {

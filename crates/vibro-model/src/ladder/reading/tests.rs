@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
 
-/// Values x ← ρx + noise, uniform noise: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 − ρ)/n.
+/// Values x ← ρx + noise, uniform noise: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 −
+/// ρ)/n.
 fn correlated(seed: u64, n: usize, rho: f64) -> Vec<[f64; 2]> {
     let mut noise = Noise::new(seed);
     let mut even = || noise.uniform() - 0.5;
@@ -24,8 +25,9 @@ fn correlated(seed: u64, n: usize, rho: f64) -> Vec<[f64; 2]> {
 
 #[test]
 fn a_standard_error_covers_what_it_should() {
-    // Of 1000 means of 32 values with a correlation of 0.3 about 5 % lie farther than two standard errors from the truth: with estimated
-    // errors 8 ± 1 %. Taken as independent, √(1.3/0.7) = 1.36 times as narrow, 15 % do.
+    // Of 1000 means of 32 values with a correlation of 0.3 about 5 % lie farther than two standard errors
+    // from the truth: with estimated errors 8 ± 1 %. Taken as independent, √(1.3/0.7) = 1.36 times as
+    // narrow, 15 % do.
     let far = |rho: f64| {
         let outside = |seed: u64| {
             let found = mean(&correlated(seed, 32, rho), true);
@@ -38,9 +40,10 @@ fn a_standard_error_covers_what_it_should() {
 
 #[test]
 fn many_means_of_one_motion_are_not_told_apart() {
-    // Twenty pairs in each of 500 questions. With two standard errors that are known, 1 − 0.954²⁰ = 61 % of them have a pair that is told apart. Estimated
-    // ones are never narrower than those of independent values, and often wider: fewer have, but more than a quarter. A hundredth, 5 ± 2.2, may
-    // have where all comparisons are counted.
+    // Twenty pairs in each of 500 questions. With two standard errors that are known, 1 − 0.954²⁰ = 61 % of
+    // them have a pair that is told apart. Estimated ones are never narrower than those of independent
+    // values, and often wider: fewer have, but more than a quarter. A hundredth, 5 ± 2.2, may have where
+    // all comparisons are counted.
     let question = Question { tolerance: 1e-4, ..Question::new(Observable::Fundamental) };
     let told = |errors: f64| {
         let pair = |seed: u64| {
@@ -64,7 +67,8 @@ fn a_drift_is_told_from_scatter() {
         };
         (1..=1000).filter(|seed| one(*seed)).count()
     };
-    // Φ(−2.5) = 0.6 % of independent values; a rise over all of five standard deviations (0.29 each) hides from none.
+    // Φ(−2.5) = 0.6 % of independent values; a rise over all of five standard deviations (0.29 each) hides
+    // from none.
     assert!(told(0.0, 0.0) < 15, "{}", told(0.0, 0.0));
     assert_eq!(told(0.0, 5.0 * 0.29 / 32.0 * 2.0), 1000);
     // Of few values as well: a straight line of six has the ratio 5/17.5.
@@ -72,7 +76,8 @@ fn a_drift_is_told_from_scatter() {
     assert!(drifts(&line) && !drifts(&[[1.0; 2]; 6]));
 }
 
-/// First time in s at which x₁ of mass 1 alone, from rest, reaches the gap: by an integrator that shares nothing with the flights.
+/// First time in s at which x₁ of mass 1 alone, from rest, reaches the gap: by an integrator that shares
+/// nothing with the flights.
 fn first_touch(rig: &Rig, sine: &Sine, until: f64) -> f64 {
     let omega = TAU * sine.frequency;
     let rate = |t: f64, y: &[f64; 2]| {
@@ -92,15 +97,16 @@ fn first_touch(rig: &Rig, sine: &Sine, until: f64) -> f64 {
 
 #[test]
 fn a_slow_growth_towards_the_gap_is_not_the_end() {
-    // Hardly damped at its resonance: the amplitude A(1 − e^{−bt}) with A 1.3 mm passes the gap of 1 mm only after 1900 cycles, in which
-    // no impact is seen and every impact speed is 0.
+    // Hardly damped at its resonance: the amplitude A(1 − e^{−bt}) with A 1.3 mm passes the gap of 1 mm only
+    // after 1900 cycles, in which no impact is seen and every impact speed is 0.
     let rig = Rig { c1: 1e-3, c2: 1e-3, ..Rig::thesis() };
     let sine = Sine { force: 4.272_235_95e-5, frequency: 5.230_365_15 };
     let found = no_impact(&rig, &Excitation::Sine(sine)).unwrap();
     let decay = rig.c1 / (2.0 * rig.m1);
     let closed = -(1.0 - rig.gap / found.largest).ln() / decay;
     let touched = first_touch(&rig, &sine, 2.0 * closed);
-    // The amplitude grows by bA a second: a cycle earlier or later, and what the detuning of a damped resonance leaves.
+    // The amplitude grows by bA a second: a cycle earlier or later, and what the detuning of a damped
+    // resonance leaves.
     assert!((touched / closed - 1.0).abs() < 0.01 && touched * sine.frequency > 1800.0, "{touched} {closed}");
     let question = Question::new(Observable::ImpactSpeed);
     let clearance = Some(rig.gap - found.largest);
@@ -155,7 +161,8 @@ fn a_pattern_that_no_block_holds_whole_is_read_whole() {
 
 #[test]
 fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
-    // Nine impacts in thirteen cycles: thirteen blocks of sixty hold whole patterns, more than the twelve of a brief reading.
+    // Nine impacts in thirteen cycles: thirteen blocks of sixty hold whole patterns, more than the twelve of
+    // a brief reading.
     let (rig, frequency) = (Rig { restitution: 0.664_347_826_087, ..Rig::thesis() }, 14.235_294_117_647);
     let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
     motion.run(6000.0 / frequency, |_| {}).unwrap();

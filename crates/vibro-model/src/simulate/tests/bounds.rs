@@ -21,8 +21,9 @@ fn zeno_scenes_take_bounded_work() {
                 let mut motion = Simulation::new(&rig, &Sine { force, frequency }).unwrap();
                 motion.run(10.0, |leg| assert!(leg.duration >= 0.0)).unwrap();
                 let flights = motion.counts().flights;
-                // Down from 1 m/s to rounding, 1e-9 m/s, by R each time, at most some times a cycle; without loss the
-                // bounces between two pressings only grow as rare as their speed is large.
+                // Down from 1 m/s to rounding, 1e-9 m/s, by R each time, at most some times a cycle; without
+                // loss the bounces between two pressings only grow as rare as their speed is
+                // large.
                 assert!(flights < 2_000_000, "{rig:?} {force} N: {flights} flights");
                 assert_eq!(motion.time(), 10.0);
                 let State { x1, x2, .. } = motion.state();
@@ -49,7 +50,8 @@ fn masses_pressed_together_at_rest_stay_so() {
 
 #[test]
 fn a_release_is_followed_by_a_free_flight() {
-    // After each release the gap opens like t³: the next impact is no rounding, and stopping anywhere makes none.
+    // After each release the gap opens like t³: the next impact is no rounding, and stopping anywhere makes
+    // none.
     for cut in [1e-12, 1e-9, 1e-6, 1e-4, 1.0] {
         let mut motion = scene_c();
         let (mut released, mut checked) = (None, 0);

@@ -8,8 +8,8 @@ fn energy(rig: &Rig, s: &State) -> f64 {
     (rig.m1 * s.v1.powi(2) + rig.k1 * s.x1.powi(2) + rig.m2 * s.v2.powi(2) + rig.k2 * s.x2.powi(2)) / 2.0
 }
 
-/// Follows a motion to `until` and compares what force, dampers, impacts and kicks put in with the change of energy; returns the
-/// largest energy met, and the events.
+/// Follows a motion to `until` and compares what force, dampers, impacts and kicks put in with the change of
+/// energy; returns the largest energy met, and the events.
 fn balance(mut motion: Simulation, force: impl Fn(f64) -> f64, kick: f64, until: f64) -> Vec<Event> {
     let rig = *motion.rig();
     let start = energy(&rig, &motion.state());
@@ -20,7 +20,8 @@ fn balance(mut motion: Simulation, force: impl Fn(f64) -> f64, kick: f64, until:
         let leg = motion.fly(until).unwrap();
         // Composite Gauss-Legendre with three points on 128 panels.
         let panel = leg.duration / 128.0;
-        // Sixth order: (h·ω)⁷ of a leg, below 1e-13 of its energy for legs under a period of the fastest term.
+        // Sixth order: (h·ω)⁷ of a leg, below 1e-13 of its energy for legs under a period of the fastest
+        // term.
         assert!(leg.duration < 0.5);
         let node = 0.6_f64.sqrt() / 2.0;
         let mut quadrature = |power: &dyn Fn(f64) -> f64| {

@@ -47,7 +47,8 @@ fn two_hundred_random_rigs_settle_where_the_closed_form_is_real_and_nowhere_else
         match real[..] {
             [orbit] if !found.no_impact.possible => {
                 let radius = orbit.spectral_radius().unwrap();
-                // A disturbance must fall to 1e-12 within some thousand cycles; close to grazing or a border it does not.
+                // A disturbance must fall to 1e-12 within some thousand cycles; close to grazing or a border
+                // it does not.
                 if radius > 0.99 || orbit.validity.grazing_distance < 1e-5 {
                     continue;
                 }

@@ -56,8 +56,8 @@ fn a_wall_is_the_limit_of_a_huge_mass_on_a_huge_spring() {
             let ((ours, a), (theirs, b)) = (events(&rig, &excitation, 3.0), events(&huge, &excitation, 3.0));
             assert_eq!(ours.len(), theirs.len(), "{gap} {ours:?} {theirs:?}");
             for (one, other) in ours.iter().zip(&theirs) {
-                // The huge spring gives way by F/k₂ = 5e-11 m (7e-9 N of the other), and its force is rounded to 8εk₂Δ = 2e-8 N of a force
-                // that falls with 2.5 N/s.
+                // The huge spring gives way by F/k₂ = 5e-11 m (7e-9 N of the other), and its force is rounded
+                // to 8εk₂Δ = 2e-8 N of a force that falls with 2.5 N/s.
                 assert!(one.0 == other.0 && (one.1 - other.1).abs() < 1e-7, "{one:?} {other:?}");
             }
             assert!((a.x1 - b.x1).abs() < 1e-7 && (a.v1 - b.v1).abs() < 1e-5, "{a:?} {b:?}");

@@ -1,4 +1,5 @@
-//! The crate diffsol, used as its manual shows: a root function for the contact, the state set anew behind it, and on from there.
+//! The crate diffsol, used as its manual shows: a root function for the contact, the state set anew behind
+//! it, and on from there.
 //!
 //! It compares the signs of the root function at the ends of its steps.
 
@@ -21,7 +22,8 @@ pub enum Diffsol {
     Bdf(f64),
 }
 
-/// Part of the whole time that is too short to be followed: the crate takes a stop this close for one that it has reached.
+/// Part of the whole time that is too short to be followed: the crate takes a stop this close for one that it
+/// has reached.
 const SHORT: f64 = 1e-12;
 
 impl From<DiffsolError> for Found {
@@ -51,8 +53,8 @@ pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log
         .init(|_, _, y| y.copy_from_slice(&first), first.len())
         .root(|y, _, t, values| values.copy_from_slice(&falls(&system, stage.get(), t, &four(y))), 2)
         .build()?;
-    // Counted over the whole run, 50 of them as it comes; a step that Newton's method does not solve is shortened, and one too short is an
-    // error all the same.
+    // Counted over the whole run, 50 of them as it comes; a step that Newton's method does not solve is
+    // shortened, and one too short is an error all the same.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
     match how {
         Diffsol::Tsit45(_) => run(course, problem.tsit45()?, &stage),
@@ -84,7 +86,8 @@ fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
             OdeSolverStopReason::RootFound(time, which) if before[which] > 0.0 => {
                 now.meet(which, time, four(solver.interpolate(time)?.inner().as_slice()));
                 if now.stage == Stage::Apart {
-                    // A hair apart, as in the crate's bouncing ball: a root function that starts at zero or below is not seen to fall.
+                    // A hair apart, as in the crate's bouncing ball: a root function that starts at zero or
+                    // below is not seen to fall.
                     now.y[0] = now.y[0].min(now.y[2] + task.rig.gap - f64::EPSILON);
                 }
                 stage.set(now.stage);
@@ -131,8 +134,8 @@ mod tests {
         relative
     }
 
-    /// Two equal masses without dampers let go a gap of nothing apart: each meets its mirror image, and the distance between them
-    /// follows z″ = −ω²z.
+    /// Two equal masses without dampers let go a gap of nothing apart: each meets its mirror image, and the
+    /// distance between them follows z″ = −ω²z.
     fn mirrored(restitution: f64, until: f64) -> (Task, f64) {
         let thesis = Rig::thesis();
         let rig = Rig { m2: thesis.m1, k2: thesis.k1, c1: 0.0, c2: 0.0, gap: 0.0, restitution, ..thesis };
@@ -142,8 +145,8 @@ mod tests {
         (Task { start, most: STEPS, ..sine }, omega)
     }
 
-    /// What all steps together can leave of (ωz, z′) in m/s: the norm of four errors is below 1, so each is below twice its tolerance,
-    /// and z is the difference of two. Between contacts neither grows.
+    /// What all steps together can leave of (ωz, z′) in m/s: the norm of four errors is below 1, so each is
+    /// below twice its tolerance, and z is the difference of two. Between contacts neither grows.
     fn allowed(how: Diffsol, omega: f64) -> f64 {
         let step = omega * (FLOOR[0] + START) + (FLOOR[1] + omega * START);
         STEPS as f64 * 4.0 * relative(how) * step

@@ -1,4 +1,5 @@
-//! Integration from event to event: each impact, end of a contact or release is located, and the integration begins anew behind it.
+//! Integration from event to event: each impact, end of a contact or release is located, and the integration
+//! begins anew behind it.
 
 use super::super::task::{Log, Spring, Task};
 use super::stepper::{Kind, Stepper, rk4};
@@ -76,7 +77,8 @@ pub enum Locate {
     Ends,
     /// The first root of the dense output, none missed.
     Dense,
-    /// The same; and what is left of a chatter that ends in rest is summed up, a geometric series of flights that takes 2w/(a(1 − R)).
+    /// The same; and what is left of a chatter that ends in rest is summed up, a geometric series of flights
+    /// that takes 2w/(a(1 − R)).
     Summed,
 }
 
@@ -96,8 +98,8 @@ pub struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// The start of a task, with impacts at once or with a contact. Its rule for rest is the speed at which a bounce is as high as the
-    /// integrator's error, 1 mm times its relative tolerance.
+    /// The start of a task, with impacts at once or with a contact. Its rule for rest is the speed at which a
+    /// bounce is as high as the integrator's error, 1 mm times its relative tolerance.
     pub fn new(task: &'a Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Course<'a> {
         Course {
             system: System { task, spring },
@@ -112,7 +114,8 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Follows the motion to what ends its stage: the guard that falls, when, and the state there; none where the task ends before.
+    /// Follows the motion to what ends its stage: the guard that falls, when, and the state there; none where
+    /// the task ends before.
     pub fn next(&mut self) -> Result<Option<(usize, f64, [f64; 4])>, Found> {
         let (system, stage) = (self.system, self.stage);
         let (task, guards) = (system.task, system.guards(stage));
@@ -182,7 +185,8 @@ impl<'a> Course<'a> {
             }
             (Stage::Together, _) => {
                 self.log.release(t);
-                // The gap opens like the cube of time: a ten-thousandth of a cycle passes unwatched, until it is more than rounding.
+                // The gap opens like the cube of time: a ten-thousandth of a cycle passes unwatched, until it
+                // is more than rounding.
                 let short = 1e-4 * task.cycle();
                 y[0] = y[2] + task.rig.gap;
                 y = rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, &y, short);
@@ -212,8 +216,8 @@ pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -
     Ok(course.log)
 }
 
-/// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control; touches are read off
-/// afterwards.
+/// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control;
+/// touches are read off afterwards.
 pub fn through(task: &Task, kind: Kind) -> Result<Log, Found> {
     let spring = task.spring();
     let force = |y: &[f64; 4]| if task.gap(y) < 0.0 { spring.bound(task, y).max(0.0) } else { 0.0 };

@@ -1,5 +1,5 @@
-//! Steps: loops of a fixed size without events, as everybody writes first, the time stepping of non-smooth dynamics, and steps of
-//! a fixed or a controlled size behind one face.
+//! Steps: loops of a fixed size without events, as everybody writes first, the time stepping of non-smooth
+//! dynamics, and steps of a fixed or a controlled size behind one face.
 
 use super::super::task::{Log, Task};
 use crate::Found;
@@ -8,8 +8,9 @@ use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance
 /// Displacements in m and speeds in m/s below which errors are not counted against the state itself.
 pub(super) const FLOOR: [f64; 4] = [1e-3, 0.05, 1e-3, 0.05];
 
-/// First step in s from `y` at `t`: a hundredth of a cycle, behind an impact that is followed by another no more than a tenth of the
-/// flight 2w/a, since a sign test does not see a flight that ends within its first step.
+/// First step in s from `y` at `t`: a hundredth of a cycle, behind an impact that is followed by another no
+/// more than a tenth of the flight 2w/a, since a sign test does not see a flight that ends within its first
+/// step.
 pub(super) fn first_step(task: &Task, t: f64, y: &[f64; 4]) -> f64 {
     let (apart, pressed) = (y[3] - y[1], task.hold(t, y) / task.rig.reduced_mass());
     let flight = if apart > 0.0 && pressed > 0.0 { 2.0 * apart / pressed } else { f64::INFINITY };
@@ -100,12 +101,14 @@ impl Taken {
         self.dense.as_ref().map_or_else(|| rk4(&f, self.start, &self.from, t), |step| step.at(t))
     }
 
-    /// First time after its start at which weights·y + offset, not negative there, falls to zero; none where there is no dense output.
+    /// First time after its start at which weights·y + offset, not negative there, falls to zero; none where
+    /// there is no dense output.
     pub fn first_fall(&self, weights: &[f64; 4], offset: f64) -> Option<f64> {
         self.dense.as_ref()?.first_fall(weights, offset)
     }
 
-    /// Where `height`, not negative at the start, is zero if it is not positive at the end: a sign test and halving.
+    /// Where `height`, not negative at the start, is zero if it is not positive at the end: a sign test and
+    /// halving.
     pub fn crossing(
         &self,
         f: impl Fn(f64, &[f64; 4]) -> [f64; 4],
@@ -138,11 +141,12 @@ pub(super) fn rk4(f: &impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64, y: &[f64; 4],
     std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]))
 }
 
-/// A step that starts at time and state, of so many seconds: the state at its end, and time and approach speed of an impact in it.
+/// A step that starts at time and state, of so many seconds: the state at its end, and time and approach
+/// speed of an impact in it.
 pub type Stride = fn(&Task, f64, &[f64; 4], f64) -> ([f64; 4], Option<(f64, f64)>);
 
-/// Follows the motion with `n` strides a cycle. Where impacts come step after step for twenty steps or more, the masses count as
-/// resting against each other.
+/// Follows the motion with `n` strides a cycle. Where impacts come step after step for twenty steps or more,
+/// the masses count as resting against each other.
 pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
@@ -186,9 +190,9 @@ fn turned(task: &Task, t: f64, mut y: [f64; 4]) -> ([f64; 4], Option<(f64, f64)>
     (y, impact)
 }
 
-/// Moreau's midpoint scheme (J. J. Moreau, 1999, *Comput. Methods Appl. Mech. Eng.* 177, 329): half a step of the displacements, then
-/// the velocities of the whole step with an impulse where the masses overlap there, so large that they part with R times what they
-/// approached by, then the other half.
+/// Moreau's midpoint scheme (J. J. Moreau, 1999, *Comput. Methods Appl. Mech. Eng.* 177, 329): half a step of
+/// the displacements, then the velocities of the whole step with an impulse where the masses overlap there,
+/// so large that they part with R times what they approached by, then the other half.
 pub fn moreau(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
     let (rig, middle) = (&task.rig, t + h / 2.0);
     let (x1, x2) = (y[0] + h / 2.0 * y[1], y[2] + h / 2.0 * y[3]);

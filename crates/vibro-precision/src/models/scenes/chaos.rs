@@ -8,15 +8,16 @@ use rayon::prelude::*;
 use vibro_model::Rig;
 use vibro_record::Result;
 
-/// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no method can follow the motion,
-/// all can be asked for its statistics.
+/// Restitution, force in N and frequency in Hz of a window that has been irregular for 200 000 cycles: no
+/// method can follow the motion, all can be asked for its statistics.
 const WINDOW: (f64, f64, f64) = (0.97, 0.3, 5.61);
 /// Cycles left out at the beginning, and cycles that every method reads.
 const SETTLE: f64 = 100.0;
 const CYCLES: f64 = 4000.0;
 /// Other starts that the truth is computed from.
 const OTHERS: usize = 10;
-/// Further off than so many standard errors the statistics are those of another motion: of errors told from ten starts one in 300 is.
+/// Further off than so many standard errors the statistics are those of another motion: of errors told from
+/// ten starts one in 300 is.
 const ALLOWED: f64 = 4.0;
 
 /// The motion from x₁ (m) at rest.
@@ -38,7 +39,8 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     [mean, (values.map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()]
 }
 
-/// The statistics by integration of order 8 with tight tolerance, from starts that no method is given, so that no run of a method is among them.
+/// The statistics by integration of order 8 with tight tolerance, from starts that no method is given, so
+/// that no run of a method is among them.
 fn irregular_truth() -> Result<Vec<[f64; 2]>> {
     let one = |start: usize| {
         let task = irregular(-1e-4 * (start + 1) as f64, CYCLES);
