@@ -180,5 +180,6 @@ fn found(
             .for_each(|(i, v)| *v += hum * top * (TAU * 50.02 * i as f64 / rate).cos());
     }
     convert(&mut values, 1.5 * top, 12);
-    Train::of(&trace("V", rate, values), options, None).ok().map(|(train, _)| train)
+    let unit = if options.envelope { "V" } else { "N" };
+    Train::of(&trace(unit, rate, values), options, None).ok().map(|(train, _)| train)
 }

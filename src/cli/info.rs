@@ -31,7 +31,8 @@ impl Run for Info {
         let (mut files, mut errors, mut about) = (Vec::new(), Vec::new(), Vec::new());
         let (mut text, mut code) = (String::new(), 0);
         for path in &self.files {
-            let (format, records, mut findings) = match reader.survey(path) {
+            let surveyed = print::busy(json, "reading", |_| reader.survey(path));
+            let (format, records, mut findings) = match surveyed {
                 Ok(found) => found,
                 // The other files are still worth listing; the first failure decides the exit code.
                 Err(error) => {

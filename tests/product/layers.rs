@@ -1,5 +1,5 @@
-//! Data flows one way: a folder of `src` uses only folders to its left. The compiler holds the direction of
-//! the crates below.
+//! The form of the sources. Data flows one way: a folder of `src` uses only folders to its left. The compiler
+//! holds the direction of the crates below. Comments fit the width of code.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -102,7 +102,7 @@ fn comments_fit_the_width_of_code() {
     }
     let mut wide = Vec::new();
     for file in &files {
-        let text = std::fs::read_to_string(file).unwrap();
+        let text = fs::read_to_string(file).unwrap();
         let lines = (1..).zip(text.lines());
         let long =
             lines.filter(|(_, line)| line.trim_start().starts_with("//") && line.chars().count() > 110);

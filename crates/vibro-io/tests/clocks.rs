@@ -433,8 +433,6 @@ fn rates_in_units_of_samples_a_second_are_used() {
         ("Messintervall: 2 ms", 500.0),
         ("Sample interval: 2 ms", 500.0),
         ("Sample period (s);0.002", 500.0),
-        ("Sampling time: 2 ms", 500.0),
-        ("Ts: 2 ms", 500.0),
     ] {
         let text = format!("{head}\nA (V);B (V)\n{rows}");
         match Reader::new().from_reader("a.csv", text.as_bytes()) {
@@ -449,6 +447,12 @@ fn rates_in_units_of_samples_a_second_are_used() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // How long a sample takes, or how long it was sampled.
+    for head in ["Sampling time: 10 s", "Sample Time [s]: 8", "TS [s]: 12"] {
+        let text = format!("{head}\nA (V);B (V)\n{rows}");
+        let rate = Reader::new().from_reader("a.csv", text.as_bytes()).map(|found| first(&found).rate());
+        assert!(matches!(rate, Ok(None) | Err(_)), "{head}: {rate:?}");
+    }
 }
 
 /// Jitter that passes for an even grid is not in what is interpolated: that uses the instants themselves.

@@ -79,8 +79,9 @@ pub(crate) fn detect_among(
 ) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
-    // Other signals of one sign, such as levels of sound, last longer than a contact.
-    let is_force = trace.meta.quantity == Quantity::Force && !options.envelope;
+    // A force, a switch, or the voltage of a sensor. Levels of sound have one sign, too, and last longer than a
+    // contact.
+    let is_force = matches!(trace.meta.quantity, Quantity::Force | Quantity::Voltage) && !options.envelope;
     let mut values = banded(trace, options, rate)?;
     let mut findings = Vec::new();
     let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), &mut findings) };
