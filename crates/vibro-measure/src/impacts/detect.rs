@@ -115,10 +115,9 @@ pub(crate) fn detect_among(
     let low = all.len() - bursts.len();
     let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
     findings.extend((low > 0).then(|| ignored.name("unit", unit)));
-    // An envelope does not swing.
-    if !options.envelope
-        && let Some(swings) = Swings::of(&values, rate, &bursts, quiet.reach)
-    {
+    // An envelope does not swing, and bounces are sought in a band where the whole record does not.
+    let swings = !options.envelope && (choose.is_none() || options.band.is_none());
+    if swings && let Some(swings) = Swings::of(&values, rate, &bursts, quiet.reach) {
         return Err(swings.refusal());
     }
     if let Some(choose) = choose {
