@@ -35,11 +35,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(kinds().into_iter().filter(|k| k.name.starts_with(name)).collect::<Vec<_>>())
     };
     if let Some(kinds) = named("--worst") {
-        kinds.into_iter().for_each(|kind| print!("{}", worst(kind, &draw(kind, count))));
+        for kind in kinds {
+            print!("{}", worst(kind, &draw(kind, count)));
+        }
         return Ok(());
     }
     if let Some(kinds) = named("--rows") {
-        kinds.into_iter().for_each(|kind| print!("{}", rows(kind, &draw(kind, count))));
+        for kind in kinds {
+            print!("{}", rows(kind, &draw(kind, count)));
+        }
         return Ok(());
     }
     let mut table = String::from(TABLE);

@@ -122,7 +122,7 @@ impl Keys {
             // A base band is that of the lines then.
             Err(why) => match source.reader()?.from_path(source.path) {
                 Ok(all) if is_of_spectra(&all, source.channel.channel.as_deref()) => {
-                    return self.stored(source, &all, &options);
+                    return of_file(source, &all, &options);
                 }
                 Err(other) if source.reading.base_band.is_some() => return Err(other),
                 _ => return Err(why),
@@ -132,31 +132,28 @@ impl Keys {
         let found = spectral(&mut traces, &options, |done| source.progress.at(done, all))?;
         Ok(found)
     }
+}
 
-    /// The lines of a spectrum that the file holds.
-    fn stored(
-        &self,
-        source: &Source<'_>,
-        all: &Recording,
-        options: &SpectralOptions,
-    ) -> Result<SpectralResult> {
-        if let Some(factor) = source.channel.calibration {
-            let found = format!("a calibration of {factor} of a spectrum that the file holds");
-            return Err(Error::usage(found, "the unit of its lines").setting("calibration").setting("unit"));
-        }
-        let spectrum = all.spectrum(source.channel.channel.as_deref())?;
-        let mut found = stored(spectrum, options)?;
-        found.findings.extend(all.findings.iter().cloned());
-        Ok(found)
+/// The lines of a spectrum that the file holds.
+fn of_file(source: &Source<'_>, all: &Recording, options: &SpectralOptions) -> Result<SpectralResult> {
+    if let Some(factor) = source.channel.calibration {
+        let found = format!("a calibration of {factor} of a spectrum that the file holds");
+        return Err(Error::usage(found, "the unit of its lines").setting("calibration").setting("unit"));
     }
+    let spectrum = all.spectrum(source.channel.channel.as_deref())?;
+    let mut found = stored(spectrum, options)?;
+    found.findings.extend(all.findings.iter().cloned());
+    Ok(found)
 }
 
 /// Whether a file holds spectra and no traces, or a channel by its name is a spectrum.
 fn is_of_spectra(recording: &Recording, channel: Option<&str>) -> bool {
-    let traces = recording.records.iter().any(|record| matches!(record, Record::Trace(_)));
-    recording.spectrum(channel).is_ok()
-        && (!traces || channel.is_some_and(|name| name.parse::<usize>().is_err()))
-        || !traces && recording.records.iter().any(|record| matches!(record, Record::Spectrum(_)))
+    let any = |is: fn(&Record) -> bool| recording.records.iter().any(is);
+    if any(|record| matches!(record, Record::Trace(_))) {
+        return channel.is_some_and(|name| name.parse::<usize>().is_err())
+            && recording.spectrum(channel).is_ok();
+    }
+    any(|record| matches!(record, Record::Spectrum(_)))
 }
 
 impl Keys {

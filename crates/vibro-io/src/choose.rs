@@ -44,7 +44,7 @@ impl Reader {
         if as_it_is
             && self.options.span.is_none()
             && source.len() >= LONG
-            && let Some((traces, findings, mut columns)) = long()
+            && let Some(text::Streamed { traces, findings, mut columns }) = long()
         {
             let chosen = named(&path, channels, traces.iter().map(|t| &t.meta))?;
             let traces: Vec<Trace> = chosen.iter().map(|i| traces[*i].clone()).collect();

@@ -158,16 +158,22 @@ fn read(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Resu
     Ok(Contents { records, findings })
 }
 
+/// A text whose values are read block by block.
+pub(crate) struct Streamed {
+    /// Its traces without their values.
+    pub traces: Vec<Trace>,
+    /// What is said of the text.
+    pub findings: Vec<Finding>,
+    /// Its values.
+    pub columns: stream::Columns,
+}
+
 /// The traces of a text without their values, which are read again block by block, and what is said of the
 /// text; `None` of a text that must be held, for it is in memory, has rows that are not clean, or no traces.
 ///
 /// # Errors
 /// As reading the text.
-pub(crate) fn stream(
-    source: &Source,
-    options: &Options,
-    format: Format,
-) -> Result<Option<(Vec<Trace>, Vec<Finding>, stream::Columns)>> {
+pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Result<Option<Streamed>> {
     with_text(source, options.limit, |text| {
         let dialect = match format {
             Format::Csv => table::detect(text, options),
@@ -186,7 +192,8 @@ pub(crate) fn stream(
         let trace = |(record, _)| if let Record::Trace(trace) = record { Some(trace) } else { None };
         let traces: Option<Vec<Trace>> = records.into_iter().map(trace).collect();
         let Some(traces) = traces else { return Ok(None) };
-        Ok(Some((traces, findings, stream::Columns::open(source, shape, end, handed)?)))
+        let columns = stream::Columns::open(source, shape, end, handed)?;
+        Ok(Some(Streamed { traces, findings, columns }))
     })
 }
 

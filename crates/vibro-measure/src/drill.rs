@@ -91,9 +91,8 @@ pub fn drill_each(
     options.check()?;
     let (rate, reference) = (record.rate, check(record, options)?);
     let handles = &record.channels[1 + usize::from(reference.is_some())..];
-    let scaled = |volts: &[f64]| -> Vec<f64> {
-        volts.iter().map(|v| v * (options.sensitivity * options.beam.factor)).collect()
-    };
+    let factor = options.sensitivity * options.beam.factor;
+    let scaled = |volts: &[f64]| volts.iter().map(|v| v * factor).collect::<Vec<f64>>();
     let mut velocity = scaled(record.channels[0]);
     let survey = Survey::of(&velocity);
     if survey.low >= survey.high {

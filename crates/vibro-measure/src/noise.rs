@@ -10,9 +10,9 @@ pub const REACH: usize = 40;
 /// Lines next to the peak that are left out: they belong to it.
 const GUARD: usize = 4;
 
-/// Median of | |L + noise| − L | for a line of height L, both in units of the noise of one component: √(2 ln
-/// 2) for noise alone (Rayleigh), 0.6745 where the line is high (normal). Quantiles of the Rice distribution
-/// (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46); straight lines between these are within 1 %.
+/// Median of | |L + noise| − L | for a line of height L, both in units of the noise of one component:
+/// √(2 ln 2) for noise alone (Rayleigh), 0.6745 where the line is high (normal). Quantiles of the Rice
+/// distribution (S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46); straight lines between these are within 1 %.
 const HEIGHTS: [f64; 10] = [0.0, 0.35, 0.5, 0.7, 0.8, 0.9, 1.0, 2.0, 4.0, 10.0];
 const MEDIANS: [f64; 10] = [1.1774, 0.8636, 0.7516, 0.6273, 0.5972, 0.5848, 0.5826, 0.6484, 0.669, 0.6745];
 

@@ -81,8 +81,8 @@ pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> 
 }
 
 /// A minimum without a zero is less deep than this factor below the curve half-way (in f²) to the resonances
-/// beside it: where the tails A/(u − p) and B/(q − u) of two modes add, the sum there is (2r + 2/(2 + r))/(1
-/// + r) < 2 times its minimum, with r² = A/B or its inverse. Where they cancel, it falls to what damping
+/// beside it: where the tails A/(u − p) and B/(q − u) of two modes add, the sum there is less than 2 times its
+/// minimum, (2r + 2/(2 + r))/(1 + r) with r² = A/B or its inverse. Where they cancel, it falls to what damping
 /// leaves.
 const DEEP: f64 = 2.0;
 
@@ -165,8 +165,8 @@ impl Curve<'_> {
         if rises { apex(&near, i - low) } else { None }
     }
 
-    /// How many times more the points around the highest, `i`, scatter than their uncertainties say, at least
-    /// 1. A force that changes from step to step moves points that are each right.
+    /// How many times more the points around the highest, `i`, scatter than their uncertainties say; 1 at
+    /// least. A force that changes from step to step moves points that are each right.
     ///
     /// 1/a² of one mode is a parabola in f²; what contact and other modes add is smooth. So the third and
     /// higher divided differences of the near points above half of the highest are noise, or fall from

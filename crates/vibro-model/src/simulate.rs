@@ -137,8 +137,8 @@ pub struct Simulation {
 
 impl Simulation {
     /// Both masses at rest at time 0 and phase 0 of the excitation: the crest of a sine, the instant of an
-    /// impulse, the beginning of a pulse. With a negative gap they rest pressed together, at x₁ = k₂Δ/(k₁
-    /// + k₂), or at x₁ = Δ against a wall.
+    /// impulse, the beginning of a pulse. With a negative gap they rest pressed together, at
+    /// x₁ = k₂Δ/(k₁ + k₂), or at x₁ = Δ against a wall.
     ///
     /// # Errors
     /// If a parameter is impossible, there are more than four sines, or mass 1 is undamped and driven at

@@ -120,9 +120,11 @@ pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
     let all = stretches(instants, resolution);
     if let Some((number, longest)) = Stretch::longest(&all) {
         let (n, duration) = (all.len(), longest.duration());
-        let hint = format!(
-            "use one of {n} stretches without a gap; number {number} is the longest, {duration:.4} s"
-        );
+        let hint = if n == 1 {
+            format!("use the part without a gap, {duration:.4} s")
+        } else {
+            format!("use one of {n} stretches without a gap; number {number} is the longest, {duration:.4} s")
+        };
         return error.hint(hint).set("stretch", number.to_string());
     }
     if instants.windows(2).any(|w| w[1] < w[0]) {

@@ -215,6 +215,12 @@ fn row_start(source: &Source, at: u64, to: u64) -> Result<u64> {
     Ok(start)
 }
 
+/// Number of line ends, counted in bytes that cannot overflow, so that the compiler looks at many at once.
+fn line_ends(bytes: &[u8]) -> usize {
+    let ends = |c: &[u8]| usize::from(c.iter().map(|b| u8::from(*b == b'\n')).sum::<u8>());
+    bytes.chunks(255).map(ends).sum()
+}
+
 /// Number of rows of a piece.
 fn rows_in(source: &Source, shape: &Shape, (from, to): (u64, u64)) -> Result<usize> {
     if let Some((length, _)) = shape.fixed {
@@ -222,9 +228,7 @@ fn rows_in(source: &Source, shape: &Shape, (from, to): (u64, u64)) -> Result<usi
     }
     let (mut count, mut whole) = (0, true);
     blocks(source, (from, to), |block| {
-        // Counted in bytes that cannot overflow, so that the compiler looks at many at once.
-        let ends = |c: &[u8]| usize::from(c.iter().map(|b| u8::from(*b == b'\n')).sum::<u8>());
-        count += block.chunks(255).map(ends).sum::<usize>();
+        count += line_ends(block);
         whole = block.last().map_or(whole, |last| *last == b'\n');
         Some(())
     })?;
@@ -299,7 +303,7 @@ impl Blocks {
 /// Reads whole rows to the columns of a block, which grow as they must, and gives their number; `None` where
 /// one is not clean.
 pub fn parsed(bytes: &[u8], shape: &Shape, block: &mut [Vec<f64>]) -> Option<usize> {
-    let most = bytes.iter().filter(|b| **b == b'\n').count() + 1;
+    let most = line_ends(bytes) + 1;
     for column in block.iter_mut().filter(|column| column.len() < most) {
         column.resize(most, 0.0);
     }

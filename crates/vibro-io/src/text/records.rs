@@ -316,7 +316,9 @@ impl Made<'_> {
             Held::Values(Values::Real(values)) => values,
             _ => values.into_owned(),
         };
-        values.iter_mut().for_each(|v| *v = (*v - from) * factor);
+        for v in &mut values {
+            *v = (*v - from) * factor;
+        }
         let head = if kind == AxisKind::Frequency { "frequency (kHz)" } else { "time (ms)" };
         let resampled = self.options.resample.is_some();
         let Judged { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);

@@ -308,7 +308,7 @@ fn a_text_that_is_read_again_has_the_values_of_one_that_is_held() {
     std::fs::write(&path, long_text()).unwrap();
     let whole = Reader::new().from_path(&path).unwrap();
     let source = Source::file(&path).unwrap();
-    let (traces, findings, columns) =
+    let Streamed { traces, findings, columns } =
         stream(&source, &Options::default(), Format::Csv).unwrap().expect("clean rows on a disk");
     assert_eq!((traces.len(), &findings), (2, &whole.findings));
     let frames = traces[0].axis.len();

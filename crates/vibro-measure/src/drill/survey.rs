@@ -374,7 +374,9 @@ mod tests {
     /// Samples of a dark speckle, ±6 m/s with equal chance.
     fn speckle(values: &mut [f64], seed: u64) {
         let mut noise = vibro_math::Noise::new(seed);
-        values.iter_mut().for_each(|v| *v = noise.between(-6.0, 6.0));
+        for v in values.iter_mut() {
+            *v = noise.between(-6.0, 6.0);
+        }
     }
 
     #[test]

@@ -422,8 +422,8 @@ fn a_contact_that_the_force_shows_is_taken_off() {
     }
 }
 
-/// A contact c adds c/Δt to the logarithm of each flight: over n flights ln R is too large by c(1/Δt_n −
-/// 1/Δt₁)/(n − 1).
+/// A contact c adds c/Δt to the logarithm of each flight: over n flights ln R is too large by
+/// c(1/Δtₙ − 1/Δt₁)/(n − 1).
 #[test]
 fn the_bias_by_contact_is_that_of_the_fit() {
     let (r, c) = (0.7f64, 1e-4);

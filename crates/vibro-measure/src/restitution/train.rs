@@ -122,7 +122,7 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
             "{n} sounds, and two trains of bounces among them are as likely: first flight {first} from {begin} on, or {other} from {later} on"
         );
         let refused = Error::refused(why);
-        let delay = if (time(b) - time(a)) / (time(j) - time(i)) - 1.0 < SAME {
+        let delay = if ((time(b) - time(a)) / (time(j) - time(i)) - 1.0).abs() < SAME {
             (time(i) - time(a)).abs()
         } else {
             (time(b) - time(a)).min(time(j) - time(i))

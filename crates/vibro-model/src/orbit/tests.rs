@@ -386,9 +386,9 @@ fn golden_losses_of_stability() {
     assert!((deep.validity.min_gap + 6.2e-3).abs() < 0.05e-3 && !deep.validity.admissible);
 }
 
-/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1 with w = z + 1/z from w² − aw
-/// + b − 2. All lie on the circle where both w are real and within ±2; else one lies outside. None is ever
-/// stable.
+/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1 with w = z + 1/z from
+/// w² − aw + b − 2. All lie on the circle where both w are real and within ±2; else one lies outside. None is
+/// ever stable.
 #[test]
 fn a_rig_without_losses_is_neutral_or_unstable() {
     let rig = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..Rig::thesis() };

@@ -124,8 +124,8 @@ pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64
 }
 
 /// ζ from a circle through the mobility at the lines above half power and two more on either side (Kåsa
-/// 1976), by the angle that the lines below and above the largest one turn: ζ = (ω₂² − ω₁²)/(2ωᵣ(ω₁ tan(α₁/2)
-/// + ω₂ tan(α₂/2))).
+/// 1976), by the angle that the lines below and above the largest one turn:
+/// ζ = (ω₂² − ω₁²)/(2ωᵣ(ω₁ tan(α₁/2) + ω₂ tan(α₂/2))).
 pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
     let Some((size, at, _, left, right)) = peak(values) else { return f64::NAN };
     let (low, high) = (left.saturating_sub(1), (right + 1).min(size.len() - 1));
