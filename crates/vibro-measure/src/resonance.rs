@@ -81,9 +81,9 @@ pub(crate) fn resonances(points: &[Point], jumps: &[Jump], mass: Option<u8>) -> 
 }
 
 /// A minimum without a zero is less deep than this factor below the curve half-way (in f²) to the resonances
-/// beside it: where the tails A/(u − p) and B/(q − u) of two modes add, the sum there is less than 2 times its
-/// minimum, (2r + 2/(2 + r))/(1 + r) with r² = A/B or its inverse. Where they cancel, it falls to what damping
-/// leaves.
+/// beside it: where the tails A/(u − p) and B/(q − u) of two modes add, the sum there is less than 2 times
+/// its minimum, (2r + 2/(2 + r))/(1 + r) with r² = A/B or its inverse. Where they cancel, it falls to what
+/// damping leaves.
 const DEEP: f64 = 2.0;
 
 impl Resonance {

@@ -79,8 +79,8 @@ pub(crate) fn detect_among(
 ) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
-    // A force, a switch, or the voltage of a sensor. Levels of sound have one sign, too, and last longer than a
-    // contact.
+    // A force, a switch, or the voltage of a sensor. Levels of sound have one sign, too, and last longer than
+    // a contact.
     let is_force = matches!(trace.meta.quantity, Quantity::Force | Quantity::Voltage) && !options.envelope;
     let mut values = banded(trace, options, rate)?;
     let mut findings = Vec::new();
