@@ -110,6 +110,10 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
     if train.even {
         let n = train.impacts.len();
         let why = format!("{n} sounds follow each other evenly: the flights of bounces shrink");
+        // Who states a height has a fall, and a voice over it.
+        if heard.full.is_some() {
+            return Err(alone(Error::refused(why), sounds, heard));
+        }
         let hint = "`vibro impacts` measures a machine, `vibro decay` a ringing";
         return Err(Error::refused(why).hint(hint));
     }
@@ -137,14 +141,14 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
                 .hint("a pause that leaves one of them, if what follows an impact within it is its echo")
                 .set("refractory", format!("{pause:.2}")));
         }
-        return Err(alone(refused, heard));
+        return Err(alone(refused, sounds, heard));
     }
     let before = train.impacts[0];
     let other = n - train.impacts.len() - before - train.echoes;
     if train.impacts.len() == 2 && before + other > 0 {
-        let sounds = counted(before + other, "other sound");
-        let why = format!("one flight beside {sounds}: no second flight shows that it is that of a bounce");
-        return Err(alone(Error::refused(why), heard));
+        let others = counted(before + other, "other sound");
+        let why = format!("one flight beside {others}: no second flight shows that it is that of a bounce");
+        return Err(alone(Error::refused(why), sounds, heard));
     }
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));
     let echoes = of("echoes-ignored", train.echoes).map(|found| found.number("delay", SHADOW));
@@ -180,7 +184,14 @@ fn cure(sounds: &[Sound], heard: Heard, train: &Plausible) -> Option<f64> {
 }
 
 /// What to try where sounds alone do not tell which are the bounces.
-fn alone(refused: Error, heard: Heard) -> Error {
+fn alone(refused: Error, sounds: &[Sound], heard: Heard) -> Error {
+    let first = (1..sounds.len().min(CLAPS)).find(|first| are_told(&sounds[*first..], heard));
+    if let Some(first) = first {
+        let from = f64::midpoint(sounds[first - 1].time, sounds[first].time);
+        return refused
+            .hint("the part behind what is heard first, if that is a hand or a clap")
+            .set("span", format!("[{from:.2}, {:.2}]", heard.ends.1));
+    }
     let cut = "cut the record to the bounces, or record again in quiet";
     match heard.full {
         None => refused
@@ -189,6 +200,17 @@ fn alone(refused: Error, heard: Heard) -> Error {
         Some(_) => refused.hint(cut),
     }
 }
+
+/// Whether one train of three impacts or more is told among sounds, or of two where the height is known,
+/// which holds their flight to be that of a bounce.
+fn are_told(sounds: &[Sound], heard: Heard) -> bool {
+    let enough = if heard.full.is_some() { 2 } else { 3 };
+    plausible(sounds, heard)
+        .is_some_and(|train| !train.even && train.rival.is_none() && train.impacts.len() >= enough)
+}
+
+/// Sounds before a fall that a part of the record may leave out.
+const CLAPS: usize = 4;
 
 /// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in
 /// place of it.
@@ -204,10 +226,7 @@ fn pause(sounds: &[Sound], heard: Heard, delay: f64) -> Option<f64> {
             kept.push(*sound);
         }
     }
-    let left = plausible(&kept, heard).filter(|_| kept.len() < sounds.len())?;
-    // Where the height is known, it holds one flight to be that of a bounce.
-    let enough = if heard.full.is_some() { 2 } else { 3 };
-    (!left.even && left.rival.is_none() && left.impacts.len() >= enough).then_some(pause)
+    (kept.len() < sounds.len() && are_told(&kept, heard)).then_some(pause)
 }
 
 /// Sounds among which a threshold is sought: what is as quiet as so many others is no bounce that stands out.
