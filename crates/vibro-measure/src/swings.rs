@@ -80,6 +80,9 @@ impl Swings {
         if peaks.is_empty() {
             peaks.push(top - from..top - from + 1);
         }
+        if !may_swing(values, top - from, &peaks, reach) {
+            return None;
+        }
         let axis = Axis::time(0.0, 1.0 / rate, values.len());
         let trace = Trace { meta: Meta::new("", Unit::none()), axis, values: values.to_vec() };
         let found = decay(&trace, &DecayOptions { modes: Some(MODES), ..DecayOptions::default() }).ok()?;
@@ -114,6 +117,18 @@ impl Swings {
         );
         refused(&why)
     }
+}
+
+/// Whether a decay is worth fitting: the largest value is followed by half of it on the other side, and the record does
+/// not rest between its peaks as it does between impacts.
+fn may_swing(values: &[f64], top: usize, peaks: &[Range<usize>], reach: f64) -> bool {
+    let sign = values[top].signum();
+    let back = values[top..].iter().fold(0.0, |most: f64, v| most.max(-sign * v));
+    let first = peaks.iter().map(|peak| peak.start).min().unwrap_or(top);
+    let last = peaks.iter().map(|peak| peak.end).max().unwrap_or(top);
+    let within = &values[first..last.max(first)];
+    let rests = within.iter().filter(|v| v.abs() < reach).count();
+    back > BACK_AND_FORTH[0] * values[top].abs() && 2 * rests <= within.len()
 }
 
 /// A e^(−ζω₀t) cos(ω₀√(1−ζ²) t + φ) at `t` in s from the start of the decay.
