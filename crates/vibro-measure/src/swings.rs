@@ -80,7 +80,7 @@ impl Swings {
         if peaks.is_empty() {
             peaks.push(top - from..top - from + 1);
         }
-        if !may_swing(values, top - from, &peaks, reach) {
+        if !comes_back(values, top - from) {
             return None;
         }
         let axis = Axis::time(0.0, 1.0 / rate, values.len());
@@ -119,16 +119,23 @@ impl Swings {
     }
 }
 
-/// Whether a decay is worth fitting: the largest value is followed by half of it on the other side, and the record does
-/// not rest between its peaks as it does between impacts.
-fn may_swing(values: &[f64], top: usize, peaks: &[Range<usize>], reach: f64) -> bool {
+/// Part of the time from the first peak to the last that the peaks of a swing take at least: above nine tenths of its
+/// height a sine is a quarter of the time, and those that fall into the noise are shorter.
+const TAKEN: f64 = 0.05;
+
+/// Whether a record does not rest between its peaks as it does between impacts.
+pub(crate) fn are_close(peaks: &[Range<usize>]) -> bool {
+    let taken: usize = peaks.iter().map(ExactSizeIterator::len).sum();
+    let first = peaks.iter().map(|peak| peak.start).min().unwrap_or_default();
+    let last = peaks.iter().map(|peak| peak.end).max().unwrap_or_default();
+    taken as f64 >= TAKEN * (last - first) as f64
+}
+
+/// Whether the largest value is followed by half of it on the other side: else no decay is worth fitting.
+fn comes_back(values: &[f64], top: usize) -> bool {
     let sign = values[top].signum();
     let back = values[top..].iter().fold(0.0, |most: f64, v| most.max(-sign * v));
-    let first = peaks.iter().map(|peak| peak.start).min().unwrap_or(top);
-    let last = peaks.iter().map(|peak| peak.end).max().unwrap_or(top);
-    let within = &values[first..last.max(first)];
-    let rests = within.iter().filter(|v| v.abs() < reach).count();
-    back > BACK_AND_FORTH[0] * values[top].abs() && 2 * rests <= within.len()
+    back > BACK_AND_FORTH[0] * values[top].abs()
 }
 
 /// A e^(−ζω₀t) cos(ω₀√(1−ζ²) t + φ) at `t` in s from the start of the decay.

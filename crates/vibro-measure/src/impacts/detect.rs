@@ -7,7 +7,7 @@ use super::onset::{Onsets, onsets};
 use super::rises::{largest, rises};
 use super::{Hum, hum};
 use crate::Estimate;
-use crate::swings::Swings;
+use crate::swings::{Swings, are_close};
 use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
@@ -116,7 +116,8 @@ pub(crate) fn detect_among(
     let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
     findings.extend((low > 0).then(|| ignored.name("unit", unit)));
     // An envelope does not swing, and bounces are sought in a band where the whole record does not.
-    let swings = !options.envelope && (choose.is_none() || options.band.is_none());
+    let swings =
+        !options.envelope && if choose.is_none() { are_close(&bursts) } else { options.band.is_none() };
     if swings && let Some(swings) = Swings::of(&values, rate, &bursts, quiet.reach) {
         return Err(swings.refusal());
     }
