@@ -119,8 +119,8 @@ impl Swings {
     }
 }
 
-/// Part of the time from the first peak to the last that the peaks of a swing take at least: above nine tenths of its
-/// height a sine is a quarter of the time, and those that fall into the noise are shorter.
+/// Part of the time from the first peak to the last that the peaks of a swing take: above nine tenths
+/// of its height a sine is a quarter of the time, and those that fall into the noise are shorter.
 const TAKEN: f64 = 0.05;
 
 /// Whether a record does not rest between its peaks as it does between impacts.
