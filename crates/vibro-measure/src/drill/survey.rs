@@ -44,11 +44,6 @@ pub struct FaultCount {
 const AROUND: usize = 16;
 /// Longest speckle spike in samples whose every one stands off.
 const SPIKE: usize = 3;
-/// Longest burst of outliers in samples: a dark speckle that passes within half a millisecond at 100 kHz.
-const BURST: usize = 48;
-/// Mean square of the second differences over that of the first: 3 of outliers that know nothing of each
-/// other, and 1.6 of a sine at a fifth of the sampling rate, below which structures ring.
-const ROUGH: f64 = 1.6;
 /// Samples on both sides of a spike that must be calm: an impact is followed by ringing.
 const CALM: usize = 4;
 /// A spike stands this many standard deviations of the noise off its neighbours, which normal noise never
@@ -168,35 +163,20 @@ impl Velocity<'_> {
     }
 
     /// The sample behind those that stand off the line between their neighbours, while the signal there is
-    /// calm: one to three, or a rough burst.
+    /// calm: one to three.
     fn spike(&self, i: usize) -> Option<usize> {
         let a = self.raw[i - 1];
         let spread = |x: f64, around: &[f64]| around.iter().map(|y| (x - y).abs()).fold(0.0, f64::max);
         let calm = spread(a, &self.raw[i.saturating_sub(1 + CALM)..i - 1]);
-        (1..=BURST).find_map(|n| {
+        (1..=SPIKE).find_map(|n| {
             let b = *self.raw.get(i + n)?;
             let from = i + n + 1;
             let behind = spread(b, self.raw.get(from..(from + CALM).min(self.raw.len())).unwrap_or(&[]));
-            if n > SPIKE {
-                // Far from both ends, which an impact may have parted.
-                let off = self.raw[i..i + n].iter().map(|v| (v - a).abs().min((v - b).abs()));
-                let power = off.map(|d| d * d).sum::<f64>() / n as f64;
-                let burst = power > self.height * self.height && calm.max(behind) < self.height;
-                return (burst && rough(&self.raw[i - 1..=i + n], self.height)).then_some(i + n);
-            }
             let enough = self.height.max(4.0 * (b - a).abs()).max(4.0 * calm).max(4.0 * behind);
             let off = |k: usize| (self.raw[i + k] - (a + (b - a) * (k + 1) as f64 / (n + 1) as f64)).abs();
             (0..n).all(|k| off(k) > enough).then_some(i + n)
         })
     }
-}
-
-/// Whether values jump from sample to sample, by `height` or more, rather than follow a motion.
-fn rough(values: &[f64], height: f64) -> bool {
-    let first: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
-    let second: Vec<f64> = first.windows(2).map(|w| w[1] - w[0]).collect();
-    let power = |steps: &[f64]| steps.iter().map(|d| d * d).sum::<f64>() / steps.len() as f64;
-    power(&first) > height * height && power(&second) > ROUGH * power(&first)
 }
 
 /// Groups whose extremes show the levels of a pulse, however short its pulses are.
@@ -369,34 +349,6 @@ mod tests {
                 State::Lost => assert!((40_000..40_900).contains(&i)),
             }
         }
-    }
-
-    /// Samples of a dark speckle, ±6 m/s with equal chance.
-    fn speckle(values: &mut [f64], seed: u64) {
-        let mut noise = vibro_math::Noise::new(seed);
-        for v in values.iter_mut() {
-            *v = noise.between(-6.0, 6.0);
-        }
-    }
-
-    #[test]
-    fn bursts_of_outliers_are_bridged_whole() {
-        let clean = signal(60_000, 0.0, 0.1);
-        let mut raw = clean.clone();
-        let bursts: Vec<(usize, usize)> = (0..36).map(|k| (1000 + 1400 * k, 10 + k)).collect();
-        for (k, (at, n)) in bursts.iter().enumerate() {
-            speckle(&mut raw[*at..at + n], k as u64);
-        }
-        let (values, states, count) = repaired(&raw);
-        // Of samples between −6 and 6 m/s within the height of a spike, 0.36 m/s, of the motion are 6 %:
-        // those at an end of a burst stay, and do no harm.
-        let all: usize = bursts.iter().map(|b| b.1).sum();
-        assert!(count.bridged <= all && count.bridged > 9 * all / 10, "{count:?} of {all}");
-        assert_eq!(states.iter().filter(|s| **s == State::Bridged).count(), count.bridged);
-        let height = SPIKE_NOISE * noise(&raw).max(SPIKE_RANGE * 12.0);
-        // A bridge between ends that are off by up to the height of a spike, and the sagitta of the motion.
-        let off = values.iter().zip(&clean).map(|(v, c)| (v - c).abs()).fold(0.0, f64::max);
-        assert!(off < 1.2 * height.max(0.36), "{off} {height}");
     }
 
     #[test]
