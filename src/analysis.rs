@@ -203,13 +203,7 @@ fn checked(campaign: Campaign) -> Result<Campaign> {
 
 /// The tables of a campaign that cannot be.
 fn faults(campaign: &Campaign) -> Result<Vec<Fault>> {
-    Ok(KINDS
-        .iter()
-        .map(|kind| (kind.check)(campaign))
-        .collect::<Result<Vec<_>>>()?
-        .into_iter()
-        .flatten()
-        .collect())
+    of_kinds(|kind| (kind.check)(campaign))
 }
 
 /// All that is wrong with the tables of a campaign: values that cannot be, files that do not exist or cannot
@@ -219,8 +213,7 @@ fn faults(campaign: &Campaign) -> Result<Vec<Fault>> {
 /// As [`open`].
 pub fn errors(campaign: &Campaign) -> Result<Vec<Error>> {
     let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
-    let of_files: Result<Vec<_>> = KINDS.iter().map(|kind| (kind.channels)(campaign)).collect();
-    Ok(of_tables.chain(of_files?.into_iter().flatten()).collect())
+    Ok(of_tables.chain(of_kinds(|kind| (kind.channels)(campaign))?).collect())
 }
 
 /// The recordings that the tables of a campaign name, but for those of a table that names one that is outside
@@ -229,8 +222,12 @@ pub fn errors(campaign: &Campaign) -> Result<Vec<Error>> {
 /// # Errors
 /// As [`open`].
 pub fn files(campaign: &Campaign) -> Result<Vec<PathBuf>> {
-    let files: Result<Vec<_>> = KINDS.iter().map(|kind| (kind.files)(campaign)).collect();
-    Ok(files?.concat())
+    of_kinds(|kind| (kind.files)(campaign))
+}
+
+/// What all kinds of records have, one behind the other.
+pub(crate) fn of_kinds<T>(each: impl Fn(&Kind) -> Result<Vec<T>>) -> Result<Vec<T>> {
+    Ok(KINDS.iter().map(each).collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
 /// The tables of a kind of record as they are written, one of each file that a pattern matches, with what is

@@ -1,6 +1,6 @@
 //! Files that tables of a campaign name, and those that two tables name.
 
-use super::{KINDS, file_name, sweep};
+use super::{file_name, of_kinds, sweep};
 use crate::analysis::Analysis;
 use crate::campaign::Campaign;
 use crate::error::Result;
@@ -45,8 +45,7 @@ impl Named {
 /// # Errors
 /// As [`super::open`].
 pub(crate) fn twice(campaign: &Campaign) -> Result<Vec<Finding>> {
-    let named: Result<Vec<Vec<_>>> = KINDS.iter().map(|kind| (kind.records)(campaign)).collect();
-    let named = named?.into_iter().flatten().collect::<Vec<_>>();
+    let named = of_kinds(|kind| (kind.records)(campaign))?;
     let mut by_file: BTreeMap<&PathBuf, Vec<&Named>> = BTreeMap::new();
     let mut pairs: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for one in &named {

@@ -6,13 +6,12 @@ use super::{Analysis, Answer, Job, OfFile, Source, named_in, no_file};
 use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};
-use crate::read::Recording;
-use crate::record::{Record, Scaling, Trace, Traces, Window, shown};
+use crate::read::Header;
+use crate::record::{Scaling, Traces, Window, find_channel, shown};
 use crate::report::files::Names;
 use crate::report::layout::table;
 use crate::report::{Cell, Table, files};
 use crate::signal::transfer::Estimator;
-use crate::units::notation::significant;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -120,10 +119,8 @@ impl Keys {
         let mut traces = match self.traces(source) {
             Ok(traces) => traces,
             // A base band is that of the lines then.
-            Err(why) => match source.reader()?.from_path(source.path) {
-                Ok(all) if is_of_spectra(&all, source.channel.channel.as_deref()) => {
-                    return of_file(source, &all, &options);
-                }
+            Err(why) => match source.reader()?.survey(source.path) {
+                Ok((_, headers, _)) if is_of_spectra(source, &headers) => return of_file(source, &options),
                 Err(other) if source.reading.base_band.is_some() => return Err(other),
                 _ => return Err(why),
             },
@@ -135,25 +132,27 @@ impl Keys {
 }
 
 /// The lines of a spectrum that the file holds.
-fn of_file(source: &Source<'_>, all: &Recording, options: &SpectralOptions) -> Result<SpectralResult> {
+fn of_file(source: &Source<'_>, options: &SpectralOptions) -> Result<SpectralResult> {
     if let Some(factor) = source.channel.calibration {
         let found = format!("a calibration of {factor} of a spectrum that the file holds");
         return Err(Error::usage(found, "the unit of its lines").setting("calibration").setting("unit"));
     }
+    let all = source.reader()?.from_path(source.path)?;
     let spectrum = all.spectrum(source.channel.channel.as_deref())?;
     let mut found = stored(spectrum, options)?;
-    found.findings.extend(all.findings.iter().cloned());
+    found.findings.extend(all.findings);
     Ok(found)
 }
 
 /// Whether a file holds spectra and no traces, or a channel by its name is a spectrum.
-fn is_of_spectra(recording: &Recording, channel: Option<&str>) -> bool {
-    let any = |is: fn(&Record) -> bool| recording.records.iter().any(is);
-    if any(|record| matches!(record, Record::Trace(_))) {
-        return channel.is_some_and(|name| name.parse::<usize>().is_err())
-            && recording.spectrum(channel).is_ok();
+fn is_of_spectra(source: &Source<'_>, headers: &[Header]) -> bool {
+    let of = |kind| headers.iter().filter(move |header| header.kind == kind);
+    if of("trace").next().is_none() {
+        return of("spectrum").next().is_some();
     }
-    any(|record| matches!(record, Record::Spectrum(_)))
+    let spectra = of("spectrum").map(|header| (header.name.as_str(), header.quantity));
+    let named = source.channel.channel.as_deref().filter(|name| name.parse::<usize>().is_err());
+    named.is_some_and(|name| find_channel(source.path, name, spectra).is_ok())
 }
 
 impl Keys {
@@ -174,21 +173,11 @@ impl Keys {
         let force = of_force.trace(Some(name), None)?;
         let recording = reader.from_path(source.path)?;
         let response = source.trace(&recording)?;
-        let begins = |trace: &Trace| trace.meta.origin + trace.axis.start();
-        let apart = begins(&response) - begins(&force);
-        if apart.abs() * response.sampling_rate()? > APART {
-            let found =
-                format!("{} begins {} s after its reference", shown(source.path), significant(apart, 6));
-            return Err(Error::usage(found, "channels that were sampled together").setting("reference"));
-        }
         let findings = [of_force.findings, recording.findings].concat();
         let traces = Traces::of_file(source.path.to_owned(), findings, vec![force, response]);
         traces.map_err(|error| error.aside(format!("reference in {}", shown(&file))))
     }
 }
-
-/// How far two files of one record may begin apart, in sampling intervals.
-const APART: f64 = 0.01;
 
 /// A reference that lies in a file of its own: `FILE#CHANNEL`.
 fn in_other_file(reference: &str) -> Option<(&Path, &str)> {

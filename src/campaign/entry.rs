@@ -72,11 +72,7 @@ impl Campaign {
         let span = all.span();
         let DeValue::Array(all) = all.into_inner() else { return Err(several(span)) };
         let one = |(number, table): (usize, Spanned<DeValue<'_>>)| match (table.span(), table.into_inner()) {
-            (head, DeValue::Table(rows)) => {
-                let (mut entry, checked) = self.entry(rows, head, of_a_file)?;
-                entry.number = number;
-                Ok((entry, checked))
-            }
+            (head, DeValue::Table(rows)) => self.entry(number, rows, head, of_a_file),
             (span, _) => Err(several(span)),
         };
         (1..).zip(all).map(one).collect()
@@ -101,6 +97,7 @@ impl Campaign {
 
     fn entry<K: DeserializeOwned>(
         &self,
+        number: usize,
         mut rows: DeTable<'_>,
         head: Range<usize>,
         of_a_file: bool,
@@ -123,7 +120,7 @@ impl Campaign {
         let Named { name, file } = locate::keys(named, head.clone()).map_err(complaint)?;
         let channel = locate::keys(channel, head.clone()).map_err(complaint)?;
         let reading = locate::keys(reading, head.clone()).map_err(complaint)?;
-        Ok((Entry { name, file, channel, reading, keys, number: 1, head, places }, in_range))
+        Ok((Entry { name, file, channel, reading, keys, number, head, places }, in_range))
     }
 
     /// What a table states, word by word.

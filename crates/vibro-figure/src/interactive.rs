@@ -14,12 +14,11 @@ impl Figure {
     /// page cannot draw a panel, as a table of classes.
     pub fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         let again = |panel: &&Panel| matches!(panel, Panel::Plot(plot) if plot.again);
-        let shown: Vec<&Panel> = self.panels.iter().filter(|panel| !again(panel)).collect();
-        if !shown.iter().all(|panel| panel.is_drawable()) {
+        let (known, shown) = (matrices.len(), self.panels.iter().filter(|panel| !again(panel)));
+        let Some(panels) = shown.map(|panel| panel.data(matrices)).collect::<Option<Vec<Value>>>() else {
+            matrices.0.truncate(known);
             return None;
-        }
-        let panels: Option<Vec<Value>> = shown.iter().map(|panel| panel.data(matrices)).collect();
-        let panels = panels?;
+        };
         let grows = if self.width > 0.0 { self.height / self.width } else { 0.6 };
         Some(
             json!({ "title": self.title, "columns": self.columns.max(1), "aspect": grows, "panels": panels }),
@@ -54,15 +53,6 @@ impl Matrices {
 }
 
 impl Panel {
-    /// Whether a page can draw it.
-    fn is_drawable(&self) -> bool {
-        match self {
-            Panel::Plot(plot) => plot.sheet().axes.is_some(),
-            Panel::Waterfall(waterfall) => waterfall.axes().is_some(),
-            Panel::Grid(_) => false,
-        }
-    }
-
     fn data(&self, matrices: &mut Matrices) -> Option<Value> {
         match self {
             Panel::Plot(plot) => plot.data(matrices),
@@ -102,12 +92,8 @@ impl Axis {
 }
 
 impl Plot {
-    fn sheet(&self) -> Sheet<'_> {
-        Sheet::new(self, crate::plot::extents(self).0, true)
-    }
-
     fn data(&self, matrices: &mut Matrices) -> Option<Value> {
-        let (x, y) = self.sheet().axes?;
+        let (x, y) = Sheet::new(self, crate::plot::extents(self).0, true).axes?;
         let series: Vec<Value> = self
             .series
             .iter()

@@ -1,5 +1,6 @@
 //! Time traces block by block.
 
+use crate::units::notation;
 use crate::{Error, Finding, Meta, Place, Result, Trace, nearest, units};
 use std::path::{Path, PathBuf};
 
@@ -294,8 +295,11 @@ fn clock(path: &Path, traces: &[Trace], frames: usize) -> Result<(f64, f64)> {
         if (own / rate - 1.0).abs() * frames as f64 > APART {
             return Err(apart(path, of, &format!("a rate of {rate} Hz"), &format!("{own} Hz")));
         }
-        if (start - begin).abs() * rate > APART {
-            return Err(apart(path, of, &format!("its first sample at {start} s"), &format!("{begin} s")));
+        // Those of two files may count from instants of their own.
+        let origin = trace.meta.origin - first.meta.origin;
+        if (origin + (begin - start)).abs() * rate > APART {
+            let later = format!("{} s", notation::significant(origin + begin, 6));
+            return Err(apart(path, of, &format!("its first sample at {start} s"), &later));
         }
     }
     Ok((rate, start))

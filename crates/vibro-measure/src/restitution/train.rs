@@ -178,9 +178,15 @@ fn cure(sounds: &[Sound], heard: Heard, train: &Plausible) -> Option<f64> {
         })
     };
     let few = thresholds.map(above).take_while(|(_, high)| high.len() < sounds.len().min(FEW));
-    let mut cured = few.skip_while(|(_, high)| !cures(high)).take_while(|(_, high)| cures(high));
-    let (highest, _) = cured.next()?;
-    Some(cured.last().map_or(highest, |(threshold, _)| threshold))
+    let mut lowest = None;
+    for (threshold, high) in few {
+        match (cures(&high), lowest) {
+            (true, _) => lowest = Some(threshold),
+            (false, Some(_)) => break,
+            (false, None) => {}
+        }
+    }
+    lowest
 }
 
 /// What to try where sounds alone do not tell which are the bounces.

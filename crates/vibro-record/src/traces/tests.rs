@@ -25,3 +25,18 @@ fn a_quantity_is_the_name_of_the_only_channel_that_has_it() {
     assert!(found("Force").to_string().contains("try: \"Hammer\""), "{}", found("Force"));
     assert!(found("acceleration").to_string().contains("try: one of these names"));
 }
+
+/// Two files of one clock that counts from instants of its own: 1 kHz, so 10 µs are a hundredth of a sample.
+#[test]
+fn traces_of_two_files_begin_together_wherever_they_count_from() {
+    let trace = |origin: f64, start: f64| {
+        let mut meta = Meta::new("a", Unit::opaque("V"));
+        meta.origin = origin;
+        Trace { meta, axis: crate::Axis::time(start, 1e-3, 4), values: vec![0.0; 4] }
+    };
+    let together = |a, b| Traces::from_memory(vec![a, b]).map(|traces| traces.frames());
+    assert_eq!(together(trace(1.7e9, 0.0), trace(1.7e9, 5e-6)).unwrap(), 4);
+    assert_eq!(together(trace(1.7e9, 0.5), trace(1.7e9 + 0.5, 0.0)).unwrap(), 4);
+    let apart = together(trace(1.7e9, 0.0), trace(1.7e9 + 0.003, 0.0)).unwrap_err().to_string();
+    assert!(apart.contains("sampled together"), "{apart}");
+}
