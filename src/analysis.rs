@@ -108,6 +108,14 @@ pub(crate) trait Analysis: Clone + DeserializeOwned {
         named_in(campaign, entry)
     }
 
+    /// Those of its files that hold what it measures: a force may be that of several records.
+    ///
+    /// # Errors
+    /// As [`Analysis::files`].
+    fn measured(campaign: &Campaign, entry: &Entry<Self>) -> Result<Vec<PathBuf>> {
+        Self::files(campaign, entry)
+    }
+
     /// Measures the records of all tables.
     ///
     /// # Errors
@@ -336,7 +344,7 @@ fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Named>> {
         let files: Vec<PathBuf> = match &entry.file {
             Some(file) => vec![campaign.folder().join(file)],
             None if A::OF_FILES => Vec::new(),
-            None => A::files(campaign, entry).unwrap_or_default(),
+            None => A::measured(campaign, entry).unwrap_or_default(),
         };
         let (own, also) = (&entry.channel.channel, entry.keys.channels());
         let record = format!("{own:?} {also:?} {:?}", entry.reading.stated());

@@ -319,6 +319,13 @@ impl Analysis for Keys {
         }
     }
 
+    fn measured(campaign: &Campaign, entry: &Entry<Keys>) -> Result<Vec<PathBuf>> {
+        Ok(match Listed::of(campaign, entry)?.files {
+            Files::Spectra(list) => list.response,
+            Files::Traces(steps) => steps.files,
+        })
+    }
+
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
         let taken = taken(job.campaign, entries.to_vec(), job.progress).into_iter();
         let mut taken: Vec<Taken> = taken.filter_map(|(name, taken)| job.found(&name, taken)).collect();

@@ -208,3 +208,12 @@ fn a_reference_may_lie_in_a_file_of_its_own() {
     let said = complaint(&["modal", text(&at("velocity.csv")), "--reference", &beside], 2);
     assert!(said.contains("reference in") && said.contains("samples"), "{said}");
 }
+
+/// Both masses of a rig are measured under the force that is recorded once for each step.
+#[test]
+fn a_force_may_be_that_of_two_sweeps() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/campaign.toml");
+    let found = json(&["check", text(&example)]);
+    let codes = found["findings"].as_array().unwrap().iter().map(|found| &found["code"]);
+    assert!(!codes.into_iter().any(|code| code == "file-named-twice"), "{found}");
+}
