@@ -1,6 +1,6 @@
 //! Records of a file as a person names them: one of a recording, or time traces block by block.
 
-use super::{Format, Reader, Recording};
+use super::{Format, Reader, Recording, Source, packed};
 use crate::text;
 use crate::wav::Wave;
 use std::path::Path;
@@ -29,6 +29,10 @@ impl Reader {
     pub fn stream_channels(&self, path: impl AsRef<Path>, channels: &[&str]) -> Result<Traces> {
         let source = self.source(path)?;
         let path = source.path().to_owned();
+        // What is packed is held.
+        if packed::is_packed(&source) {
+            return self.held(&source, channels);
+        }
         let as_it_is = self.options.stretch.is_none() && self.options.resample.is_none();
         let format = self.entry(&source)?.format;
         if as_it_is && format == Format::Wav {
@@ -52,8 +56,14 @@ impl Reader {
             let frames = traces.first().map_or(0, |trace| trace.axis.len());
             return Traces::of_stream(path, findings, &traces, frames, Box::new(columns));
         }
+        self.held(&source, channels)
+    }
+
+    /// Traces of a source that is read as a whole.
+    fn held(&self, source: &Source, channels: &[&str]) -> Result<Traces> {
+        let path = source.path().to_owned();
         let asked = self.clone().only(channels.iter().map(|&name| name.to_owned()));
-        let recording = asked.read(&source)?;
+        let recording = asked.read(source)?;
         let nothing = recording.no_trace();
         let trace = |record| if let Record::Trace(trace) = record { Some(Some(trace)) } else { None };
         let mut all: Vec<Option<Trace>> = recording.records.into_iter().filter_map(trace).collect();

@@ -58,6 +58,11 @@ pub(super) const TABLE: &[Entry] = &[
 ];
 
 impl Format {
+    /// The format whose first bytes a source has.
+    pub(super) fn of(source: &Source) -> Option<&'static Entry> {
+        TABLE.iter().find(|e| (e.sniff)(source.head(), source))
+    }
+
     /// Name on the command line and in JSON.
     pub fn name(self) -> &'static str {
         TABLE.iter().find(|e| e.format == self).map_or("unknown", |e| e.name)

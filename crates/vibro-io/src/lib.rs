@@ -37,6 +37,9 @@
 //! | `uff` | `uff`, `uff58` | Universal File Format, data sets 58 and 58b |
 //! | `csv`, `ascii` | `text` | tables with names; columns of numbers |
 //!
+//! A zip archive or a workbook (features `zip`, `sheets`) is read as the file or sheet in it with the most
+//! rows; a path such as `walk.zip/Gyroscope.csv` names another.
+//!
 //! Long time traces come block by block from [`Reader::stream`], a sweep of spectra from [`SweepReader`].
 //! [`mod@write`] turns records into files again.
 
@@ -55,6 +58,7 @@ mod lvm;
 mod mat;
 mod missing;
 mod number;
+mod packed;
 mod reader;
 mod source;
 mod span;

@@ -4,7 +4,7 @@ use super::assemble::domain;
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
-use super::{Folder, Limit, Source, SweepList, foreign, level, span};
+use super::{Folder, Limit, Source, SweepList, foreign, level, packed, span};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -94,12 +94,17 @@ impl Reader {
         self
     }
 
-    /// A file of the reader's folder.
+    /// A file of the reader's folder, or a part of one that is packed, by the path that it had in a folder.
     ///
     /// # Errors
     /// As [`Folder::source`].
     pub(super) fn source(&self, path: impl AsRef<Path>) -> Result<Source> {
-        self.folder.source(path.as_ref())
+        let path = path.as_ref();
+        let above = path.ancestors().skip(1).find(|above| self.folder.is_file(above));
+        match above.filter(|_| !self.folder.exists(path)).map(|above| (above, path.strip_prefix(above))) {
+            Some((file, Ok(name))) => packed::part(&self.folder.source(file)?, name, self.options.limit),
+            _ => self.folder.source(path),
+        }
     }
 
     /// Forces a format. Default: found out from the first bytes.
@@ -268,6 +273,15 @@ impl Reader {
     }
 
     fn contents(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
+        if let Some((part, found)) = packed::main_part(source, self.options.limit)? {
+            let (format, mut contents) = self.contents_of(&part, survey)?;
+            contents.findings.extend(found);
+            return Ok((format, contents));
+        }
+        self.contents_of(source, survey)
+    }
+
+    fn contents_of(&self, source: &Source, survey: bool) -> Result<(Format, Contents)> {
         let entry = self.entry(source)?;
         // These hold their bytes beside the values, which take no less.
         let whole = matches!(entry.format, Format::Mat | Format::Lvm | Format::Uff);
@@ -301,7 +315,7 @@ impl Reader {
             return Err(foreign);
         }
         let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
-        forced.or_else(|| TABLE.iter().find(|e| (e.sniff)(source.head(), source))).ok_or_else(|| {
+        forced.or_else(|| Format::of(source)).ok_or_else(|| {
             let names = Format::names().join(", ");
             Error::input(Place::file(source.path()), "not a format that is known here", names)
                 .hint("name the format, or export the record as text or UFF-58")

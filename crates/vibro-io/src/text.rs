@@ -29,12 +29,13 @@ mod wrapped;
 
 use crate::held::{Contents, Held};
 use crate::reader::Options;
-use crate::{Format, Limit, Source, level, missing, number};
+use crate::{Format, Limit, Source, level, missing, number, packed};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
 use rows::Rows;
 use std::borrow::Cow;
+pub(crate) use tables::{LONGER, rows as count_rows};
 pub(crate) use tail::Digits;
 use vibro_record::{Error, Finding, Place, Record, Result, Trace, Values};
 
@@ -60,7 +61,7 @@ impl<'a> Text<'a> {
 
     /// Whether the file calls itself CSV: then one column will do, and names need not fit the rows.
     fn called_csv(&self) -> bool {
-        matches!(self.source.extension().as_str(), "csv" | "tsv")
+        matches!(self.source.extension().as_str(), "csv" | "tsv") || packed::is_sheet(self.source)
     }
 }
 

@@ -540,3 +540,15 @@ fn rows_that_repeat_are_told() {
     let coarse = |v: f64| (3.0 * v).round();
     assert_eq!(told(text(&|i| (coarse(sine(i).0), coarse(sine(i).1)))), None);
 }
+
+/// A damaged digit makes one instant as large as no record is long.
+#[test]
+fn an_instant_far_beyond_the_record_leaves_no_clock() {
+    for at in [1, 100, 199] {
+        let time = |i| if i == at { 1e20 } else { f64::from(i) / 400.0 };
+        let rows = (0..200).map(|i| format!("{},{}\n", time(i), i % 7)).collect::<Vec<_>>().concat();
+        let read = Reader::new().from_reader("x.csv", format!("t [s],a [V]\n{rows}").as_bytes()).unwrap();
+        let Record::Trace(trace) = &read.records[0] else { panic!("{read:?}") };
+        assert_eq!((trace.rate(), trace.axis.at(at as usize)), (None, 1e20));
+    }
+}

@@ -215,7 +215,7 @@ fn hides_lost(instants: &[f64], clock: &Clock, resolution: f64) -> bool {
     }
     let n = instants.len();
     let rows = (CYCLES * 2.0 * resolution / clock.step).ceil().max(CYCLES) as usize;
-    if n < 4 * rows {
+    if n / 4 < rows {
         return true;
     }
     let (whole, mut cumulated) = (n as f64, 0.0);

@@ -6,7 +6,19 @@ use vibro_record::{Finding, Result};
 
 /// How many times as many rows the longer of two tables has: a summary of some rows is short beside what it
 /// sums up.
-const LONGER: usize = 10;
+pub(crate) const LONGER: usize = 10;
+
+/// Lines that begin with a number.
+fn count(text: &str) -> usize {
+    let begins =
+        |line: &&str| number::prefix(line.trim_start_matches([' ', '\t', '"']).as_bytes(), b'.').is_some();
+    text.lines().filter(begins).count()
+}
+
+/// Rows of numbers of a text in any encoding.
+pub(crate) fn rows(bytes: &[u8]) -> usize {
+    count(&encoding::decode(bytes))
+}
 
 /// The text with the longer of two tables, of which the second begins at `line`; `None` where they compare.
 /// Lines keep their numbers.
@@ -18,8 +30,7 @@ pub fn longest(text: &Text, line: u64) -> Result<Option<(Source, Finding)>> {
     let whole = encoding::decode(&bytes);
     let above = line as usize - 1;
     let (upper, lower) = whole.split_at(whole.split_inclusive('\n').take(above).map(str::len).sum());
-    let is_row = |line: &&str| number::prefix(line.trim_start().as_bytes(), b'.').is_some();
-    let [first, second] = [upper, lower].map(|part| part.lines().filter(is_row).count());
+    let [first, second] = [upper, lower].map(count);
     let (kept, left) = if first >= LONGER * second {
         (upper.to_owned(), second)
     } else if second >= LONGER * first {

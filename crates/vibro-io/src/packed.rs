@@ -1,0 +1,166 @@
+//! Files that hold the file to read: a zip archive of files, a workbook of sheets.
+//!
+//! The part with by far the most rows is read, a sheet as the text that a program of sheets exports
+//! ([`sheets`]). Any other part has a path as in a folder: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
+
+#[cfg(feature = "sheets")]
+mod sheets;
+
+use super::Source;
+use super::text::{self, LONGER};
+use crate::{Format, Limit};
+use std::cmp::Reverse;
+use std::path::Path;
+use vibro_record::{Error, Finding, Place, Result};
+
+/// First bytes of a zip archive, as are the newer workbooks of Excel and those of `OpenDocument`.
+const ZIP: &[u8] = b"PK\x03\x04";
+/// First bytes of a compound file, as are the older workbooks of Excel.
+const COMPOUND: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
+
+/// How a workbook is stored.
+#[cfg(feature = "zip")]
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    /// `.xls`.
+    #[cfg(feature = "sheets")]
+    Compound,
+    /// `.xlsx` and `.xlsm`.
+    Xml,
+    /// `.ods`.
+    OpenDocument,
+}
+
+/// A file of an archive or a sheet of a workbook.
+struct Part {
+    name: String,
+    bytes: Vec<u8>,
+}
+
+impl Part {
+    /// Rows of numbers of a text; bytes of a format that is no text, and 0 of a file of no known format.
+    fn rows(&self) -> usize {
+        if text::encoding::is_text(&self.bytes) {
+            return text::count_rows(&self.bytes);
+        }
+        let known = Source::memory(&self.name, self.bytes.as_slice()).is_ok_and(|s| Format::of(&s).is_some());
+        if known { self.bytes.len() } else { 0 }
+    }
+}
+
+/// The part of an archive or a workbook that is to be read, and what was left out; `None` of other files.
+///
+/// # Errors
+/// If it is damaged or encrypted, unpacks to more than the limit, or several parts compare.
+pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option<Finding>)>> {
+    let Some(parts) = parts(source, limit)? else { return Ok(None) };
+    let mut parts: Vec<(usize, Part)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
+    parts.sort_by_key(|(rows, _)| Reverse(*rows));
+    let long = parts.iter().take_while(|(rows, _)| *rows > 0 && LONGER * rows > parts[0].0).count();
+    if long > 1 || long == 0 && parts.len() != 1 {
+        let names = listed(parts.iter().take(if long > 1 { long } else { parts.len() }));
+        let found = if long > 1 { "several tables of like length" } else { "no table of numbers" };
+        let error = Error::input(Place::file(source.path()), format!("{found}: {names}"), "one table");
+        return Err(match parts.first().filter(|_| long > 1) {
+            Some((_, first)) => {
+                error.hint(format!("name one: {}", source.path().join(&first.name).display()))
+            }
+            None => error.hint("unpack it, and name the file with the samples"),
+        });
+    }
+    let found = (parts.len() > 1).then(|| {
+        let found = Finding::note("parts-left-out").name("part", parts[0].1.name.as_str());
+        found.name("parts", listed(parts.iter().skip(1)))
+    });
+    let (_, part) = parts.swap_remove(0);
+    Ok(Some((Source::memory(source.path().join(part.name), part.bytes)?, found)))
+}
+
+fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Part)>) -> String {
+    parts.map(|(_, part)| part.name.as_str()).collect::<Vec<_>>().join(", ")
+}
+
+/// The part of this name.
+///
+/// # Errors
+/// As [`main_part`]; if there is no such part.
+pub fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
+    let parts = parts(source, limit)?.unwrap_or_default();
+    let names = parts.iter().map(|part| part.name.as_str()).collect::<Vec<_>>().join(", ");
+    let Some(part) = parts.into_iter().find(|part| Path::new(&part.name) == name) else {
+        let found = format!("no part of the name {:?}", name.display().to_string());
+        return Err(Error::input(Place::file(source.path()), found, format!("one of {names}")));
+    };
+    Source::memory(source.path().join(part.name), part.bytes)
+}
+
+/// Whether a text is a sheet, which calls itself a table as CSV does.
+pub fn is_sheet(source: &Source) -> bool {
+    let ending = source.path().parent().and_then(Path::extension).map(std::ffi::OsStr::to_ascii_lowercase);
+    ending.is_some_and(|e| ["xls", "xlsx", "xlsm", "ods"].iter().any(|known| e == *known))
+}
+
+/// Whether a file holds others.
+pub fn is_packed(source: &Source) -> bool {
+    cfg!(feature = "zip") && source.head().starts_with(ZIP)
+        || cfg!(feature = "sheets") && source.head().starts_with(COMPOUND)
+}
+
+/// All parts that are not empty; `None` where the file has none, or its kind is not built in.
+#[cfg_attr(not(feature = "zip"), allow(clippy::unnecessary_wraps))]
+fn parts(source: &Source, limit: Limit) -> Result<Option<Vec<Part>>> {
+    #[cfg(feature = "zip")]
+    if source.head().starts_with(ZIP) {
+        return members(source, limit).map(Some);
+    }
+    #[cfg(feature = "sheets")]
+    if source.head().starts_with(COMPOUND) {
+        return sheets::of(source, Kind::Compound, limit).map(Some);
+    }
+    let _ = (source, limit, ZIP, COMPOUND);
+    Ok(None)
+}
+
+/// What is said of an archive or a workbook that cannot be read.
+#[cfg(feature = "zip")]
+fn damaged(source: &Source, why: impl std::fmt::Display) -> Error {
+    Error::input(Place::file(source.path()), format!("it cannot be unpacked: {why}"), "a whole file")
+        .hint("unpack it with the program that wrote it, and export CSV")
+}
+
+/// The files of a zip archive, or the sheets of a workbook that is one.
+#[cfg(feature = "zip")]
+fn members(source: &Source, limit: Limit) -> Result<Vec<Part>> {
+    use std::io::{BufReader, Read};
+    let mut archive =
+        zip::ZipArchive::new(BufReader::new(source.open()?)).map_err(|why| damaged(source, why))?;
+    let has = |name: &str| archive.index_for_name(name).is_some();
+    let book = [("xl/workbook.xml", Kind::Xml), ("content.xml", Kind::OpenDocument)];
+    let book = book.into_iter().find(|(name, _)| has(name)).map(|(_, kind)| kind);
+    let (mut parts, mut held) = (Vec::new(), 0.0);
+    for i in 0..archive.len() {
+        let mut member = archive.by_index(i).map_err(|why| damaged(source, why))?;
+        let name = member.name().map_err(|why| damaged(source, why))?.into_owned();
+        if !member.is_file() {
+            continue;
+        }
+        held += member.size() as f64;
+        limit.hold(held)?;
+        // More than declared is an error of the crate.
+        let mut bytes = Vec::new();
+        member.read_to_end(&mut bytes).map_err(|why| damaged(source, format!("{name}: {why}")))?;
+        // Programs of Apple add files of their own.
+        let own = name.split('/').any(|name| name.starts_with('.') || name == "__MACOSX");
+        if book.is_none() && !own && !bytes.is_empty() {
+            parts.push(Part { name, bytes });
+        }
+    }
+    match book {
+        #[cfg(feature = "sheets")]
+        Some(book) => sheets::of(source, book, limit),
+        _ => Ok(parts),
+    }
+}
+
+#[cfg(all(test, feature = "zip"))]
+mod tests;
