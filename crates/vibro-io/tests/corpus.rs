@@ -43,7 +43,8 @@ const COLUMNS: [Stamp; 10] = [
     Stamp::Column("Time", "", 1.0, 5),
 ];
 
-const HEADS: [&str; 7] = [
+const HEADS: [&str; 8] = [
+    "Samples/Sec: {}",
     "Sample rate: {} Hz",
     "Sampling rate [Hz]: {}",
     "Abtastrate: {} Hz",

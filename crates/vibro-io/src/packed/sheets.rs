@@ -39,8 +39,8 @@ pub fn of(source: &Source, kind: Kind, limit: Limit) -> Result<Vec<Part>> {
     catch_unwind(read).unwrap_or_else(|_| Err(damaged(source, "its records contradict each other")))
 }
 
-/// The stream of an older workbook in a compound file of its own. Its cells are looked through before, for the
-/// crate makes room for all between the first and the last.
+/// The stream of an older workbook in a compound file of its own. Its cells are looked through before, since
+/// the crate makes room for all between the first and the last.
 fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
     let failed = |why| damaged(source, why);
     let mut file = cfb::CompoundFile::open(BufReader::new(source.open()?)).map_err(failed)?;

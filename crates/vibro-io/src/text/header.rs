@@ -45,11 +45,11 @@ pub struct Stated {
 /// Keys of a sampling rate, and of the step of time.
 const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|sampling freq|data rate|fs|rate|abtastrate|\
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
-                    messfrequenz|samplingrate|sampling speed|output data rate|odr|acquisition rate|logging rate|\
+                    messfrequenz|samplingrate|samples/sec|samples/s|sampling speed|output data rate|odr|acquisition rate|logging rate|\
                     frequenza di campionamento|frecuencia de muestreo|frequência de amostragem";
 const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
                     interval|time interval|tinc|sample period|scan interval|logging interval|abtastzeit|messintervall|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
-                    x delta|xdelta|abtastintervall";
+                    x delta|xdelta|sampling|abtastintervall";
 /// Keys of what the abscissa is, or of its unit.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
 
@@ -162,7 +162,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             (stated.step, stated.of_one_series) = (step, true);
         }
         "rate" | "data rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval"
-        | "time interval" | "odr" | "scan interval" | "logging interval" | "messintervall"
+        | "time interval" | "odr" | "scan interval" | "logging interval" | "messintervall" | "sampling"
             if bare => {}
         "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {

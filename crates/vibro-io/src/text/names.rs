@@ -256,9 +256,15 @@ const WHOLE: [(&str, &str); 6] = [
 const COUNTS: &str =
     "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
 
+/// Words that begin the name of an acceleration, whose `G` is the one of gravity and no gauss.
+const ACCELERATIONS: [&str; 3] = ["acc", "beschl", "shock"];
+
 /// The unit behind the name of a time, where it has other letters elsewhere or means something else there:
-/// `d`, `H`, `Min`, `MS`.
+/// `d`, `H`, `Min`, `MS`; and `G` of an acceleration.
 fn long(name: &str, unit: &str) -> Option<&'static str> {
+    if unit.trim() == "G" {
+        return ACCELERATIONS.iter().any(|word| name.to_lowercase().starts_with(word)).then_some("g");
+    }
     let found = match unit.trim().to_lowercase().as_str() {
         "h" | "hr" | "hrs" | "std" => HOUR,
         "d" | "day" | "days" | "ole" => DAY,

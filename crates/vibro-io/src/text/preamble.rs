@@ -25,10 +25,19 @@ pub const BESIDE: usize = 40;
 #[derive(Debug, Default)]
 pub struct Preamble(Vec<Vec<String>>);
 
-const SOURCE: &[&str] =
-    &["source", "tracename", "trace name", "signal", "signal name", "channel name", "channeltitle", "ch"];
+const SOURCE: &[&str] = &[
+    "source",
+    "tracename",
+    "trace name",
+    "signal",
+    "signal name",
+    "channel name",
+    "channeltitle",
+    "ch",
+    "*channel",
+];
 pub const UNIT: &[&str] =
-    &["vertical units", "vert units", "vunit", "yunits", "y units", "unitname", "unit", "units"];
+    &["vertical units", "vert units", "vunit", "yunits", "y units", "unitname", "unit", "units", "*unit"];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
 /// A cell as a key.
@@ -39,7 +48,8 @@ pub fn key(cell: &str) -> String {
 impl Preamble {
     /// Of lines above the rows.
     pub fn of(lines: &[&Line], separator: Separator) -> Preamble {
-        let keyed = |line: &&&Line| line.text.trim_start_matches([' ', '"']).starts_with(char::is_alphabetic);
+        let keyed =
+            |line: &&&Line| line.text.trim_start_matches([' ', '"', '*']).starts_with(char::is_alphabetic);
         let cells = lines.iter().filter(keyed).filter_map(|line| fields(line.text, separator).ok());
         Preamble(cells.map(|cells| cells.into_iter().map(|(_, cell)| cell.into_owned()).collect()).collect())
     }

@@ -407,6 +407,51 @@ pub const ALL: &[Dialect] = &[
         ),
     },
     Dialect {
+        of: "Lansmont SAVER",
+        oddity: "`\"Samples/Sec\",2000.0` is the rate, `G` behind an acceleration is gravity",
+        file: "event.csv",
+        text: || {
+            let head = "\"SAVER 9X30\"\n\"Event\",12\n\"Samples/Sec\",2000.0\n\"Sample\",\"Accel X (G)\",\"Accel Y, g\"\n";
+            table(head, |i| format!("{},{},{}", i + 1, fixed(value(0, i), 6), fixed(value(1, i), 6)))
+        },
+        outcome: read(
+            &[ch("Accel X", "m/s²", 0, 9.806_65, 5e-7), ch("Accel Y", "m/s²", 1, 9.806_65, 5e-7)],
+            X::Even(0.0),
+            &["rate-from-head"],
+        ),
+    },
+    Dialect {
+        of: "Keyence NR-X",
+        oddity: "`Sampling,500 us` is the step, rows are numbered",
+        file: "nr-x.csv",
+        text: || {
+            let head = "Model,NR-X100\nSampling,500 us\nNo.,CH1 (V),CH2 (mV)\n";
+            table(head, |i| format!("{},{},{}", i + 1, fixed(value(0, i), 6), fixed(value(1, i), 6)))
+        },
+        outcome: read(
+            &[ch("CH1", "V", 0, 1.0, 5e-7), ch("CH2", "V", 1, 1e-3, 5e-7)],
+            X::Even(0.0),
+            &["rate-from-head"],
+        ),
+    },
+    Dialect {
+        of: "MSR",
+        oddity: "names behind `*CHANNEL` and units behind `*UNIT`",
+        file: "MSR165.csv",
+        text: || {
+            let head = "*CREATOR\nMSR Reader\n*STARTTIME\n2024-03-01;12:00:00\n*MODUL;MSR165;MSR165;MSR165\n\
+                        *CHANNEL;TIME;ACC x;ACC y\n*UNIT;s;g;g\n*DATA\n";
+            table(head, |i| {
+                format!("{};{};{}", fixed(at(0.0, i), 4), fixed(value(0, i), 6), fixed(value(1, i), 6))
+            })
+        },
+        outcome: read(
+            &[ch("ACC x", "m/s²", 0, 9.806_65, 5e-7), ch("ACC y", "m/s²", 1, 9.806_65, 5e-7)],
+            X::Even(0.0),
+            &[],
+        ),
+    },
+    Dialect {
         of: "ETAS INCA, ASCII",
         oddity: "a row of types between the names and the units",
         file: "measure.ascii",
