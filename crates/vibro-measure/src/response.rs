@@ -5,7 +5,7 @@ mod taker;
 
 use super::answered::answered;
 use super::excitation::{Excitation, each, excitations};
-use super::resonance::NamedCurve;
+use super::resonance::{NamedCurve, Resonance};
 use crate::line::deviation;
 use crate::mean::upper_median;
 use num_complex::Complex64;
@@ -161,6 +161,7 @@ impl Response {
             let coarse: Vec<f64> = coarse.collect();
             let found = Finding::caution("sweep-steps-coarse").count("n", coarse.len());
             findings.extend((!coarse.is_empty()).then(|| found.numbers("frequencies", coarse)));
+            findings.extend(moved_by_force(points, direction, &curve));
             (self.jumps, self.resonances) = (curve.jumps, curve.resonances);
         } else {
             findings.push(Finding::caution("sweep-too-few-points").count("n", points.len()));
@@ -168,6 +169,33 @@ impl Response {
         self.direction = direction;
         self
     }
+}
+
+/// The peak that a changing force moves most: where the response per newton peaks further away than twice the
+/// standard uncertainty of both.
+fn moved_by_force(points: &[ResponsePoint], direction: Direction, curve: &NamedCurve) -> Option<Finding> {
+    let per_newton = |p: &ResponsePoint| {
+        let force = p.force.filter(|f| *f > 0.0)?;
+        let relative = (p.amplitude.std? / p.amplitude.value).hypot(p.force_std.unwrap_or(0.0) / force);
+        let ratio = p.amplitude.value / force;
+        Some((p.excitation, ratio, ratio * relative))
+    };
+    let ratios: Vec<_> = points.iter().map(per_newton).collect::<Option<_>>()?;
+    let ratios = NamedCurve::new(ratios, &[], direction, curve.mass);
+    let smooth = |r: &&Resonance| r.kind.is_maximum() && !r.at_jump;
+    let moved = curve.resonances.iter().filter(smooth).filter_map(|peak| {
+        let away = |r: &Resonance| (r.frequency - peak.frequency).abs();
+        let near = ratios.resonances.iter().filter(smooth).min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        Some((peak, near, away(near) / peak.frequency_std?.hypot(near.frequency_std?)))
+    });
+    let (peak, near, _) = moved.filter(|m| m.2 > 2.0).max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let force = || points.iter().filter_map(|p| p.force);
+    let finding = Finding::caution("sweep-force-moves-peak")
+        .number("frequency", peak.frequency)
+        .number("per_newton", near.frequency)
+        .number("std", near.frequency_std?);
+    let (least, largest) = (force().fold(f64::INFINITY, f64::min), force().fold(0.0, f64::max));
+    Some(finding.number("least", least).number("largest", largest))
 }
 
 /// Force lines further than this part of the largest from their window's shape are not under that window: a

@@ -42,7 +42,7 @@ pub struct FaultCount {
 
 /// Neighbours that tell a drop-out in a motion from a signal at rest.
 const AROUND: usize = 16;
-/// Longest speckle spike in samples whose every one stands off.
+/// Longest speckle spike in samples.
 const SPIKE: usize = 3;
 /// Samples on both sides of a spike that must be calm: an impact is followed by ringing.
 const CALM: usize = 4;
@@ -67,10 +67,8 @@ enum Kind {
 ///
 /// A *drop-out* is a stretch of missing values, or of equal values longer than chance gives, entered or left
 /// by a step amid neighbours that move; a *spike* is one to three samples that stand off both neighbours
-/// while these agree, or a burst of more that jump back and forth from sample to sample between calm ends,
-/// which an impact in it may part; *over-range* are two or more samples at the largest or smallest value,
-/// entered or left by a step. Neither a turning point of a coarsely digitised signal nor an impact is a
-/// fault.
+/// while these agree; *over-range* are two or more samples at the largest or smallest value, entered or left
+/// by a step. Neither a turning point of a coarsely digitised signal nor an impact is a fault.
 pub(super) fn repair(values: &mut [f64], survey: &Survey, longest: usize) -> (Vec<State>, FaultCount) {
     let height =
         (SPIKE_NOISE * noise(values).max(survey.quantum)).max(SPIKE_RANGE * (survey.high - survey.low));

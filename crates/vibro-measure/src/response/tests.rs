@@ -124,6 +124,33 @@ fn a_peak_between_steps_is_told() {
 }
 
 #[test]
+fn a_peak_that_the_force_moves_is_told() {
+    // One mode at 80 Hz with 2 %. A shaker's force falls where the mode moves most, here 0.3 Hz above it.
+    let found = |dip: f64, seed: u64| {
+        let mut normal = Normal(seed);
+        let points = (-6..=6).map(|k| {
+            let f = 80.4 + f64::from(k);
+            let u = f / 80.0;
+            let force = 100.0 * (1.0 - dip / (1.0 + (f - 80.3).powi(2)));
+            let sine = force / Complex64::new(1.0 - u * u, 0.04 * u);
+            let of =
+                |sine: Complex64, normal: &mut Normal| spectrum(Window::Hann, &[(f, sine)], 0.01, normal);
+            let mut point = step("response", f, Window::Hann, of(sine, &mut normal));
+            (point.force, point.given) = (Values::Real(of(force.into(), &mut normal)), None);
+            point
+        });
+        let sweep = sweep(points.collect());
+        let found = response(&sweep, &ResponseOptions { integrate: Some(0), ..ResponseOptions::default() });
+        finding(&found.unwrap(), "sweep-force-moves-peak").cloned()
+    };
+    assert_eq!(found(0.0, 0xf0), None);
+    let told = found(0.4, 0xf1).unwrap();
+    let [at, std] = ["per_newton", "std"].map(|name| told.get(name).unwrap());
+    // The largest of 1/|1 - u² + 0.04 iu| is at u² = 1 - 0.02²·2.
+    assert!((at - 80.0 * (1.0 - 0.0008f64).sqrt()).abs() < 4.0 * std && std < 0.05, "{at} {std}");
+}
+
+#[test]
 fn a_file_that_is_named_twice_is_found() {
     let point = |name: &str, height: f64| {
         let lines = (0..LINES).map(|k| if k == 80 { height } else { 0.01 * height }).collect();
