@@ -14,7 +14,7 @@ const LEVELS: usize = 2;
 
 /// Files that nobody takes for recordings.
 const NO_RECORDINGS: &str =
-    "toml json md html pdf png jpg jpeg svg gif doc docx ppt pptx py m rs zip exe bak log ini tdms_index";
+    "toml json md html pdf png jpg jpeg svg gif doc docx ppt pptx py m rs exe bak log ini tdms_index";
 
 /// What lies in a folder and up to two levels below it.
 #[derive(Debug, Default)]
