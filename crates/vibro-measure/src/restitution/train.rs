@@ -114,8 +114,8 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
         if heard.full.is_some() {
             return Err(alone(Error::refused(why), sounds, heard));
         }
-        let hint = "`vibro impacts` measures a machine, `vibro decay` a ringing";
-        return Err(Error::refused(why).hint(hint));
+        let hint = "the height of the fall, which tells bounces from a voice; of a machine `vibro impacts`";
+        return Err(Error::refused(why).hint(hint).setting("height"));
     }
     if let Some((i, j)) = train.rival {
         let time = |i: usize| sounds[i].time;
