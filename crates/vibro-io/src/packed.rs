@@ -1,7 +1,8 @@
 //! Files that hold the file to read: a zip archive of files, a workbook of sheets.
 //!
 //! The part with by far the most rows is read, a sheet as the text that a program of sheets exports
-//! ([`sheets`]). Any other part has a path as in a folder: `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
+//! ([`sheets`]); a hidden sheet only where no other has a table. Any other part has a path as in a folder:
+//! `walk.zip/Gyroscope.csv`, `walk.xlsx/Sheet 2`.
 
 #[cfg(feature = "sheets")]
 mod sheets;
@@ -35,6 +36,8 @@ enum Kind {
 struct Part {
     name: String,
     bytes: Vec<u8>,
+    /// Whether the program of sheets does not show it.
+    hidden: bool,
 }
 
 impl Part {
@@ -55,6 +58,9 @@ impl Part {
 pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option<Finding>)>> {
     let Some(parts) = parts(source, limit)? else { return Ok(None) };
     let mut parts: Vec<(usize, Part)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
+    if parts.iter().any(|(rows, part)| *rows > 0 && !part.hidden) {
+        parts.iter_mut().filter(|(_, part)| part.hidden).for_each(|(rows, _)| *rows = 0);
+    }
     parts.sort_by_key(|(rows, _)| Reverse(*rows));
     let long = parts.iter().take_while(|(rows, _)| *rows > 0 && LONGER * rows > parts[0].0).count();
     if long > 1 || long == 0 && parts.len() != 1 {
@@ -77,7 +83,8 @@ pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option
 }
 
 fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Part)>) -> String {
-    parts.map(|(_, part)| part.name.as_str()).collect::<Vec<_>>().join(", ")
+    let name = |part: &Part| format!("{}{}", part.name, if part.hidden { " (hidden)" } else { "" });
+    parts.map(|(_, part)| name(part)).collect::<Vec<_>>().join(", ")
 }
 
 /// The part of this name.
@@ -98,6 +105,17 @@ pub fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
 pub fn is_sheet(source: &Source) -> bool {
     let ending = source.path().parent().and_then(Path::extension).map(std::ffi::OsStr::to_ascii_lowercase);
     ending.is_some_and(|e| ["xls", "xlsx", "xlsm", "ods"].iter().any(|known| e == *known))
+}
+
+/// What is to be said of a sheet with a column in percent: its cells are stored as parts of one where they
+/// are formatted as percent, and as they read where they are not, which the crate does not tell.
+pub fn percent(source: &Source) -> Option<Finding> {
+    let text = source.in_memory().filter(|_| is_sheet(source))?;
+    let in_percent = |cell: &&str| {
+        cell.trim_end_matches([')', ']', ' ']).ends_with('%') && !cell.contains(|c: char| c.is_ascii_digit())
+    };
+    let cell = str::from_utf8(text).ok()?.split(['\t', '\n']).find(in_percent)?;
+    Some(Finding::caution("sheet-in-percent").name("column", cell.trim()))
 }
 
 /// Whether a file holds others.
@@ -152,7 +170,7 @@ fn members(source: &Source, limit: Limit) -> Result<Vec<Part>> {
         // Programs of Apple add files of their own.
         let own = name.split('/').any(|name| name.starts_with('.') || name == "__MACOSX");
         if book.is_none() && !own && !bytes.is_empty() {
-            parts.push(Part { name, bytes });
+            parts.push(Part { name, bytes, hidden: false });
         }
     }
     match book {

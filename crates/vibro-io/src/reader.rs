@@ -291,7 +291,8 @@ impl Reader {
         let read = |survey| (entry.read)(source, &self.options, survey);
         let changes = span.is_some() || self.options.stretch.is_some() || self.options.resample.is_some();
         let contents = room.and_then(|()| read(survey && !changes)).and_then(|all| {
-            let all = if level::needs_values(&all) { read(false)? } else { all };
+            let mut all = if level::needs_values(&all) { read(false)? } else { all };
+            all.findings.extend(packed::percent(source));
             level::settle(span::cut(all.evened(&self.options)?, span)?, entry.format, &self.options)
         });
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))

@@ -2,7 +2,9 @@
 
 use super::{Kind, Part, damaged};
 use crate::{Limit, Source, number};
-use calamine::{Data, ExcelDateTime, ExcelDateTimeType, Ods, Reader, Xls, Xlsx, XlsxError};
+use calamine::{
+    Data, ExcelDateTime, ExcelDateTimeType, Ods, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError,
+};
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write};
 use std::io::{BufReader, Cursor, Read, Seek, Write as _};
@@ -116,11 +118,11 @@ where
     B::Error: Display,
 {
     let mut parts = Vec::new();
-    for name in book.sheet_names() {
-        let range = book.worksheet_range(&name).map_err(|why| damaged(source, why))?;
+    for of in book.sheets_metadata().to_vec() {
+        let range = book.worksheet_range(&of.name).map_err(|why| damaged(source, why))?;
         let (row, column) = range.start().unwrap_or_default();
         let place = |(r, c, cell): (usize, usize, &Data)| (row + r as u32, column + c as u32, cell.clone());
-        parts.extend(sheet(name, range.used_cells().map(place).collect(), limit)?);
+        parts.extend(sheet(of, range.used_cells().map(place).collect(), limit)?);
     }
     Ok(parts)
 }
@@ -130,8 +132,8 @@ fn streamed(source: &Source, limit: Limit) -> Result<Vec<Part>> {
     let mut book =
         Xlsx::new(BufReader::new(source.open()?)).map_err(|why: XlsxError| damaged(source, why))?;
     let mut parts = Vec::new();
-    for name in book.sheet_names() {
-        let mut reader = match book.worksheet_cells_reader(&name) {
+    for of in book.sheets_metadata().to_vec() {
+        let mut reader = match book.worksheet_cells_reader(&of.name) {
             Err(XlsxError::NotAWorksheet(_)) => continue,
             reader => reader.map_err(|why| damaged(source, why))?,
         };
@@ -143,13 +145,13 @@ fn streamed(source: &Source, limit: Limit) -> Result<Vec<Part>> {
             }
             cells.push((row, column, cell.get_value().clone().into()));
         }
-        parts.extend(sheet(name, cells, limit)?);
+        parts.extend(sheet(of, cells, limit)?);
     }
     Ok(parts)
 }
 
 /// A sheet as text; each line is a row, so that complaints name it.
-fn sheet(name: String, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> {
+fn sheet(of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> {
     cells.retain(|(.., cell)| *cell != Data::Empty);
     cells.sort_by_key(|(row, column, _)| (*row, *column));
     let Some(last) = cells.last().map(|last| last.0) else { return Ok(None) };
@@ -177,7 +179,8 @@ fn sheet(name: String, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part
         at = row[0].0;
     }
     text.push('\n');
-    Ok(Some(Part { name, bytes: text.into_bytes() }))
+    let hidden = of.visible != SheetVisible::Visible;
+    Ok(Some(Part { name: of.name, bytes: text.into_bytes(), hidden }))
 }
 
 fn write_cell(text: &mut String, cell: &Data, clock: Option<&Clock>) {

@@ -165,6 +165,41 @@ mod sheets {
         assert!(has_finding(&found.findings, "parts-left-out", &parts), "{:?}", found.findings);
     }
 
+    #[test]
+    fn a_hidden_sheet_gives_way_to_one_that_is_shown() {
+        let found = same(
+            "x.xlsx",
+            &workbook(|book| {
+                fill(book, "Shown");
+                let hidden = book.add_worksheet().set_name("Old").unwrap();
+                for row in 0..20 * N {
+                    hidden.write_number(row, 0, f64::from(row)).unwrap();
+                }
+                hidden.set_hidden(true);
+            }),
+        );
+        let parts = ["part=Shown", "parts=Old (hidden)"];
+        assert!(has_finding(&found.findings, "parts-left-out", &parts), "{:?}", found.findings);
+    }
+
+    #[test]
+    fn a_column_in_percent_is_said() {
+        let of = |name: &str| {
+            let bytes = workbook(|book| {
+                let sheet = book.add_worksheet();
+                sheet.write_string(0, 0, "Time (s)").unwrap();
+                sheet.write_string(0, 1, name).unwrap();
+                for row in 1..N {
+                    sheet.write_number(row, 0, f64::from(row) / 400.0).unwrap();
+                    sheet.write_number(row, 1, f64::from(row % 7) / 100.0).unwrap();
+                }
+            });
+            Reader::new().from_reader("x.xlsx", bytes.as_slice()).unwrap().findings
+        };
+        assert!(has_finding(&of("Slip (%)"), "sheet-in-percent", &["column=Slip (%)"]));
+        assert!(!has_finding(&of("Force (N)"), "sheet-in-percent", &[]));
+    }
+
     /// What would be groups of digits in a text are decimals of a number here.
     #[test]
     fn three_decimals_beside_whole_numbers_are_a_number() {

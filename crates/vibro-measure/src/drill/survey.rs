@@ -77,9 +77,9 @@ enum Kind {
 ///
 /// A *drop-out* is a stretch of missing values, or of equal values longer than chance gives, entered or left
 /// by a step amid neighbours that move; a *spike* is one to three samples that stand off both neighbours
-/// while these agree, or a burst of 8 to 48 that jump from each to the next between calm ends, which an impact
-/// in it may part; *over-range* are two or more samples at the largest or smallest value, entered or left by a
-/// step. Neither a turning point of a coarsely digitised signal nor an impact is a fault.
+/// while these agree, or a burst of 8 to 48 that jump from each to the next between calm ends, which an
+/// impact in it may part; *over-range* are two or more samples at the largest or smallest value, entered or
+/// left by a step. Neither a turning point of a coarsely digitised signal nor an impact is a fault.
 pub(super) fn repair(values: &mut [f64], survey: &Survey, longest: usize) -> (Vec<State>, FaultCount) {
     let height =
         (SPIKE_NOISE * noise(values).max(survey.quantum)).max(SPIKE_RANGE * (survey.high - survey.low));
