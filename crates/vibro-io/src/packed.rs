@@ -164,7 +164,8 @@ fn members(source: &Source, limit: Limit) -> Result<Vec<Part>> {
         }
         held += member.size() as f64;
         limit.hold(held)?;
-        // More than declared is an error of the crate.
+        // More than declared is an error of the crate. Those of a workbook are unpacked for that alone: what
+        // reads sheets checks no size.
         let mut bytes = Vec::new();
         member.read_to_end(&mut bytes).map_err(|why| damaged(source, format!("{name}: {why}")))?;
         // Programs of Apple add files of their own.

@@ -114,7 +114,7 @@ fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> 
         if heard.full.is_some() {
             return Err(alone(Error::refused(why), sounds, heard));
         }
-        let hint = "the height of the fall, which tells bounces from a voice; of a machine `vibro impacts`";
+        let hint = "`vibro impacts` for a machine; for a drop among voices the height of its fall";
         return Err(Error::refused(why).hint(hint).setting("height"));
     }
     if let Some((i, j)) = train.rival {
