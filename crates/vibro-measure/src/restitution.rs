@@ -85,18 +85,23 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         |intervals: &[f64]| intervals.iter().map(|interval| interval - contact).collect::<Vec<f64>>();
     // What a thousandth of a second of contact makes of R.
     let mut bias = Vec::new();
-    if let Some(drop) = &measured.drop {
-        let drop = Drop { intervals: flights(&drop.intervals), ..drop.clone() };
-        by.push(drop.answer(&mut findings)?);
+    let trains: Vec<Train> =
+        measured.trains.iter().map(|t| Train { intervals: flights(&t.intervals), ..t.clone() }).collect();
+    let drop =
+        measured.drop.as_ref().map(|drop| Drop { intervals: flights(&drop.intervals), ..drop.clone() });
+    let mut of_trains = Vec::new();
+    let by_flights = train::answer(&trains, drop.as_ref().is_some_and(|d| d.begins(&trains)), &mut of_trains);
+    if let Some(drop) = &drop {
+        let noise = by_flights.as_ref().ok().and_then(|(_, noise)| *noise);
+        by.push(drop.answer(noise, &mut findings)?);
         bias.push(1e-3 / average(&drop.intervals));
         if intervals.is_empty() {
             intervals = drop.intervals.iter().map(|d| vec![*d]).collect();
         }
     }
-    let trains: Vec<Train> =
-        measured.trains.iter().map(|t| Train { intervals: flights(&t.intervals), ..t.clone() }).collect();
-    match train::answer(&trains, &mut findings) {
-        Ok(way) => {
+    findings.extend(of_trains);
+    match by_flights {
+        Ok((way, _)) => {
             by.extend(way);
             // ln R is (ln Δt_n − ln Δt₁)/(n − 1), and a contact c adds c/Δt to each logarithm.
             let of = |t: &Train| match t.intervals[..] {

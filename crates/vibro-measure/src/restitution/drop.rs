@@ -1,9 +1,10 @@
 //! Restitution from a drop: R = (Δt/2)√(g/2h), the flight between first and second impact against the fall
 //! before.
 
+use super::train::Noise;
 use super::{Train, Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
-use crate::mean::scatter;
+use crate::mean::{average, scatter};
 use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Finding, Result};
 
@@ -65,6 +66,11 @@ impl Drop {
         self
     }
 
+    /// Whether the first flights of all trains are among its own.
+    pub(super) fn begins(&self, trains: &[Train]) -> bool {
+        trains.iter().all(|t| t.intervals.first().is_some_and(|first| self.intervals.contains(first)))
+    }
+
     fn check(&self) -> Result<()> {
         above_zero("a height", self.height)?;
         above_zero("an acceleration of free fall", self.gravity)?;
@@ -94,11 +100,14 @@ impl Drop {
     }
 
     /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Every drop shares the height, and each has its own
-    /// timing: neither stands in for the other.
-    pub(super) fn answer(&self, findings: &mut Vec<Finding>) -> Result<Way> {
+    /// timing: neither stands in for the other. The timing of one is no better than the `noise` that the
+    /// flights of trains show: one flight is that of one bounce.
+    pub(super) fn answer(&self, noise: Option<Noise>, findings: &mut Vec<Finding>) -> Result<Way> {
         self.check()?;
         let n = self.intervals.len();
-        let (mean, timing) = repeated(&self.intervals, self.interval_std);
+        let shown = noise.map(|noise| noise.of(average(&self.intervals)));
+        let (mean, timing) =
+            repeated(&self.intervals, [self.interval_std, shown].into_iter().flatten().reduce(f64::max));
         let value = self.restitution(mean);
         let share = |u: f64, x: f64| (u / x).powi(2);
         let std = timing.zip(self.height_std).map(|(timing, height)| {

@@ -300,6 +300,32 @@ fn two_drops_have_an_uncertainty_only_where_what_is_stated_explains_their_scatte
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
 }
 
+/// However well the onsets are timed, a first flight is that of one bounce: its uncertainty is no smaller than
+/// R scatters. Where R alone does, ratios of successive flights have the variance s², ratios of first flights
+/// 2s², and all are independent.
+#[test]
+fn a_drop_is_no_surer_than_the_flights_behind_it_scatter() {
+    let of_drops = |trains: &[&[f64]]| {
+        let train = |t: &&[f64]| Train { intervals: t.to_vec(), onset_std: Some(1e-6), ..Train::default() };
+        let trains: Vec<Train> = trains.iter().map(train).collect();
+        let drop = Drop { height: 0.57, height_std: Some(1e-6), ..Drop::default() }.beginning(&trains);
+        let found =
+            of(&Measured { drop: Some(drop), trains, contact_time: Some(0.0), ..Measured::default() });
+        let drop = found.by.into_iter().find(|way| way.method == "drop").unwrap().restitution;
+        drop.std.unwrap() / drop.value
+    };
+    let log = |a: f64, b: f64| (b / a).ln();
+    // Two ratios: one degree of freedom.
+    let s = (log(0.4, 0.3) - log(0.3, 0.22)).abs() / 2f64.sqrt();
+    let one = of_drops(&[&[0.4, 0.3, 0.22]]) / (12.706 / 1.960 * s);
+    // A ratio each and that of the first flights: two.
+    let squares = (log(0.4, 0.3) - log(0.402, 0.297)).powi(2) / 2.0 + log(0.4, 0.402).powi(2) / 2.0;
+    let two =
+        of_drops(&[&[0.4, 0.3], &[0.402, 0.297]]) / (4.303 / 1.960 * (squares / 2.0).sqrt() / 2f64.sqrt());
+    // The onsets, 1 µs, add (√2e-6/0.4/0.01)²/2 = 6e-8, and the height no more.
+    assert!((one - 1.0).abs() < 1e-6 && (two - 1.0).abs() < 1e-6, "{one} {two}");
+}
+
 #[test]
 fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
     let of_drops = |height_std: Option<f64>, interval_std: Option<f64>, intervals: &[f64]| {

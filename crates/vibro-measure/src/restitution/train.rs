@@ -19,8 +19,8 @@ use super::plausible::{Heard, Plausible, SHADOW, plausible};
 use super::{Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
-use crate::mean::mixture;
-use crate::residuals::student;
+use crate::mean::{average, mixture};
+use crate::residuals::{student, widened};
 use nalgebra::{DMatrix, DVector};
 use std::cell::Cell;
 use vibro_record::units::notation::{counted, quantity};
@@ -254,16 +254,42 @@ pub(super) fn longer(train: &Train) -> Option<usize> {
     (n > HANDLED).then_some(n)
 }
 
-/// R of trains of bounces, the mean of their ln R; `None` where no train has two flights.
-pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Option<Way>> {
-    let (mut logs, mut stds, mut n) = (Vec::new(), Vec::new(), 0);
+/// How far one flight may be off: by R, which scatters from bounce to bounce, and by its two onsets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Noise {
+    /// Variance of ln R from bounce to bounce.
+    scatter: f64,
+    /// Variance of the time of an impact in s².
+    onset: f64,
+}
+
+impl Noise {
+    /// Standard uncertainty in s of the first `flight` for what follows from all bounces.
+    pub(super) fn of(&self, flight: f64) -> f64 {
+        (self.scatter * flight * flight + 2.0 * self.onset).sqrt()
+    }
+
+    fn mean(all: &[Noise]) -> Option<Noise> {
+        let mean = |of: fn(&Noise) -> f64| average(&all.iter().map(of).collect::<Vec<f64>>());
+        (!all.is_empty()).then(|| Noise { scatter: mean(|n| n.scatter), onset: mean(|n| n.onset) })
+    }
+}
+
+/// Trains from which on their scatter shows all that is uncertain in each.
+const MANY: usize = 4;
+
+/// R of trains of bounces, `None` where no train has two flights; and the noise of their flights, where it
+/// shows. Up to three trains share R and noise, and where all begin with the same `fall`, the first flight;
+/// of more R is the mean of their ln R.
+pub(super) fn answer(
+    trains: &[Train],
+    fall: bool,
+    findings: &mut Vec<Finding>,
+) -> Result<(Option<Way>, Option<Noise>)> {
+    let (mut all, mut fits) = (Vec::new(), Vec::new());
     for (train, t) in trains.iter().enumerate().map(|(i, t)| (i + 1, t)) {
         not_negative("an uncertainty of the time of an impact", t.onset_std)?;
         t.intervals.iter().try_for_each(|interval| above_zero("a flight time", *interval))?;
-        // A train of one flight has no ratio.
-        if t.intervals.len() < 2 {
-            continue;
-        }
         if let Some(n) = longer(t) {
             let why = format!(
                 "{n} flights of train {train} are longer than the first: other sounds count as impacts"
@@ -283,31 +309,43 @@ pub(super) fn answer(trains: &[Train], findings: &mut Vec<Finding>) -> Result<Op
                     .number("expected", expected),
             );
         }
-        let noise = t.onset_std.unwrap_or(0.0);
-        let (log, std) = fit(&flights, t.onset_std)
-            .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
-        if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| log >= 0.0)) {
-            let flight = flight.place + 1;
-            let why =
-                format!("the flight times grow, at flight {flight} of train {train}: R would be above 1");
-            let hint = "a longer pause where ringing or echoes count as impacts; else intervals in the order of the bounces";
-            return Err(Error::refused(why).hint(hint).setting("refractory"));
+        // A train of one flight has no ratio.
+        if flights.len() > 1 {
+            let fit = fit(&[flights.clone()], false, t.onset_std)
+                .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
+            let noise = t.onset_std.unwrap_or(0.0);
+            if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| fit.log_r >= 0.0)) {
+                let flight = flight.place + 1;
+                let why =
+                    format!("the flight times grow, at flight {flight} of train {train}: R would be above 1");
+                let hint = "a longer pause where ringing or echoes count as impacts; else intervals in the order of the bounces";
+                return Err(Error::refused(why).hint(hint).setting("refractory"));
+            }
+            fits.push(fit);
         }
-        n += flights.len();
-        logs.push(log);
-        stds.push(std);
+        all.push(flights);
     }
-    if logs.is_empty() {
-        return Ok(None);
+    if fits.is_empty() {
+        return Ok((None, None));
     }
-    // From four trains on their scatter shows all that is uncertain in each.
-    let (log, std) = repeated(&logs, together(stds.into_iter()).filter(|_| logs.len() < 4));
+    let onset_std = together(trains.iter().map(|t| t.onset_std));
+    let joint = (all.len() < MANY).then(|| fit(&all, fall, onset_std)).flatten();
+    let (log, std, noise) = match joint {
+        Some(fit) => (fit.log_r, fit.std, fit.noise),
+        None => {
+            let logs: Vec<f64> = fits.iter().map(|fit| fit.log_r).collect();
+            let stated = together(fits.iter().map(|fit| fit.std)).filter(|_| logs.len() < MANY);
+            let (log, std) = repeated(&logs, stated);
+            (log, std, Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>()))
+        }
+    };
+    let n = all.iter().filter(|flights| flights.len() > 1).map(Vec::len).sum();
     let value = log.exp();
-    let few = Finding::caution("too-few-flights").count("n", n).count("trains", logs.len());
+    let few = Finding::caution("too-few-flights").count("n", n).count("trains", fits.len());
     findings.extend(std.is_none().then_some(few));
     let method = format!("log-linear fit of {n} flight times");
     let restitution = Estimate::new(value, std.map(|s| value * s), "1", n, method);
-    Ok(Some(Way { method: "flight times", restitution }))
+    Ok((Some(Way { method: "flight times", restitution }), noise))
 }
 
 /// Growth beyond this many standard deviations of the onset noise is none of it.
@@ -377,10 +415,19 @@ const WIDE: f64 = 1e3;
 /// Steps of the logarithm (to base 10) of a variance.
 const STEP: f64 = 0.15;
 
-/// ln R of one train and its standard uncertainty, which three degrees of freedom show; `None` without a
-/// ratio.
-pub fn fit(flights: &[Flight], onset_std: Option<f64>) -> Option<(f64, Option<f64>)> {
-    let ratios = Ratios::new(flights);
+/// What trains of one R tell together.
+#[derive(Clone, Copy)]
+pub struct Fit {
+    log_r: f64,
+    /// Standard uncertainty of ln R, which three degrees of freedom show.
+    std: Option<f64>,
+    /// That of their flights, which one shows.
+    noise: Option<Noise>,
+}
+
+/// ln R of trains and the noise of their flights; `None` without a ratio.
+fn fit(trains: &[Vec<Flight>], fall: bool, onset_std: Option<f64>) -> Option<Fit> {
+    let ratios = Ratios::new(trains, fall);
     let n = ratios.y.len() as f64;
     let free = ratios.y.len().checked_sub(1)?;
     let stated = onset_std.filter(|s| *s > 0.0).map(|s| s * s);
@@ -389,11 +436,16 @@ pub fn fit(flights: &[Flight], onset_std: Option<f64>) -> Option<(f64, Option<f6
     let scatter_alone = ratios.node(1.0, 0.0, true);
     let onsets_alone = ratios.node(0.0, sigma2, scaled)?;
     if free < 3 {
-        return Some((if scaled { scatter_alone? } else { onsets_alone }.log_r, None));
+        let log_r = if scaled { scatter_alone.as_ref()?.log_r } else { onsets_alone.log_r };
+        // What R alone explains is the most that the first flights can be off.
+        let scatter = |node: Node| widened(free).powi(2) * node.scale;
+        let onset = stated.unwrap_or(0.0);
+        let noise = scatter_alone.filter(|_| free > 0).map(|node| Noise { scatter: scatter(node), onset });
+        return Some(Fit { log_r, std: None, noise });
     }
     let least = n / onsets_alone.information / WIDE;
     let noisiest = sigma2 * ratios.timing.diagonal().max();
-    let shown = if scaled { 0.0 } else { ratios.scatter() / free as f64 };
+    let shown = if scaled { 0.0 } else { scatter_alone.as_ref().map_or(0.0, |node| node.scale) };
     let steps = ((WIDE * noisiest.max(shown) / least).log10() / STEP).ceil().clamp(0.0, 1e3) as usize;
     let grid = (0..=steps).map(|i| {
         let s2 = least * 10f64.powf(STEP * i as f64);
@@ -406,9 +458,14 @@ pub fn fit(flights: &[Flight], onset_std: Option<f64>) -> Option<(f64, Option<f6
         let total: f64 = nodes.iter().map(|(prior, _)| prior).sum();
         nodes.push((total * SCATTER_ALONE / (1.0 - SCATTER_ALONE), scatter_alone?));
     }
-    let estimates = nodes.iter().map(|(prior, n)| (prior.ln() + n.likelihood, n.log_r, n.variance));
-    let (log_r, variance) = mixture(&estimates.collect::<Vec<_>>());
-    Some((log_r, Some(variance.sqrt()).filter(|s| s.is_finite())))
+    let mean = |of: &dyn Fn(&Node) -> (f64, f64)| {
+        let each = nodes.iter().map(|(prior, node)| (prior.ln() + node.likelihood, of(node)));
+        mixture(&each.map(|(weight, (value, variance))| (weight, value, variance)).collect::<Vec<_>>())
+    };
+    let (log_r, variance) = mean(&|node| (node.log_r, node.variance));
+    let [scatter, onset] = [0, 1].map(|k| mean(&|node| (node.noise[k], 0.0)).0);
+    let std = Some(variance.sqrt()).filter(|s| s.is_finite());
+    Some(Fit { log_r, std, noise: std.map(|_| Noise { scatter, onset }) })
 }
 
 /// A fit for one s² and σ².
@@ -416,6 +473,10 @@ struct Node {
     log_r: f64,
     /// Its variance, Student's where the scale is that of the residuals.
     variance: f64,
+    /// s² and σ², times what the residuals say and Student's factor where they give the scale.
+    noise: [f64; 2],
+    /// Mean square of the residuals over s² and σ², of one degree of freedom each.
+    scale: f64,
     /// `mᵀC⁻¹m`.
     information: f64,
     /// Restricted log-likelihood but for a constant.
@@ -424,39 +485,55 @@ struct Node {
     prior: f64,
 }
 
-/// Ratios of successive flights.
+/// Ratios of successive flights, and of first flights behind the same fall.
 struct Ratios {
     /// Their logarithms.
     y: DVector<f64>,
     /// Bounces between them.
     m: DVector<f64>,
+    /// `BBᵀ`, with B the bounces that each has more than the other.
+    scatter: DMatrix<f64>,
     /// `AAᵀ`, in 1/s².
     timing: DMatrix<f64>,
 }
 
 impl Ratios {
-    fn new(flights: &[Flight]) -> Ratios {
-        let of = |f: &dyn Fn(&Flight, &Flight) -> f64| {
-            DVector::from_vec(flights.windows(2).map(|w| f(&w[0], &w[1])).collect())
-        };
-        let y = of(&|a, b| b.log - a.log);
-        let mut by_onset = DMatrix::<f64>::zeros(y.len(), flights.last().map_or(0, |f| f.place + 2));
-        for (i, pair) in flights.windows(2).enumerate() {
-            // Each flight is the later onset less the earlier.
-            for (flight, sign) in pair.iter().zip([-1.0, 1.0]) {
+    fn new(trains: &[Vec<Flight>], fall: bool) -> Ratios {
+        let places = 2 + trains.iter().flatten().map(|f| f.place).max().unwrap_or(0);
+        let within = trains
+            .iter()
+            .enumerate()
+            .flat_map(|(t, flights)| flights.windows(2).map(move |pair| [(t, pair[0]), (t, pair[1])]));
+        let firsts: Vec<(usize, Flight)> = trains
+            .iter()
+            .enumerate()
+            .filter_map(|(t, flights)| Some((t, *flights.first().filter(|first| fall && first.place == 0)?)))
+            .collect();
+        let pairs: Vec<[(usize, Flight); 2]> =
+            within.chain(firsts.windows(2).map(|pair| [pair[0], pair[1]])).collect();
+        let mut by_onset = DMatrix::<f64>::zeros(pairs.len(), trains.len() * places);
+        let mut by_bounce = by_onset.clone();
+        for (i, pair) in pairs.iter().enumerate() {
+            for ((train, flight), sign) in pair.iter().zip([-1.0, 1.0]) {
+                // A flight is the later onset less the earlier, and has R of each bounce before it.
                 let slope = sign * (-flight.log).exp();
-                by_onset[(i, flight.place)] -= slope;
-                by_onset[(i, flight.place + 1)] += slope;
+                let first = train * places;
+                by_onset[(i, first + flight.place)] -= slope;
+                by_onset[(i, first + flight.place + 1)] += slope;
+                by_bounce.view_mut((i, first), (1, flight.place + 1)).add_scalar_mut(sign);
             }
         }
-        let timing = &by_onset * by_onset.transpose();
-        Ratios { y, m: of(&|a, b| (b.place - a.place) as f64), timing }
+        Ratios {
+            y: DVector::from_iterator(pairs.len(), pairs.iter().map(|[a, b]| b.1.log - a.1.log)),
+            m: by_bounce.column_sum(),
+            scatter: &by_bounce * by_bounce.transpose(),
+            timing: &by_onset * by_onset.transpose(),
+        }
     }
 
     /// Generalised least squares; with `scaled`, all variances are multiplied by what the residuals say.
     fn node(&self, s2: f64, sigma2: f64, scaled: bool) -> Option<Node> {
-        let by = DMatrix::from_diagonal(&self.m);
-        let cholesky = (&by * s2 + &self.timing * sigma2).cholesky()?;
+        let cholesky = (&self.scatter * s2 + &self.timing * sigma2).cholesky()?;
         let (wm, wy) = (cholesky.solve(&self.m), cholesky.solve(&self.y));
         let (mm, my, yy) = (self.m.dot(&wm), self.m.dot(&wy), self.y.dot(&wy));
         let log_det = 2.0 * cholesky.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
@@ -467,27 +544,23 @@ impl Ratios {
         // Twice Fisher's information of the restricted likelihood on s², tr(PDPD) with P = C⁻¹ −
         // C⁻¹mmᵀC⁻¹/mᵀC⁻¹m and D the derivative of C by s² (D. Harville, J. Am. Stat. Assoc. 72
         // (1977) 320); with a scale of C that is not known, what that leaves of it.
-        let pd = (cholesky.inverse() - &wm * wm.transpose() / mm) * by;
+        let pd = (cholesky.inverse() - &wm * wm.transpose() / mm) * &self.scatter;
         let squares = pd.component_mul(&pd.transpose()).sum();
-        let (scale, factor, misfit, taken) = if scaled {
-            let scale = rest / free.max(1.0);
+        let scale = rest / free.max(1.0);
+        let (factor, misfit, taken) = if scaled {
             let factor = student(self.y.len() - 1).unwrap_or(f64::NAN);
-            (scale, factor, free * scale.max(f64::MIN_POSITIVE).ln(), pd.trace().powi(2) / free)
+            (factor * factor * scale, free * scale.max(f64::MIN_POSITIVE).ln(), pd.trace().powi(2) / free)
         } else {
-            (1.0, 1.0, rest, 0.0)
+            (1.0, rest, 0.0)
         };
         Some(Node {
             log_r,
-            variance: factor * factor * scale / mm,
+            variance: factor / mm,
+            noise: [s2, sigma2].map(|variance| factor * variance),
+            scale,
             information: mm,
             likelihood: -0.5 * (log_det + mm.ln() + misfit),
             prior: (squares - taken).max(0.0).sqrt(),
         })
-    }
-
-    /// Sum of squares of the ratios about their mean, one bounce each.
-    fn scatter(&self) -> f64 {
-        let mean = self.y.sum() / self.m.sum();
-        self.y.iter().zip(self.m.iter()).map(|(y, m)| (y - mean * m).powi(2) / m).sum()
     }
 }
