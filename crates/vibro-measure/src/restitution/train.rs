@@ -311,7 +311,7 @@ pub(super) fn answer(
         }
         // A train of one flight has no ratio.
         if flights.len() > 1 {
-            let fit = fit(&[flights.clone()], false, t.onset_std)
+            let fit = fit(&[(flights.clone(), t.onset_std)], false)
                 .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
             let noise = t.onset_std.unwrap_or(0.0);
             if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| fit.log_r >= 0.0)) {
@@ -323,13 +323,12 @@ pub(super) fn answer(
             }
             fits.push(fit);
         }
-        all.push(flights);
+        all.push((flights, t.onset_std));
     }
     if fits.is_empty() {
         return Ok((None, None));
     }
-    let onset_std = together(trains.iter().map(|t| t.onset_std));
-    let joint = (all.len() < MANY).then(|| fit(&all, fall, onset_std)).flatten();
+    let joint = (all.len() < MANY).then(|| fit(&all, fall)).flatten();
     let (log, std, noise) = match joint {
         Some(fit) => (fit.log_r, fit.std, fit.noise),
         None => {
@@ -339,7 +338,7 @@ pub(super) fn answer(
             (log, std, Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>()))
         }
     };
-    let n = all.iter().filter(|flights| flights.len() > 1).map(Vec::len).sum();
+    let n = all.iter().map(|(flights, _)| flights.len()).filter(|n| *n > 1).sum();
     let value = log.exp();
     let few = Finding::caution("too-few-flights").count("n", n).count("trains", fits.len());
     findings.extend(std.is_none().then_some(few));
@@ -425,12 +424,19 @@ pub struct Fit {
     noise: Option<Noise>,
 }
 
+/// Flights of a train, and the standard uncertainty of its onsets in s where it is known.
+type Timed = (Vec<Flight>, Option<f64>);
+
 /// ln R of trains and the noise of their flights; `None` without a ratio.
-fn fit(trains: &[Vec<Flight>], fall: bool, onset_std: Option<f64>) -> Option<Fit> {
-    let ratios = Ratios::new(trains, fall);
+fn fit(trains: &[Timed], fall: bool) -> Option<Fit> {
+    let onset_std = together(trains.iter().map(|(_, std)| *std)).filter(|std| *std > 0.0);
+    let part = |std: Option<f64>| onset_std.map_or(1.0, |all| std.unwrap_or(all) / all);
+    let parts: Vec<f64> = trains.iter().map(|(_, std)| part(*std)).collect();
+    let flights: Vec<&[Flight]> = trains.iter().map(|(flights, _)| &flights[..]).collect();
+    let ratios = Ratios::new(&flights, &parts, fall);
     let n = ratios.y.len() as f64;
     let free = ratios.y.len().checked_sub(1)?;
-    let stated = onset_std.filter(|s| *s > 0.0).map(|s| s * s);
+    let stated = onset_std.map(|s| s * s);
     let scaled = stated.is_none();
     let sigma2 = stated.unwrap_or_else(|| n / ratios.timing.trace());
     let scatter_alone = ratios.node(1.0, 0.0, true);
@@ -498,8 +504,9 @@ struct Ratios {
 }
 
 impl Ratios {
-    fn new(trains: &[Vec<Flight>], fall: bool) -> Ratios {
-        let places = 2 + trains.iter().flatten().map(|f| f.place).max().unwrap_or(0);
+    /// Of trains whose onsets are off by these `parts` of σ.
+    fn new(trains: &[&[Flight]], parts: &[f64], fall: bool) -> Ratios {
+        let places = 2 + trains.iter().copied().flatten().map(|f| f.place).max().unwrap_or(0);
         let within = trains
             .iter()
             .enumerate()
@@ -516,7 +523,7 @@ impl Ratios {
         for (i, pair) in pairs.iter().enumerate() {
             for ((train, flight), sign) in pair.iter().zip([-1.0, 1.0]) {
                 // A flight is the later onset less the earlier, and has R of each bounce before it.
-                let slope = sign * (-flight.log).exp();
+                let slope = parts[*train] * sign * (-flight.log).exp();
                 let first = train * places;
                 by_onset[(i, first + flight.place)] -= slope;
                 by_onset[(i, first + flight.place + 1)] += slope;
