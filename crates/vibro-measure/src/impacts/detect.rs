@@ -195,9 +195,11 @@ fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f6
         let beside = before.saturating_sub(width)..(behind + width).min(values.len());
         let rings = values[beside].iter().any(|v| *v < -(BACK * height).max(quiet.reach));
         let cross = |out: usize, on: usize| (level - values[out]) / (values[on] - values[out]);
-        let least = (width as f64 + 1.0 - cross(before, before + 1) - cross(behind, behind - 1)) / rate;
+        // A pulse begins and ends between samples: its foot lies above no chord from the sample before.
+        let inner = (width as f64 - 1.0) / rate;
+        let outer = inner + (2.0 - cross(before, before + 1) - cross(behind, behind - 1)) / rate;
         let half = 1.0 - (level / height).min(1.0).asin() / FRAC_PI_2;
-        (level < 0.5 * height && !rings).then_some((least, least / half))
+        (level < 0.5 * height && !rings).then_some((inner, outer / half))
     };
     let all: Vec<(f64, f64)> = bursts.iter().filter_map(bounds).collect();
     if 2 * all.len() <= bursts.len() {
