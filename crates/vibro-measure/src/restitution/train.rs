@@ -329,14 +329,13 @@ pub(super) fn answer(
         return Ok((None, None));
     }
     let joint = (all.len() < MANY).then(|| fit(&all, fall)).flatten();
-    let (log, std, noise) = match joint {
-        Some(fit) => (fit.log_r, fit.std, fit.noise),
-        None => {
-            let logs: Vec<f64> = fits.iter().map(|fit| fit.log_r).collect();
-            let stated = together(fits.iter().map(|fit| fit.std)).filter(|_| logs.len() < MANY);
-            let (log, std) = repeated(&logs, stated);
-            (log, std, Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>()))
-        }
+    let (log, std, noise) = if let Some(fit) = joint {
+        (fit.log_r, fit.std, fit.noise)
+    } else {
+        let logs: Vec<f64> = fits.iter().map(|fit| fit.log_r).collect();
+        let stated = together(fits.iter().map(|fit| fit.std)).filter(|_| logs.len() < MANY);
+        let (log, std) = repeated(&logs, stated);
+        (log, std, Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>()))
     };
     let n = all.iter().map(|(flights, _)| flights.len()).filter(|n| *n > 1).sum();
     let value = log.exp();
