@@ -4,6 +4,8 @@
 //! uncertainties, that is the result: nothing is averaged.
 
 mod drop;
+mod fit;
+mod flights;
 mod plausible;
 mod train;
 mod velocities;
@@ -90,7 +92,8 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     let drop =
         measured.drop.as_ref().map(|drop| Drop { intervals: flights(&drop.intervals), ..drop.clone() });
     let mut of_trains = Vec::new();
-    let by_flights = train::answer(&trains, drop.as_ref().is_some_and(|d| d.begins(&trains)), &mut of_trains);
+    let by_flights =
+        flights::answer(&trains, drop.as_ref().is_some_and(|d| d.begins(&trains)), &mut of_trains);
     if let Some(drop) = &drop {
         let noise = by_flights.as_ref().ok().and_then(|(_, noise)| *noise);
         by.push(drop.answer(noise, &mut findings)?);
@@ -112,7 +115,8 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         }
         // What follows a drop may be no train of bounces; the drop answers nevertheless.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
-            let grown = trains.iter().enumerate().find_map(|(i, train)| Some((i + 1, train::longer(train)?)));
+            let grown =
+                trains.iter().enumerate().find_map(|(i, train)| Some((i + 1, flights::longer(train)?)));
             let doubt = |(train, n)| Finding::doubt("drop-flights-grow").count("n", n).count("train", train);
             findings.push(grown.map_or_else(|| Finding::caution("flight-times-ignored"), doubt));
             by.iter_mut().filter(|_| grown.is_some()).for_each(|way| way.restitution.std = None);

@@ -1,7 +1,7 @@
 //! Restitution from a drop: R = (Δt/2)√(g/2h), the flight between first and second impact against the fall
 //! before.
 
-use super::train::Noise;
+use super::fit::Noise;
 use super::{Train, Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::mean::{average, scatter};

@@ -1,0 +1,145 @@
+//! R from the flights of trains of bounces: outliers are left out, flights that grow are refused.
+
+use super::fit::{Flight, Noise, fit};
+use super::{Train, Way, above_zero, not_negative, repeated, together};
+use crate::Estimate;
+use vibro_record::{Error, Finding, Result};
+
+/// A flight this much longer than the first is no bounce of the same fall.
+const LONGER: f64 = 1.2;
+/// So many of them are more than what is heard of a hand before and behind a fall.
+const HANDLED: usize = 2;
+
+/// How many flights among the others are longer than the first, where they are too many for one fall: voices
+/// or ringing count as impacts.
+pub(super) fn longer(train: &Train) -> Option<usize> {
+    let (first, rest) = train.intervals.split_first()?;
+    let long = |flight: &&f64| **flight > LONGER * first;
+    // What is heard behind the last bounce is another matter.
+    let behind = rest.iter().rev().take_while(long).count();
+    let n = rest[..rest.len() - behind].iter().filter(long).count();
+    (n > HANDLED).then_some(n)
+}
+
+/// Trains from which on their scatter shows all that is uncertain in each.
+const MANY: usize = 4;
+
+/// R of trains of bounces, `None` where no train has two flights; and the noise of their flights, where it
+/// shows. Up to three trains share R and noise, and where all begin with the same `fall`, the first flight;
+/// of more R is the mean of their ln R.
+pub(super) fn answer(
+    trains: &[Train],
+    fall: bool,
+    findings: &mut Vec<Finding>,
+) -> Result<(Option<Way>, Option<Noise>)> {
+    let (mut all, mut fits) = (Vec::new(), Vec::new());
+    for (train, t) in trains.iter().enumerate().map(|(i, t)| (i + 1, t)) {
+        not_negative("an uncertainty of the time of an impact", t.onset_std)?;
+        t.intervals.iter().try_for_each(|interval| above_zero("a flight time", *interval))?;
+        if let Some(n) = longer(t) {
+            let why = format!(
+                "{n} flights of train {train} are longer than the first: other sounds count as impacts"
+            );
+            let hint = "cut the record to the bounces, or raise the threshold; else intervals in the order of the bounces";
+            return Err(Error::refused(why).hint(hint).setting("threshold").setting("refractory"));
+        }
+        let mut flights: Vec<Flight> =
+            t.intervals.iter().enumerate().map(|(place, d)| Flight { place, log: d.ln() }).collect();
+        while let Some((worst, expected)) = worst(&flights) {
+            let bad = flights.remove(worst);
+            findings.push(
+                Finding::caution("flight-outlier")
+                    .count("flight", bad.place + 1)
+                    .count("train", train)
+                    .number("interval", bad.log.exp())
+                    .number("expected", expected),
+            );
+        }
+        // A train of one flight has no ratio.
+        if flights.len() > 1 {
+            let fit = fit(&[(flights.clone(), t.onset_std)], false)
+                .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
+            let noise = t.onset_std.unwrap_or(0.0);
+            if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| fit.log_r >= 0.0)) {
+                let flight = flight.place + 1;
+                let why =
+                    format!("the flight times grow, at flight {flight} of train {train}: R would be above 1");
+                let hint = "a longer pause where ringing or echoes count as impacts; else intervals in the order of the bounces";
+                return Err(Error::refused(why).hint(hint).setting("refractory"));
+            }
+            fits.push(fit);
+        }
+        all.push((flights, t.onset_std));
+    }
+    if fits.is_empty() {
+        return Ok((None, None));
+    }
+    let joint = (all.len() < MANY).then(|| fit(&all, fall)).flatten();
+    let (log, std, noise) = if let Some(fit) = joint {
+        (fit.log_r, fit.std, fit.noise)
+    } else {
+        let logs: Vec<f64> = fits.iter().map(|fit| fit.log_r).collect();
+        let stated = together(fits.iter().map(|fit| fit.std)).filter(|_| logs.len() < MANY);
+        let (log, std) = repeated(&logs, stated);
+        (log, std, Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>()))
+    };
+    let n = all.iter().map(|(flights, _)| flights.len()).filter(|n| *n > 1).sum();
+    let value = log.exp();
+    let few = Finding::caution("too-few-flights").count("n", n).count("trains", fits.len());
+    findings.extend(std.is_none().then_some(few));
+    let method = format!("log-linear fit of {n} flight times");
+    let restitution = Estimate::new(value, std.map(|s| value * s), "1", n, method);
+    Ok((Some(Way { method: "flight times", restitution }), noise))
+}
+
+/// Growth beyond this many standard deviations of the onset noise is none of it.
+const BEYOND: f64 = 4.0;
+
+/// A flight that is longer than the one before it, which the noise of the onsets does not explain.
+fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
+    let grows = |pair: &&[Flight]| {
+        let (before, after) = (pair[0].log.exp(), pair[1].log.exp());
+        // Two neighbours have the variance 6σ²: they share an onset.
+        after - before > (BEYOND * onset_std * 6f64.sqrt()).max(1e-3 * before)
+    };
+    flights.windows(2).find(grows).map(|pair| &pair[1])
+}
+
+/// Quantile 0.9995 of Student's t from 2 degrees of freedom on: what lies beyond is an outlier.
+const OUTSIDE: [f64; 9] = [31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59];
+
+/// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm:
+/// by the straight line through the logarithms, where the variance of a logarithm goes as Δt to −`power`.
+fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
+    let free = others.len().checked_sub(4)?;
+    let weight = |log: f64| (power * log).exp();
+    let sum =
+        |f: &dyn Fn(&Flight) -> f64| others.iter().map(|other| weight(other.log) * f(other)).sum::<f64>();
+    let total = sum(&|_| 1.0);
+    let (place, log) = (sum(&|f| f.place as f64) / total, sum(&|f| f.log) / total);
+    let x = |f: &Flight| f.place as f64 - place;
+    let sxx = sum(&|f| x(f) * x(f));
+    let slope = sum(&|f| x(f) * (f.log - log)) / sxx;
+    let residual = |f: &Flight| f.log - log - slope * x(f);
+    let expected = one.log - residual(one);
+    let leverage = weight(expected).recip() + total.recip() + x(one) * x(one) / sxx;
+    let variance = sum(&|f| residual(f).powi(2)) / (free + 2) as f64 * leverage;
+    // Numbers that were typed have three digits at least: half a unit of the last is 1e-3 of a flight.
+    let score = residual(one).abs() / variance.max(1e-6).sqrt();
+    Some((score / OUTSIDE[free.min(OUTSIDE.len() - 1)], expected))
+}
+
+/// The flight that fits the others worst, where it is an outlier, and the time that they expect of it: one
+/// whether R scatters, which makes the variances of logarithms alike, or the onsets do, which makes them go
+/// as 1/Δt².
+fn worst(flights: &[Flight]) -> Option<(usize, f64)> {
+    let scored = |i: usize| {
+        let mut others = flights.to_vec();
+        let one = others.remove(i);
+        let (alike, timed) = (off(&one, &others, 0.0)?, off(&one, &others, 2.0)?);
+        let (score, expected) = if timed.0 < alike.0 { timed } else { alike };
+        Some((i, score, expected.exp()))
+    };
+    let worst = (0..flights.len()).filter_map(scored).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (worst.1 > 1.0).then_some((worst.0, worst.2))
+}
