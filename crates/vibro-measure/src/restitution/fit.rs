@@ -66,6 +66,18 @@ pub(super) struct Fit {
     pub(super) noise: Option<Noise>,
 }
 
+impl Fit {
+    /// Sum over `trains` of the squared difference of their own ln R from the common one, over the variance
+    /// that the `noise` of flights gives it: χ² with one degree of freedom less than trains, where all have
+    /// one R.
+    pub(super) fn misfit(&self, trains: &[Timed], noise: Noise) -> f64 {
+        let node = |(flights, _): &Timed| {
+            Ratios::new(&[flights], &[1.0], false).node(noise.scatter, noise.onset, false)
+        };
+        trains.iter().filter_map(node).map(|own| (own.log_r - self.log_r).powi(2) / own.variance).sum()
+    }
+}
+
 /// Flights of a train, and the standard uncertainty of its onsets in s where it is known.
 pub(super) type Timed = (Vec<Flight>, Option<f64>);
 

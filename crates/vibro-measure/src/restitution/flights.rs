@@ -1,6 +1,6 @@
 //! R from the flights of trains of bounces: outliers are left out, flights that grow are refused.
 
-use super::fit::{Flight, Noise, fit};
+use super::fit::{Fit, Flight, Noise, fit};
 use super::{Train, Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use vibro_record::{Error, Finding, Result};
@@ -24,9 +24,13 @@ pub(super) fn longer(train: &Train) -> Option<usize> {
 /// Trains from which on their scatter shows all that is uncertain in each.
 const MANY: usize = 4;
 
+/// Quantiles 0.95 of χ² with one and two degrees of freedom: two or three trains that differ by more than the
+/// noise of their flights are not of one R.
+const DIFFER: [f64; MANY - 2] = [3.84, 5.99];
+
 /// R of trains of bounces, `None` where no train has two flights; and the noise of their flights, where it
-/// shows. Up to three trains share R and noise, and where all begin with the same `fall`, the first flight;
-/// of more R is the mean of their ln R.
+/// shows. Up to three trains that do not differ share R and noise, and where all begin with the same `fall`,
+/// the first flight; else R is the mean of their ln R.
 pub(super) fn answer(
     trains: &[Train],
     fall: bool,
@@ -74,14 +78,19 @@ pub(super) fn answer(
     if fits.is_empty() {
         return Ok((None, None));
     }
-    let joint = (all.len() < MANY).then(|| fit(&all, fall)).flatten();
+    let own = Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
+    let alike = |joint: &Fit| {
+        let noise = own.or(joint.noise).filter(|_| fits.len() > 1);
+        noise.is_none_or(|noise| joint.misfit(&all, noise) <= DIFFER[fits.len() - 2])
+    };
+    let joint = (all.len() < MANY).then(|| fit(&all, fall)).flatten().filter(alike);
     let (log, std, noise) = if let Some(fit) = joint {
         (fit.log_r, fit.std, fit.noise)
     } else {
         let logs: Vec<f64> = fits.iter().map(|fit| fit.log_r).collect();
         let stated = together(fits.iter().map(|fit| fit.std)).filter(|_| logs.len() < MANY);
         let (log, std) = repeated(&logs, stated);
-        (log, std, Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>()))
+        (log, std, own)
     };
     let n = all.iter().map(|(flights, _)| flights.len()).filter(|n| *n > 1).sum();
     let value = log.exp();

@@ -300,9 +300,9 @@ fn two_drops_have_an_uncertainty_only_where_what_is_stated_explains_their_scatte
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
 }
 
-/// However well the onsets are timed, a first flight is that of one bounce: its uncertainty is no smaller than
-/// R scatters. Where R alone does, ratios of successive flights have the variance s², ratios of first flights
-/// 2s², and all are independent.
+/// However well the onsets are timed, a first flight is that of one bounce: its uncertainty is no smaller
+/// than R scatters. Where R alone does, ratios of successive flights have the variance s², ratios of first
+/// flights 2s², and all are independent.
 #[test]
 fn a_drop_is_no_surer_than_the_flights_behind_it_scatter() {
     let of_drops = |trains: &[&[f64]]| {
