@@ -10,6 +10,7 @@ use vibroimpact::Result;
 use vibroimpact::figure::{
     AxisSpec, Figure, Heatmap, Ink, Legend, Marker, Medium, Plot, Series, Stroke, Waterfall,
 };
+use vibroimpact::math::Noise;
 use vibroimpact::read::Owner;
 use vibroimpact::report::{Cell, Output, Page, Picture, Table};
 
@@ -76,21 +77,6 @@ fn resonances() -> Table {
         .row(["sub-harmonic".into(), 2.81.into(), Cell::Missing, 0usize.into()])
 }
 
-/// Repeatable noise between −1 and 1 (Knuth's MMIX generator).
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    /// Nearly normal, with standard deviation 1.
-    fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.next() / 2.0).sum()
-    }
-}
-
 fn grid(from: f64, to: f64, n: usize) -> Vec<f64> {
     (0..n).map(|i| from + (to - from) * i as f64 / (n - 1) as f64).collect()
 }
@@ -112,7 +98,7 @@ fn response() -> Figure {
     let inside: Vec<f64> = f.iter().copied().filter(|f| (6.6..10.6).contains(f)).collect();
     let unstable: Vec<f64> =
         inside.iter().map(|f| 0.55e-3 + 0.6 * (clapping(*f) - 0.55e-3) * ((f - 6.6) / 4.0)).collect();
-    let mut noise = Noise(1);
+    let mut noise = Noise::new(1);
     let at: Vec<f64> = (0..34).map(|i| 3.5 + 0.24 * f64::from(i)).collect();
     let seen: Vec<f64> = at
         .iter()
@@ -142,7 +128,7 @@ fn response() -> Figure {
 fn spectra(n: usize, lines: usize) -> (Vec<f64>, Vec<f64>, Array2<f64>) {
     let frequency = grid(0.0, 50.0, lines);
     let excitation: Vec<f64> = grid(3.0, 14.0, n).into_iter().map(|e| e + 0.02 * (7.0 * e).sin()).collect();
-    let mut noise = Noise(2);
+    let mut noise = Noise::new(2);
     let magnitude = Array2::from_shape_fn((n, lines), |(row, line)| {
         let (e, f) = (excitation[row], frequency[line]);
         let drive = 4.0e-3 * resonance(e, 5.58, 0.3) + if e < 10.6 { 3.5e-4 * (e - 3.0) } else { 4e-4 };
@@ -151,7 +137,7 @@ fn spectra(n: usize, lines: usize) -> (Vec<f64>, Vec<f64>, Array2<f64>) {
             drive * h.powf(-1.4) * resonance(f, h * e, 0.08)
         });
         let half = if (7.5..9.0).contains(&e) { 0.3 * drive * resonance(f, e / 2.0, 0.08) } else { 0.0 };
-        impacts.sum::<f64>() + half + 2e-5 * noise.next().abs()
+        impacts.sum::<f64>() + half + 2e-5 * noise.uniform()
     });
     (frequency, excitation, magnitude)
 }
@@ -179,9 +165,9 @@ fn receptance() -> Figure {
     let values: Vec<(f64, f64)> = f.iter().map(|f| h(*f)).collect();
     let magnitude: Vec<f64> = values.iter().map(|v| v.0.hypot(v.1)).collect();
     let phase: Vec<f64> = values.iter().map(|v| v.1.atan2(v.0).to_degrees()).collect();
-    let mut noise = Noise(3);
+    let mut noise = Noise::new(3);
     let seen: Vec<f64> =
-        magnitude.iter().map(|m| m * (1.0 + 0.25 * noise.normal()) + 2e-11 * noise.next().abs()).collect();
+        magnitude.iter().map(|m| m * (1.0 + 0.25 * noise.normal()) + 2e-11 * noise.uniform()).collect();
     let x = || AxisSpec::frequency().log();
     let first = Plot::new(x(), AxisSpec::new("Receptance", "m/N").log())
         .title("(a) Magnitude")
@@ -198,7 +184,7 @@ fn receptance() -> Figure {
 
 /// Histogram beside a series of points.
 fn intervals() -> Figure {
-    let mut noise = Noise(4);
+    let mut noise = Noise::new(4);
     let interval: Vec<f64> =
         (0..180).map(|i| 0.1335 + 0.0021 * noise.normal() + if i % 37 == 5 { 0.118 } else { 0.0 }).collect();
     let number: Vec<f64> = (1..=interval.len()).map(|i| i as f64).collect();
@@ -307,7 +293,7 @@ fn many() -> Figure {
 
 /// A long trace, of which only what is seen is written.
 fn trace() -> Figure {
-    let mut noise = Noise(5);
+    let mut noise = Noise::new(5);
     let time = grid(0.0, 4.0, 50_000);
     let acceleration: Vec<f64> = time
         .iter()

@@ -6,8 +6,9 @@ use super::headline::headline;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
-use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts, median};
+use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts};
 use crate::read::Reader;
+use crate::record::median;
 use crate::report::files::Names;
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Table};
@@ -146,8 +147,8 @@ fn rhythm(found: &Impacts) -> String {
     match (found.regular, unlike) {
         (true, Some(length)) => {
             let steps: Vec<f64> = found.times.windows(2).map(|w| w[1] - w[0]).collect();
-            let of = |place| steps.iter().skip(place).step_by(length).copied().collect::<Vec<f64>>();
-            let each: Vec<String> = (0..length).map(|place| quantity(median(&of(place)), "s", 3)).collect();
+            let of = |place| median(steps.iter().skip(place).step_by(length));
+            let each: Vec<String> = (0..length).map(|place| quantity(of(place), "s", 3)).collect();
             format!("regular, intervals in turn {}", each.join(", "))
         }
         (true, None) => "regular".to_owned(),

@@ -22,7 +22,7 @@ pub use answer::{Fit, FitPoint, Fitted, LeftOut};
 pub use hold_out::{Block, Rung};
 pub use uncertainty::{Profile, Unidentified};
 
-use super::forcing::{median, range};
+use super::forcing::range;
 use super::pair::reached;
 use super::predicting::Swept;
 use super::prediction::{Kind, Motion, motions};

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponsePoint};
-use crate::record::Finding;
+use crate::record::{Finding, median};
 use crate::units::notation::significant;
 
 /// Force amplitude over excitation frequency.
@@ -45,19 +45,19 @@ impl Forcing {
         responses: &[&Response],
     ) -> Result<(Vec<Forcing>, Vec<Finding>)> {
         let all = || responses.iter().flat_map(|r| &r.points).filter_map(|p| p.force);
-        let (low, high) = range(all());
+        let ((low, high), median) = (range(all()), median(all()));
         if let Some(stated) = stated {
             let part = (low / stated - 1.0).abs().max((high / stated - 1.0).abs());
-            let differs = median(all()).filter(|_| part > DIFFERS).map(|median| {
+            let differs = (part.is_finite() && part > DIFFERS).then(|| {
                 let differs = Finding::caution("stated-force-differs").number("stated", stated);
                 differs.number("median", median).number("part", part)
             });
             return Ok((vec![Forcing::constant(stated); responses.len()], differs.into_iter().collect()));
         }
-        let Some(median) = median(all()) else {
+        if median.is_nan() {
             return Err(Error::refused("the force is neither stated nor measured")
                 .hint("state `excitation.force` in N in the campaign"));
-        };
+        }
         let measured = Finding::note("force-as-measured").number("low", low);
         let alike = significant(low, 3) == significant(high, 3);
         let mut findings = vec![if alike { measured } else { measured.number("high", high) }];
@@ -108,17 +108,8 @@ impl Forcing {
 
     /// Median in N.
     pub fn median(&self) -> f64 {
-        median(self.points.iter().map(|p| p.1)).unwrap_or(f64::NAN)
+        median(self.points.iter().map(|p| p.1))
     }
-}
-
-/// Median of values in any order; `None` of none.
-pub(super) fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.into_iter().collect();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    let upper = *sorted.get(middle)?;
-    Some(if sorted.len().is_multiple_of(2) { f64::midpoint(sorted[middle - 1], upper) } else { upper })
 }
 
 /// Least and largest value; (∞, −∞) of none.

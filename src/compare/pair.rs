@@ -1,6 +1,5 @@
 //! Measured amplitudes and resonances beside their predictions, and how well they agree.
 
-use super::forcing::median;
 use super::predicting::{Course, Followed, Swept};
 use super::prediction::{Kind, Motion, all_motions};
 use super::simulated::{Simulated, simulated};
@@ -10,7 +9,7 @@ use crate::measure::peaks::{local_maxima, vertex};
 use crate::measure::resonance::{Resonance, ResonanceKind};
 use crate::measure::response::ResponsePoint;
 use crate::model::ladder::Model;
-use crate::record::{Direction, Finding};
+use crate::record::{Direction, Finding, median};
 use serde::Serialize;
 
 /// One measured amplitude and its prediction.
@@ -210,7 +209,7 @@ pub(super) fn score(sweep: &str, pairs: &[Pair]) -> Score {
         n,
         without: pairs.len() - n,
         faint: n - relative.len(),
-        median_relative: median(relative),
+        median_relative: Some(median(relative)).filter(|part| part.is_finite()),
         max_relative: largest.map(|l| l.0),
         max_at: largest.map(|l| l.1),
         rms: (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt()),

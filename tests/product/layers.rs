@@ -110,3 +110,22 @@ fn comments_fit_the_width_of_code() {
     }
     assert!(files.len() > 400 && wide.is_empty(), "{} files; longer: {wide:#?}", files.len());
 }
+
+/// Each definition of a median would answer differently for none and for an even number.
+#[test]
+fn medians_and_quantiles_are_defined_once() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    for folder in ["src", "crates", "tests", "examples"] {
+        sources(&root.join(folder), &mut files);
+    }
+    files.retain(|file| {
+        let text = fs::read_to_string(file).unwrap();
+        let free = |line: &str| {
+            let name = line.trim_start_matches("pub(crate) ").trim_start_matches("pub ").strip_prefix("fn ");
+            matches!(name.and_then(|name| name.split(['(', '<']).next()), Some("median" | "quantile"))
+        };
+        text.lines().any(free)
+    });
+    assert_eq!(files, [root.join("crates/vibro-record/src/order.rs")]);
+}

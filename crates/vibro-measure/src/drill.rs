@@ -48,10 +48,10 @@ use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
 use jumps::Jumps;
-use survey::{State, Survey, median};
+use survey::{State, Survey};
 use train::Train;
 use turns::{Turn, Turns};
-use vibro_record::{Error, Finding, Result};
+use vibro_record::{Error, Finding, Result, median};
 
 /// Turns that are drawn as they were measured.
 const DRAWN: usize = 3;

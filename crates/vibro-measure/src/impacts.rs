@@ -26,11 +26,10 @@ pub use interval::{Interval, interval};
 use super::Estimate;
 use super::mean::{average, scatter};
 use crate::swings::Swings;
-pub use background::median;
 use echoes::echoes;
 use interval::{Counted, count, evened, pattern};
 use serde::Serialize;
-use vibro_record::{Error, Finding, Result, Severity, Trace};
+use vibro_record::{Error, Finding, Result, Severity, Trace, median};
 
 /// Intervals that spread by less than this part of their median are regular.
 pub const REGULAR: f64 = 0.05;

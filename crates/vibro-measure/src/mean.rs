@@ -30,13 +30,6 @@ pub(crate) fn scatter(values: &[f64]) -> f64 {
     if values.len() < 2 { f64::NAN } else { (squares / (values.len() - 1) as f64).sqrt() }
 }
 
-/// The upper median of finite values; `None` of none.
-pub(crate) fn upper_median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let mut finite: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
-    let middle = finite.len() / 2;
-    (!finite.is_empty()).then(|| *finite.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
 /// Mean of `estimates` (logarithm of the weight, value, variance), and its variance: the mean of their
 /// variances and the variance of their values.
 pub(crate) fn mixture(estimates: &[(f64, f64, f64)]) -> (f64, f64) {
@@ -142,21 +135,19 @@ fn cosines(n: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::Twelve;
+    use vibro_math::Noise;
 
-    impl Twelve {
-        /// `n` values of unit variance, each `rho` times the one before and something new.
-        fn chain(&mut self, n: usize, rho: f64) -> Vec<f64> {
-            let mut x = self.next();
-            let new = (1.0 - rho * rho).sqrt();
-            (0..n)
-                .map(|_| {
-                    let now = x;
-                    x = rho * now + new * self.next();
-                    now
-                })
-                .collect()
-        }
+    /// `n` values of unit variance, each `rho` times the one before and something new.
+    fn chain(noise: &mut Noise, n: usize, rho: f64) -> Vec<f64> {
+        let mut x = noise.normal();
+        let new = (1.0 - rho * rho).sqrt();
+        (0..n)
+            .map(|_| {
+                let now = x;
+                x = rho * now + new * noise.normal();
+                now
+            })
+            .collect()
     }
 
     #[test]
@@ -182,10 +173,10 @@ mod tests {
     /// Parts of 2000 sequences, seed `n`, of which ± 1.96 standard uncertainties hold the true mean 0, and
     /// which are said to wander, in %.
     fn coverage(n: usize, rho: f64) -> (f64, f64) {
-        let mut noise = Twelve(n as u64);
+        let mut noise = Noise::new(n as u64);
         let (mut inside, mut told) = (0, 0);
         for _ in 0..2000 {
-            let mean = Mean::of(&noise.chain(n, rho));
+            let mean = Mean::of(&chain(&mut noise, n, rho));
             inside += i32::from(mean.value.abs() < 1.96 * mean.std.unwrap_or(f64::NAN));
             told += i32::from(mean.wanders);
         }

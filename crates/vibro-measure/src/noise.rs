@@ -50,7 +50,7 @@ pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Wi
     // error, and 40 turns 1e-5.
     for _ in 0..40 {
         for (scaled, (leakage, rest)) in scaled.iter_mut().zip(&lines) {
-            *scaled = rest / median(leakage / noise);
+            *scaled = rest / rice_median(leakage / noise);
         }
         let middle = scaled.len() / 2;
         let (_, found, _) = scaled.select_nth_unstable_by(middle, f64::total_cmp);
@@ -71,7 +71,7 @@ fn sine(magnitudes: &[f64], centre: usize, window: Option<Window>) -> Option<(f6
 }
 
 /// Median for a line of this height.
-fn median(height: f64) -> f64 {
+fn rice_median(height: f64) -> f64 {
     let x = height.clamp(0.0, 10.0);
     let k = HEIGHTS.partition_point(|h| *h < x).clamp(1, 9);
     let (a, b) = ((HEIGHTS[k - 1], MEDIANS[k - 1]), (HEIGHTS[k], MEDIANS[k]));
@@ -140,8 +140,9 @@ pub(crate) fn border(mut low: f64, mut high: f64, is_below: impl Fn(f64) -> bool
 mod tests {
     use super::*;
     use crate::noise::below;
-    use crate::synthetic::{Normal, spectrum};
+    use crate::synthetic::spectrum;
     use num_complex::Complex64;
+    use vibro_math::Noise;
 
     #[test]
     fn rayleigh_noise_is_recovered_beside_a_strong_peak() {
@@ -171,7 +172,7 @@ mod tests {
                 let inner = if rest < height { below(height - rest, height) } else { 0.0 };
                 if below(height + rest, height) - inner < 0.5 { low = rest } else { high = rest }
             }
-            let ratio = median(height) / low;
+            let ratio = rice_median(height) / low;
             assert!((ratio - 1.0).abs() < 0.01, "{height}: {ratio}");
         }
     }
@@ -188,7 +189,7 @@ mod tests {
         truth: f64,
         image: Option<f64>,
         sigma: f64,
-        normal: &mut Normal,
+        normal: &mut Noise,
     ) -> Option<[f64; 2]> {
         let mut sums = [0.0; 4];
         for _ in 0..DRAWS {
@@ -225,7 +226,7 @@ mod tests {
     /// How many of three places under these windows at these levels state an uncertainty; all that do state
     /// the scatter.
     fn judged(windows: &[Window], decibels: &[i32]) -> u32 {
-        let mut normal = Normal(0x5eed);
+        let mut normal = Noise::new(0x5eed);
         let mut judged = 0;
         for &window in windows {
             for &decibel in decibels {
@@ -254,7 +255,7 @@ mod tests {
         // It bends the sine's own lines, which is no scatter of white noise; what it leaves beside the sine
         // must make up for it. Without a window, 80 dB: its leakage 1/(160π) is twenty times the
         // noise.
-        let mut normal = Normal(0x1a6e);
+        let mut normal = Noise::new(0x1a6e);
         for window in [Window::Rectangular, Window::Hamming] {
             for part in [0.3, 0.47] {
                 let ratios = scatter(window, 80.0 + part, Some(-80.0 - part), 1e-4, &mut normal).unwrap();

@@ -266,8 +266,8 @@ mod tests {
 #[cfg(test)]
 mod apices {
     use super::*;
-    use crate::synthetic::Normal;
     use num_complex::Complex64;
+    use vibro_math::Noise;
 
     fn curve(f: &[f64], a: &[f64], std: &[f64]) -> Vec<Point> {
         f.iter().zip(a).zip(std).map(|((f, a), std)| (*f, *a, *std)).collect()
@@ -310,7 +310,7 @@ mod apices {
     }
 
     /// A curve of some kind, and the half-power width of its resonance near 5.6 Hz.
-    fn draw(kind: Kind, normal: &mut Normal) -> (Box<dyn Fn(f64) -> f64>, f64) {
+    fn draw(kind: Kind, normal: &mut Noise) -> (Box<dyn Fn(f64) -> f64>, f64) {
         let mut between = |a: f64, b: f64| a + (b - a) * normal.uniform();
         let f0 = 5.6;
         let zeta = [(); 2].map(|()| 10f64.powf(between(-2.5, -1.0)));
@@ -333,7 +333,7 @@ mod apices {
 
     /// Part of the answers whose (frequency, height) lie within two standard uncertainties of the truth.
     fn covered(kind: Kind, noise: f64, points: usize) -> [f64; 2] {
-        let mut normal = Normal(0x70b);
+        let mut normal = Noise::new(0x70b);
         let (mut within, mut n) = ([0u32; 2], 0u32);
         while n < 2000 {
             let (height, width) = draw(kind, &mut normal);
@@ -345,7 +345,7 @@ mod apices {
             }
             let clean: Vec<f64> = f.iter().map(|f| height(*f)).collect();
             let std: Vec<f64> = clean.iter().map(|a| noise * a).collect();
-            let a: Vec<f64> = clean.iter().zip(&std).map(|(a, s)| a + s * normal.next()).collect();
+            let a: Vec<f64> = clean.iter().zip(&std).map(|(a, s)| a + s * normal.normal()).collect();
             let i = (0..13).max_by(|i, k| a[*i].total_cmp(&a[*k])).unwrap();
             if !(2..=10).contains(&i) || a[i - 1].min(a[i + 1]) < 0.5 * a[i] {
                 continue;

@@ -108,7 +108,7 @@ pub const NO_SUPPORT: f64 = 10.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::Twelve;
+    use vibro_math::Noise;
 
     #[test]
     fn chi_squared_has_its_tabulated_quantiles() {
@@ -126,11 +126,11 @@ mod tests {
 
     #[test]
     fn white_noise_is_rejected_as_often_as_stated() {
-        let mut noise = Twelve(11);
+        let mut noise = Noise::new(11);
         let trials = 2000;
         let rejected = (0..trials)
             .filter(|_| {
-                let r: Vec<f64> = (0..100).map(|_| noise.next()).collect();
+                let r: Vec<f64> = (0..100).map(|_| noise.normal()).collect();
                 Whiteness::of(&[&r]).rejected()
             })
             .count();
@@ -143,12 +143,12 @@ mod tests {
     /// variance.
     #[test]
     fn the_inflation_of_a_first_order_process_is_found() {
-        let mut noise = Twelve(5);
+        let mut noise = Noise::new(5);
         let phi = 0.7;
         let mut y = 0.0;
         let r: Vec<f64> = (0..20_000)
             .map(|_| {
-                y = phi * y + noise.next();
+                y = phi * y + noise.normal();
                 y
             })
             .collect();

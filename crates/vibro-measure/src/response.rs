@@ -7,13 +7,12 @@ use super::answered::answered;
 use super::excitation::{Excitation, each, excitations};
 use super::resonance::{NamedCurve, Resonance};
 use crate::line::deviation;
-use crate::mean::upper_median;
 use num_complex::Complex64;
 pub use result::{Harmonic, Receptance, Response, ResponsePoint};
 use std::cmp::Ordering;
 use taker::Taker;
 use vibro_record::units::Quantity;
-use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window};
+use vibro_record::{Direction, Error, Finding, Result, Step, Sweep, SweepPoint, Window, median};
 
 /// How a response is to be taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -206,15 +205,15 @@ const WRONG_SHAPE: f64 = 0.02;
 pub(crate) fn wrong_window(sweep: &Sweep, excitations: &[Excitation], df: f64) -> Option<Finding> {
     let window = sweep.points.first()?.response.window?;
     let typical = |window: Window| {
-        upper_median(sweep.points.iter().zip(excitations).filter_map(|(p, e)| {
+        median(sweep.points.iter().zip(excitations).filter_map(|(p, e)| {
             let k = ((e.frequency - sweep.axis.start()) / df).round().max(0.0) as usize;
             let force = p.force.magnitudes();
             Some(deviation(&force, k, 1, window)? / force[k])
         }))
     };
-    let off = typical(window).filter(|off| *off > WRONG_SHAPE)?;
+    let off = Some(typical(window)).filter(|off| *off > WRONG_SHAPE)?;
     let finding = Finding::doubt("sweep-window-unlike").name("window", window.name()).number("off", off);
-    let others = Window::ALL.into_iter().filter_map(|w| Some((typical(w)?, w)));
+    let others = Window::ALL.into_iter().map(|w| (typical(w), w));
     let better = others.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|b| b.0 < off / 3.0);
     Some(match better {
         Some((off, window)) => finding.name("better", window.name()).number("left", off),

@@ -323,13 +323,13 @@ fn whole<const N: usize>(traces: &mut Traces, mut progress: impl FnMut(usize)) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::Normal;
+    use vibro_math::Noise;
 
     /// Peaks of a sine of amplitude 1 with noise of 0.002, 8 segments of 256 samples at 256 Hz: lines are 1
     /// Hz apart.
     fn peaks(frequency: f64, window: Window) -> Vec<f64> {
-        let mut noise = Normal(5);
-        let sine = |i: i32| (TAU * frequency * f64::from(i) / 256.0).sin() + 2e-3 * noise.next();
+        let mut noise = Noise::new(5);
+        let sine = |i: i32| (TAU * frequency * f64::from(i) / 256.0).sin() + 2e-3 * noise.normal();
         let values = (0..2048).map(sine).collect();
         let axis = Axis::time(0.0, 1.0 / 256.0, 2048);
         let trace = Trace { meta: Meta::new("v", Unit::opaque("V")), axis, values };

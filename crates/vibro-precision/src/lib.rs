@@ -28,4 +28,4 @@ pub use scene::{Family, Measured, Scene};
 
 // What several modules speak of.
 use failure::{Found, Question};
-use scene::{median, timed};
+use scene::timed;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::time::Instant;
+use vibro_record::median;
 
 /// Which kind of method a scene asks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -140,13 +141,7 @@ pub(crate) fn timed<T>(repeats: usize, quick: bool, mut f: impl FnMut() -> T) ->
     if times.is_empty() {
         times.push(first);
     }
-    (answer, median(&mut times))
-}
-
-/// The middle of a list that is not empty.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    f64::midpoint(values[(values.len() - 1) / 2], values[values.len() / 2])
+    (answer, median(&times))
 }
 
 #[cfg(test)]
@@ -186,12 +181,6 @@ mod tests {
         ];
         assert_eq!(marks(Family::Estimators, &all), [true, true, false, false]);
         assert_eq!(marks(Family::Models, &all), [false, true, false, false]);
-    }
-
-    #[test]
-    fn the_median_is_the_middle() {
-        assert_eq!(median(&mut [5.0, 1.0, 4.0, 2.0, 3.0]), 3.0);
-        assert_eq!(median(&mut [7.0, 5.0]), 6.0);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Clocks of loggers and telephones: the even grid that jittering instants mean, and the stretches between
 //! lost samples.
 
-use crate::Finding;
+use crate::{Finding, median};
 use std::cmp::Ordering;
 use std::ops::Range;
 
@@ -393,19 +393,12 @@ fn longest_even(instants: &[f64], tolerance: f64) -> usize {
 fn usual_step(instants: &[f64], resolution: f64) -> Option<f64> {
     let mut lag = 1;
     loop {
-        let mut steps: Vec<f64> = instants.windows(lag + 1).map(|w| w[lag] - w[0]).collect();
-        let usual = median(&mut steps)?;
+        let usual = median(instants.windows(lag + 1).map(|w| w[lag] - w[0]));
         if usual >= CYCLES * 2.0 * resolution || 8 * lag >= instants.len() {
             return Some(usual / lag as f64).filter(|step| *step > 0.0 && step.is_finite());
         }
         lag *= 2;
     }
-}
-
-/// The upper median of values, which are left in another order; `None` where there are none.
-pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]

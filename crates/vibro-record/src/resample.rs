@@ -1,7 +1,7 @@
 //! Samples at uneven instants, interpolated on an even grid.
 
-use crate::clock::{Stretch, median, stretches};
-use crate::{Axis, AxisKind, Error, Finding, Grid, Result, Trace};
+use crate::clock::{Stretch, stretches};
+use crate::{Axis, AxisKind, Error, Finding, Grid, Result, Trace, median};
 
 /// Least rate, as a part of the mean rate of the samples: below it parts of the signal would fold back.
 const SLOWEST: f64 = 0.95;
@@ -30,7 +30,7 @@ impl Trace {
             ));
         }
         let steps: Vec<f64> = t.windows(2).map(|w| w[1] - w[0]).collect();
-        let typical = median(&mut steps.clone()).filter(|_| steps.iter().all(|step| *step > 0.0));
+        let typical = Some(median(&steps)).filter(|_| steps.iter().all(|step| *step > 0.0));
         let typical =
             typical.ok_or_else(|| Error::refused("instants that do not rise cannot be resampled"))?;
         if let Some(i) = steps.iter().position(|step| *step > LONGEST * typical) {

@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::f64::consts::PI;
 use vibro_record::lanes;
 use vibro_record::units::notation::shortest;
-use vibro_record::{Error, Finding, Meta, Result, Trace};
+use vibro_record::{Error, Finding, Meta, Result, Trace, median};
 
 /// Part of the largest force, above the level before it, at which a blow is noticed.
 const TRIGGER: f64 = 0.2;
@@ -299,14 +299,9 @@ struct Quiet {
 impl Quiet {
     /// Median, and the standard deviation of the normal distribution that has the same median deviation.
     fn of(values: &[f64]) -> Quiet {
-        let level = median(values.to_vec());
-        Quiet { level, sigma: 1.4826 * median(values.iter().map(|v| (v - level).abs()).collect()) }
+        let level = median(values);
+        Quiet { level, sigma: 1.4826 * median(values.iter().map(|v| (v - level).abs())) }
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// The highest or lowest value of a record, quiet in its first `before` samples, where it stays there: each

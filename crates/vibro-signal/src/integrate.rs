@@ -206,6 +206,7 @@ fn drift(values: &[f64], edge: usize, period: Option<usize>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vibro_math::Noise;
     use vibro_record::units::Quantity;
     use vibro_record::{Meta, Window};
 
@@ -274,11 +275,7 @@ mod tests {
         let (rate, n) = (2048.0, 40_960usize);
         let how = InTime { times: 1, corner: 2.0, order: 4, period: None };
         let [low, high] = band(&how, rate);
-        let mut state = 7u64;
-        let mut noise = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt()
-        };
+        let mut noise = Noise::new(7);
         for f in [1.001 * low, 10.0, 30.0, 0.999 * high] {
             let omega = TAU * f;
             // Amplitude 1 mm; noise of 1 % of the velocity's amplitude, offset 100 %, drift 200 %.
@@ -286,7 +283,7 @@ mod tests {
             let values = (0..n)
                 .map(|i| {
                     let t = i as f64 / rate;
-                    amplitude * ((omega * t).cos() + 1.0 + 2.0 * t * rate / n as f64 + 0.01 * noise())
+                    amplitude * ((omega * t).cos() + 1.0 + 2.0 * t * rate / n as f64 + 0.01 * noise.normal())
                 })
                 .collect();
             let found =

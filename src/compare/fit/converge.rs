@@ -1,12 +1,13 @@
 //! Motions by history and parameters by least squares, in turn until both stay.
 
 use super::{
-    Data, FINE, Kind, Motion, Pace, Problem, Reading, Setting, Simulated, Step, distances, median, motions,
-    reached, shown, simulated_briefly,
+    Data, FINE, Kind, Motion, Pace, Problem, Reading, Setting, Simulated, Step, distances, motions, reached,
+    shown, simulated_briefly,
 };
 use crate::error::Result;
 use crate::math::Minimum;
 use crate::measure::residuals::{Whiteness, student};
+use crate::record::median;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -242,7 +243,7 @@ pub fn without_outliers(data: &Data, setting: &Setting, mut kinds: Vec<Option<Ki
         for ((step, ..), r) in problem.used().zip(problem.at(&[])) {
             away[step] = Some(away[step].unwrap_or(0.0).max(r.abs()));
         }
-        let limit = FAR * (median(away.iter().flatten().copied()).unwrap_or(0.0) / MEDIAN).max(1.0);
+        let limit = FAR * (median(away.iter().flatten()) / MEDIAN).max(1.0);
         let far = away.iter().enumerate().filter_map(|(i, away)| Some((i, away.filter(|a| *a > limit)?)));
         let Some((farthest, _)) = far.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         kinds[farthest] = None;

@@ -1,9 +1,9 @@
 //! The measured points of a fit, both masses of one step together.
 
-use super::{Kind, Pace, Setting, Swept, median};
+use super::{Kind, Pace, Setting, Swept};
 use crate::error::Result;
 use crate::measure::response::{Response, ResponsePoint};
-use crate::record::Direction;
+use crate::record::{Direction, median};
 
 /// The amplitude of one mass at one step.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,12 +96,12 @@ impl Data {
         let points = || swept.iter().flat_map(|s| &s.response.points);
         let clear = points().filter(|p| p.upper_limit.is_none() && p.amplitude.value > 0.0);
         let relative = |p: &ResponsePoint| Some(p.amplitude.std.filter(|s| *s > 0.0)? / p.amplitude.value);
-        let known = median(clear.filter_map(relative));
+        let known = Some(median(clear.filter_map(relative))).filter(|part| part.is_finite());
         let mut data = Data {
             sweeps: Vec::new(),
             steps: Vec::new(),
             sequences: Vec::new(),
-            force: force.or(median(swept.iter().map(|s| s.forcing.median()))).unwrap_or(f64::NAN),
+            force: force.unwrap_or_else(|| median(swept.iter().map(|s| s.forcing.median()))),
             calibration: 0.0,
             without_std: points().filter(|p| p.amplitude.std.is_none()).count(),
             guessed: known.is_none(),

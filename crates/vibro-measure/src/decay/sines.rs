@@ -3,10 +3,11 @@
 use super::damped::{Damped, Group, OWN, lines};
 use super::result::DecayOptions;
 use super::usable::levels;
-use crate::mean::{average, upper_median};
+use crate::mean::average;
 use crate::noise;
 use num_complex::Complex64;
 use std::ops::Range;
+use vibro_record::median;
 
 /// Most sines of one record, those that do not decay with them.
 pub(super) const MOST: usize = 12;
@@ -158,7 +159,7 @@ impl Sines {
         // Of a mode that is over long before the others the lines nearby are its own, and as high as it.
         let wide = |k: usize| {
             let near = &sizes[k.saturating_sub(BROAD)..(k + BROAD + 1).min(sizes.len())];
-            upper_median(near.iter().copied()).is_some_and(|size| above(k, size, noise::REACH.max(k / 2)))
+            above(k, median(near), noise::REACH.max(k / 2))
         };
         let seen = |k: &usize| above(*k, sizes[*k], noise::REACH) || wide(*k);
         let known = |k: &usize| self.odd.iter().any(|odd| odd.abs_diff(*k) < 2);

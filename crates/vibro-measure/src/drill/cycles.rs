@@ -1,11 +1,12 @@
 //! Turns over their phase: the time-synchronous average, the displacement, and the bandwidth that the motion
 //! needs.
 
-use super::survey::{State, median};
+use super::survey::State;
 use super::turns;
 use super::turns::Turn;
 use crate::mean::average;
 use serde::Serialize;
+use vibro_record::median;
 
 /// The velocity of one turn at the phases of the average.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -175,7 +176,7 @@ impl Cycles {
     /// What bandwidth the motion needs.
     pub fn bandwidth(&self) -> Bandwidth {
         let rate = self.rate;
-        let [speed, acceleration, jerk] = self.tops.each_ref().map(|v| median(v.iter().copied()));
+        let [speed, acceleration, jerk] = self.tops.each_ref().map(median);
         let (acceleration, jerk) = (acceleration * rate, jerk * rate * rate);
         let ratio = |a: f64, b: f64| if b > 0.0 { a / b / std::f64::consts::TAU } else { f64::NAN };
         let (f1, f2) = (ratio(acceleration, speed), ratio(jerk, acceleration));

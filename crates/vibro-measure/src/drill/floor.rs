@@ -72,15 +72,13 @@ impl NoiseFloor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vibro_math::Noise;
 
     #[test]
     fn a_sine_has_its_rms_and_noise_its_density() {
         let rate = 8192.0;
-        let mut state = 5u64;
-        let mut uniform = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut noise = Noise::new(5);
+        let mut uniform = || noise.uniform() - 0.5;
         let noise: Vec<f64> = (0..200_000).map(|_| 0.01 * uniform()).collect();
         let motion: Vec<f64> = noise
             .iter()

@@ -7,10 +7,11 @@
 //! m/s.
 
 use super::parabola::{FEWEST, Parabola};
-use super::survey::{State, median};
+use super::survey::State;
 use super::turns::Turn;
 use super::{Impact, TurnsFrom, turns};
 use crate::residuals::Whiteness;
+use vibro_record::median;
 
 /// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
 const MOST: usize = 4;
@@ -164,7 +165,7 @@ impl<'a> Jumps<'a> {
     /// All impacts in the order of time, at `rate` samples a second, with reference edges of standard
     /// uncertainty `edge` samples; and what their fits leave.
     pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Vec<[Vec<f64>; 2]>) {
-        let typical = median(self.largest.iter().copied());
+        let typical = median(&self.largest);
         self.found.retain(|j| j.height() >= PART * typical);
         self.found.sort_by(|a, b| a.at.total_cmp(&b.at));
         let noise = [0, 1].map(|k| {
@@ -208,6 +209,7 @@ impl<'a> Jumps<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vibro_math::Noise;
 
     /// A velocity of 2000 m/s² and a bend up to an impact at `at`, then −1.5 m/s with 1000 m/s²; the contact
     /// takes 6 samples.
@@ -276,14 +278,8 @@ mod tests {
     #[test]
     fn a_smooth_motion_has_no_impact() {
         let values: Vec<f64> = (0..2000).map(|i| 5.0 * (f64::from(i) * 0.004).sin()).collect();
-        let mut noise = 3u64;
-        let values: Vec<f64> = values
-            .iter()
-            .map(|v| {
-                noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                v + 0.05 * ((noise >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
-            })
-            .collect();
+        let mut noise = Noise::new(3);
+        let values: Vec<f64> = values.iter().map(|v| v + 0.05 * (noise.uniform() - 0.5)).collect();
         assert_eq!(one(&values, &vec![State::Good; 2000]), (Vec::new(), 0));
     }
 }

@@ -109,18 +109,18 @@ impl LackOfFit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::Normal;
+    use vibro_math::Noise;
 
     /// Part of 1000 sets of `n` impacts whose noise depends on itself by `rho`, in which a lack of fit is
     /// significant, in %; with `ring` in each.
     fn significant(n: usize, rho: f64, ring: f64) -> f64 {
-        let mut noise = Normal(17);
+        let mut noise = Noise::new(17);
         let significant = (0..1000).filter(|_| {
             let one = |_| {
-                let mut x = noise.next();
+                let mut x = noise.normal();
                 let values: Vec<f64> = (0..26)
                     .map(|k| {
-                        x = rho * x + (1.0 - rho * rho).sqrt() * noise.next();
+                        x = rho * x + (1.0 - rho * rho).sqrt() * noise.normal();
                         x + ring * (f64::from(k) * 0.7).sin()
                     })
                     .collect();

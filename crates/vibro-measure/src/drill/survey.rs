@@ -1,9 +1,8 @@
 //! What a channel looks like: extremes, levels, noise; and the faults of a laser vibrometer: drop-outs and
 //! speckle spikes, found and bridged; over-range, found.
 
-use crate::mean::upper_median;
 use std::ops::Range;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, median};
 
 /// What is known of a repaired sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -247,7 +246,7 @@ impl Survey {
         Survey {
             low,
             high,
-            median: median(values.iter().copied()),
+            median: median(values),
             quantum: if quantum.is_finite() { quantum } else { 0.0 },
             longest_by_chance: (needed as usize).clamp(4, 64),
         }
@@ -279,7 +278,7 @@ pub(crate) fn levels(values: &[f64]) -> Option<(f64, f64)> {
         }
     }
     let threshold = best.1?;
-    let side = |above: bool| median(values.iter().copied().filter(|v| (*v > threshold) == above));
+    let side = |above: bool| median(values.iter().filter(|v| (**v > threshold) == above));
     Some((side(false), side(true)))
 }
 
@@ -314,7 +313,7 @@ pub(crate) fn check_pulses(
     }
     let steps: Vec<f64> = edges.windows(2).map(|w| w[1] - w[0]).collect();
     let change = median(steps.windows(2).map(|w| (w[1] - w[0]).abs()));
-    if change > UNEVEN * median(steps.iter().copied()) {
+    if change > UNEVEN * median(&steps) {
         let why = "the reference is no pulse of a shaft: its edges come at uneven distances";
         return refused(why, "name the channel of the pulse; `vibro info` lists the channels");
     }
@@ -327,24 +326,18 @@ fn range(values: &[f64]) -> (f64, f64) {
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
-/// Median of some values; 0 where there are none.
-pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    upper_median(values).unwrap_or(0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f64::consts::PI;
+    use vibro_math::Noise;
 
     /// A sine digitised in steps of `quantum`, with a little noise.
     fn signal(n: usize, quantum: f64, noise: f64) -> Vec<f64> {
-        let mut state = 7u64;
+        let mut draw = Noise::new(7);
         (0..n)
             .map(|i| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                let uniform = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
-                let v = 5.0 * (i as f64 * 0.003).sin() + noise * uniform;
+                let v = 5.0 * (i as f64 * 0.003).sin() + noise * (draw.uniform() - 0.5);
                 if quantum > 0.0 { (v / quantum).round() * quantum } else { v }
             })
             .collect()
@@ -458,6 +451,7 @@ mod tests {
 #[cfg(test)]
 mod surveys {
     use super::*;
+    use vibro_math::Noise;
 
     #[test]
     fn narrow_pulses_have_two_levels_however_long_the_record() {
@@ -480,16 +474,10 @@ mod surveys {
 
     #[test]
     fn noise_and_resolution_of_a_digitised_sine() {
-        let mut state = 1u64;
-        let mut uniform = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut draw = Noise::new(1);
         let block: Vec<f64> = (0..300_000)
             .map(|i| {
-                // Twelve uniform numbers have a sum of variance 1, close to normal.
-                let noise: f64 = (0..12).map(|_| uniform()).sum();
-                let v = (f64::from(i) * 0.003).sin() + 0.05 * noise;
+                let v = (f64::from(i) * 0.003).sin() + 0.05 * draw.normal();
                 (v / 0.001).round() * 0.001
             })
             .collect();

@@ -1,8 +1,7 @@
 //! The turns of a machine without a reference: a train of impacts, one in each period of their pattern.
 
 use super::Impact;
-use super::survey::median;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, median};
 
 /// Fewest impacts that show a period: four turns, the fewest that have an uncertainty.
 const FEWEST: usize = 5;
@@ -92,7 +91,7 @@ fn agreement(events: &[(f64, f64)], lag: f64) -> (f64, f64) {
     }
     let chance = 1.0 - (-2.0 * reach * (events.len() - 1) as f64 / (last - first)).exp();
     let scatter = (chance * (1.0 - chance) / starts().count() as f64).sqrt();
-    ((again / all - chance - CHANCE * scatter) / (1.0 - chance), median(times.into_iter()))
+    ((again / all - chance - CHANCE * scatter) / (1.0 - chance), median(times))
 }
 
 /// The shortest time after which the pattern of events comes again; `None` where none does.
@@ -141,7 +140,7 @@ fn chain(events: &[(f64, f64)], period: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::Normal;
+    use vibro_math::Noise;
 
     /// Impacts from (instant, jump) at one sample a second.
     fn train(mut of: Vec<(f64, f64)>) -> Result<Train> {
@@ -163,18 +162,18 @@ mod tests {
     }
 
     /// Impacts −7 ± 0.3 of 60 turns, the first 1000 long, the last 6 % more, ± 1 %.
-    fn slowing(noise: &mut Normal) -> Vec<(f64, f64)> {
+    fn slowing(noise: &mut Noise) -> Vec<(f64, f64)> {
         let mut at = 300.0;
         let mut next = |k: u32| {
-            at += 1000.0 + f64::from(k) + 10.0 * noise.next();
-            (at, -7.0 + 0.3 * noise.next())
+            at += 1000.0 + f64::from(k) + 10.0 * noise.normal();
+            (at, -7.0 + 0.3 * noise.normal())
         };
         (0..60).map(&mut next).collect()
     }
 
     #[test]
     fn missing_and_false_impacts_and_others_of_a_pattern_move_no_turn() {
-        let mut noise = Normal(5);
+        let mut noise = Noise::new(5);
         for _ in 0..40 {
             let whole = slowing(&mut noise);
             let kept: Vec<(f64, f64)> = (0..60).filter(|k| k % 9 != 4).map(|k| whole[k]).collect();
@@ -200,10 +199,10 @@ mod tests {
 
     #[test]
     fn impacts_at_random_have_no_period() {
-        let mut noise = Normal(6);
+        let mut noise = Noise::new(6);
         for n in [6, 10, 20, 60, 200] {
             let random = (0..400).filter(|_| {
-                let one = |_| (1e4 * noise.uniform(), -7.0 + 0.5 * noise.next());
+                let one = |_| (1e4 * noise.uniform(), -7.0 + 0.5 * noise.normal());
                 train((0..n).map(one).collect()).is_ok()
             });
             let share = random.count() as f64 / 400.0;

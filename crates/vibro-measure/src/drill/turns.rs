@@ -1,11 +1,11 @@
 //! Where a sampled signal crosses a level; edges of a reference signal; the turns between them: which are
 //! whole, how fast, how evenly.
 
-use super::survey::{State, median};
+use super::survey::State;
 use crate::Estimate;
 use crate::mean::Mean;
 use crate::noise::border;
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, median};
 
 /// Neighbours on each side whose median is the expected interval: a machine that runs up changes little over
 /// them.
@@ -52,7 +52,7 @@ impl Numbered {
         let mut runs = vec![edges.iter().take(1).map(|e| (0, *e)).collect::<Vec<(usize, f64)>>()];
         for (i, &edge) in edges.iter().enumerate().skip(1) {
             let near = i.saturating_sub(AROUND + 1)..(i + AROUND).min(intervals.len());
-            let expected = median(intervals[near].iter().copied());
+            let expected = median(&intervals[near]);
             let Some(run) = runs.last_mut() else { continue };
             let Some(&(place, last)) = run.last() else { continue };
             let ratio = |edge: f64| (edge - last) / expected;
@@ -262,6 +262,7 @@ pub(super) fn value(values: &[f64], at: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use std::f64::consts::PI;
+    use vibro_math::Noise;
 
     #[test]
     fn missing_and_extra_edges_and_pauses() {
@@ -298,11 +299,8 @@ mod tests {
 
     #[test]
     fn jitter_of_edges_telescopes() {
-        let mut state = 11u64;
-        let mut uniform = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut noise = Noise::new(11);
+        let mut uniform = || noise.uniform() - 0.5;
         // Edges of n turns that jitter by σ = 1/√12: the mean duration by √2 σ/n. Each of K cosines sees the
         // jitter of the first and of the last edge whole and that between by πj/n: E c_j² = (2/n) σ²
         // (2 + π²j²/(2n)), which is 2 (1 + π²(K + 1)(2K + 1)/(24 n)) times the true variance, and
@@ -355,12 +353,11 @@ mod tests {
 
     #[test]
     fn scatter_of_durations_counts_whole() {
-        let mut noise = 7u64;
+        let mut noise = Noise::new(7);
         let mut at = 0.0;
         let edges: Vec<f64> = (0..=1000)
             .map(|_| {
-                noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                at += 100.0 + (noise >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+                at += 99.5 + noise.uniform();
                 at
             })
             .collect();

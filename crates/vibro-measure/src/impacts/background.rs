@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 use vibro_record::lanes::{Survey, survey};
+use vibro_record::{median, quantile};
 
 /// An impact rises above what is left of the ringing before it by this factor.
 const RISE: f64 = 2.0;
@@ -131,7 +132,7 @@ impl Background {
     pub fn of_envelope(self, envelope: &[f64], apart: f64) -> Background {
         let stretch = ((STRETCH * apart) as usize).max(1);
         let power = |part: &[f64]| 0.5 * part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
-        let lowest = quantile(envelope.chunks(stretch).map(power).collect(), QUIETEST).sqrt();
+        let lowest = quantile(envelope.chunks(stretch).map(power), QUIETEST).sqrt();
         // What rings until the next impact leaves no quiet half: its valleys are no lower than the noise.
         let part = if lowest < 0.5 * self.sigma { lowest / self.sigma } else { 1.0 };
         let (sigma, level) = (part * self.sigma, (0.5 * PI).sqrt() * part * self.sigma);
@@ -161,7 +162,7 @@ pub fn background(values: &[f64]) -> Background {
     let of = |quiet: &[f64], part: f64, normal: f64| {
         let level = median(quiet);
         // The converter hides up to half a step of a distance.
-        let sigma = (quantile(quiet.iter().map(|v| (v - level).abs()).collect(), part) + step / 2.0) / normal;
+        let sigma = (quantile(quiet.iter().map(|v| (v - level).abs()), part) + step / 2.0) / normal;
         // A digital trace has σ = 0: the limit is at least a thousandth of the range.
         Background { level, sigma, reach: (z * sigma).max(1e-3 * (high - low)) }
     };
@@ -185,23 +186,6 @@ const FINE: f64 = 32.0;
 fn step(values: &[f64]) -> Option<f64> {
     let steps = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0);
     steps.min_by(f64::total_cmp)
-}
-
-/// Quantile `q` of values in any order; NaN of none.
-fn quantile(mut values: Vec<f64>, q: f64) -> f64 {
-    if values.is_empty() {
-        return f64::NAN;
-    }
-    let place = q * (values.len() - 1) as f64;
-    let (_, low, above) = values.select_nth_unstable_by(place.floor() as usize, f64::total_cmp);
-    let low = *low;
-    let next = above.iter().copied().fold(f64::INFINITY, f64::min);
-    if place.fract() > 0.0 { low + place.fract() * (next - low) } else { low }
-}
-
-/// The median of values in any order; NaN of none.
-pub fn median(values: &[f64]) -> f64 {
-    quantile(values.to_vec(), 0.5)
 }
 
 #[cfg(test)]
@@ -261,12 +245,5 @@ mod levels {
         // A switch has two values, and both are what they are.
         let switch: Vec<f64> = (0..1000).map(|i| if i % 100 < 3 { 5.0 } else { 0.0 }).collect();
         assert!(background(&switch).reach < 0.1);
-    }
-
-    #[test]
-    fn quantiles_interpolate() {
-        assert_eq!(quantile(vec![4.0, 1.0, 3.0, 2.0], 0.5), 2.5);
-        assert_eq!(quantile(vec![4.0, 1.0, 3.0], 1.0), 4.0);
-        assert!(quantile(Vec::new(), 0.5).is_nan());
     }
 }

@@ -1,6 +1,6 @@
 //! Impacts of a trace: bursts above the noise, timed below a sample.
 
-use super::background::{Background, background, bursts, median};
+use super::background::{Background, background, bursts};
 use super::bands::within;
 use super::onset::Shape;
 use super::onset::{Onsets, onsets};
@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::{counted, quantity, shortest};
-use vibro_record::{Error, Finding, Result, Trace};
+use vibro_record::{Error, Finding, Result, Trace, median};
 use vibro_signal::envelope::envelope;
 
 /// Lowest impact as a part of the median one.
@@ -156,7 +156,7 @@ pub(crate) fn detect_among(
             _ => refused.hint("a lower threshold, as lower bursts were ignored").setting("threshold"),
         });
     }
-    let mut std = median(&each.iter().map(|o| o.std).collect::<Vec<f64>>()) / rate;
+    let mut std = median(each.iter().map(|o| o.std)) / rate;
     if sharp {
         // Anywhere within a sample (JCGM 100:2008, 4.3.7).
         let within = 1.0 / (12f64.sqrt() * rate);
@@ -205,7 +205,7 @@ fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f6
     if 2 * all.len() <= bursts.len() {
         return None;
     }
-    let [least, most] = [0, 1].map(|k| median(&all.iter().map(|b| [b.0, b.1][k]).collect::<Vec<f64>>()));
+    let [least, most] = [0, 1].map(|k| median(all.iter().map(|b| [b.0, b.1][k])));
     let (short, long) =
         all.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), c| (a.min(c.0), b.max(c.0)));
     let std = (most - least).hypot(long - short) / 12f64.sqrt();

@@ -1,8 +1,8 @@
 //! Bursts that repeat each impact at a fixed delay, quieter: echoes of a room, or the second of two impacts.
 
-use super::background::median;
 use crate::mean::scatter;
 use std::collections::BTreeSet;
+use vibro_record::median;
 
 /// Longest delay of an echo of a room in s: a way of 14 m.
 const LONGEST: f64 = 0.04;

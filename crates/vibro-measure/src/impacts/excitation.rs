@@ -1,6 +1,5 @@
 //! Impacts against their excitation: phases, the fraction that they keep, or the beat by which they miss it.
 
-use super::background::median;
 use super::interval::Counted;
 use super::interval::interval;
 use super::{Impacts, ImpactsOptions};
@@ -9,7 +8,7 @@ use crate::drill::{Edge, Edges, Numbered, levels};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
-use vibro_record::{Error, Finding, Result};
+use vibro_record::{Error, Finding, Result, median};
 
 /// Impacts per excitation cycles; 2/2 where impacts come once a cycle, but every second one alike (period
 /// doubling).

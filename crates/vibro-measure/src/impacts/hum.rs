@@ -1,11 +1,11 @@
 //! Mains hum: a sine of 50 or 60 Hz with its harmonics, fitted between the impacts and removed.
 
-use super::background::{background, bursts, median};
+use super::background::{background, bursts};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
-use vibro_record::Finding;
+use vibro_record::{Finding, median};
 
 /// A fitted mains sine.
 #[derive(Debug, Clone, PartialEq, Serialize)]

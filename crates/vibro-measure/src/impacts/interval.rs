@@ -29,10 +29,10 @@
 //! depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7 ±1.96 u then
 //! hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are found to wander.
 
-use super::background::median;
 use crate::mean::{Mean, average, mixture};
 use crate::residuals::widened;
 use std::f64::consts::FRAC_PI_2;
+use vibro_record::median;
 
 /// Interval and what disturbs it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -150,7 +150,7 @@ fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
     let (mut pivot, mut before) = (f64::INFINITY, (0.0, 0.0));
     let (mut mm, mut md, mut dd, mut log_det) = (0.0, 0.0, 0.0, 0.0);
     // Least squares of deviations from a close value, so that long records lose no digits.
-    let near = median(&d.iter().zip(m).map(|(d, m)| d / m).collect::<Vec<f64>>());
+    let near = median(d.iter().zip(m).map(|(d, m)| d / m));
     for (d, m) in d.iter().zip(m) {
         let l = -sigma2 / pivot;
         let now = (m - l * before.0, d - near * m - l * before.1);

@@ -1,9 +1,9 @@
 //! When each burst begins, below a sample: by its flank, or matched to the shape of all pulses.
 
-use super::background::median;
 use crate::mean::average;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use std::ops::Range;
+use vibro_record::median;
 
 /// One impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +76,7 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     let span = -2.0 * width.max(1.5)..1.5 * width.max(1.5);
     // A flank before the record is expected where the others have theirs: a record may begin within an
     // impact.
-    let rise = median(&whole.iter().map(|l| l.peak as f64 - l.onset.time).collect::<Vec<f64>>());
+    let rise = median(whole.iter().map(|l| l.peak as f64 - l.onset.time));
     let expected = |l: &Lobe| Onset { time: l.peak as f64 - rise, ..l.onset };
     let flanks: Vec<Onset> =
         lobes.iter().map(|l| if l.onset.time.is_finite() { l.onset } else { expected(l) }).collect();
@@ -172,7 +172,7 @@ pub fn averaged(values: &[f64], onsets: &[Onset], span: &Range<f64>) -> Option<V
         matched = at.iter().map(|(t, h)| shape.matched(values, *t, *h)).collect::<Vec<_>>();
         // The origin of the shape drifts with each round and is reset.
         let shifts = matched.iter().zip(onsets).filter_map(|(m, o)| Some(m.as_ref()?.time - o.time));
-        let drift = median(&shifts.collect::<Vec<f64>>());
+        let drift = median(shifts);
         let mut moved: f64 = 0.0;
         for (place, m) in at.iter_mut().zip(&mut matched) {
             if let Some(m) = m {

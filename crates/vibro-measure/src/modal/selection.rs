@@ -2,12 +2,11 @@
 
 use super::rational::{Rational, left_by, rational};
 use super::{Measured, Pole};
-use crate::mean::upper_median;
 use crate::peaks::local_maxima;
 use crate::residuals::NO_SUPPORT;
 use std::ops::Range;
 use vibro_record::units::notation::shortest;
-use vibro_record::{Error, Result, Window};
+use vibro_record::{Error, Result, Window, median};
 
 /// Modes of one group at most: beyond, parameters outgrow the lines.
 const TOGETHER: usize = 6;
@@ -368,8 +367,8 @@ fn noise(measured: &Measured, at: usize) -> f64 {
     // A second difference of lines of σ has 6σ² a component. The median of a Rayleigh variable is √(2 ln 2)
     // of its scale; that of the size of a normal one 0.6745, and magnitudes of noise alone scatter by
     // 0.655σ.
-    let median = if measured.magnitude_only { 0.6745 * 0.655 } else { (2.0 * f64::ln(2.0)).sqrt() };
-    upper_median(differences).map_or(0.0, |d| d / (median * f64::sqrt(6.0)))
+    let scale = if measured.magnitude_only { 0.6745 * 0.655 } else { (2.0 * f64::ln(2.0)).sqrt() };
+    (median(differences) / (scale * f64::sqrt(6.0))).max(0.0)
 }
 
 /// Whether there are too few lines, or bandwidths, between two peaks to fit each alone.
@@ -394,15 +393,15 @@ fn width(f: &[f64], magnitude: &[f64], at: usize, valleys: [usize; 2]) -> f64 {
 #[cfg(test)]
 mod bands {
     use super::*;
-    use crate::synthetic::Twelve;
     use num_complex::Complex64;
+    use vibro_math::Noise;
     use vibro_record::units::Quantity;
 
     /// Lines of noise of 0.3 a component, and one line of 3.
     fn measured(magnitude_only: bool) -> Measured {
-        let mut noise = Twelve(3);
+        let mut noise = Noise::new(3);
         let mut values: Vec<Complex64> =
-            (0..2000).map(|_| Complex64::new(0.3 * noise.next(), 0.3 * noise.next())).collect();
+            (0..2000).map(|_| Complex64::new(0.3 * noise.normal(), 0.3 * noise.normal())).collect();
         values[1000] = Complex64::new(3.0, 0.0);
         if magnitude_only {
             for v in &mut values {

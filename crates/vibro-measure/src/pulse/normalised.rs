@@ -5,12 +5,12 @@ use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
 use crate::Estimate;
-use crate::mean::{average, upper_median};
+use crate::mean::average;
 use crate::swings;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use vibro_record::units::Quantity;
-use vibro_record::{Error, Finding, Result, Trace};
+use vibro_record::{Error, Finding, Result, Trace, median};
 
 /// A record with time over the length of its pulse, from half the height of the rising flank, and values over
 /// its height.
@@ -271,7 +271,7 @@ pub(super) fn locate(values: &[f64]) -> Result<Located> {
     let baseline = mode(&sorted);
     // Median to standard deviation of a normal distribution, and of a difference to that of a value.
     let differences = values.windows(2).map(|w| (w[1] - w[0]).abs());
-    let noise = 1.4826 * upper_median(differences).unwrap_or(0.0) / f64::sqrt(2.0);
+    let noise = 1.4826 * median(differences).max(0.0) / f64::sqrt(2.0);
     let far = |v: &f64| if v.is_finite() { (v - baseline).abs() } else { -1.0 };
     let peak = (0..values.len()).max_by(|a, b| far(&values[*a]).total_cmp(&far(&values[*b]))).unwrap_or(0);
     let height = values[peak] - baseline;

@@ -1,9 +1,10 @@
 //! Faint responses: how often the truth lies above its upper limit.
 
 use super::*;
-use crate::synthetic::{LINES, Normal, spectrum};
+use crate::synthetic::{LINES, spectrum};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use vibro_math::Noise;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Fact, Meta, Scaling, Spectrum, Values};
 use vibro_signal::window::line_shape;
@@ -44,7 +45,7 @@ fn finding<'a>(found: &'a Response, code: &str) -> Option<&'a Finding> {
 
 #[test]
 fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_the_noise_asks() {
-    let mut normal = Normal(0xfa17);
+    let mut normal = Noise::new(0xfa17);
     let draws = 1000;
     for window in [Window::Rectangular, Window::Hann, Window::FlatTop] {
         // Height of the line nearest to the sine, three to five times its noise: below, the limit is never
@@ -79,7 +80,7 @@ fn upper_limits_are_passed_by_no_more_than_one_in_twenty_and_by_no_fewer_than_th
 
 #[test]
 fn harmonics_in_the_noise_have_a_limit_and_no_others() {
-    let mut normal = Normal(0x0bde);
+    let mut normal = Noise::new(0x0bde);
     let (n, window) = (400, Window::Hann);
     for (second, limits) in [(0.0, 0.99), (2.0, 0.7), (30.0, 0.0)] {
         let points = (0..n)
@@ -105,7 +106,7 @@ fn harmonics_in_the_noise_have_a_limit_and_no_others() {
 
 #[test]
 fn a_peak_between_steps_is_told() {
-    let mut normal = Normal(0x5e9);
+    let mut normal = Noise::new(0x5e9);
     let mut coarse = |step_hz: f64| {
         // One mode at 80 Hz with 2 %: half of the peak 2.8 Hz beside it.
         let points = (-6..=6).map(|k| {
@@ -127,14 +128,13 @@ fn a_peak_between_steps_is_told() {
 fn a_peak_that_the_force_moves_is_told() {
     // One mode at 80 Hz with 2 %. A shaker's force falls where the mode moves most, here 0.3 Hz above it.
     let found = |dip: f64, seed: u64| {
-        let mut normal = Normal(seed);
+        let mut normal = Noise::new(seed);
         let points = (-6..=6).map(|k| {
             let f = 80.4 + f64::from(k);
             let u = f / 80.0;
             let force = 100.0 * (1.0 - dip / (1.0 + (f - 80.3).powi(2)));
             let sine = force / Complex64::new(1.0 - u * u, 0.04 * u);
-            let of =
-                |sine: Complex64, normal: &mut Normal| spectrum(Window::Hann, &[(f, sine)], 0.01, normal);
+            let of = |sine: Complex64, normal: &mut Noise| spectrum(Window::Hann, &[(f, sine)], 0.01, normal);
             let mut point = step("response", f, Window::Hann, of(sine, &mut normal));
             (point.force, point.given) = (Values::Real(of(force.into(), &mut normal)), None);
             point

@@ -1,10 +1,11 @@
 //! Restitution from a drop: R = (Δt/2)√(g/2h), the flight between first and second impact against the fall
 //! before.
 
-use super::fit::Noise;
+use super::fit::FlightNoise;
 use super::{Train, Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::mean::{average, scatter};
+use vibro_math::Noise;
 use vibro_record::units::notation::quantity;
 use vibro_record::{Error, Finding, Result};
 
@@ -102,7 +103,7 @@ impl Drop {
     /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Every drop shares the height, and each has its own
     /// timing: neither stands in for the other. The timing of one is no better than the `noise` that the
     /// flights of trains show: one flight is that of one bounce.
-    pub(super) fn answer(&self, noise: Option<Noise>, findings: &mut Vec<Finding>) -> Result<Way> {
+    pub(super) fn answer(&self, noise: Option<FlightNoise>, findings: &mut Vec<Finding>) -> Result<Way> {
         self.check()?;
         let n = self.intervals.len();
         let shown = noise.map(|noise| noise.of(average(&self.intervals)));
@@ -134,12 +135,9 @@ impl Drop {
     pub(super) fn bootstrap(&self) -> Option<f64> {
         const DRAWINGS: usize = 2000;
         let n = self.intervals.len();
-        // Knuth's generator for MMIX, whose upper bits are the better ones.
-        let mut state = 1979u64;
-        let mut draw = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            self.intervals.get((state >> 33) as usize % n).copied().unwrap_or(f64::NAN)
-        };
+        let mut noise = Noise::new(1979);
+        let mut draw =
+            || self.intervals.get((noise.uniform() * n as f64) as usize).copied().unwrap_or(f64::NAN);
         let mut mean = || (0..n).map(|_| draw()).sum::<f64>() / n as f64;
         (n >= 5).then(|| scatter(&(0..DRAWINGS).map(|_| self.restitution(mean())).collect::<Vec<f64>>()))
     }

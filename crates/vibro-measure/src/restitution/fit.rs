@@ -29,22 +29,22 @@ pub(super) struct Flight {
 
 /// How far one flight may be off: by R, which scatters from bounce to bounce, and by its two onsets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Noise {
+pub(super) struct FlightNoise {
     /// Variance of ln R from bounce to bounce.
     scatter: f64,
     /// Variance of the time of an impact in s².
     onset: f64,
 }
 
-impl Noise {
+impl FlightNoise {
     /// Standard uncertainty in s of the first `flight` for what follows from all bounces.
     pub(super) fn of(&self, flight: f64) -> f64 {
         (self.scatter * flight * flight + 2.0 * self.onset).sqrt()
     }
 
-    pub(super) fn mean(all: &[Noise]) -> Option<Noise> {
-        let mean = |of: fn(&Noise) -> f64| average(&all.iter().map(of).collect::<Vec<f64>>());
-        (!all.is_empty()).then(|| Noise { scatter: mean(|n| n.scatter), onset: mean(|n| n.onset) })
+    pub(super) fn mean(all: &[FlightNoise]) -> Option<FlightNoise> {
+        let mean = |of: fn(&FlightNoise) -> f64| average(&all.iter().map(of).collect::<Vec<f64>>());
+        (!all.is_empty()).then(|| FlightNoise { scatter: mean(|n| n.scatter), onset: mean(|n| n.onset) })
     }
 }
 
@@ -63,14 +63,14 @@ pub(super) struct Fit {
     /// Standard uncertainty of ln R, which three degrees of freedom show.
     pub(super) std: Option<f64>,
     /// That of their flights, which one shows.
-    pub(super) noise: Option<Noise>,
+    pub(super) noise: Option<FlightNoise>,
 }
 
 impl Fit {
     /// Sum over `trains` of the squared difference of their own ln R from the common one, over the variance
     /// that the `noise` of flights gives it: χ² with one degree of freedom less than trains, where all have
     /// one R.
-    pub(super) fn misfit(&self, trains: &[Timed], noise: Noise) -> f64 {
+    pub(super) fn misfit(&self, trains: &[Timed], noise: FlightNoise) -> f64 {
         let node = |(flights, _): &Timed| {
             Ratios::new(&[flights], &[1.0], false).node(noise.scatter, noise.onset, false)
         };
@@ -100,7 +100,8 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<Fit> {
         // What R alone explains is the most that the first flights can be off.
         let scatter = |node: Node| widened(free).powi(2) * node.scale;
         let onset = stated.unwrap_or(0.0);
-        let noise = scatter_alone.filter(|_| free > 0).map(|node| Noise { scatter: scatter(node), onset });
+        let noise =
+            scatter_alone.filter(|_| free > 0).map(|node| FlightNoise { scatter: scatter(node), onset });
         return Some(Fit { log_r, std: None, noise });
     }
     let least = n / onsets_alone.information / WIDE;
@@ -125,7 +126,7 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<Fit> {
     let (log_r, variance) = mean(&|node| (node.log_r, node.variance));
     let [scatter, onset] = [0, 1].map(|k| mean(&|node| (node.noise[k], 0.0)).0);
     let std = Some(variance.sqrt()).filter(|s| s.is_finite());
-    Some(Fit { log_r, std, noise: std.map(|_| Noise { scatter, onset }) })
+    Some(Fit { log_r, std, noise: std.map(|_| FlightNoise { scatter, onset }) })
 }
 
 /// A fit for one s² and σ².

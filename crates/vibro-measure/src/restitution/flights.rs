@@ -1,6 +1,6 @@
 //! R from the flights of trains of bounces: outliers are left out, flights that grow are refused.
 
-use super::fit::{Fit, Flight, Noise, fit};
+use super::fit::{Fit, Flight, FlightNoise, fit};
 use super::{Train, Way, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use vibro_record::{Error, Finding, Result};
@@ -35,7 +35,7 @@ pub(super) fn answer(
     trains: &[Train],
     fall: bool,
     findings: &mut Vec<Finding>,
-) -> Result<(Option<Way>, Option<Noise>)> {
+) -> Result<(Option<Way>, Option<FlightNoise>)> {
     let (mut all, mut fits) = (Vec::new(), Vec::new());
     for (train, t) in trains.iter().enumerate().map(|(i, t)| (i + 1, t)) {
         not_negative("an uncertainty of the time of an impact", t.onset_std)?;
@@ -78,7 +78,7 @@ pub(super) fn answer(
     if fits.is_empty() {
         return Ok((None, None));
     }
-    let own = Noise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
+    let own = FlightNoise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
     let alike = |joint: &Fit| {
         let noise = own.or(joint.noise).filter(|_| fits.len() > 1);
         noise.is_none_or(|noise| joint.misfit(&all, noise) <= DIFFER[fits.len() - 2])

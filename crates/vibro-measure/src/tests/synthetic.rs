@@ -1,6 +1,7 @@
 //! Spectra of sines in noise whose truth is known, for tests.
 
 use num_complex::Complex64;
+use vibro_math::Noise;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Meta, Trace, Window};
 use vibro_signal::window::line_shape;
@@ -11,37 +12,8 @@ pub fn trace(values: Vec<f64>) -> Trace {
     Trace { meta, axis: Axis::time(0.0, 1e-3, values.len()), values }
 }
 
-/// Normal numbers from a fixed seed.
-pub struct Normal(pub u64);
-
-impl Normal {
-    pub fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-    }
-
-    pub fn next(&mut self) -> f64 {
-        let (a, b) = (self.uniform(), self.uniform());
-        (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
-    }
-
-    fn pair(&mut self, scale: f64) -> Complex64 {
-        Complex64::new(scale * self.next(), scale * self.next())
-    }
-}
-
-/// Sums of twelve uniform numbers from a linear congruential generator (Knuth, MMIX): near enough to normal
-/// ones of unit variance.
-pub struct Twelve(pub u64);
-
-impl Twelve {
-    pub fn next(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / f64::powi(2.0, 53)
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
+fn pair(noise: &mut Noise, scale: f64) -> Complex64 {
+    Complex64::new(scale * noise.normal(), scale * noise.normal())
 }
 
 /// Lines of a spectrum.
@@ -49,11 +21,11 @@ pub const LINES: usize = 161;
 
 /// Magnitudes of sines (position, complex amplitude) in white noise of `sigma` a component of a line: noise
 /// of lines without a window, then the window's weights over neighbouring lines.
-pub fn spectrum(window: Window, sines: &[(f64, Complex64)], sigma: f64, normal: &mut Normal) -> Vec<f64> {
+pub fn spectrum(window: Window, sines: &[(f64, Complex64)], sigma: f64, normal: &mut Noise) -> Vec<f64> {
     let a = window.coefficients();
     let reach = a.len() - 1;
     let scale = sigma * a[0] / (a[0] * a[0] * window.enbw()).sqrt();
-    let raw: Vec<Complex64> = (0..LINES + 2 * reach).map(|_| normal.pair(scale)).collect();
+    let raw: Vec<Complex64> = (0..LINES + 2 * reach).map(|_| pair(normal, scale)).collect();
     (0..LINES)
         .map(|k| {
             let mut line = a[0] * raw[k + reach];

@@ -103,12 +103,8 @@ fn what_is_stated_beside_another_sine_holds() {
 
 #[test]
 fn what_is_no_sine_is_refused() {
-    let mut state = 3u64;
-    let mut noise = |_| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f64
-    };
-    let error = sine(&trace((0..1000).map(&mut noise).collect()), None).err().unwrap().to_string();
+    let mut noise = Noise::new(3);
+    let error = sine(&trace((0..1000).map(|_| noise.uniform()).collect()), None).err().unwrap().to_string();
     assert!(error.contains("stands out"), "{error}");
     assert!(sine(&trace(vec![1.0; 100]), None).is_err());
     let short = sine(&trace((0..100).map(|i| (0.06 * f64::from(i)).sin()).collect()), None);

@@ -1,13 +1,13 @@
 //! Methods tried on random records of which the truth is known.
 
-use crate::{Found, Measured, Outcome, Question, median, timed};
+use crate::{Found, Measured, Outcome, Question, timed};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
 use vibro_math::Noise;
 use vibro_measure::Estimate;
 use vibro_record::units::Unit;
-use vibro_record::{Axis, Finding, Meta, Result, Severity, Trace};
+use vibro_record::{Axis, Finding, Meta, Result, Severity, Trace, median};
 
 /// What a method says.
 pub struct Answer {
@@ -137,13 +137,13 @@ pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: 
         let answers: Vec<_> = (0..records).into_par_iter().map(error).collect();
         // Times are those of an idle machine: one after another.
         let time = |record: D| timed(1, quick, || method.answer(&record)).1;
-        let mut times: Vec<f64> = (0..clocked).map(|number| time(case(number).data)).collect();
+        let times: Vec<f64> = (0..clocked).map(|number| time(case(number).data)).collect();
         let squares: Vec<f64> = answers.iter().flatten().map(|e| e * e).collect();
         let (n, refusal) = (squares.len(), answers.into_iter().find_map(std::result::Result::err));
         let why = refusal.map(|why: String| format!("{} of {records} records refused: {why}", records - n));
         let rms = (squares.iter().sum::<f64>() / n as f64).sqrt();
         let answer = if 2 * n < records { Err(String::new()) } else { Ok(rms) };
-        Measured { why, ..Measured::new(method.name(), setting.name.clone(), median(&mut times), answer) }
+        Measured { why, ..Measured::new(method.name(), setting.name.clone(), median(&times), answer) }
     };
     methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
 }

@@ -5,10 +5,10 @@ mod chaos;
 use super::rivals::{self as by, Kind, Locate, Method, events};
 use super::task::{Log, Task};
 use super::{ours, truth};
-use crate::{Family, Found, Measured, Scene, median, timed};
+use crate::{Family, Found, Measured, Scene, timed};
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
-use vibro_record::{Error, Result};
+use vibro_record::{Error, Result, median};
 
 /// What a judge says of the motions that are told: their error, or why there is none.
 type Verdict = std::result::Result<f64, String>;
@@ -202,7 +202,7 @@ fn grazing(depth: f64) -> Result<Setup> {
                 "{missed} of {STARTS} impacts are not seen, {invented} of {STARTS} seen that are none"
             ));
         }
-        Ok(median(&mut errors))
+        Ok(median(&errors))
     };
     let texts = [
         format!("grazing {depth:.0e} m"),

@@ -1,5 +1,6 @@
 use super::*;
 use num_complex::Complex64;
+use vibro_math::Noise;
 use vibro_record::Axis;
 use vibro_record::units::{Quantity, Unit};
 
@@ -191,11 +192,9 @@ fn double_hits_are_found_whatever_the_offset_and_the_sign() {
     for offset in [0.0, 0.5, -0.5, 5.0, -30.0, 200.0] {
         for sign in [1.0, -1.0] {
             let [mut force, response] = half_double();
-            let mut state = 11u64;
+            let mut noise = Noise::new(11);
             for v in &mut force.values {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                // Noise of 0.2 N, uniform.
-                *v = sign * *v + offset + 0.4 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+                *v = sign * *v + offset + noise.between(-0.2, 0.2);
             }
             let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
             let rejected: Vec<Option<&str>> = found.blows.iter().map(|b| b.rejected).collect();
@@ -295,13 +294,9 @@ fn what_is_left_at_the_end_of_a_record_is_said() {
         }
     }
     // Noise that stays is nothing left.
-    let mut state = 3u64;
-    let mut noise = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::new(3);
     let top = response.values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let values = response.values.iter().map(|v| v + 0.05 * top * noise()).collect();
+    let values = response.values.iter().map(|v| v + 0.05 * top * (noise.uniform() - 0.5)).collect();
     let how = Blows { length: 16_384, before: 327, force_window: None, left_at_end: None };
     let found = from_blows(&force, &trace("m", values), &how, Estimator::H1).unwrap();
     assert!(!has(&found, "response-cut-off"), "{:?}", found.transfer.findings);

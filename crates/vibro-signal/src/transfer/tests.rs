@@ -2,23 +2,19 @@ use super::*;
 use crate::filter::Filter;
 use crate::segment::Segments;
 use crate::welch::Welch;
+use vibro_math::Noise;
 use vibro_record::units::Quantity;
 use vibro_record::{Trace, Traces, Window};
 
 const RATE: f64 = 1000.0;
 
-struct Noise(u64);
+/// Uniform with variance 1.
+fn draw(noise: &mut Noise) -> f64 {
+    (noise.uniform() - 0.5) * 12f64.sqrt()
+}
 
-impl Noise {
-    /// Uniform with variance 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt()
-    }
-
-    fn record(&mut self, n: usize) -> Vec<f64> {
-        (0..n).map(|_| self.next()).collect()
-    }
+fn white(noise: &mut Noise, n: usize) -> Vec<f64> {
+    (0..n).map(|_| draw(noise)).collect()
 }
 
 fn measured(columns: [(&str, Vec<f64>); 2], length: usize) -> Result<(Averages, Vec<Meta>)> {
@@ -37,7 +33,7 @@ fn measured(columns: [(&str, Vec<f64>); 2], length: usize) -> Result<(Averages, 
 #[test]
 fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
     let filter = Filter::low_pass(60.0, 2, RATE).unwrap();
-    let force = Noise(3).record(60_000);
+    let force = white(&mut Noise::new(3), 60_000);
     let mut velocity = force.clone();
     filter.causal(&mut velocity, 0.0);
     let (averages, metas) = measured([("N", force), ("m/s", velocity)], 1024).unwrap();
@@ -58,12 +54,12 @@ fn a_lagging_system_has_its_magnitude_and_a_negative_phase() {
 
 #[test]
 fn noise_lowers_h1_or_raises_h2_and_hv_lies_between() {
-    let mut noise = Noise(5);
-    let x = noise.record(400_000);
+    let mut noise = Noise::new(5);
+    let x = white(&mut noise, 400_000);
     // Half the power again as noise: in the excitation, then in the response, of a gain of 2.
     let clean: Vec<f64> = x.iter().map(|v| 2.0 * v).collect();
     let half = 0.5f64.sqrt();
-    let noisy: Vec<f64> = x.iter().map(|v| v + half * noise.next()).collect();
+    let noisy: Vec<f64> = x.iter().map(|v| v + half * draw(&mut noise)).collect();
     let mean = |columns, estimator| {
         let (averages, metas) = measured(columns, 256).unwrap();
         let found = transfer(&averages, 1, &metas, estimator).unwrap();
@@ -75,7 +71,7 @@ fn noise_lowers_h1_or_raises_h2_and_hv_lies_between() {
     assert!((excitation(Estimator::H1) - 2.0 / 1.5).abs() < 0.01);
     assert!((excitation(Estimator::H2) - 2.0).abs() < 0.01);
     assert!((excitation(Estimator::Hv) - 2.0 / 1.5f64.sqrt()).abs() < 0.01);
-    let response: Vec<f64> = clean.iter().map(|v| v + 2.0 * half * noise.next()).collect();
+    let response: Vec<f64> = clean.iter().map(|v| v + 2.0 * half * draw(&mut noise)).collect();
     let (h1, h2) = (Estimator::H1, Estimator::H2);
     assert!((mean([("N", x.clone()), ("m", response.clone())], h1) - 2.0).abs() < 0.01);
     assert!((mean([("N", x), ("m", response)], h2) - 3.0).abs() < 0.02);
@@ -104,7 +100,7 @@ fn coherence_agrees_with_scipy() {
 
 #[test]
 fn one_average_has_no_coherence_and_an_empty_excitation_is_refused() {
-    let x = Noise(1).record(100);
+    let x = white(&mut Noise::new(1), 100);
     let (averages, metas) = measured([("N", x.clone()), ("m", x.clone())], 100).unwrap();
     let one = transfer(&averages, 1, &metas, Estimator::H1).unwrap();
     assert!(one.coherence.is_empty() && one.phase_std.iter().all(|std| std.is_nan()));
@@ -132,7 +128,7 @@ fn equal_units_give_a_ratio() {
 
 #[test]
 fn mobility_becomes_receptance_only_when_asked() {
-    let x = Noise(9).record(4000);
+    let x = white(&mut Noise::new(9), 4000);
     let (averages, metas) = measured([("N", x.clone()), ("m/s", x)], 256).unwrap();
     let mobility = transfer(&averages, 1, &metas, Estimator::H1).unwrap();
     assert_eq!(mobility.frf.meta.quantity, Quantity::Mobility);

@@ -1,6 +1,6 @@
 use super::*;
 use crate::drill::{Beam, Edge, From};
-use crate::synthetic::Normal;
+use vibro_math::Noise;
 
 fn options(masses: Option<(f64, f64)>) -> DrillOptions {
     let mut options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
@@ -84,15 +84,15 @@ fn undirected(n: usize, mut phase: impl FnMut(usize) -> f64) -> f64 {
 
 #[test]
 fn chance_prefers_no_phase() {
-    let mut noise = Normal(4);
+    let mut noise = Noise::new(4);
     for n in [6, 10, 20, 40, 60] {
         // One in twenty seems to prefer a phase; 1000 records scatter by 0.7 %: four times that.
         let uniform = undirected(n, |_| noise.uniform());
         assert!(uniform > 0.92, "{n}: {uniform}");
-        let normal = undirected(n, |_| 0.08 * noise.next());
+        let normal = undirected(n, |_| 0.08 * noise.normal());
         assert!(normal < 0.02, "{n}: {normal}");
         // Half of the impacts half a turn later: the mean phase is that of no impact.
-        let two = undirected(n, |k| 0.5 * (k % 2) as f64 + 0.01 * noise.next());
+        let two = undirected(n, |k| 0.5 * (k % 2) as f64 + 0.01 * noise.normal());
         assert_eq!(two, 1.0, "{n}");
     }
 }
@@ -206,10 +206,10 @@ fn what_is_not_known_of_an_offset_is_in_all_means_and_a_large_one_leaves_no_unce
 #[test]
 fn impacts_of_a_velocity_that_rings_have_no_uncertainty_and_two_a_turn_have() {
     let of = |second: f64| {
-        let mut normal = Normal(7);
+        let mut normal = Noise::new(7);
         let mut all: Vec<Impact> = (0..20)
             .flat_map(|cycle| {
-                let mut two = impacts(&[(0.3, 6.0 + 0.1 * normal.next(), -1.5), (second, 6.1, -1.4)]);
+                let mut two = impacts(&[(0.3, 6.0 + 0.1 * normal.normal(), -1.5), (second, 6.1, -1.4)]);
                 for impact in &mut two {
                     (impact.cycle, impact.time) = (cycle, cycle as f64 + impact.phase);
                 }
@@ -243,13 +243,13 @@ fn what_parabolas_leave_in_common_is_in_the_uncertainty() {
         let x = 2.0 * (k as f64 + 0.5) / f64::from(places) - 1.0;
         0.5 * x * (5.0 * x * x - 3.0) * 7f64.sqrt()
     };
-    let mut noise = Normal(8);
+    let mut noise = Noise::new(8);
     let mut all = impacts(&[(0.3, 6.0, -1.2); 30]);
     for impact in &mut all {
-        (impact.before, impact.after) = (6.0 + 0.001 * noise.next(), -1.2 + 0.001 * noise.next());
+        (impact.before, impact.after) = (6.0 + 0.001 * noise.normal(), -1.2 + 0.001 * noise.normal());
     }
     let mut of = |rms: f64| {
-        let one = |_| (0..places as usize).map(|k| rms * cubic(k) + 0.001 * noise.next()).collect();
+        let one = |_| (0..places as usize).map(|k| rms * cubic(k) + 0.001 * noise.normal()).collect();
         (0..30).map(one).collect::<Vec<Vec<f64>>>()
     };
     let (quiet, bent) = (of(0.0), of(0.05));
