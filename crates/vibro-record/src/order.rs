@@ -2,8 +2,8 @@
 
 use std::borrow::Borrow;
 
-/// Quantile `q`, 0 to 1, of the finite values among these, straight between neighbours (R. Hyndman and Y. Fan,
-/// The American Statistician 50 (1996) 361, definition 7); NaN of none.
+/// Quantile `q`, 0 to 1, of the finite values among these, straight between neighbours (R. Hyndman and
+/// Y. Fan, The American Statistician 50 (1996) 361, definition 7); NaN of none.
 ///
 /// ```
 /// use vibro_record::quantile;
