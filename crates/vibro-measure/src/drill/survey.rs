@@ -383,7 +383,7 @@ mod tests {
         let bursts: Vec<(usize, usize)> = (0..36).map(|k| (1000 + 1400 * k, 10 + k)).collect();
         for (k, (at, n)) in bursts.iter().enumerate() {
             // A dark speckle: ±6 m/s with equal chance.
-            let mut random = vibro_math::Noise::new(k as u64);
+            let mut random = Noise::new(k as u64);
             raw[*at..at + n].iter_mut().for_each(|v| *v = random.between(-6.0, 6.0));
         }
         let (values, states, count) = repaired(&raw);

@@ -99,7 +99,7 @@ pub(crate) fn detect_among(
         Some(_) => (rises(&values, quiet.reach, rate), None),
         None => bursts(&values, quiet.reach, pause),
     };
-    if median(&heights(&values, &bursts, -1.0)) > INVERTED * median(&heights(&values, &bursts, 1.0)) {
+    if median(heights(&values, &bursts, -1.0)) > INVERTED * median(heights(&values, &bursts, 1.0)) {
         findings.push(Finding::note("pulses-inverted"));
         for v in &mut values {
             *v = -*v;
@@ -132,7 +132,7 @@ pub(crate) fn detect_among(
     }
     let ringing = stable.filter(|s| *s < STABLE && bursts.len() > 1);
     findings.extend(ringing.map(|s| Finding::caution("count-depends-on-ringing").number("factor", s)));
-    let above = (median(&heights(&values, &bursts, 1.0)) - quiet.reach) / quiet.sigma;
+    let above = (median(heights(&values, &bursts, 1.0)) - quiet.reach) / quiet.sigma;
     let lost = Finding::doubt("impacts-lost-in-noise").number("sigmas", above);
     findings.extend((above < LOST).then_some(lost));
     let shape = options.shape.as_ref().map(|pulse| recorded(pulse, rate)).transpose()?;

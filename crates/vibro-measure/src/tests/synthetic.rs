@@ -45,7 +45,7 @@ pub fn spectrum(window: Window, sines: &[(f64, Complex64)], sigma: f64, normal: 
 
 /// 1/f noise of standard deviation 1 down to one period of `n` samples: first-order processes an octave
 /// apart.
-pub(crate) fn pink(noise: &mut vibro_math::Noise, n: usize) -> Vec<f64> {
+pub(crate) fn pink(noise: &mut Noise, n: usize) -> Vec<f64> {
     let keep: Vec<f64> = (0..n.ilog2()).map(|k| (-2.0 * 2f64.powi(-(k as i32))).exp()).collect();
     let mut states: Vec<f64> = keep.iter().map(|_| noise.normal()).collect();
     let mut next = || {

@@ -116,7 +116,7 @@ fn one_clean_blow_is_enough_and_has_no_coherence() {
 #[test]
 fn where_the_blow_is_below_its_noise_there_is_no_function() {
     let [mut force, response] = bench(&[(9000, 100.0)], 30_000);
-    let mut noise = vibro_math::Noise::new(4);
+    let mut noise = Noise::new(4);
     force.values.iter_mut().for_each(|v| *v += 0.3 * noise.normal());
     let how = Blows { length: 16_384, before: 500, force_window: None, left_at_end: None };
     let found = from_blows(&force, &response, &how, Estimator::H1).unwrap();
@@ -423,7 +423,7 @@ const OVER: usize = 16;
 fn double_hits(draws: u64) -> (usize, usize) {
     let (mut false_doubles, mut lost) = (0, 0);
     for seed in 0..draws {
-        let mut noise = vibro_math::Noise::new(seed);
+        let mut noise = Noise::new(seed);
         let corner = noise.between(0.4, 0.45);
         let filter = match seed % 3 {
             0 => AntiAlias::poles(4 + 2 * (seed as usize / 3 % 3), corner, None),
