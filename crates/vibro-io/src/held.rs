@@ -2,7 +2,7 @@
 
 use crate::Options;
 use crate::assemble::{self, NOMINAL, Spectral};
-use vibro_record::lanes::Extremes;
+use vibro_record::lanes::{Extremes, OPENING};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
 
 /// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing
@@ -47,6 +47,14 @@ impl Held {
         }
     }
 
+    /// The first real values, as many as of a survey.
+    pub fn opening(&self) -> &[f64] {
+        match self {
+            Held::Ends(ends) => ends.opening(),
+            held => opening(held.reals()),
+        }
+    }
+
     /// All values, where they may have gaps.
     pub fn values_mut(&mut self) -> Option<&mut Values> {
         if let Held::Values(values) = self { Some(values) } else { None }
@@ -59,7 +67,7 @@ impl Held {
     pub fn scale(&mut self, factor: f64) -> Result<()> {
         match self {
             Held::Values(values) => assemble::to_si(values, factor),
-            Held::Ends(ends) => units::scale(ends.ends_mut(), factor),
+            Held::Ends(ends) => ends.values_mut().into_iter().try_for_each(|v| units::scale(v, factor)),
         }
     }
 
@@ -74,6 +82,11 @@ impl Held {
         };
         Ok((assemble::record(meta, axis, values, said)?, ends))
     }
+}
+
+/// The first of these values, as many as a survey keeps.
+pub fn opening(values: &[f64]) -> &[f64] {
+    &values[..values.len().min(OPENING)]
 }
 
 /// Whether each value lies above the one before it.

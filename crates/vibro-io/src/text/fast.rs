@@ -157,7 +157,7 @@ fn surveyed(
 }
 
 /// What was seen of a column.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Lane {
     /// Whether all its values are written.
     kept: bool,

@@ -98,8 +98,8 @@ pub fn build(
     if let Some(unit) = made.stated.unit.as_deref().filter(|_| is_table && without > 1) {
         of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
     }
-    if let Some(n) = repeats(&table) {
-        of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", axis.len()));
+    if let Some((n, all)) = repeats(&table) {
+        of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
     }
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
@@ -133,16 +133,16 @@ pub fn build(
 /// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
 const REPEATS: f64 = 0.05;
 
-/// How many rows repeat the one before in all of several columns, where these stand alone, between rows that
+/// How many of the first rows, of how many, repeat the one before in all of several columns, where these stand alone, between rows that
 /// differ: a motion that rests, or coarse digits, repeat many in a row.
-fn repeats(table: &[Column]) -> Option<usize> {
+fn repeats(table: &[Column]) -> Option<(usize, usize)> {
     let measured = table.iter().filter(|column| !column.rises());
-    let columns: Vec<&[f64]> = measured.map(|column| column.values.reals()).collect();
+    let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();
     let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
     let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
     let all = (1..n).filter(|i| again(*i)).count();
     let alone = (2..n - 1).filter(|i| again(*i) && !again(i - 1) && !again(i + 1)).count();
-    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some(all)
+    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some((all, n))
 }
 
 /// The record of a column, and how its values are read again.

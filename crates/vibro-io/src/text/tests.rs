@@ -333,8 +333,8 @@ fn a_survey_holds_what_rises() {
     let held = |(record, ends): &(Record, Option<Extremes>)| (record.meta().name.clone(), ends.is_none());
     assert_eq!(seen.records.iter().map(held).collect::<Vec<_>>(), [("v".into(), false), ("x".into(), true)]);
     for ((whole, _), (seen, ends)) in whole.records.iter().zip(&seen.records) {
-        assert_eq!(ends.unwrap_or_else(|| seen.extremes()).range(), whole.extremes().range());
-        assert_eq!(ends.unwrap_or_else(|| seen.extremes()).largest(), whole.extremes().largest());
+        assert_eq!(ends.clone().unwrap_or_else(|| seen.extremes()).range(), whole.extremes().range());
+        assert_eq!(ends.clone().unwrap_or_else(|| seen.extremes()).largest(), whole.extremes().largest());
         assert_eq!((whole.meta(), whole.axis()), (seen.meta(), seen.axis()));
     }
 }
