@@ -46,24 +46,23 @@ pub fn mark(contents: &mut Contents) {
     }
 }
 
-/// Whether values are the length of a vector, to which each of its components adds.
+/// Whether values are the length of a vector, and none of its components: one that keeps its sign doubles no
+/// tone.
 fn is_length(values: &[f64], components: &[&[f64]]) -> bool {
     let finite = |i: &usize| values[*i].is_finite() && components.iter().all(|c| c[*i].is_finite());
     let rows: Vec<usize> = (0..values.len()).filter(finite).collect();
     let mean = rows.iter().map(|i| values[*i]).sum::<f64>() / rows.len() as f64;
     let deviation = rows.iter().map(|i| (values[*i] - mean).powi(2)).sum::<f64>();
-    let near = |without: Option<usize>| {
-        let all = components.iter().enumerate().filter(|(k, _)| Some(*k) != without);
-        let length = |i: usize| all.clone().map(|(_, c)| c[i] * c[i]).sum::<f64>().sqrt();
-        let most = NEAR * NEAR * deviation;
+    let near = |other: &dyn Fn(usize) -> f64| {
         let mut off = 0.0;
         // Ends where it is too far: most are at the first rows.
         rows.iter().all(|i| {
-            off += (values[*i] - length(*i)).powi(2);
-            off <= most
+            off += (values[*i] - other(*i)).powi(2);
+            off <= NEAR * NEAR * deviation
         })
     };
-    rows.len() >= FEW && deviation > 0.0 && near(None) && (0..components.len()).all(|k| !near(Some(k)))
+    let length = |i: usize| components.iter().map(|c| c[i] * c[i]).sum::<f64>().sqrt();
+    rows.len() >= FEW && deviation > 0.0 && near(&length) && !components.iter().any(|c| near(&|i| c[i]))
 }
 
 #[cfg(test)]
