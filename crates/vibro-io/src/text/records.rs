@@ -42,6 +42,13 @@ pub fn build(
     let columns = rows.columns.into_iter().zip(names).zip(sparse).enumerate();
     let column = |(i, ((values, name), sparse))| Column { at: i + 1, name, values, sparse };
     let mut table: Vec<Column> = columns.map(column).collect();
+    let empty = |column: &Column| rows.without_values.get(column.at - 1) == Some(&true);
+    let unused: Vec<String> =
+        table.iter().filter(|c| empty(c) && !c.name.name.is_empty()).map(Column::label).collect();
+    if !unused.is_empty() {
+        findings.push(Finding::note("columns-empty").name("columns", unused.join(", ")));
+    }
+    table.retain(|column| !empty(column));
     let numbered = made.numbered(&table);
     if numbered {
         table.remove(0);
@@ -298,7 +305,10 @@ impl Made<'_> {
         let epoch = epoch.and_then(|first| assemble::epoch(*first)).filter(|(_, f)| unsaid || *f == factor);
         let since = epoch.map_or(0.0, |(_, factor)| values[0] * factor);
         let (from, factor) = epoch.map_or((0.0, factor), |(_, factor)| (values[0], factor));
+        let serial = unsaid && !clock && kind == AxisKind::Time && assemble::is_serial(&values);
+        let (from, factor) = if serial { (values[0], assemble::DAY) } else { (from, factor) };
         let assumed = match epoch {
+            _ if serial => Some(Finding::caution("axis-serial-days")),
             Some((unit, _)) if unsaid => Some(Finding::caution("axis-epoch").name("unit", unit)),
             None if clock && self.minutes() => Some(Finding::caution("axis-clock-minutes")),
             _ if clock || epoch.is_some() => Some(Finding::note("axis-clock")),

@@ -22,6 +22,8 @@ pub struct Rows {
     /// First row and distance of the rows that have a value, for each column that has one in every second,
     /// third, … only.
     pub sparse: Vec<Option<(usize, usize)>>,
+    /// Which columns have no value in any row: nothing is missing there. None where all have.
+    pub without_values: Vec<bool>,
     /// Number of missing values.
     pub missing: usize,
     /// Number of gaps of blank lines that separate blocks of rows.
@@ -39,6 +41,15 @@ pub struct Rows {
 /// first blank line between rows of several columns; on missing values, all at once, unless they are allowed;
 /// on a missing value in a column that its name makes the abscissa always.
 pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
+    let rows = read_but(text, dialect, allow_missing, &[])?;
+    match rows.columns.is_empty() {
+        true => read_but(text, dialect, allow_missing, &rows.without_values),
+        false => Ok(rows),
+    }
+}
+
+/// As [`read`], where some columns are known to be `unused`; with no columns where some others are.
+fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool]) -> Result<Rows> {
     let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
     let reader = Reader { text, dialect };
     let mut rows = Rows::default();
@@ -97,6 +108,10 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
                 let fault = fault(&line, *at, &format!("found {field:?}"), expected);
                 return Err(fault.hint("remove the row"));
             }
+            if unused.get(i) == Some(&true) {
+                values.push(MISSING);
+                continue;
+            }
             let name = dialect.names.as_ref().map_or("", |names| &names[i].name);
             let listed = if name.is_empty() { String::new() } else { format!(" ({name:?})") };
             for missing in [&mut missing, &mut with_blanks] {
@@ -112,11 +127,17 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         missing = with_blanks;
     }
     let named = dialect.names.is_some() && !dialect.complex;
+    let without = |values: &Vec<Complex64>| named && values.iter().all(|v| v.re.is_nan());
+    rows.without_values = columns.iter().map(without).collect();
+    if unused.is_empty() && rows.without_values.iter().any(|w| *w) && rows.without_values.contains(&false) {
+        return Ok(rows);
+    }
     rows.sparse = columns.iter().map(|values| sparse(values).filter(|_| named)).collect();
     let mut gaps = 0;
     for (values, sparse) in columns.iter_mut().zip(&rows.sparse) {
         match sparse {
             Some((first, every)) => *values = values.iter().skip(*first).step_by(*every).copied().collect(),
+            None if without(values) && !unused.is_empty() => {}
             None => gaps += values.iter().filter(|v| v.re.is_nan()).count(),
         }
     }
@@ -125,7 +146,7 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
         let end_early = columns.iter().all(|values| gaps(values) == behind(values));
         let checked =
-            missing.check("missing value", "(NaN, Inf, over-range or blank), in line", allow_missing);
+            missing.check("missing value", "(NaN, Inf, over-range, error or blank), in line", allow_missing);
         checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })?;
     }
     rows.missing = gaps;
