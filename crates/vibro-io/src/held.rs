@@ -94,6 +94,9 @@ pub fn rises(values: &[f64]) -> bool {
     values.is_sorted_by(|a, b| a < b)
 }
 
+/// What is said of instants with gaps until one of their stretches is used.
+const GAPS: [&str; 2] = ["samples-lost", "axis-backwards"];
+
 /// Records of a file, with the ends of those whose values were not kept.
 #[derive(Debug)]
 pub struct Contents {
@@ -136,6 +139,10 @@ impl Contents {
                 }
             }
         }
+        // The stretch that is used has no gaps.
+        let kept = |found: &Finding| options.stretch.is_none() || !GAPS.contains(&&*found.code);
+        self.findings.retain(kept);
+        self.records.iter_mut().for_each(|(record, _)| record.meta_mut().findings.retain(kept));
         // One channel of noise loses only itself, unless it is asked for.
         let all = left_out.len() == self.records.len();
         for (number, error) in left_out {

@@ -4,6 +4,9 @@
 use crate::held::{Contents, opening};
 use vibro_record::{Finding, Record};
 
+/// Its finding.
+pub const MAGNITUDE: &str = "magnitude";
+
 /// Fewest values that are compared.
 const FEW: usize = 32;
 
@@ -42,7 +45,7 @@ pub fn mark(contents: &mut Contents) {
     };
     for (i, components) in found {
         let meta = contents.records[i].0.meta_mut();
-        meta.found(Finding::caution("magnitude").name("components", components));
+        meta.found(Finding::caution(MAGNITUDE).name("components", components));
     }
 }
 
@@ -86,6 +89,19 @@ mod tests {
         let surveyed: Vec<_> = reader.headers(&source).unwrap().1.into_iter().map(|h| h.findings).collect();
         assert_eq!(read, surveyed);
         read
+    }
+
+    /// A counter, a small component, a large one, their length.
+    #[test]
+    fn the_channel_to_name_is_the_component_that_moves_most() {
+        let row = |i: i32| {
+            let (x, y) = ((0.3 * f64::from(i)).sin() / 8.0, (0.3 * f64::from(i)).sin());
+            format!("{},{i},{x},{y},{}\n", f64::from(i) / 200.0, x.hypot(y))
+        };
+        let text = "t (s),beat (g),x (g),y (g),a (g)\n".to_owned() + &(0..200).map(row).collect::<String>();
+        let read = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap();
+        let said = read.trace(None, None).unwrap_err().to_string();
+        assert!(said.contains("channel = \"y\""), "{said}");
     }
 
     #[test]
