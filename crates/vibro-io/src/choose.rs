@@ -136,8 +136,8 @@ fn likeliest(traces: &[(usize, &Trace)]) -> usize {
     all.max_by(|a, b| motion(a).total_cmp(&motion(b))).unwrap_or(first)
 }
 
-/// The complaint that none of several channels, each with its place in the file, was chosen, and the `best` of
-/// them to try; one whose name is not its own goes by its number.
+/// The complaint that none of several channels, each with its place in the file, was chosen, and the `best`
+/// of them to try; one whose name is not its own goes by its number.
 fn none_chosen(path: &Path, channels: &[(usize, &str)], best: usize) -> Error {
     let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
     let found = format!("{} channels, and none was chosen", names.len());

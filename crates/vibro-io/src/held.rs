@@ -51,7 +51,7 @@ impl Held {
     pub fn opening(&self) -> &[f64] {
         match self {
             Held::Ends(ends) => ends.opening(),
-            held => opening(held.reals()),
+            held @ Held::Values(_) => opening(held.reals()),
         }
     }
 

@@ -29,7 +29,7 @@ pub fn mark(contents: &mut Contents) {
             })
             .collect();
         let of = |(i, _, unit, values): &(usize, &str, &str, &[f64])| {
-            let length = values.len() >= FEW && values.iter().all(|v| !(*v < 0.0));
+            let length = values.len() >= FEW && !values.iter().any(|v| *v < 0.0);
             let others: Vec<_> = traces
                 .iter()
                 .filter(|other| length && other.0 != *i && other.2 == *unit && other.3.len() == values.len())

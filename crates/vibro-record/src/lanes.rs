@@ -91,12 +91,12 @@ impl Extremes {
             let at = if most > self.size() { near.iter().position(|v| v.abs() == most) } else { None };
             let (at, opening) = (at.unwrap_or_default(), Vec::new());
             self.open(near);
-            self.join(Extremes { low, high, n: near.len(), at, finite, opening });
+            self.join(&Extremes { low, high, n: near.len(), at, finite, opening });
         }
     }
 
     /// Adds the ends of the next values.
-    pub fn join(&mut self, next: Extremes) {
+    pub fn join(&mut self, next: &Extremes) {
         self.open(&next.opening);
         if next.size() > self.size() {
             self.at = self.n + next.at;
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(parts, Extremes::of(&values));
         assert_eq!(parts.opening(), &values[..values.len().min(OPENING)]);
         let (mut joined, behind) = (Extremes::of(&values[..700]), Extremes::of(&values[700..]));
-        joined.join(behind);
+        joined.join(&behind);
         assert_eq!((&joined, joined.len(), joined.finite()), (&parts, values.len(), true));
         joined.take(&[f64::NAN]);
         assert!(!joined.finite());

@@ -239,13 +239,14 @@ mod sheets {
 
     #[test]
     fn days_of_a_sheet_without_a_format_are_seconds() {
-        let days = |rate: f64| {
-            let row = |i: u32| format!("{:?},{}\n", 45_250.4 + f64::from(i) / rate / 86_400.0, i % 7);
+        let days = |start: f64, rate: f64| {
+            let row = |i: u32| format!("{:?},{}\n", start + f64::from(i) / rate / 86_400.0, i % 7);
             let text = "Timestamp,a (m/s^2)\n".to_owned() + &(0..400).map(row).collect::<String>();
             Reader::new().from_reader("x.csv", text.as_bytes()).unwrap()
         };
-        for rate in [1.0, 10.0, 400.0] {
-            let found = days(rate);
+        for (start, rate) in [(45_250.4, 1.0), (45_250.4, 10.0), (45_250.4, 400.0), (0.0, 1.0), (0.25, 400.0)]
+        {
+            let found = days(start, rate);
             assert!(has_finding(&found.findings, "axis-serial-days", &[]), "{:?}", found.findings);
             // A double holds such a day to 0.3 µs, of which both ends are off.
             let (trace, off) = (traces(&found)[0], 2.0 * 3.2e-7 * rate / 399.0);
@@ -255,8 +256,10 @@ mod sheets {
                 trace.axis.at(399)
             );
         }
-        // Seconds of a day, 1440 a second.
-        assert!(!has_finding(&days(1.0 / 60.0).findings, "axis-serial-days", &[]));
+        // Seconds of a day, 1440 a second; a record of 100 kHz.
+        for (start, rate) in [(45_250.4, 1.0 / 60.0), (0.0, 1e5 / 86_400.0)] {
+            assert!(!has_finding(&days(start, rate).findings, "axis-serial-days", &[]), "{start} {rate}");
+        }
     }
 
     /// What would be groups of digits in a text are decimals of a number here.

@@ -195,7 +195,7 @@ impl Lane {
         for (lane, next) in before.iter_mut().zip(behind).filter(|(_, next)| next.ends.len() > 0) {
             lane.falls = lane.falls || next.falls || next.first <= lane.last;
             lane.last = next.last;
-            lane.ends.join(next.ends);
+            lane.ends.join(&next.ends);
         }
         before
     }

@@ -140,8 +140,8 @@ pub fn build(
 /// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
 const REPEATS: f64 = 0.05;
 
-/// How many of the first rows, of how many, repeat the one before in all of several columns, where these stand alone, between rows that
-/// differ: a motion that rests, or coarse digits, repeat many in a row.
+/// How many of the first rows, of how many, repeat the one before in all of several columns, where these are
+/// alone, between rows that differ: a motion that rests, or coarse digits, repeat many in a row.
 fn repeats(table: &[Column]) -> Option<(usize, usize)> {
     let measured = table.iter().filter(|column| !column.rises());
     let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();

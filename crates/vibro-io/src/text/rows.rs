@@ -42,10 +42,10 @@ pub struct Rows {
 /// on a missing value in a column that its name makes the abscissa always.
 pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
     let rows = read_but(text, dialect, allow_missing, &[])?;
-    match rows.columns.is_empty() {
-        true => read_but(text, dialect, allow_missing, &rows.without_values),
-        false => Ok(rows),
+    if rows.columns.is_empty() {
+        return read_but(text, dialect, allow_missing, &rows.without_values);
     }
+    Ok(rows)
 }
 
 /// As [`read`], where some columns are known to be `unused`; with no columns where some others are.
@@ -142,22 +142,22 @@ fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool])
         }
     }
     if gaps > 0 {
-        let gaps = |values: &[Complex64]| values.iter().filter(|v| v.re.is_nan()).count();
-        let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
-        let end_early = columns.iter().all(|values| gaps(values) == behind(values));
-        let checked =
-            missing.check("missing value", "(NaN, Inf, over-range, error or blank), in line", allow_missing);
-        checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })?;
+        checked(missing, &columns, allow_missing)?;
     }
     rows.missing = gaps;
     let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
-    let all = columns.into_iter();
-    rows.columns = if dialect.complex {
-        all.map(|c| Values::Complex(c).into()).collect()
-    } else {
-        all.map(|c| real(c).into()).collect()
-    };
+    let held = |c| if dialect.complex { Values::Complex(c).into() } else { real(c).into() };
+    rows.columns = columns.into_iter().map(held).collect();
     Ok(rows)
+}
+
+/// Refuses missing values, unless they are allowed; where columns only end early it says what to do.
+fn checked(missing: Missing, columns: &[Vec<Complex64>], allowed: bool) -> Result<usize> {
+    let gaps = |values: &[Complex64]| values.iter().filter(|v| v.re.is_nan()).count();
+    let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
+    let end_early = columns.iter().all(|values| gaps(values) == behind(values));
+    let checked = missing.check("missing value", "(NaN, Inf, over-range, error or blank), in line", allowed);
+    checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })
 }
 
 /// What to try where columns are of different length.

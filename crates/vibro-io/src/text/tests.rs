@@ -329,8 +329,8 @@ fn a_text_that_is_read_again_has_the_values_of_one_that_is_held() {
 fn rows_of_settings_above_the_names() {
     for blank in ["", ",", "\n"] {
         let head = format!("Range,50\nRate (Hz),500\nSamples,1000\nMax,3\n{blank}\nTime (s),Acc (g)\n");
-        let text =
-            head + &(0..40).map(|i| format!("{},{}\n", f64::from(i) / 500.0, i % 5)).collect::<String>();
+        let rows: Vec<String> = (0..40).map(|i| format!("{},{}\n", f64::from(i) / 500.0, i % 5)).collect();
+        let text = head + &rows.concat();
         let read = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap();
         let Record::Trace(trace) = &read.records[0] else { panic!("{read:?}") };
         assert_eq!((trace.rate(), trace.meta.name.as_str(), read.records.len()), (Some(500.0), "Acc", 1));
