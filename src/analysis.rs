@@ -320,7 +320,10 @@ fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()>
     let Some(path) = files.first().filter(|_| entry.file.is_some() || !named.is_empty()) else {
         return Ok(());
     };
-    let (_, headers, _) = entry.reading.reader()?.within(campaign.within()).survey(path)?;
+    let surveyed = entry.reading.reader()?.within(campaign.within()).survey(path);
+    // What is wrong in a line of the file is said of that line; what is stated is at fault otherwise.
+    let at = |error: Error| if error.line().is_some() { error } else { campaign.fault(entry, error) };
+    let (_, headers, _) = surveyed.map_err(at)?;
     // Values that are numbered, as a step without a rate shows.
     if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
         let error = Error::usage(format!("{} has no sampling rate", shown(path)), "rate = HZ");

@@ -18,8 +18,14 @@ pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
 
 /// Prints several errors as [`error`] does one. The exit code is the largest.
 pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
+    // A hint of the crates below knows no name of the file.
+    let file = std::env::args_os().skip(2).find(|word| Path::new(word).is_file());
     let spoken = |error: &Error| {
         let text = error.spoken(|key, value| voice.set(key, value));
+        let text = match (text.strip_suffix(" FILE"), &file) {
+            (Some(command), Some(file)) => format!("{command} {}", print::typed(Path::new(file))),
+            _ => text,
+        };
         let help = voice == Voice::Command && error.is_bare_usage();
         if help { format!("{text}\n  try: {} --help", typed().0) } else { text }
     };

@@ -5,7 +5,7 @@ use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Header, SweepList};
-use crate::record::shown;
+use crate::record::{Fact, shown};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
@@ -181,8 +181,18 @@ impl Series {
             |k: &usize| matches!(self.headers[*k].quantity, "displacement" | "velocity" | "acceleration");
         let mut forces = traces.iter().copied().filter(is_force);
         let force = forces.next().filter(|_| forces.next().is_none())?;
-        let responses: Vec<usize> = traces.into_iter().filter(motion).collect();
+        let responses: Vec<usize> =
+            traces.into_iter().filter(|k| motion(k) && self.components(*k).is_none()).collect();
         (!responses.is_empty()).then_some((force, responses))
+    }
+
+    /// The components of a channel that is the length of a vector: without a sign its tones are doubled.
+    pub(super) fn components(&self, k: usize) -> Option<&str> {
+        let found = self.headers[k].findings.iter().find(|found| found.code == "magnitude")?;
+        match found.fact("components")? {
+            Fact::Name(names) => Some(names),
+            _ => None,
+        }
     }
 
     /// A channel by its name, or by its number where that means no other.

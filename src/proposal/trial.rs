@@ -184,7 +184,13 @@ impl Trial<'_> {
             return Found { tables: drills, ..found };
         }
         let each = (0..channels).into_par_iter().with_min_len(share(values));
-        let each = each.map(|k| self.channel(series, k, name));
+        let each = each.map(|k| match series.components(k) {
+            Some(of) => {
+                let why = format!("{} is the magnitude of {of}, which are taken", series.channel(k));
+                Found::left(file, why)
+            }
+            None => self.channel(series, k, name),
+        });
         each.collect::<Vec<Found>>().into_iter().for_each(|one| found.add(one));
         found
     }

@@ -279,6 +279,21 @@ pub fn epoch(first: f64) -> Option<(&'static str, f64)> {
     [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)].into_iter().find(since_1970)
 }
 
+/// Seconds of a day.
+pub const DAY: f64 = 86_400.0;
+
+/// Whether times without a unit are days as sheets count them: from 1900 or 1904, here from 1982 to 2064,
+/// with a row a second or more, for as seconds no record that begins so late has so short steps; or parts of
+/// a day at 1 to 1000 whole hertz, for as seconds their rate is that many times 86 400 Hz.
+pub fn is_serial(times: &[f64]) -> bool {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return false };
+    let step = (last - first) / (times.len() as f64 - 1.0);
+    let rate = 1.0 / (DAY * step);
+    let dated = (30_000.0..60_000.0).contains(first) && *last < 60_000.0;
+    let whole = (0.5..1000.5).contains(&rate) && (rate - rate.round()).abs() < 1e-6;
+    dated && rate > 0.99 || whole && *first >= 0.0 && *last < 1.0
+}
+
 /// What to say where a file declares another number of values than it holds.
 pub fn fewer(declared: usize, n: usize) -> Finding {
     Finding::caution("fewer-values").count("declared", declared).count("n", n)

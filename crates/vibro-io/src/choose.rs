@@ -1,10 +1,14 @@
 //! Records of a file as a person names them: one of a recording, or time traces block by block.
 
 use super::{Format, Reader, Recording, Source, packed};
+use crate::held::rises;
+use crate::magnitude::MAGNITUDE;
 use crate::text;
 use crate::wav::Wave;
 use std::path::Path;
-use vibro_record::{Error, Meta, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel};
+use vibro_record::{
+    Error, Meta, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel, lanes,
+};
 
 /// Texts of fewer bytes are held, which saves reading them twice: their values take less than 256 MB, for a
 /// value takes two bytes with what ends it.
@@ -104,7 +108,8 @@ impl Reader {
             let others: Vec<usize> = (0..all.channels().len()).filter(|i| Some(*i) != reference).collect();
             if others.len() != 1 {
                 let names = others.iter().map(|i| (*i, all.channels()[*i].name.as_str()));
-                return Err(none_chosen(file, &names.collect::<Vec<_>>()));
+                let first = others.iter().position(|i| !all.channels()[*i].has(MAGNITUDE)).unwrap_or(0);
+                return Err(none_chosen(file, &names.collect::<Vec<_>>(), first));
             }
             all.keep(&reference.into_iter().chain(others).collect::<Vec<usize>>());
             all
@@ -116,18 +121,33 @@ impl Reader {
     }
 }
 
-/// The complaint that none of several channels, each with its place in the file, was chosen; one whose name
-/// is not its own goes by its number.
-fn none_chosen(path: &Path, channels: &[(usize, &str)]) -> Error {
+/// The one of several traces that is most likely meant: of those in the unit of the first the one that moves
+/// most, and none that only counts or is a magnitude.
+fn likeliest(traces: &[(usize, &Trace)]) -> usize {
+    let suited = |i: &usize| !traces[*i].1.meta.has(MAGNITUDE) && !rises(&traces[*i].1.values);
+    let Some(first) = (0..traces.len()).find(suited) else { return 0 };
+    let motion = |i: &usize| {
+        let values = &traces[*i].1.values;
+        let mean = lanes::sum(values) / values.len() as f64;
+        values.iter().map(|v| (v - mean).powi(2)).sum::<f64>()
+    };
+    let alike = |i: &usize| traces[*i].1.meta.unit == traces[first].1.meta.unit;
+    let all = (0..traces.len()).rev().filter(|i| suited(i) && alike(i));
+    all.max_by(|a, b| motion(a).total_cmp(&motion(b))).unwrap_or(first)
+}
+
+/// The complaint that none of several channels, each with its place in the file, was chosen, and the `best`
+/// of them to try; one whose name is not its own goes by its number.
+fn none_chosen(path: &Path, channels: &[(usize, &str)], best: usize) -> Error {
     let names: Vec<&str> = channels.iter().map(|channel| channel.1).collect();
     let found = format!("{} channels, and none was chosen", names.len());
     let error = Error::input(Place::file(path), found, format!("one of {}", names.join(", ")));
-    match channels {
-        [(_, name), others @ ..] if others.iter().all(|other| other.1 != *name) => {
+    match channels.get(best) {
+        Some((_, name)) if channels.iter().filter(|other| other.1 == *name).count() == 1 => {
             error.set("channel", format!("{name:?}"))
         }
-        [(i, _), ..] => error.set("channel", (i + 1).to_string()),
-        [] => Error::input(Place::file(path), "its only channel is the reference", "a second channel")
+        Some((i, _)) => error.set("channel", (i + 1).to_string()),
+        None => Error::input(Place::file(path), "its only channel is the reference", "a second channel")
             .hint("another file"),
     }
 }
@@ -195,7 +215,7 @@ impl Recording {
             (None, 1) => Ok(0),
             (None, _) => {
                 let names = spectra.iter().map(|s| s.meta.name.as_str()).enumerate();
-                return Err(none_chosen(&self.path, &names.collect::<Vec<_>>()));
+                return Err(none_chosen(&self.path, &names.collect::<Vec<_>>(), 0));
             }
             (Some(name), _) => find_channel(&self.path, name, spectra.iter().map(|s| s.meta.called())),
         };
@@ -212,7 +232,7 @@ impl Recording {
             (None, 1) => Ok(0),
             (None, _) => {
                 let names = traces.iter().map(|(_, t)| t.meta.name.as_str()).enumerate();
-                return Err(none_chosen(&self.path, &names.collect::<Vec<_>>()));
+                return Err(none_chosen(&self.path, &names.collect::<Vec<_>>(), likeliest(&traces)));
             }
             (Some(name), _) => find_channel(&self.path, name, traces.iter().map(|(_, t)| t.meta.called())),
         };

@@ -2,7 +2,7 @@
 
 use crate::Options;
 use crate::assemble::{self, NOMINAL, Spectral};
-use vibro_record::lanes::Extremes;
+use vibro_record::lanes::{Extremes, OPENING};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
 
 /// Values, or the ends of real ones of which some fall and none is missing: they are no abscissa, and nothing
@@ -47,6 +47,14 @@ impl Held {
         }
     }
 
+    /// The first real values, as many as of a survey.
+    pub fn opening(&self) -> &[f64] {
+        match self {
+            Held::Ends(ends) => ends.opening(),
+            held @ Held::Values(_) => opening(held.reals()),
+        }
+    }
+
     /// All values, where they may have gaps.
     pub fn values_mut(&mut self) -> Option<&mut Values> {
         if let Held::Values(values) = self { Some(values) } else { None }
@@ -59,7 +67,7 @@ impl Held {
     pub fn scale(&mut self, factor: f64) -> Result<()> {
         match self {
             Held::Values(values) => assemble::to_si(values, factor),
-            Held::Ends(ends) => units::scale(ends.ends_mut(), factor),
+            Held::Ends(ends) => ends.values_mut().into_iter().try_for_each(|v| units::scale(v, factor)),
         }
     }
 
@@ -76,10 +84,18 @@ impl Held {
     }
 }
 
+/// The first of these values, as many as a survey keeps.
+pub fn opening(values: &[f64]) -> &[f64] {
+    &values[..values.len().min(OPENING)]
+}
+
 /// Whether each value lies above the one before it.
 pub fn rises(values: &[f64]) -> bool {
     values.is_sorted_by(|a, b| a < b)
 }
+
+/// What is said of instants with gaps until one of their stretches is used.
+const GAPS: [&str; 2] = ["samples-lost", "axis-backwards"];
 
 /// Records of a file, with the ends of those whose values were not kept.
 #[derive(Debug)]
@@ -123,6 +139,10 @@ impl Contents {
                 }
             }
         }
+        // The stretch that is used has no gaps.
+        let kept = |found: &Finding| options.stretch.is_none() || !GAPS.contains(&&*found.code);
+        self.findings.retain(kept);
+        self.records.iter_mut().for_each(|(record, _)| record.meta_mut().findings.retain(kept));
         // One channel of noise loses only itself, unless it is asked for.
         let all = left_out.len() == self.records.len();
         for (number, error) in left_out {

@@ -55,6 +55,7 @@ mod held;
 mod level;
 mod limit;
 mod lvm;
+mod magnitude;
 mod mat;
 mod missing;
 mod number;

@@ -15,7 +15,8 @@ const POWERS: [f64; 23] = [
 ];
 
 /// What instruments print in place of a value that is missing or over-range, in lower case.
-const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout|fffffff";
+const MISSING: &str = "novalue|nan|nat|inf|infinity|∞|na|n/a|null|none|ol|over|overload|overrange|over range|ovld|burnout|fffffff\
+                       |#div/0!|#n/a|#num!|#value!|#ref!|#name?|#null!";
 
 /// What instruments print for infinity and for no number (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: [f64; 2] = [9.9e37, 9.91e37];
@@ -78,7 +79,7 @@ fn ungrouped(text: &[u8], decimal: u8, stated: bool) -> Option<f64> {
 }
 
 /// Whether a field stands for a missing value: blank, `NaN`, `Inf`, `∞`, `-`, `--.--`, `NA`, `1.#QNAN`,
-/// `***`, `OVER`, `9.9E+37`, …
+/// `***`, `OVER`, `9.9E+37`, `#DIV/0!`, …
 pub(crate) fn is_missing(text: &[u8]) -> bool {
     let text = text.trim_ascii();
     let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);

@@ -12,6 +12,7 @@ use super::text::{self, LONGER};
 use crate::{Format, Limit};
 use std::cmp::Reverse;
 use std::path::Path;
+use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result};
 
 /// First bytes of a zip archive, as are the newer workbooks of Excel and those of `OpenDocument`.
@@ -41,6 +42,10 @@ struct Part {
 }
 
 impl Part {
+    fn is_packed(&self) -> bool {
+        self.bytes.starts_with(ZIP) || self.bytes.starts_with(COMPOUND)
+    }
+
     /// Rows of numbers of a text; bytes of a format that is no text, and 0 of a file of no known format.
     fn rows(&self) -> usize {
         if text::encoding::is_text(&self.bytes) {
@@ -64,15 +69,23 @@ pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option
     parts.sort_by_key(|(rows, _)| Reverse(*rows));
     let long = parts.iter().take_while(|(rows, _)| *rows > 0 && LONGER * rows > parts[0].0).count();
     if long > 1 || long == 0 && parts.len() != 1 {
-        let names = listed(parts.iter().take(if long > 1 { long } else { parts.len() }));
-        let found = if long > 1 { "several tables of like length" } else { "no table of numbers" };
-        let error = Error::input(Place::file(source.path()), format!("{found}: {names}"), "one table");
+        let names = listed(parts.iter());
+        let found = if long > 1 {
+            format!("the longest table has less than {LONGER} times the rows of the next: {names}")
+        } else {
+            format!("no table of numbers: {names}")
+        };
+        let error = Error::input(Place::file(source.path()), found, "one table");
         return Err(match parts.first().filter(|_| long > 1) {
             Some((_, first)) => {
                 error.hint(format!("name one: {}", source.path().join(&first.name).display()))
             }
-            None => error.hint("unpack it, and name the file with the samples"),
+            None => error.hint(unpack(parts.iter().find(|(_, part)| part.is_packed()))),
         });
+    }
+    if parts[0].1.is_packed() {
+        let found = format!("it holds another packed file: {}", parts[0].1.name);
+        return Err(Error::input(Place::file(source.path()), found, "a table").hint(unpack(parts.first())));
     }
     let found = (parts.len() > 1).then(|| {
         let found = Finding::note("parts-left-out").name("part", parts[0].1.name.as_str());
@@ -84,7 +97,18 @@ pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option
 
 fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Part)>) -> String {
     let name = |part: &Part| format!("{}{}", part.name, if part.hidden { " (hidden)" } else { "" });
-    parts.map(|(_, part)| name(part)).collect::<Vec<_>>().join(", ")
+    let rows = |(rows, part): &(usize, Part)| match rows {
+        0 => name(part),
+        _ if text::encoding::is_text(&part.bytes) => format!("{} ({})", name(part), counted(*rows, "row")),
+        _ => format!("{} ({})", name(part), counted(*rows, "byte")),
+    };
+    parts.map(rows).collect::<Vec<_>>().join(", ")
+}
+
+/// What to type where a file holds no table, but perhaps another one that does.
+fn unpack(packed: Option<&(usize, Part)>) -> String {
+    let name = packed.map_or("the file with the samples", |(_, part)| part.name.as_str());
+    format!("unpack it, and name {name}")
 }
 
 /// The part of this name.
@@ -142,8 +166,16 @@ fn parts(source: &Source, limit: Limit) -> Result<Option<Vec<Part>>> {
 /// What is said of an archive or a workbook that cannot be read.
 #[cfg(feature = "zip")]
 fn damaged(source: &Source, why: impl std::fmt::Display) -> Error {
-    Error::input(Place::file(source.path()), format!("it cannot be unpacked: {why}"), "a whole file")
-        .hint("unpack it with the program that wrote it, and export CSV")
+    let why = why.to_string();
+    let (found, hint) = if why.contains("Password") || why.contains("password") {
+        ("it is protected by a password".to_owned(), "unpack it, or save it without the password")
+    } else if why.contains("EOCD") {
+        ("its end is missing: it is no whole archive".to_owned(), "copy or download it again")
+    } else {
+        let hint = "unpack it with the program that wrote it, and export CSV";
+        (format!("it cannot be unpacked: {why}"), hint)
+    };
+    Error::input(Place::file(source.path()), found, "a whole file").hint(hint)
 }
 
 /// The files of a zip archive, or the sheets of a workbook that is one.

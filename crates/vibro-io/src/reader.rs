@@ -4,7 +4,7 @@ use super::assemble::domain;
 use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
-use super::{Folder, Limit, Source, SweepList, foreign, level, packed, span};
+use super::{Folder, Limit, Source, SweepList, foreign, level, magnitude, packed, span};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -267,7 +267,7 @@ impl Reader {
     pub(crate) fn headers(&self, source: &Source) -> Result<(Format, Vec<Header>, Vec<Finding>)> {
         let (format, Contents { records, findings }) = self.contents(source, true)?;
         let header = |(record, ends): &(Record, Option<Extremes>)| {
-            Header::with(record, ends.unwrap_or_else(|| record.extremes()))
+            ends.as_ref().map_or_else(|| Header::of(record), |ends| Header::with(record, ends))
         };
         Ok((format, records.par_iter().map(header).collect(), findings))
     }
@@ -293,6 +293,7 @@ impl Reader {
         let contents = room.and_then(|()| read(survey && !changes)).and_then(|all| {
             let mut all = if level::needs_values(&all) { read(false)? } else { all };
             all.findings.extend(packed::percent(source));
+            magnitude::mark(&mut all);
             level::settle(span::cut(all.evened(&self.options)?, span)?, entry.format, &self.options)
         });
         Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
@@ -384,11 +385,11 @@ pub struct Header {
 impl Header {
     /// Header of a record that is in memory.
     pub fn of(record: &Record) -> Header {
-        Header::with(record, record.extremes())
+        Header::with(record, &record.extremes())
     }
 
     /// Header of a record that has, or would have, these values.
-    pub(super) fn with(record: &Record, extremes: Extremes) -> Header {
+    pub(super) fn with(record: &Record, extremes: &Extremes) -> Header {
         let (meta, axis, largest) = (record.meta(), record.axis(), extremes.largest());
         let ends = extremes.range().filter(|_| !record.is_complex());
         let step = axis.step().filter(|_| axis.kind == AxisKind::Time);

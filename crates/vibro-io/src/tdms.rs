@@ -75,7 +75,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     };
     raw.par_chunks_mut(each).enumerate().try_for_each(fill)?;
     raw.par_iter_mut().filter(|raw| matches!(raw.kept, Kept::Ends(_))).for_each(|raw| raw.look(0));
-    if raw.iter().any(|raw| matches!(raw.kept, Kept::Ends(ends) if !ends.finite())) {
+    if raw.iter().any(|raw| matches!(&raw.kept, Kept::Ends(ends) if !ends.finite())) {
         return read(source, options, false);
     }
     let (mut channels, mut left) = (Vec::new(), None);
@@ -153,7 +153,7 @@ fn changed(object: &Object) -> Option<String> {
 }
 
 /// What is kept of the values of an object.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Kept {
     /// All of them.
     Values,
@@ -178,9 +178,9 @@ impl Raw<'_> {
             return;
         }
         let new = matches!(self.kept, Kept::Undecided);
-        let (mut ends, columns) = match self.kept {
+        let (mut ends, columns) = match &mut self.kept {
             Kept::Undecided => (Extremes::NONE, self.columns.clone()),
-            Kept::Ends(ends) => (ends, std::mem::take(&mut self.columns)),
+            Kept::Ends(ends) => (std::mem::replace(ends, Extremes::NONE), std::mem::take(&mut self.columns)),
             Kept::Values => return,
         };
         self.kept = match self.scales.apply(&self.object.slots, columns) {

@@ -29,7 +29,7 @@ mod wrapped;
 
 use crate::held::{Contents, Held};
 use crate::reader::Options;
-use crate::{Format, Limit, Source, level, missing, number, packed};
+use crate::{Format, Limit, Source, level, magnitude, missing, number, packed};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
@@ -188,7 +188,9 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
         let Read { columns, findings, clean } = read_rows(text, &dialect, options, true)?;
         let Some((shape, end)) = clean.filter(|_| text.source.in_memory().is_none()) else { return Ok(None) };
         let handed = columns.iter().map(|column| (column.at, column.factor)).collect();
-        let contents = Contents::of(columns.into_iter().map(|column| column.record), findings);
+        let records = columns.into_iter().map(|column| (column.record, column.ends)).collect();
+        let mut contents = Contents { records, findings };
+        magnitude::mark(&mut contents);
         let Contents { records, findings } = level::settle(contents, format, options)?;
         let trace = |(record, _)| if let Record::Trace(trace) = record { Some(trace) } else { None };
         let traces: Option<Vec<Trace>> = records.into_iter().map(trace).collect();

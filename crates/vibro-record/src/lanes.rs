@@ -49,8 +49,11 @@ pub fn survey(values: &[f64]) -> Survey {
 /// Values of which the first largest is looked for while they are near.
 const NEAR: usize = 4096;
 
-/// Both ends of values that may come block by block; missing ones (NaN) are left out.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// First values that are kept: what channels have to do with each other shows in so many rows.
+pub const OPENING: usize = 1 << 14;
+
+/// Both ends of values that may come block by block, missing ones (NaN) left out, and the first values.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Extremes {
     low: f64,
     high: f64,
@@ -58,12 +61,20 @@ pub struct Extremes {
     n: usize,
     at: usize,
     finite: bool,
+    /// The first [`OPENING`] values.
+    opening: Vec<f64>,
 }
 
 impl Extremes {
     /// Of no values.
-    pub const NONE: Extremes =
-        Extremes { low: f64::INFINITY, high: f64::NEG_INFINITY, n: 0, at: 0, finite: true };
+    pub const NONE: Extremes = Extremes {
+        low: f64::INFINITY,
+        high: f64::NEG_INFINITY,
+        n: 0,
+        at: 0,
+        finite: true,
+        opening: Vec::new(),
+    };
 
     /// Of these values.
     pub fn of(values: &[f64]) -> Extremes {
@@ -78,12 +89,15 @@ impl Extremes {
             let Survey { low, high, finite } = survey(near);
             let most = high.max(-low);
             let at = if most > self.size() { near.iter().position(|v| v.abs() == most) } else { None };
-            self.join(Extremes { low, high, n: near.len(), at: at.unwrap_or_default(), finite });
+            let (at, opening) = (at.unwrap_or_default(), Vec::new());
+            self.open(near);
+            self.join(&Extremes { low, high, n: near.len(), at, finite, opening });
         }
     }
 
     /// Adds the ends of the next values.
-    pub fn join(&mut self, next: Extremes) {
+    pub fn join(&mut self, next: &Extremes) {
+        self.open(&next.opening);
         if next.size() > self.size() {
             self.at = self.n + next.at;
         }
@@ -91,6 +105,16 @@ impl Extremes {
         self.high = self.high.max(next.high);
         self.n += next.n;
         self.finite &= next.finite;
+    }
+
+    /// Keeps the first of the next values, where there is room.
+    fn open(&mut self, next: &[f64]) {
+        self.opening.extend(next.iter().take(OPENING - self.opening.len()));
+    }
+
+    /// The first values.
+    pub fn opening(&self) -> &[f64] {
+        &self.opening
     }
 
     /// Largest magnitude; −∞ where there is none.
@@ -109,9 +133,9 @@ impl Extremes {
         self.finite
     }
 
-    /// The ends, to be multiplied by a factor above 0.
-    pub fn ends_mut(&mut self) -> [&mut f64; 2] {
-        [&mut self.low, &mut self.high]
+    /// Ends and first values, to be multiplied by a factor above 0.
+    pub fn values_mut(&mut self) -> [&mut [f64]; 3] {
+        [std::slice::from_mut(&mut self.low), std::slice::from_mut(&mut self.high), &mut self.opening]
     }
 
     /// Least and largest value; `None` where there is none.
@@ -148,13 +172,14 @@ mod tests {
                 }
             }
         }
-        let values: Vec<f64> = (0..3 * NEAR).map(|i| ((i * 7919) % 1009) as f64 - 600.0).collect();
+        let values: Vec<f64> = (0..3 * OPENING / 2).map(|i| ((i * 7919) % 1009) as f64 - 600.0).collect();
         let mut parts = Extremes::NONE;
         values.chunks(1000).for_each(|part| parts.take(part));
         assert_eq!(parts, Extremes::of(&values));
+        assert_eq!(parts.opening(), &values[..values.len().min(OPENING)]);
         let (mut joined, behind) = (Extremes::of(&values[..700]), Extremes::of(&values[700..]));
-        joined.join(behind);
-        assert_eq!((joined, joined.len(), joined.finite()), (parts, values.len(), true));
+        joined.join(&behind);
+        assert_eq!((&joined, joined.len(), joined.finite()), (&parts, values.len(), true));
         joined.take(&[f64::NAN]);
         assert!(!joined.finite());
         let first = values.iter().position(|v| *v == -600.0).unwrap();

@@ -324,7 +324,7 @@ fn by_rows(
     if ends && blocks > 1 && !rises(&block(0)?) {
         let parts = (0..blocks).into_par_iter().map(|k| block(k).map(|values| Extremes::of(&values)));
         let mut whole = Extremes::NONE;
-        parts.collect::<std::result::Result<Vec<_>, Fault>>()?.into_iter().for_each(|part| whole.join(part));
+        parts.collect::<std::result::Result<Vec<_>, Fault>>()?.into_iter().for_each(|part| whole.join(&part));
         if whole.finite() {
             return Ok(Held::Ends(whole));
         }

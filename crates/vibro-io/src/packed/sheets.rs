@@ -46,6 +46,9 @@ pub fn of(source: &Source, kind: Kind, limit: Limit) -> Result<Vec<Part>> {
 fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
     let failed = |why| damaged(source, why);
     let mut file = cfb::CompoundFile::open(BufReader::new(source.open()?)).map_err(failed)?;
+    if file.is_stream("/EncryptedPackage") {
+        return Err(damaged(source, "Password required"));
+    }
     let name = ["/Workbook", "/Book"].into_iter().find(|name| file.is_stream(name));
     let Some(name) = name else { return Err(damaged(source, "it holds no sheets")) };
     let (mut stream, mut room) = (Vec::new(), 0.0);
@@ -153,6 +156,7 @@ fn streamed(source: &Source, limit: Limit) -> Result<Vec<Part>> {
 /// A sheet as text; each line is a row, so that complaints name it.
 fn sheet(of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> {
     cells.retain(|(.., cell)| *cell != Data::Empty);
+    with_points(&mut cells);
     cells.sort_by_key(|(row, column, _)| (*row, *column));
     let Some(last) = cells.last().map(|last| last.0) else { return Ok(None) };
     let columns = || cells.iter().map(|cell| cell.1);
@@ -181,6 +185,26 @@ fn sheet(of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> 
     text.push('\n');
     let hidden = of.visible != SheetVisible::Visible;
     Ok(Some(Part { name: of.name, bytes: text.into_bytes(), hidden }))
+}
+
+/// Turns texts with decimal commas into numbers where they stand beside numbers with decimals, whose mark is
+/// a point here; not where all of them may be grouped digits.
+fn with_points(cells: &mut [Cell]) {
+    let decimals = |cell: &Cell| matches!(cell.2, Data::Float(value) if value.fract() != 0.0);
+    let comma = |cell: &Cell| match &cell.2 {
+        Data::String(words) if words.rfind([',', '.']) == words.rfind(',') => {
+            number::parse_with(words.as_bytes(), b',').filter(|_| words.contains(','))
+        }
+        _ => None,
+    };
+    let grouped = |cell: &Cell| matches!(&cell.2, Data::String(words) if number::may_be_grouped(words.trim().as_bytes()));
+    if cells.iter().any(decimals) && cells.iter().any(|cell| comma(cell).is_some() && !grouped(cell)) {
+        for cell in cells {
+            if let Some(value) = comma(cell) {
+                cell.2 = Data::Float(value);
+            }
+        }
+    }
 }
 
 fn write_cell(text: &mut String, cell: &Data, clock: Option<&Clock>) {

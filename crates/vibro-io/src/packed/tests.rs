@@ -73,7 +73,7 @@ fn one_of_several_tables_is_named_by_its_path() {
     let path = folder.path().join("two.zip");
     std::fs::write(&path, &files).unwrap();
     let said = Reader::new().from_path(&path).unwrap_err().to_string();
-    assert!(said.contains("several tables of like length: a.csv, sub/b.csv"), "{said}");
+    assert!(said.contains("a.csv (200 rows), sub/b.csv (200 rows)"), "{said}");
     // The hint, typed.
     let typed = said.rsplit("name one: ").next().unwrap().lines().next().unwrap();
     assert_eq!(traces(&Reader::new().from_path(typed).unwrap())[1].meta.name, "Force");
@@ -105,12 +105,13 @@ fn archives_that_cannot_be_read_are_refused() {
         lying[at..at + 4].copy_from_slice(&1000u32.to_le_bytes());
     }
     for (bytes, limit, words) in [
-        (archive(&[("a.csv", raw.as_bytes())], secret), 1e9, "Password required"),
+        (archive(&[("a.csv", raw.as_bytes())], secret), 1e9, "it is protected by a password"),
         (packed(&[("a.csv", &bomb)]), 2e6, "it needs 3.0 MB of memory, the limit is 2.0 MB"),
         (lying, 2e6, "larger than its declared"),
         (broken, 1e9, "cannot be unpacked"),
-        (whole[..whole.len() / 2].to_vec(), 1e9, "cannot be unpacked"),
-        (packed(&[("inner.zip", &whole)]), 1e9, "a packed folder (zip)"),
+        (whole[..whole.len() / 2].to_vec(), 1e9, "its end is missing"),
+        (packed(&[("inner.zip", &whole)]), 1e9, "it holds another packed file: inner.zip"),
+        (packed(&[("readme.txt", b"no numbers"), ("b.zip", &whole)]), 1e9, "unpack it, and name b.zip"),
         (packed(&[("readme.txt", b"no numbers"), ("b.txt", b"here")]), 1e9, "no table of numbers"),
     ] {
         let said = said(&bytes, limit);
@@ -198,6 +199,67 @@ mod sheets {
         };
         assert!(has_finding(&of("Slip (%)"), "sheet-in-percent", &["column=Slip (%)"]));
         assert!(!has_finding(&of("Force (N)"), "sheet-in-percent", &[]));
+    }
+
+    fn sheet_of(rows: &[[&str; 4]]) -> Vec<u8> {
+        workbook(|book| {
+            let sheet = book.add_worksheet();
+            for (r, row) in rows.iter().enumerate() {
+                for (c, cell) in row.iter().enumerate().filter(|(_, cell)| !cell.is_empty()) {
+                    let (r, c) = (r as u32, c as u16);
+                    let _ = match cell.parse::<f64>() {
+                        Ok(value) => sheet.write_number(r, c, value).unwrap(),
+                        Err(_) => sheet.write_string(r, c, *cell).unwrap(),
+                    };
+                }
+            }
+        })
+    }
+
+    #[test]
+    fn texts_with_commas_beside_numbers_and_columns_without_values_are_read() {
+        let rows = [
+            ["Zeit [s]", "Weg [m]", "Notiz", "Kraft [N]"],
+            ["0", "0,252", "", "1.234,50"],
+            ["0.005", "1,5", "", "-2,5"],
+            ["0.01", "-3,000", "", "7"],
+        ];
+        let found = Reader::new().from_reader("x.xlsx", sheet_of(&rows).as_slice()).unwrap();
+        let values: Vec<&[f64]> = traces(&found).into_iter().map(|t| t.values.as_slice()).collect();
+        assert_eq!(values, [&[0.252, 1.5, -3.0][..], &[1234.5, -2.5, 7.0]]);
+        assert!(has_finding(&found.findings, "columns-empty", &["columns=Notiz"]), "{:?}", found.findings);
+        // An error is a missing value.
+        let rows = [rows[0], rows[1], ["0.005", "#DIV/0!", "", "2"], rows[3]];
+        let said = Reader::new().from_reader("x.xlsx", sheet_of(&rows).as_slice()).unwrap_err().to_string();
+        assert!(said.contains("1 missing value") && said.contains("3 (\"Weg\")"), "{said}");
+        let kept =
+            Reader::new().allow_missing(true).from_reader("x.xlsx", sheet_of(&rows).as_slice()).unwrap();
+        assert!(traces(&kept)[0].values[1].is_nan());
+    }
+
+    #[test]
+    fn days_of_a_sheet_without_a_format_are_seconds() {
+        let days = |start: f64, rate: f64| {
+            let row = |i: u32| format!("{:?},{}\n", start + f64::from(i) / rate / 86_400.0, i % 7);
+            let text = "Timestamp,a (m/s^2)\n".to_owned() + &(0..400).map(row).collect::<String>();
+            Reader::new().from_reader("x.csv", text.as_bytes()).unwrap()
+        };
+        for (start, rate) in [(45_250.4, 1.0), (45_250.4, 10.0), (45_250.4, 400.0), (0.0, 1.0), (0.25, 400.0)]
+        {
+            let found = days(start, rate);
+            assert!(has_finding(&found.findings, "axis-serial-days", &[]), "{:?}", found.findings);
+            // A double holds such a day to 0.3 µs, of which both ends are off.
+            let (trace, off) = (traces(&found)[0], 2.0 * 3.2e-7 * rate / 399.0);
+            assert!(
+                (trace.axis.at(399) * rate / 399.0 - 1.0).abs() < off,
+                "{rate}: {:?}",
+                trace.axis.at(399)
+            );
+        }
+        // Seconds of a day, 1440 a second; a record of 100 kHz.
+        for (start, rate) in [(45_250.4, 1.0 / 60.0), (0.0, 1e5 / 86_400.0)] {
+            assert!(!has_finding(&days(start, rate).findings, "axis-serial-days", &[]), "{start} {rate}");
+        }
     }
 
     /// What would be groups of digits in a text are decimals of a number here.

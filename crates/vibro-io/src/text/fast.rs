@@ -157,7 +157,7 @@ fn surveyed(
 }
 
 /// What was seen of a column.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Lane {
     /// Whether all its values are written.
     kept: bool,
@@ -195,7 +195,7 @@ impl Lane {
         for (lane, next) in before.iter_mut().zip(behind).filter(|(_, next)| next.ends.len() > 0) {
             lane.falls = lane.falls || next.falls || next.first <= lane.last;
             lane.last = next.last;
-            lane.ends.join(next.ends);
+            lane.ends.join(&next.ends);
         }
         before
     }

@@ -66,6 +66,12 @@ impl Name {
                 known(name, unit).map(|found| Name { name: format!("{} {behind}", found.name), ..found })
             })
             .or_else(|| text.split_once(", ").and_then(|(name, unit)| known(name, unit)))
+            // `Acceleration, g (CFC 60)`
+            .or_else(|| {
+                let (name, behind) = text.split_once(", ")?;
+                let (unit, behind) = behind.split_once(" (")?;
+                known(name, unit).map(|found| Name { name: format!("{} ({behind}", found.name), ..found })
+            })
             .or_else(|| text.rsplit_once(" in ").and_then(|(name, unit)| known(name, unit)))
             .or_else(|| {
                 let whole = WHOLE.iter().find(|(said, _)| text.eq_ignore_ascii_case(said));
@@ -335,6 +341,7 @@ mod tests {
         let nested = "H1 ((m/s²)/N)";
         assert_eq!(split(nested), ("H1".into(), Some("(m/s²)/N".into())));
         assert_eq!(split("v / (m/s)"), ("v".into(), Some("(m/s)".into())));
+        assert_eq!(split("Acc, g (CFC 60)"), ("Acc (CFC 60)".into(), Some("g".into())));
         assert_eq!(split("level [EU]"), ("level".into(), Some("EU".into())));
         assert_eq!(split("x (mm) []"), ("x (mm)".into(), None));
         assert_eq!(split("force_N"), ("force".into(), Some("N".into())));

@@ -42,6 +42,13 @@ pub fn build(
     let columns = rows.columns.into_iter().zip(names).zip(sparse).enumerate();
     let column = |(i, ((values, name), sparse))| Column { at: i + 1, name, values, sparse };
     let mut table: Vec<Column> = columns.map(column).collect();
+    let empty = |column: &Column| rows.without_values.get(column.at - 1) == Some(&true);
+    let unused: Vec<String> =
+        table.iter().filter(|c| empty(c) && !c.name.name.is_empty()).map(Column::label).collect();
+    if !unused.is_empty() {
+        findings.push(Finding::note("columns-empty").name("columns", unused.join(", ")));
+    }
+    table.retain(|column| !empty(column));
     let numbered = made.numbered(&table);
     if numbered {
         table.remove(0);
@@ -98,8 +105,8 @@ pub fn build(
     if let Some(unit) = made.stated.unit.as_deref().filter(|_| is_table && without > 1) {
         of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
     }
-    if let Some(n) = repeats(&table) {
-        of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", axis.len()));
+    if let Some((n, all)) = repeats(&table) {
+        of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
     }
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
@@ -133,16 +140,16 @@ pub fn build(
 /// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
 const REPEATS: f64 = 0.05;
 
-/// How many rows repeat the one before in all of several columns, where these stand alone, between rows that
-/// differ: a motion that rests, or coarse digits, repeat many in a row.
-fn repeats(table: &[Column]) -> Option<usize> {
+/// How many of the first rows, of how many, repeat the one before in all of several columns, where these are
+/// alone, between rows that differ: a motion that rests, or coarse digits, repeat many in a row.
+fn repeats(table: &[Column]) -> Option<(usize, usize)> {
     let measured = table.iter().filter(|column| !column.rises());
-    let columns: Vec<&[f64]> = measured.map(|column| column.values.reals()).collect();
+    let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();
     let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
     let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
     let all = (1..n).filter(|i| again(*i)).count();
     let alone = (2..n - 1).filter(|i| again(*i) && !again(i - 1) && !again(i + 1)).count();
-    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some(all)
+    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some((all, n))
 }
 
 /// The record of a column, and how its values are read again.
@@ -298,7 +305,10 @@ impl Made<'_> {
         let epoch = epoch.and_then(|first| assemble::epoch(*first)).filter(|(_, f)| unsaid || *f == factor);
         let since = epoch.map_or(0.0, |(_, factor)| values[0] * factor);
         let (from, factor) = epoch.map_or((0.0, factor), |(_, factor)| (values[0], factor));
+        let serial = unsaid && !clock && kind == AxisKind::Time && assemble::is_serial(&values);
+        let (from, factor) = if serial { (values[0], assemble::DAY) } else { (from, factor) };
         let assumed = match epoch {
+            _ if serial => Some(Finding::caution("axis-serial-days")),
             Some((unit, _)) if unsaid => Some(Finding::caution("axis-epoch").name("unit", unit)),
             None if clock && self.minutes() => Some(Finding::caution("axis-clock-minutes")),
             _ if clock || epoch.is_some() => Some(Finding::note("axis-clock")),

@@ -22,6 +22,8 @@ pub struct Rows {
     /// First row and distance of the rows that have a value, for each column that has one in every second,
     /// third, … only.
     pub sparse: Vec<Option<(usize, usize)>>,
+    /// Which columns have no value in any row: nothing is missing there. None where all have.
+    pub without_values: Vec<bool>,
     /// Number of missing values.
     pub missing: usize,
     /// Number of gaps of blank lines that separate blocks of rows.
@@ -39,6 +41,15 @@ pub struct Rows {
 /// first blank line between rows of several columns; on missing values, all at once, unless they are allowed;
 /// on a missing value in a column that its name makes the abscissa always.
 pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> {
+    let rows = read_but(text, dialect, allow_missing, &[])?;
+    if rows.columns.is_empty() {
+        return read_but(text, dialect, allow_missing, &rows.without_values);
+    }
+    Ok(rows)
+}
+
+/// As [`read`], where some columns are known to be `unused`; with no columns where some others are.
+fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool]) -> Result<Rows> {
     let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
     let reader = Reader { text, dialect };
     let mut rows = Rows::default();
@@ -97,6 +108,10 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
                 let fault = fault(&line, *at, &format!("found {field:?}"), expected);
                 return Err(fault.hint("remove the row"));
             }
+            if unused.get(i) == Some(&true) {
+                values.push(MISSING);
+                continue;
+            }
             let name = dialect.names.as_ref().map_or("", |names| &names[i].name);
             let listed = if name.is_empty() { String::new() } else { format!(" ({name:?})") };
             for missing in [&mut missing, &mut with_blanks] {
@@ -112,31 +127,37 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
         missing = with_blanks;
     }
     let named = dialect.names.is_some() && !dialect.complex;
+    let without = |values: &Vec<Complex64>| named && values.iter().all(|v| v.re.is_nan());
+    rows.without_values = columns.iter().map(without).collect();
+    if unused.is_empty() && rows.without_values.iter().any(|w| *w) && rows.without_values.contains(&false) {
+        return Ok(rows);
+    }
     rows.sparse = columns.iter().map(|values| sparse(values).filter(|_| named)).collect();
     let mut gaps = 0;
     for (values, sparse) in columns.iter_mut().zip(&rows.sparse) {
         match sparse {
             Some((first, every)) => *values = values.iter().skip(*first).step_by(*every).copied().collect(),
+            None if without(values) && !unused.is_empty() => {}
             None => gaps += values.iter().filter(|v| v.re.is_nan()).count(),
         }
     }
     if gaps > 0 {
-        let gaps = |values: &[Complex64]| values.iter().filter(|v| v.re.is_nan()).count();
-        let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
-        let end_early = columns.iter().all(|values| gaps(values) == behind(values));
-        let checked =
-            missing.check("missing value", "(NaN, Inf, over-range or blank), in line", allow_missing);
-        checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })?;
+        checked(missing, &columns, allow_missing)?;
     }
     rows.missing = gaps;
     let real = |values: Vec<Complex64>| Values::Real(values.iter().map(|v| v.re).collect());
-    let all = columns.into_iter();
-    rows.columns = if dialect.complex {
-        all.map(|c| Values::Complex(c).into()).collect()
-    } else {
-        all.map(|c| real(c).into()).collect()
-    };
+    let held = |c| if dialect.complex { Values::Complex(c).into() } else { real(c).into() };
+    rows.columns = columns.into_iter().map(held).collect();
     Ok(rows)
+}
+
+/// Refuses missing values, unless they are allowed; where columns only end early it says what to do.
+fn checked(missing: Missing, columns: &[Vec<Complex64>], allowed: bool) -> Result<usize> {
+    let gaps = |values: &[Complex64]| values.iter().filter(|v| v.re.is_nan()).count();
+    let behind = |values: &[Complex64]| values.iter().rev().take_while(|v| v.re.is_nan()).count();
+    let end_early = columns.iter().all(|values| gaps(values) == behind(values));
+    let checked = missing.check("missing value", "(NaN, Inf, over-range, error or blank), in line", allowed);
+    checked.map_err(|why| if end_early { why.hint(END_EARLY).setting("allow_missing") } else { why })
 }
 
 /// What to try where columns are of different length.

@@ -1,6 +1,7 @@
 //! Units as headers of columns spell them.
 
 use super::names::Name;
+use crate::number;
 use vibro_record::Scaling;
 use vibro_record::units::{Quantity, Unit, spelled};
 
@@ -55,7 +56,7 @@ pub(crate) fn unit_word(field: &str) -> Option<Name> {
 }
 
 /// Whether a row of fields holds units only: all blank, known or in brackets; or, where the first is known,
-/// at least half of them known and the others short, such as `EU`.
+/// at least half of them known and the others short, such as `EU`, and no numbers, as of `Samples,1000`.
 pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
     let (mut total, mut known, mut sure, mut short, mut first) = (0, 0, 0, 0, None);
     for field in fields.filter(|f| !f.trim().is_empty()) {
@@ -67,7 +68,8 @@ pub(crate) fn is_unit_row<'a>(fields: impl Iterator<Item = &'a str>) -> bool {
         total += 1;
         known += usize::from(understood);
         sure += usize::from(understood || bare_unit(field).len() < field.trim().len());
-        short += usize::from(understood || unit.chars().count() <= 4);
+        short +=
+            usize::from(understood || unit.chars().count() <= 4 && number::either(unit.as_bytes()).is_none());
         first.get_or_insert(understood);
     }
     known > 0 && (sure == total || (first == Some(true) && short == total && 2 * known >= total))
