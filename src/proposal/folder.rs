@@ -77,6 +77,12 @@ impl Inventory {
             });
             found.lists.push((stem(path), within(path)));
         }
+        // Of an archive or a workbook without a main part each is a recording.
+        let parts = |path: PathBuf| match reader.parts(&path) {
+            Ok(parts) if !parts.is_empty() => parts,
+            _ => vec![path],
+        };
+        paths = paths.into_par_iter().flat_map_iter(parts).collect();
         let mut groups: BTreeMap<(String, String, bool), Vec<Member>> = BTreeMap::new();
         let mut order = Vec::new();
         let names: Vec<String> = paths.iter().map(|path| within(path)).collect();
