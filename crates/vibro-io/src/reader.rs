@@ -102,8 +102,8 @@ impl Reader {
         self.folder.source(path.as_ref(), self.options.limit)
     }
 
-    /// The paths of the tables of an archive or a workbook whose lengths compare, so that one has to be named;
-    /// none of any other file.
+    /// The paths of the tables of an archive or a workbook whose lengths compare, so that one has to be
+    /// named; none of any other file.
     ///
     /// # Errors
     /// If it cannot be opened or unpacked.

@@ -29,7 +29,7 @@ mod wrapped;
 
 use crate::held::{Contents, Held};
 use crate::reader::Options;
-use crate::{Format, Limit, Source, level, missing, number, packed};
+use crate::{Format, Limit, Source, level, missing, number};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
