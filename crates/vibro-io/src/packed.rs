@@ -51,8 +51,11 @@ impl Part {
     }
 }
 
-/// All parts with their rows, the longest first, and how many of them compare with it.
-fn ranked(source: &Source, limit: Limit) -> Result<Option<(Vec<(usize, Part)>, usize)>> {
+/// Parts with their rows, the longest first, and how many of them compare with it.
+type Ranked = (Vec<(usize, Part)>, usize);
+
+/// All parts of an archive or a workbook; `None` of other files.
+fn ranked(source: &Source, limit: Limit) -> Result<Option<Ranked>> {
     let Some(parts) = parts(source, None, limit)? else { return Ok(None) };
     let mut parts: Vec<(usize, Part)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
     if parts.iter().any(|(rows, part)| *rows > 0 && !part.hidden) {
