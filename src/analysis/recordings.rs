@@ -138,7 +138,8 @@ const DEEPEST: usize = 16;
 /// # Errors
 /// As [`files`].
 pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let named: BTreeSet<PathBuf> = files(campaign)?.iter().map(|path| plain(path)).collect();
+    let named: BTreeSet<PathBuf> =
+        files(campaign)?.iter().map(|path| plain(campaign.within().file(path))).collect();
     let folder = plain(campaign.folder());
     let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
     // A table that is still a comment may name a pattern.
@@ -152,12 +153,13 @@ pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
         let in_words = || {
             campaign.text().match_indices(&name).any(|(at, _)| {
                 let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
-                // A full stop ends a sentence, too.
+                // A full stop ends a sentence, too, and a part of a file stands behind it.
                 let behind = behind
                     .strip_prefix('.')
                     .filter(|b| !b.starts_with(char::is_alphanumeric))
                     .unwrap_or(behind);
-                before.chars().next_back().is_none_or(ends) && behind.chars().next().is_none_or(ends)
+                before.chars().next_back().is_none_or(ends)
+                    && behind.chars().next().is_none_or(|c| c == '/' || ends(c))
             })
         };
         patterns.iter().any(|pattern| pattern.matches_with(&name, WHOLE_NAMES)) || in_words()

@@ -1,10 +1,10 @@
 //! `vibro info`: what is in a file.
 
 use super::{Run, complain, print};
-use crate::analysis::Answer;
+use crate::analysis::{Answer, file_name};
 use crate::campaign::Reading;
 use crate::error::Result;
-use crate::read::Header;
+use crate::read::{Folder, Header};
 use crate::record::{Finding, shown};
 use crate::report::words::{Voice, graded, put};
 use serde_json::json;
@@ -27,7 +27,7 @@ const WIDE: usize = 90;
 impl Run for Info {
     /// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
     fn run(&self, json: bool) -> Result<u8> {
-        let reader = self.reading.reader()?;
+        let (within, reader) = (Folder::default(), self.reading.reader()?);
         let (mut files, mut errors, mut about) = (Vec::new(), Vec::new(), Vec::new());
         let (mut text, mut code) = (String::new(), 0);
         for path in &self.files {
@@ -45,11 +45,13 @@ impl Run for Info {
             let of_records: Vec<_> =
                 records.iter().map(|r| (r.name.as_str(), r.findings.as_slice())).collect();
             findings.extend(Finding::gathered(&of_records));
-            let shown_path = shown(path);
+            let (from, shown_path) = (path.as_path(), shown(path));
             let path = path.display().to_string();
             let file = if self.files.len() > 1 { path.as_str() } else { "" };
             about.extend(findings.into_iter().map(|finding| (file.to_owned(), finding)));
-            let _ = writeln!(text, "{shown_path} ({})", format.name());
+            let held =
+                within.part(from).map_or_else(String::new, |(file, _)| format!(" in {}", file_name(file)));
+            let _ = writeln!(text, "{shown_path} ({}{held})", format.name());
             for record in &records {
                 line(&mut text, record);
             }

@@ -77,6 +77,13 @@ impl Inventory {
             });
             found.lists.push((stem(path), within(path)));
         }
+        // Of an archive or a workbook without a main part each is a recording.
+        let parts = |path: PathBuf| match reader.parts(&path) {
+            Ok(parts) if !parts.is_empty() => parts,
+            _ => vec![path],
+        };
+        paths = paths.into_par_iter().flat_map_iter(parts).collect();
+        analysis::in_order(&mut paths);
         let mut groups: BTreeMap<(String, String, bool), Vec<Member>> = BTreeMap::new();
         let mut order = Vec::new();
         let names: Vec<String> = paths.iter().map(|path| within(path)).collect();
@@ -136,6 +143,7 @@ impl Inventory {
             let reading = if key.2 { &untimed_reading } else { reading }.clone();
             found.series.push(Series { name, files, headers, pattern, alike: false, reading });
         }
+        found.name_apart();
         if let ([first, more @ ..], None) = (others.as_slice(), known) {
             let names = match more.len() {
                 0 => within(first),
@@ -144,6 +152,18 @@ impl Inventory {
             found.left.push((names, "not a recording, by the ending".to_owned()));
         }
         Ok(found)
+    }
+
+    /// Names files of one name in several folders or archives by their paths.
+    fn name_apart(&mut self) {
+        let names: Vec<String> = self.series.iter().map(|series| series.name.clone()).collect();
+        for series in &mut self.series {
+            if let ([file], true) =
+                (&series.files[..], names.iter().filter(|n| **n == series.name).count() > 1)
+            {
+                series.name.clone_from(file);
+            }
+        }
     }
 }
 

@@ -14,6 +14,8 @@ mod kept;
 mod many;
 mod model;
 mod modes;
+#[cfg(feature = "sheets")]
+mod parts;
 mod periodic;
 mod precision;
 mod ranges;

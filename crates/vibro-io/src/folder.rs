@@ -10,7 +10,7 @@ pub use manifest::{Manifest, Owner, listed};
 pub use staged::Staged;
 pub use walk::Walk;
 
-use super::Source;
+use super::{Limit, Source, packed};
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -170,9 +170,24 @@ impl Folder {
         }
     }
 
-    /// Whether there is anything of this path, at the end of links.
+    /// Whether there is anything of this path, at the end of links, or a file that may have such a part.
     pub fn exists(&self, path: &Path) -> bool {
-        self.occupant_by(path, |path| fs::metadata(path)) != Occupant::Nothing
+        self.occupant_by(path, |path| fs::metadata(path)) != Occupant::Nothing || self.part(path).is_some()
+    }
+
+    /// Where a path means a part of a file, an archive's `walk.zip/Gyroscope.csv` or a workbook's
+    /// `walk.xlsx/Sheet 2`: the file, and the name of the part, which reading it looks for.
+    pub fn part<'a>(&self, path: &'a Path) -> Option<(&'a Path, &'a Path)> {
+        let file = path
+            .ancestors()
+            .find(|above| self.occupant_by(above, |path| fs::metadata(path)) != Occupant::Nothing)?;
+        let name = path.strip_prefix(file).ok().filter(|name| !name.as_os_str().is_empty())?;
+        self.is_file(file).then_some((file, name))
+    }
+
+    /// The file in which a path lies: its own, or that of which it means a part.
+    pub fn file<'a>(&self, path: &'a Path) -> &'a Path {
+        self.part(path).map_or(path, |(file, _)| file)
     }
 
     /// Whether it is a regular file, or a link to one.
@@ -252,12 +267,12 @@ impl Folder {
         if self.occupant(&path) == Occupant::File { self.read(&path).ok() } else { None }
     }
 
-    /// The SHA-256 of a regular file, of which only a part is held at a time.
+    /// The SHA-256 of a regular file, whole where a part is named, of which only a part is held at a time.
     ///
     /// # Errors
     /// As [`Folder::read`].
     pub fn digest(&self, path: &Path) -> Result<Digest> {
-        let (mut file, mut hash, mut part) = (self.open(path)?, Sha256::new(), vec![0; 1 << 16]);
+        let (mut file, mut hash, mut part) = (self.open(self.file(path))?, Sha256::new(), vec![0; 1 << 16]);
         loop {
             match file.read(&mut part).map_err(|e| Error::io("read", path, e))? {
                 0 => return Ok(hash.finalize().into()),
@@ -266,11 +281,14 @@ impl Folder {
         }
     }
 
-    /// A file to be read as a measurement; `-` is standard input.
+    /// A file to be read as a measurement, or a part of one; `-` is standard input.
     ///
     /// # Errors
-    /// As [`Source::file`].
-    pub(crate) fn source(&self, path: &Path) -> Result<Source> {
+    /// As [`Source::file`]; if the file has no such part, or takes more than the limit.
+    pub(crate) fn source(&self, path: &Path, limit: Limit) -> Result<Source> {
+        if let Some((file, name)) = self.part(path) {
+            return packed::part(&self.source(file, limit)?, name, limit);
+        }
         self.reads(path);
         match &self.side {
             Side::Disk => Source::file(path),
@@ -291,6 +309,7 @@ impl Folder {
     /// What tells a file apart whatever its names are; nothing where there is none. `-` is the file that
     /// standard input comes from.
     fn identity(&self, path: &Path) -> Option<PathBuf> {
+        let path = self.file(path);
         if matches!(self.side, Side::Memory(_)) {
             return Some(plain(path));
         }
@@ -309,8 +328,9 @@ impl Folder {
         matches!(self.side, Side::Disk) && fs::metadata(path).is_ok_and(|meta| meta.permissions().readonly())
     }
 
-    /// Length and time of a file.
+    /// Length and time of a file, of the whole where a part is named.
     pub fn stamp(&self, path: &Path) -> Option<(u64, SystemTime)> {
+        let path = self.file(path);
         match &self.side {
             Side::Disk => fs::metadata(path).ok().and_then(|meta| Some((meta.len(), meta.modified().ok()?))),
             Side::Memory(files) => {

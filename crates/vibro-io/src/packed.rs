@@ -11,7 +11,7 @@ use super::Source;
 use super::text::{self, LONGER};
 use crate::{Format, Limit};
 use std::cmp::Reverse;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result};
 
@@ -36,24 +36,42 @@ enum Kind {
 /// A file of an archive or a sheet of a workbook.
 struct Part {
     name: String,
-    bytes: Vec<u8>,
+    source: Source,
     /// Whether the program of sheets does not show it.
     hidden: bool,
 }
 
 impl Part {
+    fn bytes(&self) -> &[u8] {
+        self.source.in_memory().unwrap_or_default()
+    }
+
     fn is_packed(&self) -> bool {
-        self.bytes.starts_with(ZIP) || self.bytes.starts_with(COMPOUND)
+        self.bytes().starts_with(ZIP) || self.bytes().starts_with(COMPOUND)
     }
 
     /// Rows of numbers of a text; bytes of a format that is no text, and 0 of a file of no known format.
     fn rows(&self) -> usize {
-        if text::encoding::is_text(&self.bytes) {
-            return text::count_rows(&self.bytes);
+        if text::encoding::is_text(self.bytes()) {
+            return text::count_rows(self.bytes());
         }
-        let known = Source::memory(&self.name, self.bytes.as_slice()).is_ok_and(|s| Format::of(&s).is_some());
-        if known { self.bytes.len() } else { 0 }
+        if Format::of(&self.source).is_some() { self.bytes().len() } else { 0 }
     }
+}
+
+/// Parts with their rows, the longest first, and how many of them compare with it.
+type Ranked = (Vec<(usize, Part)>, usize);
+
+/// All parts of an archive or a workbook; `None` of other files.
+fn ranked(source: &Source, limit: Limit) -> Result<Option<Ranked>> {
+    let Some(parts) = parts(source, None, limit)? else { return Ok(None) };
+    let mut parts: Vec<(usize, Part)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
+    if parts.iter().any(|(rows, part)| *rows > 0 && !part.hidden) {
+        parts.iter_mut().filter(|(_, part)| part.hidden).for_each(|(rows, _)| *rows = 0);
+    }
+    parts.sort_by_key(|(rows, _)| Reverse(*rows));
+    let long = parts.iter().take_while(|(rows, _)| *rows > 0 && LONGER * rows > parts[0].0).count();
+    Ok(Some((parts, long)))
 }
 
 /// The part of an archive or a workbook that is to be read, and what was left out; `None` of other files.
@@ -61,13 +79,7 @@ impl Part {
 /// # Errors
 /// If it is damaged or encrypted, unpacks to more than the limit, or several parts compare.
 pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option<Finding>)>> {
-    let Some(parts) = parts(source, limit)? else { return Ok(None) };
-    let mut parts: Vec<(usize, Part)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
-    if parts.iter().any(|(rows, part)| *rows > 0 && !part.hidden) {
-        parts.iter_mut().filter(|(_, part)| part.hidden).for_each(|(rows, _)| *rows = 0);
-    }
-    parts.sort_by_key(|(rows, _)| Reverse(*rows));
-    let long = parts.iter().take_while(|(rows, _)| *rows > 0 && LONGER * rows > parts[0].0).count();
+    let Some((mut parts, long)) = ranked(source, limit)? else { return Ok(None) };
     if long > 1 || long == 0 && parts.len() != 1 {
         let names = listed(parts.iter());
         let found = if long > 1 {
@@ -77,9 +89,7 @@ pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option
         };
         let error = Error::input(Place::file(source.path()), found, "one table");
         return Err(match parts.first().filter(|_| long > 1) {
-            Some((_, first)) => {
-                error.hint(format!("name one: {}", source.path().join(&first.name).display()))
-            }
+            Some((_, first)) => error.hint(format!("name one: {}", first.source.path().display())),
             None => error.hint(unpack(parts.iter().find(|(_, part)| part.is_packed()))),
         });
     }
@@ -91,15 +101,26 @@ pub fn main_part(source: &Source, limit: Limit) -> Result<Option<(Source, Option
         let found = Finding::note("parts-left-out").name("part", parts[0].1.name.as_str());
         found.name("parts", listed(parts.iter().skip(1)))
     });
-    let (_, part) = parts.swap_remove(0);
-    Ok(Some((Source::memory(source.path().join(part.name), part.bytes)?, found)))
+    Ok(Some((parts.swap_remove(0).1.source, found)))
+}
+
+/// The paths of the parts that compare, where no one of them is the main part; none of other files.
+///
+/// # Errors
+/// If it is damaged or encrypted, or unpacks to more than the limit.
+pub fn alike(source: &Source, limit: Limit) -> Result<Vec<PathBuf>> {
+    let Some((mut parts, long)) = ranked(source, limit)? else { return Ok(Vec::new()) };
+    parts.truncate(if long > 1 { long } else { 0 });
+    Ok(parts.into_iter().map(|(_, part)| part.source.path().to_owned()).collect())
 }
 
 fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Part)>) -> String {
     let name = |part: &Part| format!("{}{}", part.name, if part.hidden { " (hidden)" } else { "" });
     let rows = |(rows, part): &(usize, Part)| match rows {
         0 => name(part),
-        _ if text::encoding::is_text(&part.bytes) => format!("{} ({})", name(part), counted(*rows, "row")),
+        _ if text::encoding::is_text(part.bytes()) => {
+            format!("{} ({})", name(part), counted(*rows, "row"))
+        }
         _ => format!("{} ({})", name(part), counted(*rows, "byte")),
     };
     parts.map(rows).collect::<Vec<_>>().join(", ")
@@ -116,25 +137,22 @@ fn unpack(packed: Option<&(usize, Part)>) -> String {
 /// # Errors
 /// As [`main_part`]; if there is no such part.
 pub fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
-    let parts = parts(source, limit)?.unwrap_or_default();
-    let names = parts.iter().map(|part| part.name.as_str()).collect::<Vec<_>>().join(", ");
-    let Some(part) = parts.into_iter().find(|part| Path::new(&part.name) == name) else {
-        let found = format!("no part of the name {:?}", name.display().to_string());
-        return Err(Error::input(Place::file(source.path()), found, format!("one of {names}")));
+    if let Some(part) = parts(source, Some(name), limit)?.and_then(|mut parts| parts.pop()) {
+        return Ok(part.source);
+    }
+    let found = format!("no part of the name {:?}", name.display().to_string());
+    let parts = parts(source, None, limit)?.unwrap_or_default();
+    let expected = match parts.as_slice() {
+        [] => "an archive or a workbook".to_owned(),
+        all => format!("one of {}", all.iter().map(|part| part.name.as_str()).collect::<Vec<_>>().join(", ")),
     };
-    Source::memory(source.path().join(part.name), part.bytes)
-}
-
-/// Whether a text is a sheet, which calls itself a table as CSV does.
-pub fn is_sheet(source: &Source) -> bool {
-    let ending = source.path().parent().and_then(Path::extension).map(std::ffi::OsStr::to_ascii_lowercase);
-    ending.is_some_and(|e| ["xls", "xlsx", "xlsm", "ods"].iter().any(|known| e == *known))
+    Err(Error::input(Place::file(source.path()), found, expected))
 }
 
 /// What is to be said of a sheet with a column in percent: its cells are stored as parts of one where they
 /// are formatted as percent, and as they read where they are not, which the crate does not tell.
 pub fn percent(source: &Source) -> Option<Finding> {
-    let text = source.in_memory().filter(|_| is_sheet(source))?;
+    let text = source.in_memory().filter(|_| source.is_sheet())?;
     let in_percent = |cell: &&str| {
         cell.trim_end_matches([')', ']', ' ']).ends_with('%') && !cell.contains(|c: char| c.is_ascii_digit())
     };
@@ -148,18 +166,19 @@ pub fn is_packed(source: &Source) -> bool {
         || cfg!(feature = "sheets") && source.head().starts_with(COMPOUND)
 }
 
-/// All parts that are not empty; `None` where the file has none, or its kind is not built in.
+/// All parts that are not empty, or the one of this name; `None` where the file has none, or its kind is not
+/// built in.
 #[cfg_attr(not(feature = "zip"), allow(clippy::unnecessary_wraps))]
-fn parts(source: &Source, limit: Limit) -> Result<Option<Vec<Part>>> {
+fn parts(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Option<Vec<Part>>> {
     #[cfg(feature = "zip")]
     if source.head().starts_with(ZIP) {
-        return members(source, limit).map(Some);
+        return members(source, named, limit).map(Some);
     }
     #[cfg(feature = "sheets")]
     if source.head().starts_with(COMPOUND) {
-        return sheets::of(source, Kind::Compound, limit).map(Some);
+        return sheets::of(source, Kind::Compound, named, limit).map(Some);
     }
-    let _ = (source, limit, ZIP, COMPOUND);
+    let _ = (source, named, limit, ZIP, COMPOUND);
     Ok(None)
 }
 
@@ -180,7 +199,7 @@ fn damaged(source: &Source, why: impl std::fmt::Display) -> Error {
 
 /// The files of a zip archive, or the sheets of a workbook that is one.
 #[cfg(feature = "zip")]
-fn members(source: &Source, limit: Limit) -> Result<Vec<Part>> {
+fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Part>> {
     use std::io::{BufReader, Read};
     let mut archive =
         zip::ZipArchive::new(BufReader::new(source.open()?)).map_err(|why| damaged(source, why))?;
@@ -191,7 +210,10 @@ fn members(source: &Source, limit: Limit) -> Result<Vec<Part>> {
     for i in 0..archive.len() {
         let mut member = archive.by_index(i).map_err(|why| damaged(source, why))?;
         let name = member.name().map_err(|why| damaged(source, why))?.into_owned();
-        if !member.is_file() {
+        // Programs of Apple add files of their own.
+        let own = name.split('/').any(|name| name.starts_with('.') || name == "__MACOSX");
+        let other = own || named.is_some_and(|named| named != Path::new(&name));
+        if !member.is_file() || book.is_none() && other {
             continue;
         }
         held += member.size() as f64;
@@ -199,16 +221,19 @@ fn members(source: &Source, limit: Limit) -> Result<Vec<Part>> {
         // More than declared is an error of the crate. Those of a workbook are unpacked for that alone: what
         // reads sheets checks no size.
         let mut bytes = Vec::new();
-        member.read_to_end(&mut bytes).map_err(|why| damaged(source, format!("{name}: {why}")))?;
-        // Programs of Apple add files of their own.
-        let own = name.split('/').any(|name| name.starts_with('.') || name == "__MACOSX");
-        if book.is_none() && !own && !bytes.is_empty() {
-            parts.push(Part { name, bytes, hidden: false });
+        let unpacked = match book {
+            Some(_) => std::io::copy(&mut member, &mut std::io::sink()),
+            None => member.read_to_end(&mut bytes).map(|n| n as u64),
+        };
+        unpacked.map_err(|why| damaged(source, format!("{name}: {why}")))?;
+        if !bytes.is_empty() {
+            let source = Source::memory(source.path().join(&name), bytes)?;
+            parts.push(Part { name, source, hidden: false });
         }
     }
     match book {
         #[cfg(feature = "sheets")]
-        Some(book) => sheets::of(source, book, limit),
+        Some(book) => sheets::of(source, book, named, limit),
         _ => Ok(parts),
     }
 }

@@ -99,12 +99,16 @@ impl Reader {
     /// # Errors
     /// As [`Folder::source`].
     pub(super) fn source(&self, path: impl AsRef<Path>) -> Result<Source> {
-        let path = path.as_ref();
-        let above = path.ancestors().skip(1).find(|above| self.folder.is_file(above));
-        match above.filter(|_| !self.folder.exists(path)).map(|above| (above, path.strip_prefix(above))) {
-            Some((file, Ok(name))) => packed::part(&self.folder.source(file)?, name, self.options.limit),
-            _ => self.folder.source(path),
-        }
+        self.folder.source(path.as_ref(), self.options.limit)
+    }
+
+    /// The paths of the tables of an archive or a workbook whose lengths compare, so that one has to be
+    /// named; none of any other file.
+    ///
+    /// # Errors
+    /// If it cannot be opened or unpacked.
+    pub fn parts(&self, path: impl AsRef<Path>) -> Result<Vec<PathBuf>> {
+        packed::alike(&self.source(path)?, self.options.limit)
     }
 
     /// Forces a format. Default: found out from the first bytes.

@@ -23,6 +23,8 @@ pub(crate) struct Source {
     len: u64,
     /// All bytes of a small file or a buffer, the first ones of a larger file.
     bytes: Vec<u8>,
+    /// Whether it is the sheet of a workbook as text.
+    sheet: bool,
 }
 
 /// Something to read from and to seek in.
@@ -64,7 +66,7 @@ impl Source {
             .and_then(|file| file.take(HEAD as u64).read_to_end(&mut bytes))
             .map_err(|e| Error::io("read", path, e))?;
         let len = if bytes.len() < HEAD { bytes.len() as u64 } else { info.len() };
-        Source { path: path.to_owned(), len, bytes }.not_empty()
+        Source { path: path.to_owned(), len, bytes, sheet: false }.not_empty()
     }
 
     /// Bytes in memory; `name` stands for the path in messages.
@@ -73,7 +75,18 @@ impl Source {
     /// If there are none.
     pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Result<Source> {
         let bytes = bytes.into();
-        Source { path: name.into(), len: bytes.len() as u64, bytes }.not_empty()
+        Source { path: name.into(), len: bytes.len() as u64, bytes, sheet: false }.not_empty()
+    }
+
+    /// The same, as the sheet of a workbook.
+    #[cfg(feature = "sheets")]
+    pub fn of_sheet(self) -> Source {
+        Source { sheet: true, ..self }
+    }
+
+    /// Whether it is the sheet of a workbook, which calls itself a table as CSV does.
+    pub fn is_sheet(&self) -> bool {
+        self.sheet
     }
 
     fn not_empty(self) -> Result<Source> {

@@ -11,7 +11,7 @@
 //! ```
 
 use super::text::encoding;
-use super::{Folder, Source, number};
+use super::{Folder, Limit, Source, number};
 use std::path::{Path, PathBuf};
 use vibro_record::{Error, Place, Result, pattern};
 
@@ -57,7 +57,7 @@ impl SweepList {
             )
             .hint(HOLDS));
         }
-        let source = within.source(path)?;
+        let source = within.source(path, Limit::default())?;
         if !encoding::is_text(source.head()) {
             return Err(Error::input(Place::file(path), "binary data", "a list file of text")
                 .hint(format!("{HOLDS}; of a measurement file `vibro info` says what is in it")));

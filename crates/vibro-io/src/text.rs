@@ -29,7 +29,7 @@ mod wrapped;
 
 use crate::held::{Contents, Held};
 use crate::reader::Options;
-use crate::{Format, Limit, Source, level, magnitude, missing, number, packed};
+use crate::{Format, Limit, Source, level, magnitude, missing, number};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
@@ -61,7 +61,7 @@ impl<'a> Text<'a> {
 
     /// Whether the file calls itself CSV: then one column will do, and names need not fit the rows.
     fn called_csv(&self) -> bool {
-        matches!(self.source.extension().as_str(), "csv" | "tsv") || packed::is_sheet(self.source)
+        matches!(self.source.extension().as_str(), "csv" | "tsv") || self.source.is_sheet()
     }
 }
 

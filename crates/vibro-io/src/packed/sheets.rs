@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::fmt::{Display, Write};
 use std::io::{BufReader, Cursor, Read, Seek, Write as _};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use vibro_record::Result;
 
 /// Row and column from 0, and what stands there.
@@ -21,22 +22,22 @@ const DECIMALS: usize = 6;
 /// How far an instant in µs may be from what was printed, by the rounding of its days.
 const ROUNDING: i64 = 1;
 
-/// All sheets with cells.
+/// All sheets with cells, or the one of this name.
 ///
 /// # Errors
 /// If the workbook is damaged or encrypted, or takes more than the limit.
-pub fn of(source: &Source, kind: Kind, limit: Limit) -> Result<Vec<Part>> {
+pub fn of(source: &Source, kind: Kind, named: Option<&Path>, limit: Limit) -> Result<Vec<Part>> {
     // The crate subtracts the ends of a sheet, and panics where the larger comes first.
     let read = AssertUnwindSafe(|| match kind {
         Kind::Compound => {
             let book = Xls::new(checked(source, limit)?);
-            ranges(book.map_err(|why| damaged(source, why))?, source, limit)
+            ranges(book.map_err(|why| damaged(source, why))?, (source, named), limit)
         }
         Kind::OpenDocument => {
             let book = Ods::new(BufReader::new(source.open()?));
-            ranges(book.map_err(|why| damaged(source, why))?, source, limit)
+            ranges(book.map_err(|why| damaged(source, why))?, (source, named), limit)
         }
-        Kind::Xml => streamed(source, limit),
+        Kind::Xml => streamed((source, named), limit),
     });
     catch_unwind(read).unwrap_or_else(|_| Err(damaged(source, "its records contradict each other")))
 }
@@ -116,26 +117,35 @@ fn extent(sheet: &[u8]) -> Option<f64> {
     Some(rows * columns)
 }
 
-fn ranges<R: Read + Seek, B: Reader<R>>(mut book: B, source: &Source, limit: Limit) -> Result<Vec<Part>>
+/// The sheets of a workbook that are meant: all, or the one of this name.
+fn meant(sheets: &[Sheet], named: Option<&Path>) -> Vec<Sheet> {
+    sheets.iter().filter(|of| named.is_none_or(|named| named == Path::new(&of.name))).cloned().collect()
+}
+
+fn ranges<R: Read + Seek, B: Reader<R>>(
+    mut book: B,
+    (source, named): (&Source, Option<&Path>),
+    limit: Limit,
+) -> Result<Vec<Part>>
 where
     B::Error: Display,
 {
     let mut parts = Vec::new();
-    for of in book.sheets_metadata().to_vec() {
+    for of in meant(book.sheets_metadata(), named) {
         let range = book.worksheet_range(&of.name).map_err(|why| damaged(source, why))?;
         let (row, column) = range.start().unwrap_or_default();
         let place = |(r, c, cell): (usize, usize, &Data)| (row + r as u32, column + c as u32, cell.clone());
-        parts.extend(sheet(of, range.used_cells().map(place).collect(), limit)?);
+        parts.extend(sheet(source, of, range.used_cells().map(place).collect(), limit)?);
     }
     Ok(parts)
 }
 
 /// As [`ranges`], without room for the cells between used ones.
-fn streamed(source: &Source, limit: Limit) -> Result<Vec<Part>> {
+fn streamed((source, named): (&Source, Option<&Path>), limit: Limit) -> Result<Vec<Part>> {
     let mut book =
         Xlsx::new(BufReader::new(source.open()?)).map_err(|why: XlsxError| damaged(source, why))?;
     let mut parts = Vec::new();
-    for of in book.sheets_metadata().to_vec() {
+    for of in meant(book.sheets_metadata(), named) {
         let mut reader = match book.worksheet_cells_reader(&of.name) {
             Err(XlsxError::NotAWorksheet(_)) => continue,
             reader => reader.map_err(|why| damaged(source, why))?,
@@ -148,13 +158,13 @@ fn streamed(source: &Source, limit: Limit) -> Result<Vec<Part>> {
             }
             cells.push((row, column, cell.get_value().clone().into()));
         }
-        parts.extend(sheet(of, cells, limit)?);
+        parts.extend(sheet(source, of, cells, limit)?);
     }
     Ok(parts)
 }
 
 /// A sheet as text; each line is a row, so that complaints name it.
-fn sheet(of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> {
+fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> {
     cells.retain(|(.., cell)| *cell != Data::Empty);
     with_points(&mut cells);
     cells.sort_by_key(|(row, column, _)| (*row, *column));
@@ -184,7 +194,8 @@ fn sheet(of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> 
     }
     text.push('\n');
     let hidden = of.visible != SheetVisible::Visible;
-    Ok(Some(Part { name: of.name, bytes: text.into_bytes(), hidden }))
+    let source = Source::memory(source.path().join(&of.name), text)?.of_sheet();
+    Ok(Some(Part { name: of.name, source, hidden }))
 }
 
 /// Turns texts with decimal commas into numbers where they stand beside numbers with decimals, whose mark is

@@ -1,8 +1,10 @@
 //! Archives and workbooks, made here, against the text that they hold.
 
 use crate::tests::has_finding;
-use crate::{Limit, Reader, Recording};
+use crate::{Folder, Limit, Reader, Recording};
+use sha2::{Digest as _, Sha256};
 use std::io::{Cursor, Write};
+use std::path::Path;
 use vibro_record::{Record, Trace};
 use zip::unstable::write::FileOptionsExt;
 use zip::write::SimpleFileOptions;
@@ -83,6 +85,37 @@ fn one_of_several_tables_is_named_by_its_path() {
     assert_eq!(streamed.channels().len(), 2);
     let said = Reader::new().from_path(path.join("c.csv")).unwrap_err().to_string();
     assert!(said.contains("no part of the name \"c.csv\"; expected one of a.csv, sub/b.csv"), "{said}");
+}
+
+#[test]
+fn a_path_means_a_part_on_a_disk_and_in_memory() {
+    let raw = table(',');
+    let two = packed(&[("a.csv", raw.as_bytes()), ("sub/b.csv", raw.as_bytes())]);
+    let one = packed(&[("a.csv", raw.as_bytes()), ("device.csv", DEVICE)]);
+    let files = [("two.zip", two.clone()), ("one.zip", one), ("plain.csv", raw.clone().into_bytes())];
+    let root = tempfile::tempdir().unwrap();
+    for (name, bytes) in &files {
+        std::fs::write(root.path().join(name), bytes).unwrap();
+    }
+    for folder in [Folder::from(root.path()), Folder::memory(root.path(), files)] {
+        let at = |name: &str| root.path().join(name);
+        let (archive, part) = (at("two.zip"), at("two.zip/sub/b.csv"));
+        assert_eq!(folder.part(&part), Some((archive.as_path(), Path::new("sub/b.csv"))));
+        assert!(folder.exists(&part) && folder.part(&archive).is_none());
+        assert!(!folder.exists(&at("gone.zip/a.csv")) && folder.part(root.path()).is_none());
+        // What is known of the archive is known of its part.
+        assert_eq!(folder.digest(&part).unwrap(), <[u8; 32]>::from(Sha256::digest(&two)));
+        assert!(folder.stamp(&part).is_some() && folder.stamp(&part) == folder.stamp(&archive));
+        let reader = Reader::new().within(&folder);
+        assert_eq!(traces(&reader.from_path(&part).unwrap()).len(), 2);
+        assert!(folder.opened(&archive) && !folder.opened(&at("one.zip")));
+        assert_eq!(reader.parts(&archive).unwrap(), [at("two.zip/a.csv"), part]);
+        for name in ["one.zip", "plain.csv", "two.zip/a.csv"] {
+            assert!(reader.parts(at(name)).unwrap().is_empty(), "{name}");
+        }
+        let said = reader.from_path(at("plain.csv/a.csv")).unwrap_err().to_string();
+        assert!(said.contains("expected an archive or a workbook"), "{said}");
+    }
 }
 
 #[test]
