@@ -3,12 +3,11 @@
 use super::{Format, Reader, Recording, Source, packed};
 use crate::held::rises;
 use crate::magnitude::MAGNITUDE;
+use crate::options::named;
 use crate::text;
 use crate::wav::Wave;
 use std::path::Path;
-use vibro_record::{
-    Error, Meta, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel, lanes,
-};
+use vibro_record::{Error, Place, Record, Result, Spectrum, Stream as _, Trace, Traces, find_channel, lanes};
 
 /// Texts of fewer bytes are held, which saves reading them twice: their values take less than 256 MB, for a
 /// value takes two bytes with what ends it.
@@ -150,18 +149,6 @@ fn none_chosen(path: &Path, channels: &[(usize, &str)], best: usize) -> Error {
         None => Error::input(Place::file(path), "its only channel is the reference", "a second channel")
             .hint("another file"),
     }
-}
-
-/// Indices of the channels named; of all where none is.
-pub(crate) fn named<'a>(
-    path: &Path,
-    named: &[impl AsRef<str>],
-    all: impl Iterator<Item = &'a Meta> + Clone,
-) -> Result<Vec<usize>> {
-    if named.is_empty() {
-        return Ok((0..all.count()).collect());
-    }
-    named.iter().map(|name| find_channel(path, name.as_ref(), all.clone().map(Meta::called))).collect()
 }
 
 impl Recording {

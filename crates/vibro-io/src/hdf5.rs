@@ -16,9 +16,9 @@ mod matlab;
 
 use super::Source;
 use super::format::Format;
-use super::reader::Options;
 use crate::held::{Contents, Held};
-use crate::mat;
+use crate::mat::dialect;
+use crate::options::Options;
 use crate::variables::names::Dialect;
 use crate::variables::{self, Array, Content, MOST_TEXT};
 use file::{Data, File, Member};
@@ -65,7 +65,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let root = file.root()?;
     let members = file.members(&root, "")?;
     let (dialect, variables) = if matlab::is(&members) {
-        (&mat::DIALECT, matlab::variables(&mut file, members, survey)?)
+        (&dialect::DIALECT, matlab::variables(&mut file, members, survey)?)
     } else {
         let mut walk = Walk { file: &mut file, survey, variables: Vec::new() };
         let scale = walk.stated("", &root.attributes().unwrap_or_default(), AS_STORED);

@@ -59,8 +59,10 @@ mod magnitude;
 mod mat;
 mod missing;
 mod number;
+mod options;
 mod packed;
 mod reader;
+mod registry;
 mod source;
 mod span;
 mod steps;
@@ -84,7 +86,7 @@ pub use sweep::SweepReader;
 pub use sweep_list::SweepList;
 pub use vibro_record as record;
 
-pub(crate) use reader::Options;
+pub(crate) use options::Options;
 pub(crate) use source::Source;
 
 #[cfg(test)]

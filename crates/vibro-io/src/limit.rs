@@ -1,9 +1,8 @@
 //! How much memory a reader may fill: asked before anything is held whose size a file says.
 
-use crate::Options;
 use std::sync::OnceLock;
 use vibro_record::units::notation::significant;
-use vibro_record::{Axis, Error, Result};
+use vibro_record::{Error, Result};
 
 /// Bytes in a GB.
 const GB: f64 = 1e9;
@@ -11,8 +10,6 @@ const GB: f64 = 1e9;
 const UNKNOWN: f64 = 4.0 * GB;
 /// Part of the machine's memory that a hint names at most: the system and other programs need theirs.
 const MOST_OF_MACHINE: f64 = 0.8;
-/// Bytes of a value in memory.
-const VALUE: f64 = 8.0;
 
 /// Stated for all readers of the program.
 static STATED: OnceLock<f64> = OnceLock::new();
@@ -59,7 +56,7 @@ impl Limit {
     }
 
     /// As [`Limit::hold`], with what else to try where the machine has too little memory.
-    fn hold_or(self, bytes: f64, advice: impl FnOnce(Error) -> Error) -> Result<()> {
+    pub(crate) fn hold_or(self, bytes: f64, advice: impl FnOnce(Error) -> Error) -> Result<()> {
         if bytes <= self.0 {
             return Ok(());
         }
@@ -76,29 +73,6 @@ impl Limit {
             error.set("max_memory", format!("{}GB", (enough * 10.0).ceil() / 10.0))
         } else {
             advice(error)
-        })
-    }
-}
-
-impl Options {
-    /// Whether so many values may be held, with what is made of them.
-    ///
-    /// # Errors
-    /// As [`Limit::hold`].
-    pub(crate) fn hold(&self, values: f64) -> Result<()> {
-        self.limit.hold(VALUE * values * (1.0 + self.beside))
-    }
-
-    /// As [`Options::hold`], of so many channels over `time`: a part of them fits.
-    ///
-    /// # Errors
-    /// As [`Limit::hold`].
-    pub(crate) fn hold_traces(&self, channels: usize, time: &Axis) -> Result<()> {
-        let sample = VALUE * channels as f64 * (1.0 + self.beside);
-        self.limit.hold_or(sample * time.len() as f64, |error| {
-            let seconds = (self.limit.0 / sample).floor() * time.step().unwrap_or(1.0);
-            let (start, decimals) = (time.start(), 10f64.powf(1.0 - seconds.log10().floor()));
-            error.set("span", format!("[{start}, {}]", start + (seconds * decimals).floor() / decimals))
         })
     }
 }

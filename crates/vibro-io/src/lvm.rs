@@ -18,12 +18,13 @@
 //! `***Start_Special***` and `***End_Special***` is passed over.
 
 use super::missing::{self, Missing};
-use super::reader::Options;
+use super::text::decoded::in_line;
+use super::text::encoding;
 use super::text::names::Name;
-use super::text::{encoding, in_line};
 use super::{Source, number};
 use crate::assemble::{self, Abscissa, Judged, Spectral, from_values, to_si};
 use crate::held::Contents;
+use crate::options::Options;
 use std::collections::HashMap;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result, Values};

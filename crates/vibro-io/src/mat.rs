@@ -13,27 +13,18 @@
 //! the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and
 //! `Tstart` ([`variables`]). The file knows no units, but a struct may state that of its vector (`Unit`).
 
+pub mod dialect;
 mod level4;
 mod level5;
 
 use super::Source;
-use super::format::Format;
-use super::reader::Options;
 use crate::held::Contents;
-use crate::variables::names::Dialect;
+use crate::options::Options;
 use crate::variables::{self, Content};
+use dialect::DIALECT;
 use vibro_record::{Error, Result};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-pub static DIALECT: Dialect = Dialect {
-    format: Format::Mat,
-    separator: '.',
-    brackets: ['(', ')'],
-    first: 1,
-    by_rows: false,
-    wide: 64,
-    attributes: false,
-};
 
 /// What gives the variables of a file.
 type Parse = fn(&[u8], &Options) -> Result<Vec<(String, Content)>>;

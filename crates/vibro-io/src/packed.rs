@@ -9,7 +9,8 @@ mod sheets;
 
 use super::Source;
 use super::text::{self, LONGER};
-use crate::{Format, Limit};
+use crate::Limit;
+use crate::registry::Entry;
 use std::cmp::Reverse;
 use std::path::{Path, PathBuf};
 use vibro_record::units::notation::counted;
@@ -55,7 +56,7 @@ impl Part {
         if text::encoding::is_text(self.bytes()) {
             return text::count_rows(self.bytes());
         }
-        if Format::of(&self.source).is_some() { self.bytes().len() } else { 0 }
+        if Entry::of(&self.source).is_some() { self.bytes().len() } else { 0 }
     }
 }
 

@@ -1,54 +1,17 @@
 //! The reader: options, then a path or bytes, then records.
 
 use super::assemble::domain;
-use super::format::{Entry, Format, TABLE};
 use super::held::Contents;
 use super::missing::LISTED;
-use super::{Folder, Limit, Source, SweepList, foreign, level, magnitude, packed, span};
+use super::options::{Options, POSSIBLE};
+use super::registry::{Entry, TABLE};
+use super::{Folder, Format, Limit, Source, SweepList, foreign, level, magnitude, packed, span};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Meta, Place, Record, Result};
-
-/// Rates, bands and line widths in Hz of any instrument lie far inside; steps made of them are finite and
-/// positive.
-pub(super) const POSSIBLE: std::ops::RangeInclusive<f64> = 1e-12..=1e15;
-
-/// What a person knows of a file that the file does not say. A statement here that contradicts the file wins,
-/// with a finding in the record.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Options {
-    /// Keep NaN, Inf, over-range and blank values as missing (NaN) instead of refusing them.
-    pub allow_missing: bool,
-    /// Sampling rate in Hz: the values are a time trace.
-    pub rate: Option<f64>,
-    /// Whether that rate follows from a base band.
-    pub rate_of_band: bool,
-    /// Base band in Hz: the values are a spectrum from 0 to it.
-    pub base_band: Option<f64>,
-    /// Unit of the values.
-    pub unit: Option<Unit>,
-    /// Whether a comma is the decimal mark; `None` to find out.
-    pub decimal_comma: Option<bool>,
-    /// Two value columns are real and imaginary part.
-    pub complex: bool,
-    /// Whether rows continue each other as one series; `None` to find out.
-    pub wrapped: Option<bool>,
-    /// Part of the time traces in s, from its first value on and before its second.
-    pub span: Option<(f64, f64)>,
-    /// Which stretch between lost samples is used, from 1.
-    pub stretch: Option<usize>,
-    /// Rate in Hz at which samples of uneven times are interpolated.
-    pub resample: Option<f64>,
-    /// Memory that may be filled.
-    pub limit: Limit,
-    /// What is held beside the values by what is made of them, in their size.
-    pub beside: f64,
-    /// Channels whose values are asked for; all where none is named.
-    pub only: Vec<String>,
-}
 
 /// Everything a file holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -321,7 +284,7 @@ impl Reader {
             return Err(foreign);
         }
         let forced = self.format.and_then(|format| TABLE.iter().find(|e| e.format == format));
-        forced.or_else(|| Format::of(source)).ok_or_else(|| {
+        forced.or_else(|| Entry::of(source)).ok_or_else(|| {
             let names = Format::names().join(", ");
             Error::input(Place::file(source.path()), "not a format that is known here", names)
                 .hint("name the format, or export the record as text or UFF-58")

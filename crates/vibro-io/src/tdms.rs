@@ -18,10 +18,10 @@ mod segment;
 
 use super::Source;
 use super::missing;
-use super::reader::Options;
 use crate::assemble;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held, rises};
+use crate::options::Options;
 use axes::Clock;
 use description::Value;
 use layout::Layout;

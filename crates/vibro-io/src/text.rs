@@ -8,6 +8,7 @@
 
 mod axis;
 mod clock;
+pub(crate) mod decoded;
 mod dialect;
 pub(crate) mod encoding;
 mod fast;
@@ -28,64 +29,16 @@ mod word_columns;
 mod wrapped;
 
 use crate::held::{Contents, Held};
-use crate::reader::Options;
+use crate::options::Options;
 use crate::{Format, Limit, Source, level, magnitude, missing, number};
+use decoded::{Text, with_text};
 use dialect::Dialect;
 use fast::Shape;
 use header::Stated;
 use rows::Rows;
-use std::borrow::Cow;
 pub(crate) use tables::{LONGER, rows as count_rows};
 pub(crate) use tail::Digits;
-use vibro_record::{Error, Finding, Place, Record, Result, Trace, Values};
-
-/// A text and what is known of it before its rows are read.
-pub(crate) struct Text<'a> {
-    /// UTF-8 or Latin-1, with LF or CR LF.
-    source: &'a Source,
-    /// Its first lines, without one that is cut off and without the end mark of DOS.
-    head: Cow<'a, str>,
-    /// Its encoding, where that is not UTF-8.
-    encoding: Option<&'static str>,
-}
-
-impl<'a> Text<'a> {
-    fn of(source: &'a Source, encoding: Option<&'static str>) -> Text<'a> {
-        let head = source.head();
-        let cut = source.len() > head.len() as u64;
-        let whole = if cut { head.iter().rposition(|b| *b == b'\n').unwrap_or(0) } else { head.len() };
-        let whole = &head[..whole];
-        let ends = whole.iter().rposition(|b| *b != 0x1a).map_or(0, |last| last + 1);
-        Text { source, head: encoding::decode(&whole[..ends]), encoding }
-    }
-
-    /// Whether the file calls itself CSV: then one column will do, and names need not fit the rows.
-    fn called_csv(&self) -> bool {
-        matches!(self.source.extension().as_str(), "csv" | "tsv") || self.source.is_sheet()
-    }
-}
-
-/// Hands a source to `read`, UTF-16, other scripts and lone CRs turned into UTF-8 with LF.
-fn with_text<T>(source: &Source, limit: Limit, read: impl FnOnce(&Text) -> Result<T>) -> Result<T> {
-    let head = source.head();
-    let cut = source.len() > head.len() as u64;
-    if encoding::is_utf16(head) || encoding::foreign(head).is_some() || encoding::lone_cr(head, cut) {
-        // The bytes, and twice their text.
-        limit.hold(3.0 * source.len() as f64)?;
-    }
-    let converted = if encoding::is_utf16(head) {
-        Some(encoding::decode(&source.all()?).into_owned().into_bytes())
-    } else if let Some(encoding) = encoding::foreign(head) {
-        Some(encoding.decode(&source.all()?).0.into_owned().into_bytes())
-    } else if encoding::lone_cr(head, cut) {
-        Some(source.all()?.into_owned())
-    } else {
-        None
-    };
-    let converted =
-        converted.map(|bytes| Source::memory(source.path(), encoding::with_lf(bytes))).transpose()?;
-    read(&Text::of(converted.as_ref().unwrap_or(source), encoding::name(head)))
-}
+use vibro_record::{Error, Finding, Record, Result, Trace, Values};
 
 /// Whether a text begins with a table under names.
 pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
@@ -296,17 +249,6 @@ fn carefully(text: &Text, dialect: &Dialect, options: &Options) -> Result<Rows> 
         if encoding::lone_cr(&bytes, false) { encoding::with_lf(bytes.into_owned()).into() } else { bytes };
     let whole = encoding::decode(&bytes);
     rows::read(whole.trim_end_matches('\u{1a}'), dialect, options.allow_missing)
-}
-
-/// The place of a complaint; the reader adds the file.
-pub(crate) fn in_line(line: u64) -> Place {
-    Place { line: Some(line), ..Place::default() }
-}
-
-/// The first characters of a text, for messages.
-fn shorten(text: &str) -> String {
-    let short: String = text.chars().take(40).collect();
-    if short.len() < text.len() { format!("{short}…") } else { short }
 }
 
 #[cfg(test)]

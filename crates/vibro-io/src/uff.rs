@@ -16,9 +16,9 @@
 pub mod stream;
 
 use super::Source;
-use super::reader::Options;
 use super::uff58::{self, System, codes};
 use crate::held::Contents;
+use crate::options::Options;
 use stream::{Stream, is_delimiter, set_number};
 use vibro_record::{Finding, Place, Record, Result};
 

@@ -8,9 +8,9 @@ pub mod names;
 
 use super::Source;
 use super::missing;
-use super::reader::Options;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held};
+use crate::options::Options;
 use axes::Axes;
 use names::{Dialect, Scoped};
 use rayon::prelude::*;

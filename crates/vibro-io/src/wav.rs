@@ -10,18 +10,18 @@
 //! scale, ±1, in the opaque unit `FS`, until [`vibro_record::Trace::calibrate`] gives them a unit. A file
 //! written by `write::wav` carries its calibration in a comment (see [`Scales`]), which is applied.
 
-mod layout;
+pub(crate) mod layout;
 mod scales;
 
 pub(crate) use scales::{Scale, Scales};
 
 use super::missing::Missing;
-use super::reader::Options;
 use super::source::ReadSeek;
 use super::{Source, span};
 use crate::binary::Kind;
-use crate::choose::named;
 use crate::held::Contents;
+use crate::options::Options;
+use crate::options::named;
 use layout::Layout;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
@@ -34,10 +34,6 @@ const FULL_SCALE: &str = "FS";
 
 /// Bytes of one block, more or less: large enough for the disk, small enough for the cache.
 const BLOCK: usize = 256 * 1024;
-
-pub(super) fn sniff(head: &[u8], _: &Source) -> bool {
-    [b"RIFF", b"RF64", b"BW64"].iter().any(|form| head.starts_with(*form)) && head.get(8..12) == Some(b"WAVE")
-}
 
 /// Goes over the samples a block at a time; a survey keeps none of them.
 pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<Contents> {

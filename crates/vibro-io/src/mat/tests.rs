@@ -1,4 +1,5 @@
 use super::*;
+use crate::Format;
 use crate::Reader;
 use crate::Recording;
 use crate::tests::{has_finding, texts};

@@ -4,7 +4,7 @@ use super::Channel;
 use super::description::{Slot, Value};
 use super::segment::Object;
 use crate::assemble::{Abscissa, Judged, domain, drift, epoch, from_values, kind_of, short};
-use crate::reader::Options;
+use crate::options::Options;
 use crate::text::names::Name;
 use std::collections::BTreeMap;
 use std::sync::Arc;

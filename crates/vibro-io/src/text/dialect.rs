@@ -1,7 +1,7 @@
 //! How a text of numbers is laid out, as data.
 
 use super::clock;
-use super::lines::{Fields, Line, Lines, fields};
+use super::lines::{Fields, Line, Lines, Separator, fields};
 use super::names::Name;
 use crate::{Format, number};
 use std::ops::Range;
@@ -35,15 +35,6 @@ pub struct Dialect {
     pub columns_from: u64,
     /// Line of the first row, from 1.
     pub first_line: u64,
-}
-
-/// What stands between two values of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Separator {
-    /// Any run of spaces and tabs.
-    Blank,
-    /// One character: `,`, `;` or tab. Fields may stand in quotes.
-    Char(u8),
 }
 
 impl Dialect {

@@ -3,7 +3,8 @@
 //! Anything unexpected (a comment, a missing value, a ragged row, a word) makes this path give up, and
 //! [`super::rows`] reads the file again, line by line, to say exactly what stands where.
 
-use super::dialect::{Dialect, Separator};
+use super::dialect::Dialect;
+use super::lines::Separator;
 use crate::Source;
 use crate::held::{Held, rises};
 use crate::number::{self, Exponential};

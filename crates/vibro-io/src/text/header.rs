@@ -1,7 +1,7 @@
 //! What header lines state: lines, base band, sampling rate, unit, window, date.
 
 use crate::number;
-use crate::reader::POSSIBLE;
+use crate::options::POSSIBLE;
 use vibro_record::Window;
 
 /// Statements of a header that are understood; the rest stays as notes.

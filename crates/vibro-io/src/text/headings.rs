@@ -1,7 +1,6 @@
 //! The lines above a table that name its columns, and those that do not.
 
-use super::dialect::Separator;
-use super::lines::{Fields, Line, fields};
+use super::lines::{Fields, Line, Separator, fields};
 use super::names::Name;
 use super::preamble::{Preamble, UNIT, key};
 use super::unit_words::{is_unit_row, unit_word};

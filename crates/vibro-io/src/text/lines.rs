@@ -4,10 +4,18 @@
 //! and does not say in which column of a line a field stands.
 
 use super::clock;
-use super::dialect::Separator;
 use super::unit_words::is_unit_row;
 use crate::number;
 use std::borrow::Cow;
+
+/// What stands between two values of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Separator {
+    /// Any run of spaces and tabs.
+    Blank,
+    /// One character: `,`, `;` or tab. Fields may stand in quotes.
+    Char(u8),
+}
 
 /// Fields of a line, each with the byte at which it begins.
 pub type Fields<'a> = Vec<(usize, Cow<'a, str>)>;

@@ -1,7 +1,7 @@
 //! What a column's header says: name, unit, abscissa, real or imaginary part.
 
-use super::dialect::Separator;
 use super::header;
+use super::lines::Separator;
 use super::unit_words::{
     COUNTERS, DAY, HOUR, amplitude, bare_unit, is_angular, is_decibel, is_unit_row, symbol,
 };

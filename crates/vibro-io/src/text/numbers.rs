@@ -8,10 +8,11 @@
 //! ```
 //! Complex values stand as `(re+imj)` or as two columns under a header with `real` and `imag`.
 
-use super::dialect::{Dialect, Separator};
-use super::lines::{Fields, Line, Lines, fields, is_torn};
+use super::decoded::{Text, in_line, shorten};
+use super::dialect::Dialect;
+use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::table::beginning;
-use super::{Text, clock, in_line, names, shorten};
+use super::{clock, names};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};

@@ -9,9 +9,9 @@
 //! X,CH1,Start,Increment                  a word over a number, beside the names
 //! ```
 
-use super::Text;
-use super::dialect::{Dialect, Separator};
-use super::lines::{Fields, Line, Lines, fields};
+use super::decoded::Text;
+use super::dialect::Dialect;
+use super::lines::{Fields, Line, Lines, Separator, fields};
 use super::names::Name;
 use crate::{Format, number};
 use std::borrow::Cow;

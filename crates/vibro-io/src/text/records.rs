@@ -1,7 +1,7 @@
 //! Columns to records: abscissa, units, complex pairs.
 
-use super::Text;
 use super::axis::{Printed, choose};
+use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
 use super::names::{Name, Part};

@@ -1,11 +1,11 @@
 //! The careful path: one row after the other, each complaint with its line and column.
 
 use super::clock::Clock;
+use super::decoded::{in_line, shorten};
 use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines};
 use super::numbers::complex;
 use super::tail::CUT_OFF;
-use super::{in_line, shorten};
 use crate::held::Held;
 use crate::missing::Missing;
 use crate::{Format, number};
@@ -299,7 +299,8 @@ impl Reader<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Text, table};
+    use super::super::decoded::Text;
+    use super::super::table;
     use super::*;
     use crate::{Options, Source};
 

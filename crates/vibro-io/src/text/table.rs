@@ -11,12 +11,12 @@
 //! one complex record.
 
 use super::clock;
-use super::dialect::{Dialect, Separator};
+use super::decoded::{Text, in_line, shorten};
+use super::dialect::Dialect;
 use super::headings::{headings, is_title, is_types, names_in};
-use super::lines::{Fields, Line, Lines, fields, is_torn};
+use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::names::Name;
 use super::preamble::{BESIDE, Preamble, beside, beside_rows, said};
-use super::{Text, in_line, shorten};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
 use vibro_record::units::Unit;

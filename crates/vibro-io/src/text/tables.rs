@@ -1,6 +1,7 @@
 //! Several tables in one text: the longest is read where the others are short beside it.
 
-use super::{Text, encoding};
+use super::decoded::Text;
+use super::encoding;
 use crate::{Source, number};
 use vibro_record::{Finding, Result};
 

@@ -1,9 +1,9 @@
 //! The end of a text of numbers: whether it is cut off, and how precisely its abscissa is printed.
 
-use super::Text;
 use super::clock;
-use super::dialect::{Dialect, Separator};
-use super::lines::{Line, Lines};
+use super::decoded::Text;
+use super::dialect::Dialect;
+use super::lines::{Line, Lines, Separator};
 use crate::{Source, number};
 use std::borrow::Cow;
 use std::io::{Read, Seek, SeekFrom};

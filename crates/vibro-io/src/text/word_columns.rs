@@ -1,9 +1,9 @@
 //! Columns of words beside columns of numbers: the name of a frame, the address of a sensor, a state.
 
 use super::clock;
-use super::dialect::Separator;
-use super::lines::{Line, Lines, fields};
-use super::{Text, encoding, in_line, shorten};
+use super::decoded::{Text, in_line, shorten};
+use super::encoding;
+use super::lines::{Line, Lines, Separator, fields};
 use crate::{Source, number};
 use vibro_record::{Error, Finding, Result};
 

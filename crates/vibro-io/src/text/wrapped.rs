@@ -1,7 +1,7 @@
 //! One series over many columns: rows that continue each other, as PEER's AT2 and other Fortran programs
 //! write them.
 
-use super::Text;
+use super::decoded::Text;
 use super::dialect::Dialect;
 use super::encoding;
 use super::lines::{Line, fields};

@@ -7,7 +7,7 @@ use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
 use crate::assemble::{Judged, drift, epoch, from_values, kind_of, short};
 use crate::held::Held;
 use crate::number;
-use crate::reader::{Options, POSSIBLE};
+use crate::options::{Options, POSSIBLE};
 use crate::text::names::Name;
 use std::cmp::Reverse;
 use std::collections::HashMap;

@@ -20,6 +20,10 @@ const UNSAID: u64 = 0xffff_ffff;
 /// Behind the format tag in a sub-format: {xxxx0000-0000-0010-8000-00AA00389B71}.
 const GUID: [u8; 14] = [0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71];
 
+pub(crate) fn sniff(head: &[u8], _: &Source) -> bool {
+    [b"RIFF", b"RF64", b"BW64"].iter().any(|form| head.starts_with(*form)) && head.get(8..12) == Some(b"WAVE")
+}
+
 /// What to try where there are no samples.
 const CUT: &str = "the recording may have been cut off before its first sample";
 
@@ -50,7 +54,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
             .map_err(|e| Error::io("read", source.path(), e))?;
         Ok::<_, Error>(bytes)
     };
-    if !super::sniff(source.head(), source) {
+    if !sniff(source.head(), source) {
         return Err(fault(0, "no wave file", "RIFF, RF64 or BW64, then a size and WAVE"));
     }
     let (mut wide, mut format, mut data, mut notes) = (None, None, None, Vec::new());

@@ -9,7 +9,7 @@
 //! back as the same double; an uneven abscissa has all its digits, so that its values cannot be taken for
 //! rounded even ones.
 
-use super::{failed, label, parts, together};
+use super::listed::{failed, label, parts, together};
 use std::fmt::Write as _;
 use std::io::Write;
 use vibro_record::{Axis, AxisKind, Error, FROM_BLOWS, Frf, Grid, Record, Result, Scaling, Spectrum, Values};

@@ -5,7 +5,7 @@
 //!
 //! Source: numpy's own description of the format, `NEP 1`.
 
-use super::{failed, label, parts};
+use super::listed::{failed, label, parts};
 use std::io::Write;
 use vibro_record::{Error, Record, Result};
 

@@ -6,7 +6,7 @@
 
 mod header;
 
-use super::{failed, label, parts};
+use super::listed::{failed, label, parts};
 use crate::number;
 use crate::uff58::Layout;
 use std::io::{self, Write};

@@ -5,7 +5,8 @@
 //! name, exact sampling rate and start in a comment (LIST INFO ICMT). [`crate::Reader`] reads the comment and
 //! undoes all of it; an audio program plays the file and ignores it.
 
-use super::{Precision, failed, label, together};
+use super::listed::{failed, label, together};
+use super::uff58::Precision;
 use crate::wav::{Scale, Scales};
 use std::io::Write;
 use vibro_record::units::notation::counted;

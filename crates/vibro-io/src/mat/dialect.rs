@@ -1,0 +1,15 @@
+//! How MATLAB names what stands in structs and cell arrays, in files of every version.
+
+use crate::format::Format;
+use crate::variables::names::Dialect;
+
+/// The dialect of `run(2).v` and `data{1}.x`.
+pub static DIALECT: Dialect = Dialect {
+    format: Format::Mat,
+    separator: '.',
+    brackets: ['(', ')'],
+    first: 1,
+    by_rows: false,
+    wide: 64,
+    attributes: false,
+};

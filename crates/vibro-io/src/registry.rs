@@ -1,0 +1,52 @@
+//! The ordered table of formats: how each is told apart and read.
+
+use crate::format::Format;
+#[cfg(feature = "hdf5")]
+use crate::hdf5;
+use crate::held::Contents;
+use crate::options::Options;
+use crate::source::Source;
+use crate::{lvm, mat, tdms, text, uff, wav};
+use vibro_record::Result;
+
+/// How one format is told apart and read.
+pub struct Entry {
+    pub format: Format,
+    /// Whether the first bytes are of this format.
+    pub sniff: fn(head: &[u8], source: &Source) -> bool,
+    /// Reads the records of a source; for a `survey` the ends of their values are enough where the format
+    /// can tell them in less memory.
+    pub read: fn(&Source, &Options, survey: bool) -> Result<Contents>,
+}
+
+/// Binary formats with a signature first, then text formats from the strictest to the loosest.
+pub const TABLE: &[Entry] = &[
+    Entry { format: Format::Wav, sniff: wav::layout::sniff, read: wav::read },
+    #[cfg(feature = "hdf5")]
+    Entry { format: Format::Hdf5, sniff: hdf5::sniff, read: hdf5::read },
+    Entry { format: Format::Mat, sniff: mat::sniff, read: mat::read },
+    Entry { format: Format::Tdms, sniff: tdms::sniff, read: tdms::read },
+    Entry { format: Format::Lvm, sniff: lvm::sniff, read: lvm::read },
+    Entry { format: Format::Uff, sniff: uff::sniff, read: uff::read },
+    Entry { format: Format::Csv, sniff: text::is_table, read: text::read_table },
+    Entry { format: Format::Ascii, sniff: |head, _| text::encoding::is_text(head), read: text::read_numbers },
+];
+
+impl Entry {
+    /// The format whose first bytes a source has.
+    pub fn of(source: &Source) -> Option<&'static Entry> {
+        TABLE.iter().find(|e| (e.sniff)(source.head(), source))
+    }
+}
+
+impl Format {
+    /// The format with this name.
+    pub fn from_name(name: &str) -> Option<Format> {
+        TABLE.iter().map(|e| e.format).find(|format| format.name().eq_ignore_ascii_case(name))
+    }
+
+    /// Names of all formats, in the order in which they are tried.
+    pub fn names() -> Vec<&'static str> {
+        TABLE.iter().map(|e| e.format.name()).collect()
+    }
+}

@@ -1,0 +1,31 @@
+//! Records as writers take them: value by value, and together where they share an axis.
+
+use vibro_record::{Error, Record, Result};
+
+/// Value `i` of a record, or its real and imaginary part; NaN where there is none.
+pub fn parts(record: &Record, i: usize) -> impl Iterator<Item = f64> + use<> {
+    let (real, complex) = record.numbers();
+    let (re, im) = if record.is_complex() {
+        complex.get(i).map_or((f64::NAN, Some(f64::NAN)), |v| (v.re, Some(v.im)))
+    } else {
+        (real.get(i).copied().unwrap_or(f64::NAN), None)
+    };
+    std::iter::once(re).chain(im)
+}
+
+/// The first of records that share one axis; `what` says what has one, for the complaint.
+pub fn together<'a>(records: &'a [Record], what: &str) -> Result<&'a Record> {
+    let first = records.first().ok_or_else(|| Error::refused("there is no record to write"))?;
+    let Some(other) = records.iter().find(|r| r.axis() != first.axis()) else { return Ok(first) };
+    let why = format!("{} and {} have different {what}", label(first), label(other));
+    Err(Error::refused(why).hint("write them one by one"))
+}
+
+/// How a record is called in a complaint.
+pub fn label(record: &Record) -> String {
+    format!("the {} {:?}", record.kind(), record.meta().name)
+}
+
+pub fn failed(error: std::io::Error) -> Error {
+    Error::io("write", "the output", error)
+}
