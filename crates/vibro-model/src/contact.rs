@@ -18,10 +18,8 @@
 
 mod change;
 mod compliant;
-pub mod conversion;
-mod law;
 mod modes;
 mod within;
 
+pub use crate::law::{Law, conversion};
 pub use compliant::Compliant;
-pub use law::Law;

@@ -1,7 +1,7 @@
 //! Excitation under way, as closed forms take it: the forced motion under its sines.
 
-use super::excitation::MOST_SINES;
 use super::forcing::Forcing;
+use super::waves::MOST_SINES;
 use super::waves::Waves;
 use super::{Excitation, Rig, Sine, Steady, scales};
 use num_complex::Complex64;

@@ -1,13 +1,11 @@
 //! What drives mass 1.
 
-use super::scales::{Least, number};
+use super::least::{Least, number};
+use super::waves::MOST_SINES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
-
-/// The most sines that can act at once.
-pub(crate) const MOST_SINES: usize = 4;
 
 /// Excitation of mass 1, told apart by its `kind`.
 ///

@@ -1,7 +1,6 @@
 //! Stability of a periodic motion with impacts: monodromy and Floquet multipliers.
 
 use super::Rig;
-use super::orbit::Course;
 use nalgebra::{Matrix2, Matrix4, RowVector4, SVD, Schur, Vector4};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
@@ -46,21 +45,6 @@ pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64;
     let phase = rig.oscillators().iter().map(|o| o.omega2().sqrt() * period).fold(0.0, f64::max);
     let rounding = 64.0 * f64::EPSILON * (1.0 + phase) * (flow.norm() * saltation.norm());
     (flow * saltation, rounding)
-}
-
-/// Monodromy of a motion along `courses`, each from an impact to the next, and a bound on its rounding.
-pub(super) fn product(rig: &Rig, courses: &[Course]) -> (Matrix4<f64>, f64) {
-    let (mut whole, mut norms, mut relative) = (Matrix4::identity(), 1.0, 0.0);
-    let mut before = courses.last().map_or([0.0; 4], |last| last.rates().0);
-    for course in courses {
-        let (next, after) = course.rates();
-        let (part, rounding) = monodromy(rig, course.period, &before, &after);
-        relative += rounding / part.norm();
-        norms *= part.norm();
-        whole = part * whole;
-        before = next;
-    }
-    (whole, norms * relative)
 }
 
 /// Whether all multipliers lie inside the unit circle; `None` where an error of norm `rounding` in the

@@ -1,9 +1,9 @@
 //! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse
 //! or step is due.
 
-use super::excitation::MOST_SINES;
+use super::least::{Least, number};
 use super::linear::{ORDER, Terms};
-use super::scales::{Least, number};
+use super::waves::MOST_SINES;
 use super::{Excitation, Part, Pulses, Sine};
 use std::f64::consts::TAU;
 use std::mem::discriminant;

@@ -27,7 +27,10 @@ mod floquet;
 mod flow;
 mod forcing;
 mod green;
+mod impact;
 pub mod ladder;
+mod law;
+mod least;
 mod linear;
 pub mod map;
 mod motion;
@@ -47,19 +50,21 @@ pub mod simulate;
 mod steady;
 mod stick;
 pub mod sweep;
-mod validity;
 mod waves;
 
 pub use chirp::Chirp;
-pub use contact::{Compliant, Law};
+pub use contact::Compliant;
 pub use continuation::{Branch, follow};
 pub use excitation::{Excitation, Impulses, Part, Pulses, Sine, Sines};
 pub use flow::{Flight, State};
 pub use green::Green;
+pub use impact::{Counts, Impact};
+pub use law::Law;
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
 pub use orbit::{
-    Compliance, Orbit, Orbits, Shown, Softened, backbone, no_impact, orbits, orbits_of, shown, softened,
+    Compliance, Loss, Orbit, Orbits, Shown, Softened, Validity, backbone, no_impact, orbits, orbits_of,
+    shown, softened,
 };
 pub use parameter::Parameter;
 pub use periodic::{Beat, PeriodicOrbit, search};
@@ -68,7 +73,6 @@ pub use regime::{Pattern, Regime, regime};
 pub use response::{Change, ChangeKind, Response, ResponsePoint, response};
 pub use rig::Rig;
 pub use scene::{Buffer, ContactKeys, Draft, Scene};
-pub use simulate::{Counts, Impact, Leg, Simulation};
+pub use simulate::{Leg, Simulation};
 pub use steady::{NoImpact, Steady};
 pub use stick::Pair;
-pub use validity::{Loss, Validity};

@@ -7,13 +7,17 @@ mod sine;
 mod soft;
 mod train;
 mod turns;
+mod validity;
 
 pub use sine::{Shown, backbone, shown};
 pub use soft::{Compliance, Softened, softened};
 
-pub(super) use course::Course;
+pub use validity::{Loss, Validity};
 
-use super::{Excitation, NoImpact, Rig, Sine, State, Steady, Validity, scales};
+pub(super) use course::Course;
+pub(super) use validity::Judged;
+
+use super::{Excitation, NoImpact, Rig, Sine, State, Steady, scales};
 use conditions::Conditions;
 use driven::Response;
 use num_complex::Complex64;

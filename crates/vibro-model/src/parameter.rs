@@ -1,6 +1,6 @@
 //! The table of what can be varied: the rig's values and those of its excitation.
 
-use super::scales::{Least, number};
+use super::least::{Least, number};
 use super::{Excitation, Rig, Sine};
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;

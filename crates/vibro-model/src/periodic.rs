@@ -11,8 +11,8 @@ pub use search::search;
 pub(super) use system::System;
 
 use super::orbit::Course;
+use super::orbit::Judged;
 use super::regime::Strike;
-use super::validity::Judged;
 use super::waves::Waves;
 use super::{Flight, Rig, Sine, State, Validity};
 use nalgebra::{DVector, Matrix4};

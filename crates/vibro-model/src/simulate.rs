@@ -11,8 +11,7 @@ mod meet;
 use super::drive::Drive;
 use super::scales::{self, MOST_EVENTS, check_time, check_work};
 use super::stick::Pair;
-use super::{Event, Excitation, Flight, Motion, Path, Piece, Rig, State};
-use serde::Serialize;
+use super::{Counts, Event, Excitation, Flight, Impact, Motion, Path, Piece, Rig, State};
 use vibro_math::Oscillator;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
@@ -25,19 +24,6 @@ pub const GRAZING_SPEED: f64 = 1e-3;
 const MOST_LEGS: f64 = 2e7;
 /// Cycles whose events a shorter call may use up: a chatter at its beginning is no reason to end.
 const AT_LEAST: f64 = 10.0;
-
-/// One impact.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct Impact {
-    /// Time in s.
-    pub time: f64,
-    /// Phase in 0..2π of the excitation's cycle; a sine force is F₀ cos(phase).
-    pub phase: f64,
-    /// Approach speed v₁ − v₂ in m/s.
-    pub approach_velocity: f64,
-    /// Impulse in N s.
-    pub impulse: f64,
-}
 
 /// How both masses move in a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,18 +69,6 @@ impl Leg {
             _ => None,
         }
     }
-}
-
-/// What a motion has met so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
-    /// Stretches of motion in closed form.
-    pub flights: u64,
-    /// Impacts below the grazing speed after which the masses part by themselves: a little more gap and
-    /// there is none. What follows depends on them more than on anything else.
-    pub grazing: u64,
-    /// Times the masses came to rest against each other.
-    pub sticks: u64,
 }
 
 /// How the masses are to each other.

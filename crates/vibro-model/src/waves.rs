@@ -1,9 +1,11 @@
 //! Forced motion of a mass under a sum of sines.
 
-use super::excitation::MOST_SINES;
 use num_complex::Complex64;
 use vibro_math::cis::sin_cos;
 use vibro_math::root::Limits;
+
+/// The most sines that can act at once.
+pub(crate) const MOST_SINES: usize = 4;
 
 /// One term Re(Xe^{iωt}).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -3,8 +3,8 @@
 use super::compliant::{Compliant, Mark, Stage};
 use crate::State;
 use crate::forcing::Tick;
+use crate::impact::Impact;
 use crate::motion::{Event, Path, Piece};
-use crate::simulate::Impact;
 
 /// Separation speed in m/s below which a rebound does not part masses that are pressed together.
 const REST_SPEED: f64 = 1e-9;

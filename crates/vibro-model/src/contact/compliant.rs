@@ -1,15 +1,16 @@
 //! Any motion of the rig with a contact that gives way, or a mass 1 that is loose on its spring: followed
 //! from event to event through its linear modes, and through integrated contacts between them.
 
-use super::Law;
 use super::change::Still;
 use super::modes::Modes;
 use super::within::Within;
 use crate::forcing::Forcing;
 use crate::forcing::Tick;
+use crate::impact::Impact;
+use crate::law::Law;
+use crate::least::{Least, number};
 use crate::linear::{Course, Linear, Quantity};
 use crate::motion::{Event, Motion, Path, Piece};
-use crate::simulate::Impact;
 use crate::{Buffer, Excitation, Rig, State, scales};
 use vibro_record::{Error, Result};
 
@@ -118,7 +119,7 @@ impl Compliant {
                 "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
             return Err(Error::usage("a loose mass with a contact law that is not linear", expected));
         }
-        scales::number("buffer gap", buffer.gap, "m", scales::Least::Zero)?;
+        number("buffer gap", buffer.gap, "m", Least::Zero)?;
         Compliant::start(rig, excitation, law, Some(buffer), state, phase)
     }
 

@@ -1,6 +1,6 @@
 //! The linear modes of a rig: apart, in a contact of spring and damper, or moving together.
 
-use super::Law;
+use crate::law::Law;
 use crate::linear::{Linear, Quantity};
 use crate::{Buffer, Rig};
 

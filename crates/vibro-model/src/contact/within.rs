@@ -1,7 +1,7 @@
 //! Contacts whose force is not linear, integrated while they last.
 
-use super::Law;
 use crate::forcing::Forcing;
+use crate::law::Law;
 use crate::linear::Linear;
 use crate::motion::Path;
 use crate::{Rig, State};

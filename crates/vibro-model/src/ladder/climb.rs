@@ -7,7 +7,7 @@ use super::rung::{Model, Need, Needed, Rung};
 use super::stage::{Stage, is_curved, keys};
 use super::{Choice, Sensitivity};
 use crate::Law;
-use crate::contact::conversion;
+use crate::law::conversion;
 use std::f64::consts::PI;
 use vibro_record::{Finding, Result};
 

@@ -2,7 +2,7 @@
 
 use super::Model;
 use crate::Observable;
-use crate::scales::{Least, number};
+use crate::least::{Least, number};
 use serde::Serialize;
 use vibro_record::{Direction, Error, Result};
 

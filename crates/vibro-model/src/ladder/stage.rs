@@ -4,7 +4,7 @@ use super::motions::{Motions, On};
 use super::question::{Answer, Question};
 use super::reading::{BRIEF, End, Reader, Reading};
 use super::rung::{Found, Model, Rung};
-use crate::contact::conversion;
+use crate::law::conversion;
 use crate::{
     Compliance, Compliant, ContactKeys, Excitation, Law, Motion, Observable, Orbit, Rig, Scene, Simulation,
     Softened, no_impact, orbits_of, softened,

@@ -1,7 +1,7 @@
 //! What all orbits of a rig at one period share.
 
+use super::validity::Judged;
 use super::{Course, Orbit};
-use crate::validity::Judged;
 use crate::{Excitation, Green, Rig, scales};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};

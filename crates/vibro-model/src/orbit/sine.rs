@@ -2,7 +2,8 @@
 
 use super::conditions::{Conditions, Root};
 use super::{Course, Orbit, driven};
-use crate::scales::{Least, check_values, number};
+use crate::least::{Least, number};
+use crate::scales::check_values;
 use crate::waves::Waves;
 use crate::{Excitation, Flight, Rig, Sine, Steady};
 use num_complex::Complex64;

@@ -1,7 +1,7 @@
 //! What a contact that gives way changes in an orbit, to first order in the duration of the contact.
 
 use super::{Orbit, Orbits};
-use crate::contact::conversion;
+use crate::law::conversion;
 use crate::{Excitation, Law, Rig};
 use num_complex::Complex64;
 use serde::Serialize;

@@ -372,7 +372,7 @@ fn golden_losses_of_stability() {
     let m = flip.multipliers.unwrap()[0];
     assert!((m - Complex64::new(-1.326, 0.0)).norm() < 6e-4, "{m}");
     assert!(flip.validity.exists && flip.validity.stable == Some(false) && flip.validity.energy_rule);
-    assert_eq!(flip.validity.instability, Some(crate::Loss::Flip));
+    assert_eq!(flip.validity.instability, Some(Loss::Flip));
     // A pair outside the circle, printed as 0.389 ± 1.047i.
     let pair = orbits(&rig, 0.05, at(&rig, 1.3)).unwrap().orbits.remove(0);
     let m = pair.multipliers.unwrap();
@@ -380,7 +380,7 @@ fn golden_losses_of_stability() {
         (m[0] - Complex64::new(0.389, 1.047)).norm() < 1e-3 && (m[1] - m[0].conj()).norm() < 1e-12,
         "{m:?}"
     );
-    assert_eq!(pair.validity.instability, Some(crate::Loss::NeimarkSacker));
+    assert_eq!(pair.validity.instability, Some(Loss::NeimarkSacker));
     // Passes through the other mass by 6.2 mm.
     let deep = orbits(&Rig::thesis(), 0.5, at(&rig, 0.8)).unwrap().orbits.remove(0);
     assert!((deep.validity.min_gap + 6.2e-3).abs() < 0.05e-3 && !deep.validity.admissible);

@@ -2,7 +2,7 @@
 
 use super::{Buffer, ContactKeys, Scene};
 use crate::excitation::{Excitation, Part};
-use crate::scales::{Least, number};
+use crate::least::{Least, number};
 use crate::{Parameter, Rig};
 use serde::Deserialize;
 use serde::de::IntoDeserializer;

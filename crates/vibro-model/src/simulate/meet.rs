@@ -1,7 +1,8 @@
 //! Impacts, rests and kicks: what changes a simulated motion at an instant.
 
-use super::{Hold, Impact, Simulation};
+use super::{Hold, Simulation};
 use crate::forcing::Tick;
+use crate::impact::Impact;
 use crate::stick::Press;
 use crate::{Event, State};
 use std::f64::consts::TAU;

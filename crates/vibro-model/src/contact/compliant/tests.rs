@@ -1,7 +1,7 @@
 use super::*;
+use crate::Impact;
 use crate::contact::conversion;
 use crate::motion::{Motion, Piece};
-use crate::simulate::Impact;
 use crate::{Event, Impulses, Pulses, Simulation, Sine};
 use std::cell::Cell;
 use std::path::Path;

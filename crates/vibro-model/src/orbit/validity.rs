@@ -1,7 +1,7 @@
 //! Is a computed orbit real? Four verdicts, each on its own.
 
-use super::orbit::Course;
-use super::{Rig, floquet};
+use super::Course;
+use crate::{Rig, floquet};
 use nalgebra::Matrix4;
 use num_complex::Complex64;
 use serde::Serialize;
@@ -103,7 +103,7 @@ impl Validity {
 }
 
 /// A periodic motion with its verdicts.
-pub(super) struct Judged {
+pub struct Judged {
     pub validity: Validity,
     /// Floquet multipliers, largest first, and their matrix, where the motion exists and is driven.
     pub multipliers: Option<[Complex64; 4]>,
@@ -128,7 +128,7 @@ impl Judged {
         // A free motion is one of a family: it neither dies away nor grows.
         let mut stable = amplified.map(|_| false);
         if let Some(amplified) = amplified.filter(|_| exists) {
-            let (whole, rounding) = floquet::product(rig, courses);
+            let (whole, rounding) = product(rig, courses);
             multipliers = floquet::multipliers(&whole).ok();
             stable =
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
@@ -159,4 +159,19 @@ impl Judged {
         };
         Judged { validity, multipliers, monodromy, peak_to_peak: [0, 1].map(spread) }
     }
+}
+
+/// Monodromy of a motion along `courses`, each from an impact to the next, and a bound on its rounding.
+fn product(rig: &Rig, courses: &[Course]) -> (Matrix4<f64>, f64) {
+    let (mut whole, mut norms, mut relative) = (Matrix4::identity(), 1.0, 0.0);
+    let mut before = courses.last().map_or([0.0; 4], |last| last.rates().0);
+    for course in courses {
+        let (next, after) = course.rates();
+        let (part, rounding) = floquet::monodromy(rig, course.period, &before, &after);
+        relative += rounding / part.norm();
+        norms *= part.norm();
+        whole = part * whole;
+        before = next;
+    }
+    (whole, norms * relative)
 }

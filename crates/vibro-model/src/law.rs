@@ -1,7 +1,8 @@
 //! Contact laws.
 
-use super::conversion;
-use crate::scales::{Least, number};
+pub mod conversion;
+
+use crate::least::{Least, number};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
