@@ -3,6 +3,7 @@
 mod accuracy;
 mod cli;
 mod clocks;
+mod contributing;
 mod drill;
 mod drill_limits;
 mod example_campaign;

@@ -1,0 +1,59 @@
+//! What CONTRIBUTING.md names is there: a contributor who follows it finds each file, and each word of the code.
+
+use std::fs;
+use std::path::Path;
+
+/// Files of the project below `folder`, as paths from its root with a stroke in front.
+fn files(root: &Path, folder: &str, found: &mut Vec<String>) {
+    for entry in fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap()) {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let path = format!("{folder}/{name}");
+        if entry.file_type().unwrap().is_dir() {
+            if !["target", "node_modules", ".git", "pkg"].contains(&name.as_str()) {
+                files(root, &path[..], found);
+            }
+        } else {
+            found.push(path);
+        }
+    }
+}
+
+/// Whether a text between backticks is a path, and not a command or a piece of text.
+fn is_path(name: &str) -> bool {
+    let ends = [".rs", ".md", ".toml", ".sh", ".gz"].iter().any(|end| name.ends_with(end));
+    (ends || name.contains('/')) && !name.contains([' ', '"']) && !name.starts_with(['.', '/'])
+}
+
+#[test]
+fn what_is_named_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("CONTRIBUTING.md")).unwrap();
+    let mut paths = Vec::new();
+    files(root, ".", &mut paths);
+    let source = |path: &&String| {
+        [".rs", ".toml", ".js", ".ci/run"].iter().any(|end| path.ends_with(end))
+            && !path.ends_with("/contributing.rs")
+    };
+    let code: Vec<String> =
+        paths.iter().filter(source).map(|path| fs::read_to_string(root.join(path)).unwrap()).collect();
+    let named: Vec<&str> = text.split('`').skip(1).step_by(2).filter(|name| !name.contains("NAME")).collect();
+    let (mut missing, mut seen) = (Vec::new(), [0, 0]);
+    for name in named {
+        if is_path(name) {
+            seen[0] += 1;
+            // A file, or a folder.
+            let (file, folder) = (format!("/{name}"), format!("/{}/", name.trim_end_matches('/')));
+            if !paths.iter().any(|path| path.ends_with(&file) || path.contains(&folder)) {
+                missing.push(name);
+            }
+        } else if name.chars().all(|c| c.is_alphanumeric() || "_:-".contains(c)) && !name.contains("---") {
+            seen[1] += 1;
+            let words = name.split(':').filter(|word| !word.is_empty());
+            if !words.clone().all(|word| code.iter().any(|text| text.contains(word))) {
+                missing.push(name);
+            }
+        }
+    }
+    assert!(missing.is_empty(), "not in the project: {missing:?}");
+    assert!(seen[0] > 25 && seen[1] > 30, "{seen:?}");
+}
