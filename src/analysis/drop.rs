@@ -256,6 +256,11 @@ impl Series {
             let plots = self.records.into_iter().map(|(_, plot)| plot).collect();
             answer.figure("drop", impacts::figures::drops(name, plots));
         }
+        answer.refused = found
+            .restitution
+            .value
+            .is_nan()
+            .then(|| Error::refused("the methods disagree, and none is preferred"));
         answer.add("", &found.findings);
         answer.evidence.push(Evidence::of_drops(&found, files));
         answer.headlines.push(headline(

@@ -36,7 +36,7 @@ pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error, beside: &[&s
         complaint(&format!("unknown {what} `{named}`"), "", called.or(meant(&known)).unwrap_or_else(all))
     } else if begins("unknown variant") {
         let of_value = line.split_once('=').filter(|(_, value)| value.contains(named));
-        let near = nearest(named, known.iter().copied());
+        let near = nearest(named, known.iter().copied()).or(known.first().copied());
         let write = of_value.zip(near).map(|((key, _), near)| format!("write {} = \"{near}\"", key.trim()));
         let found = of_value.map_or_else(|| format!("the name `{named}`"), |_| line.to_owned());
         complaint(&found, &expected.replace('`', "\""), write.or(meant(known)).unwrap_or_default())
@@ -82,6 +82,8 @@ fn mended<'a>(line: &'a str, expected: &'a str) -> Option<(&'a str, &'a str, Str
     let near = nearest(bare, expected.split('"').skip(1).step_by(2));
     let (expected, meant) = if let Some(near) = near {
         (expected, format!("\"{near}\""))
+    } else if let Some(value) = stated.strip_suffix([',', ';']) {
+        ("no mark behind a value", value.to_owned())
     } else if point != bare && number(&point) {
         ("a number with a decimal point", point)
     } else if is(["yes", "on"], ["1", "true"]) || stated == "True" {
@@ -204,6 +206,7 @@ mod tests {
             ("starts = 3\nstarts = 4", &["every key once", "remove this line"]),
             ("scatter = 0,01", &["scatter = 0,01", "a number with a decimal point", "write scatter = 0.01"]),
             ("scatter = 35k", &["write scatter = 35000"]),
+            ("scatter = 40000,", &["no mark behind a value", "write scatter = 40000"]),
             ("scatter = 3.5 ms", &["scatter = 3.5 ms", "without it", "write scatter = 0.0035"]),
             ("scatter = \"40 cm\"", &["write scatter = 0.4"]),
             ("prior.gap = \"20-30\"", &["write prior.gap = [20, 30]"]),

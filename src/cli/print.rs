@@ -23,6 +23,7 @@ use std::time::Duration;
 /// # Errors
 /// If a file or standard output cannot be written.
 pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<u8> {
+    let code = answer.refused.as_ref().map_or(0, Error::exit_code);
     let mut written = Vec::new();
     if let Some(mut output) = output {
         let medium = output.medium;
@@ -38,7 +39,7 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
         answer.result.entry("files").or_insert_with(|| written.into());
         put(&mut answer.result, &answer.findings, Voice::Command);
         object(answer.result)?;
-        return Ok(0);
+        return Ok(code);
     }
     complain::warn(&graded(&answer.findings, Voice::Command));
     let shown = answer.tables.iter().chain(&answer.details).filter(|t| !t.rows.is_empty());
@@ -47,7 +48,7 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
         let _ = writeln!(all, "wrote {file}");
     }
     text(&all)?;
-    Ok(0)
+    Ok(code)
 }
 
 /// A folder to write into, with figures in the style that was asked for, and what to type where something is
