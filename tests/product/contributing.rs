@@ -1,4 +1,4 @@
-//! What CONTRIBUTING.md names is there: a contributor who follows it finds each file and each word of the code.
+//! What CONTRIBUTING.md names is there: who follows it finds each file and each word of the code.
 
 use std::fs;
 use std::path::Path;
