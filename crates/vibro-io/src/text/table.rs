@@ -188,7 +188,9 @@ fn fit(
     let stated = beside(uppers.first_mut(), lower, width);
     let clock = clock::columns(values).map(|cells| {
         let ms = block.iter().any(|line| line.get(cells.end).is_some_and(|(_, cell)| cell == "ms"));
-        cells.start..cells.end + usize::from(ms)
+        // A clock that prints parts of a second has them already.
+        let whole = !clock::printed_seconds(&clock::joined(&values[cells.clone()])).contains('.');
+        cells.start..cells.end + usize::from(ms && whole)
     });
     let preamble = Preamble::of(&spoken, separator);
     let fits = |columns: usize| count - skipped == columns || width == columns;

@@ -415,6 +415,24 @@ fn the_digits_of_a_long_table_are_those_of_its_first_and_last_rows() {
     assert!((step - 1.0 / 1024.0).abs() <= 1e-3 / 19_999.0, "{step}");
 }
 
+/// A clock of whole seconds has its thousandths in the column `ms` beside it; one that prints them does not
+/// get them twice.
+#[test]
+fn milliseconds_beside_a_clock_count_once() {
+    for whole in [true, false] {
+        let rows: String = (0..2000)
+            .map(|i| {
+                let (seconds, ms) = (i / 1000, i % 1000);
+                let own = if whole { String::new() } else { format!(".{ms:03}") };
+                format!("10:20:{:02}{own},{ms},{}\n", 11 + seconds, (i * i) % 7)
+            })
+            .collect();
+        let recording = of(format!("time,ms,ax (m/s2)\n{rows}"));
+        let rate = recording.records.last().unwrap().axis().step().unwrap().recip();
+        assert!((rate - 1000.0).abs() < 1e-6, "{whole}: {rate}");
+    }
+}
+
 /// The first record of a text without names.
 fn plain(text: &str) -> Record {
     Reader::new().from_reader("x.txt", text.as_bytes()).unwrap().records.swap_remove(0)
