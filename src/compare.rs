@@ -12,7 +12,7 @@ mod simulated;
 pub use fit::{Block, Fit, FitPoint, Fitted, LeftOut, Profile, Rung, Unidentified, fit};
 pub use overlay::{Level, Overlay, overlay};
 pub use pair::{Pair, PeakPair, Score};
-pub use prediction::{Kind, Motion, Prediction, Verdict};
+pub use prediction::{Motion, MotionKind, Prediction, Verdict};
 
 pub(crate) use forcing::{Forcing, levels};
 pub(crate) use named::{Named, named};

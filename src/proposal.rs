@@ -10,7 +10,7 @@ mod joined;
 mod notes;
 mod trial;
 
-use folder::{Inventory, Series};
+use folder::{FileSeries, Inventory};
 pub use joined::more_steps;
 use notes::Note;
 
@@ -49,12 +49,12 @@ pub struct Table {
     /// Whether that is a guess.
     pub guess: bool,
     /// Its keys in order.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TableKey>,
 }
 
 /// A key of a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct TableKey {
     /// Its name.
     pub key: &'static str,
     /// Its value as TOML; empty where it is missing.
@@ -110,7 +110,7 @@ impl Table {
     fn with(mut self, key: &'static str, value: impl Serialize, known: Known) -> Table {
         // A string of JSON is one of TOML, and so are its numbers, words and lists of these.
         let value = serde_json::to_string(&value).unwrap_or_default();
-        self.rows.push(Row { key, value, known });
+        self.rows.push(TableKey { key, value, known });
         self
     }
 
@@ -133,7 +133,7 @@ impl Table {
     }
 
     fn without(mut self, key: &'static str, instead: &str, known: Known) -> Table {
-        self.rows.push(Row { key, value: instead.to_owned(), known });
+        self.rows.push(TableKey { key, value: instead.to_owned(), known });
         self
     }
 
@@ -172,19 +172,19 @@ impl Table {
     }
 
     /// Whether a key is open that a line of notes may state. The mass of a sweep is a number, not a weight.
-    fn asks(&self, row: &Row, note: &Note) -> bool {
+    fn asks(&self, row: &TableKey, note: &Note) -> bool {
         let open = matches!(row.known, Known::Open(_) | Known::Missing(_));
         open && note.is_of(row.key) && (self.section, row.key) != ("sweep", "mass")
     }
 
     /// As a campaign writes it, what lacks a key as a comment, with what notes state of its open keys.
     fn toml(&self, notes: &[Note]) -> String {
-        let said = |row: &Row| {
+        let said = |row: &TableKey| {
             let of_key = notes.iter().filter(|note| self.asks(row, note));
             of_key.fold(String::new(), |said, note| format!("{said}; {}: {}", note.place, note.text))
         };
         let mut text = format!("[[{}]]\n", self.section);
-        let row = |row: &Row| match row.known {
+        let row = |row: &TableKey| match row.known {
             Known::Open(_) => format!("# {} =", row.key),
             Known::Missing(_) => format!("{} =", row.key),
             _ => format!("{} = {}", row.key, row.value),
@@ -358,7 +358,7 @@ pub fn of_steps(within: &Folder, files: &[PathBuf], reading: &Reading) -> Result
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let (name, reading) = (folder::name(&names), reading.clone());
-    let series = Series { name, files: names, headers, pattern: None, alike: false, reading };
+    let series = FileSeries { name, files: names, headers, pattern: None, alike: false, reading };
     let table = series.sweep().ok_or_else(|| {
         let found = format!("the channels {}", channels.join(", "));
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")

@@ -85,7 +85,7 @@ pub struct Keys {
 
 /// A function and its modes.
 #[derive(Serialize)]
-struct Found<'a> {
+struct FunctionModes<'a> {
     quantity: &'static str,
     unit: &'a str,
     #[serde(flatten)]
@@ -238,7 +238,7 @@ impl Keys {
             found => (found?, None),
         };
         let (quantity, unit) = (meta.quantity.name(), meta.unit.symbol());
-        let mut answer = Answer::of(&Found { quantity, unit, modal: &found })?;
+        let mut answer = Answer::of(&FunctionModes { quantity, unit, modal: &found })?;
         answer.result.insert("channel".to_owned(), meta.name.clone().into());
         answer.channel.clone_from(&meta.name);
         answer.add("", &meta.findings);

@@ -83,7 +83,7 @@ impl Run {
     }
 }
 
-impl super::Run for Run {
+impl super::CommandArgs for Run {
     const VOICE: Voice = Voice::Campaign;
 
     fn run(&self, json: bool) -> Result<u8> {
@@ -168,7 +168,7 @@ impl Run {
     }
 }
 
-impl super::Run for Compare {
+impl super::CommandArgs for Compare {
     const VOICE: Voice = Voice::Campaign;
 
     /// Prints measured responses over the model.

@@ -6,7 +6,7 @@ use crate::analysis;
 use crate::analysis::Kept;
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
-use crate::proposal::{Known, Proposal, Row, Table};
+use crate::proposal::{Known, Proposal, Table, TableKey};
 use crate::read::{Folder, Occupant, Owner};
 use crate::record::shown;
 use crate::report::words::{Voice, graded, put};
@@ -34,7 +34,7 @@ pub struct Check {
     allow_outside: bool,
 }
 
-impl super::Run for Init {
+impl super::CommandArgs for Init {
     /// Writes the campaign; to one that is there it adds tables for recordings that it does not name.
     fn run(&self, json: bool) -> Result<u8> {
         let within = Folder::from(self.folder.as_path()).allow_outside(self.allow_outside);
@@ -112,7 +112,7 @@ fn keys(proposal: &Proposal, of: impl Fn(Known) -> bool) -> Vec<Value> {
     let of = &of;
     let rows = |table: &Table| -> Vec<Value> {
         let known = table.rows.iter().filter(|row| of(row.known));
-        known.map(|Row { key, value, known }| json!({"section": table.section, "name": table.name(), "key": key, "value": value, "why": known.why()})).collect()
+        known.map(|TableKey { key, value, known }| json!({"section": table.section, "name": table.name(), "key": key, "value": value, "why": known.why()})).collect()
     };
     proposal.tables.iter().flat_map(rows).collect()
 }
@@ -128,7 +128,7 @@ pub fn tell(proposal: &Proposal) {
         series.push((table.section, table.name()));
         let filled = if table.lacks() { ", left out until it is filled in" } else { "" };
         complain::line(&format!("{} -> [[{}]]{filled}", table.in_words(), table.section));
-        for Row { key, value, known } in &table.rows {
+        for TableKey { key, value, known } in &table.rows {
             match known {
                 Known::Found | Known::Open(_) => {}
                 Known::Guessed(why) => complain::line(&format!("  guessed: {key} = {value} ({why})")),
@@ -138,7 +138,7 @@ pub fn tell(proposal: &Proposal) {
     }
 }
 
-impl super::Run for Check {
+impl super::CommandArgs for Check {
     const VOICE: Voice = Voice::Campaign;
 
     /// Checks keys, values and files.

@@ -1,6 +1,6 @@
 //! `vibro model`: what the motion of a rig should be.
 
-use super::{Run, print};
+use super::{CommandArgs, print};
 use crate::analysis::Answer;
 use crate::analysis::model::{branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
@@ -45,7 +45,7 @@ pub struct Asked<K: Args> {
     out: Option<PathBuf>,
 }
 
-impl Run for Model {
+impl CommandArgs for Model {
     /// Computes and prints the answer.
     fn run(&self, json: bool) -> Result<u8> {
         type Ask<'a> = Box<dyn FnOnce(&ProgressBar) -> Result<Answer> + 'a>;

@@ -1,7 +1,7 @@
 //! Records of unknown kind, tried with one analysis after another.
 
 use super::alike::{CHANNELS, share};
-use super::folder::{Series, short};
+use super::folder::{FileSeries, short};
 use super::found::Found;
 use super::{Proposal, Table};
 use crate::analysis::{self, Answer, Evidence, Kept};
@@ -52,7 +52,7 @@ pub(super) const STEPS: usize = 5;
 const VALUES: usize = 1 << 27;
 
 /// The table of a channel of a series, under a name.
-type Kind = fn(&Series, usize, &str) -> Table;
+type Kind = fn(&FileSeries, usize, &str) -> Table;
 
 /// Tries what a record can be measured for.
 #[derive(Clone, Copy)]
@@ -108,7 +108,7 @@ impl Trial<'_> {
     }
 
     /// The tables of a sweep, if a series is one; a few of its files tell whether to read all.
-    pub fn sweep(&self, series: &Series, few: &Series) -> Option<Found> {
+    pub fn sweep(&self, series: &FileSeries, few: &FileSeries) -> Option<Found> {
         let table = series.sweep().filter(|_| series.files.len() >= STEPS)?;
         let answer = |table: &Table| self.answers(from_ref(table)).ok();
         if few.files.len() < series.files.len() {
@@ -130,13 +130,13 @@ impl Trial<'_> {
     }
 
     /// The tables of repeated drops, if a few files of a series are such.
-    pub fn drops(&self, series: &Series, few: &Series) -> Option<Found> {
+    pub fn drops(&self, series: &FileSeries, few: &FileSeries) -> Option<Found> {
         if series.files.len() < 2 || series.headers.len() != 1 || series.values() > VALUES {
             return None;
         }
-        let drops = |series: &Series, table: Kind| {
+        let drops = |series: &FileSeries, table: Kind| {
             let one = |file: &String| {
-                table(&Series { files: vec![file.clone()], ..series.clone() }, 0, &series.name)
+                table(&FileSeries { files: vec![file.clone()], ..series.clone() }, 0, &series.name)
             };
             match series.pattern {
                 Some(_) => vec![table(series, 0, &series.name)],
@@ -149,12 +149,12 @@ impl Trial<'_> {
             !few.alike || heard.evidence.first().is_some_and(of)
         };
         let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).as_ref().is_some_and(each);
-        let kind = [Series::bounces as Kind, Series::fall].into_iter().find(agree)?;
+        let kind = [FileSeries::bounces as Kind, FileSeries::fall].into_iter().find(agree)?;
         Some(Found { tables: drops(series, kind), ..Found::default() })
     }
 
     /// What one file is.
-    pub fn file(&self, series: &Series, name: &str) -> Found {
+    pub fn file(&self, series: &FileSeries, name: &str) -> Found {
         let file = &series.files[0];
         let mut found = Found::default();
         let spectra: Vec<&Header> = series.headers.iter().filter(|h| h.kind != "trace").collect();
@@ -196,7 +196,7 @@ impl Trial<'_> {
     }
 
     /// What one channel is.
-    fn channel(&self, series: &Series, k: usize, name: &str) -> Found {
+    fn channel(&self, series: &FileSeries, k: usize, name: &str) -> Found {
         let [pulse, others @ ..] = series.of_channel(k, name);
         // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
         let alone = |heard: Answer| {
@@ -225,7 +225,7 @@ impl Trial<'_> {
     }
 
     /// The function between two channels: of noise, else of blows.
-    fn function(&self, series: &Series, name: &str, [force, response]: [usize; 2]) -> Found {
+    fn function(&self, series: &FileSeries, name: &str, [force, response]: [usize; 2]) -> Found {
         let file = &series.files[0];
         let called = format!("{name} {}", series.headers[response].name);
         let table = |about| {
@@ -250,7 +250,7 @@ impl Trial<'_> {
     }
 
     /// Velocities beside a channel of two levels: a drill and the pulses of its crank.
-    fn drill(&self, series: &Series, name: &str) -> Vec<Table> {
+    fn drill(&self, series: &FileSeries, name: &str) -> Vec<Table> {
         let file = &series.files[0];
         let is_velocity = |h: &Header| h.quantity == "velocity" || h.unit == "V";
         let velocities = (0..series.headers.len()).filter(|k| is_velocity(&series.headers[*k]));
@@ -301,7 +301,7 @@ impl Trial<'_> {
     }
 }
 
-impl Series {
+impl FileSeries {
     /// The table of a train of bounces.
     fn bounces(&self, k: usize, name: &str) -> Table {
         self.channel_table(k, name, "drop", "impacts of a falling body")

@@ -22,9 +22,9 @@ use crate::assemble;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held, rises};
 use crate::options::Options;
-use axes::Clock;
+use axes::AbscissaChannel;
 use description::Value;
-use layout::Layout;
+use layout::RawData;
 use rayon::prelude::*;
 use scale::Scales;
 use segment::Object;
@@ -54,7 +54,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let mut file = BufReader::with_capacity(BLOCK, source.open()?);
     let (objects, layouts, mut findings) = segment::all(&mut file, source.len())?;
     if !survey {
-        options.hold(layouts.iter().map(Layout::values).sum())?;
+        options.hold(layouts.iter().map(RawData::values).sum())?;
     }
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
@@ -139,7 +139,7 @@ struct Channel<'a> {
     name: &'a str,
     values: Held,
     /// The channel of its group that is its abscissa.
-    clock: Option<Arc<Clock>>,
+    clock: Option<Arc<AbscissaChannel>>,
 }
 
 /// The unit or scale that changes between values of a channel: no single one holds for all.
@@ -210,7 +210,7 @@ impl Raw<'_> {
 /// Reads what a segment has of the objects from `first` on behind what `raw` holds of them.
 fn values(
     file: &mut BufReader<impl Read + Seek>,
-    layout: &Layout,
+    layout: &RawData,
     first: usize,
     raw: &mut [Raw],
 ) -> std::io::Result<()> {

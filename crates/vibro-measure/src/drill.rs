@@ -48,8 +48,8 @@ use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
 use jumps::Jumps;
-use survey::{State, Survey};
-use train::Train;
+use survey::{ChannelStatistics, State};
+use train::TurnImpacts;
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result, median};
 
@@ -94,7 +94,7 @@ pub fn drill_each(
     let factor = options.sensitivity * options.beam.factor;
     let scaled = |volts: &[f64]| volts.iter().map(|v| v * factor).collect::<Vec<f64>>();
     let mut velocity = scaled(record.channels[0]);
-    let survey = Survey::of(&velocity);
+    let survey = ChannelStatistics::of(&velocity);
     if survey.low >= survey.high {
         let error = Error::refused("the velocity is constant, or missing");
         return Err(error.hint("check that the laser sees the target").setting("velocity"));
@@ -273,7 +273,7 @@ impl Marks {
         let part = velocity.len() as f64 / PARTS as f64;
         let parts = (0..PARTS).map(|k| (k, Turn { start: part * k as f64, end: part * (k + 1) as f64 }));
         let jumps = Jumps::of(velocity, states, options.lengths(rate), parts, None);
-        let Train { at, std, others } = Train::of(&jumps.finish(rate, 0.0).0, rate)?;
+        let TurnImpacts { at, std, others } = TurnImpacts::of(&jumps.finish(rate, 0.0).0, rate)?;
         Ok(Marks { at, std, sharp: false, others })
     }
 }

@@ -164,20 +164,20 @@ fn ones(rig: &Rig, sine: &Sine) -> Result<Vec<PeriodicOrbit>> {
 
 /// A point of a branch, and the value over which that is followed.
 #[derive(Serialize)]
-struct Point {
+struct BranchPoint {
     #[serde(flatten)]
     orbit: Value,
     value: f64,
 }
 
 fn told(over: Parameter, branch: &Branch) -> Value {
-    let with = |orbit: &PeriodicOrbit| Point {
+    let with = |orbit: &PeriodicOrbit| BranchPoint {
         orbit: pattern::told(orbit, None),
         value: over.of(&orbit.rig, &orbit.sine),
     };
     let mark = |m: &crate::model::continuation::Mark| json!({ "kind": m.kind, "after": m.after, "orbit": with(&m.orbit) });
     json!({
-        "points": branch.points.iter().map(with).collect::<Vec<Point>>(),
+        "points": branch.points.iter().map(with).collect::<Vec<BranchPoint>>(),
         "marks": branch.marks.iter().map(mark).collect::<Vec<Value>>(),
         "ends": branch.ends,
     })

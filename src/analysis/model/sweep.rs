@@ -37,8 +37,8 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(help = contact::HELP, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
     /// Direction: up, down, both
-    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Way>, default_value = "both"))]
-    pub direction: Way,
+    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Directions>, default_value = "both"))]
+    pub direction: Directions,
     /// Change the frequency continuously by this many Hz/s, instead of in steps
     #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["settle", "measure"]))]
     pub sweep_rate: Option<f64>,
@@ -70,7 +70,7 @@ pub enum Over {
 /// The ways in which it is swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Way {
+pub enum Directions {
     /// Values rise.
     Up,
     /// Values fall.
@@ -128,9 +128,9 @@ impl Keys {
         plan: &Plan,
     ) -> Result<Swept> {
         let directions: &[Direction] = match self.direction {
-            Way::Up => &[Direction::Up],
-            Way::Down => &[Direction::Down],
-            Way::Both => &[Direction::Up, Direction::Down],
+            Directions::Up => &[Direction::Up],
+            Directions::Down => &[Direction::Down],
+            Directions::Both => &[Direction::Up, Direction::Down],
         };
         let rest = Simulation::at_rest(rig);
         apart(directions, |direction| {

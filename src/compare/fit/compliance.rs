@@ -1,6 +1,6 @@
 //! The compliance of the contact, taken out of the points.
 
-use super::{Converged, Data, Kind, Problem, Reading, Setting, Step, assigned};
+use super::{Converged, Data, MotionKind, Problem, Setting, StepAmplitude, SweepStep, assigned};
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
@@ -62,12 +62,12 @@ fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f
     let kinds = assigned(latest, setting, latest.pace)?.kinds;
     let (mut data, mut lost) = (problem.data.clone(), 0);
     for (step, kind) in data.steps.iter_mut().zip(kinds) {
-        if kind != Some(Kind::Impacting) {
+        if kind != Some(MotionKind::Impacting) {
             continue;
         }
         let force = problem.data.force_at(setting, step);
         let Some((factors, left)) = factors(setting, stiffness, force, step.frequency) else {
-            lost += Step::clear(step).count();
+            lost += SweepStep::clear(step).count();
             step.readings = [None, None];
             continue;
         };
@@ -85,7 +85,7 @@ fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f
 /// Largest change of an amplitude in standard deviations.
 fn change(before: &Data, after: &Data) -> f64 {
     let readings = |data: &Data| -> Vec<_> { data.steps.iter().flat_map(|s| s.readings.clone()).collect() };
-    let one = |(a, b): (&Option<Reading>, &Option<Reading>)| match (a, b) {
+    let one = |(a, b): (&Option<StepAmplitude>, &Option<StepAmplitude>)| match (a, b) {
         (Some(a), Some(b)) => (b.amplitude - a.amplitude).abs() / b.std,
         (None, None) => 0.0,
         _ => f64::INFINITY,

@@ -1,7 +1,7 @@
 //! How well the points determine each parameter: by the slopes at the least sum of squares, and by its
 //! profile.
 
-use super::{Kind, Least, Problem};
+use super::{Least, MotionKind, Problem};
 use crate::error::{Error, Result};
 use crate::model::Parameter;
 use nalgebra::{DMatrix, DVector, SVD};
@@ -127,7 +127,7 @@ impl Uncertainty {
         if !is_loose(i) && self.limits[i].is_none() {
             return None;
         }
-        let without_impacts = !problem.kinds.contains(&Some(Kind::Impacting));
+        let without_impacts = !problem.kinds.contains(&Some(MotionKind::Impacting));
         Some(if parameter.needs_impacts() && without_impacts {
             Unidentified::NeedsImpacts
         } else if self.limits[i].is_some() {

@@ -4,11 +4,11 @@ use super::axis::{Printed, choose};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
-use super::names::{Name, Part};
+use super::names::{ComplexPart, Name};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
-use crate::assemble::{self, Judged, NOMINAL, Spectral, domain, from_values, kind_of, short};
+use crate::assemble::{self, JudgedAxis, NOMINAL, Spectral, domain, from_values, kind_of, short};
 use crate::held::Held;
 use crate::{Format, Options, level, number};
 use num_complex::Complex64;
@@ -331,7 +331,7 @@ impl Made<'_> {
         }
         let head = if kind == AxisKind::Frequency { "frequency (kHz)" } else { "time (ms)" };
         let resampled = self.options.resample.is_some();
-        let Judged { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
+        let JudgedAxis { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
         let assumed = assumed
             .map(|found| if found.code == "axis-unit-assumed" { found.name("head", head) } else { found });
@@ -415,8 +415,8 @@ impl Made<'_> {
         for column in table {
             let partner = match column.name.part() {
                 _ if !parts => None,
-                Some((Part::Imaginary, whole)) => {
-                    out.iter_mut().find(|real| real.name.part() == Some((Part::Real, whole.clone())))
+                Some((ComplexPart::Imaginary, whole)) => {
+                    out.iter_mut().find(|real| real.name.part() == Some((ComplexPart::Real, whole.clone())))
                 }
                 None if stated && n == 2 => out.first_mut(),
                 _ => None,

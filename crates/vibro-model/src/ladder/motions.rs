@@ -1,10 +1,10 @@
 //! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
 
 use super::question::{APART, Answer, Question};
-use super::reading::{End, Reader, Reading};
+use super::reading::{MotionReader, Reading, Settling};
 use super::rung::Model;
-use super::stage::{Stage, timed};
-use super::starts::{Followed, Way, several, starts};
+use super::stage::{DrivenScene, timed};
+use super::starts::{Approach, Followed, several, starts};
 use crate::regime::Strike;
 use crate::{Motion, Orbit, Orbits, Regime, Simulation, State, orbits_of};
 use serde::Serialize;
@@ -85,7 +85,7 @@ pub struct Motions {
     /// How far mass 1 alone stays clear of mass 2, in m; `None` without a closed form.
     pub clearance: Option<f64>,
     /// The way the rig came there, where that is known.
-    pub way: Option<Way>,
+    pub way: Option<Approach>,
     /// States that other motions were looked for from; `None` where none was looked for.
     pub followed: Option<Followed>,
     /// The motion followed with impacts at once, from rest or the way it came.
@@ -99,18 +99,18 @@ pub struct Motions {
 impl Motions {
     /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other
     /// states.
-    pub fn new(stage: &Stage<'_>) -> Result<Motions> {
+    pub fn new(stage: &DrivenScene<'_>) -> Result<Motions> {
         let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
         let (closed, closed_cost) = timed(|| orbits_of(rig, excitation, 1));
         let clearance = closed.as_ref().ok().map(|found| rig.gap - found.no_impact.largest);
         let longer = (2..=MOST_CYCLES).filter_map(|cycles| orbits_of(rig, excitation, cycles).ok());
         let longer = longer.flat_map(|found| found.orbits).filter(|o| o.validity.admissible).collect();
-        let way = question.history.map(|direction| Way::new(rig, excitation, direction)).transpose()?;
+        let way = question.history.map(|direction| Approach::new(rig, excitation, direction)).transpose()?;
         let mut end = match &way {
             Some(way) => way.rigid()?,
             None => Simulation::new(rig, excitation)?,
         };
-        let reader = Reader { clearance, ..Reader::new(rig, excitation.frequency(), question) };
+        let reader = MotionReader { clearance, ..MotionReader::new(rig, excitation.frequency(), question) };
         let (reading, cost) = timed(|| reader.read(&mut end));
         let (reading, on, known, followed) = (reading?, On::Other, Vec::new(), None);
         let mut motions =
@@ -127,7 +127,7 @@ impl Motions {
 
     /// Looks for a second motion from other states: near orbits that have lost their stability, and those of
     /// [`starts`].
-    fn seek(&mut self, stage: &Stage<'_>, reader: &Reader) {
+    fn seek(&mut self, stage: &DrivenScene<'_>, reader: &MotionReader) {
         let (rig, excitation) = (&stage.scene.rig, stage.excitation);
         let orbits = self.closed.iter().flat_map(|found| &found.orbits).chain(&self.longer);
         let lost = orbits.filter(|o| o.validity.admissible && o.validity.stable == Some(false));
@@ -150,7 +150,7 @@ impl Motions {
     /// Whether a contact that gives way leads from `rest` to another motion than the one that its `answer` is
     /// read from.
     pub fn differs(&mut self, answer: &Answer, rest: &Reading, model: Model, question: &Question) {
-        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
+        if rest.end == Settling::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;
         }
         self.on = On::Open;
@@ -166,7 +166,7 @@ impl Motions {
     /// Adds a motion with impacts at once, where that is not on its way and answers differently from those
     /// known.
     fn add(&mut self, reading: &Reading, question: &Question) {
-        let settled = |reading: &Reading| reading.end != End::Under;
+        let settled = |reading: &Reading| reading.end != Settling::Under;
         let own = settled(&self.reading) && self.reading.answer.agrees(&reading.answer, question, APART);
         if settled(reading) && !own && !self.known.iter().any(|known| known.may_be(reading, question)) {
             let rare = matches!(reading.regime, Regime::Periodic { impacts, cycles } if impacts < cycles);
@@ -194,9 +194,9 @@ impl Motions {
 
     /// Lists the motions known, and which of them was followed.
     fn list(&mut self, question: &Question, fine: f64) {
-        let own = self.own(fine).filter(|_| self.reading.end == End::Settled);
+        let own = self.own(fine).filter(|_| self.reading.end == Settling::Settled);
         let on = match own {
-            _ if self.reading.end == End::Settled && self.reading.regime == Regime::NoImpact => On::Free,
+            _ if self.reading.end == Settling::Settled && self.reading.regime == Regime::NoImpact => On::Free,
             Some(orbit) if orbit.cycles == 1 => On::Orbit(Box::new(orbit.clone())),
             _ => On::Other,
         };
@@ -216,7 +216,7 @@ impl Motions {
             rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
         };
         known.extend(self.stable().chain(self.longer.iter().filter(|o| o.validity.real())).map(known_as));
-        if on == On::Other && self.reading.end != End::Under && own.is_none() {
+        if on == On::Other && self.reading.end != Settling::Under && own.is_none() {
             known.push(Known::followed(&self.reading, Model::Restitution, false));
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others

@@ -2,7 +2,7 @@
 
 use super::motions::{Motions, On};
 use super::question::{Answer, Question};
-use super::reading::{BRIEF, End, Reader, Reading};
+use super::reading::{BRIEF, MotionReader, Reading, Settling};
 use super::rung::{Found, Model, Rung};
 use crate::law::conversion;
 use crate::{
@@ -25,7 +25,7 @@ pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 
 /// A scene at one excitation.
 #[derive(Debug, Clone, Copy)]
-pub struct Stage<'a> {
+pub struct DrivenScene<'a> {
     pub scene: &'a Scene,
     pub excitation: &'a Excitation,
     pub question: &'a Question,
@@ -75,17 +75,17 @@ fn as_long(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
 fn into(motions: &Motions) -> Finding {
     let reading = &motions.reading;
     let found = match reading.end {
-        End::Under => Finding::caution("rest-not-settled"),
+        Settling::Under => Finding::caution("rest-not-settled"),
         _ => Finding::note("rest-leads-to"),
     };
     let motion = match (reading.end, reading.regime) {
-        (End::Pressed, _) => "lasting contact".to_owned(),
+        (Settling::Pressed, _) => "lasting contact".to_owned(),
         (_, regime) => regime.to_string(),
     };
     found.name("motion", motion).count("cycles", reading.cycles as usize)
 }
 
-impl Stage<'_> {
+impl DrivenScene<'_> {
     fn rig(&self) -> &Rig {
         &self.scene.rig
     }
@@ -226,7 +226,7 @@ impl Stage<'_> {
         let rest = Simulation::at_rest(self.rig());
         let rest = Compliant::new(self.rig(), self.excitation, law, rest, 0.0)?;
         let (rest, _) = self.follow(motions, rest)?;
-        if rest.end == End::Under {
+        if rest.end == Settling::Under {
             found.reasons.push(Finding::caution("rest-unclear").count("cycles", rest.cycles as usize));
         }
         motions.differs(&reading.answer, &rest, model, self.question);
@@ -241,7 +241,7 @@ impl Stage<'_> {
     }
 
     fn follow(&self, motions: &Motions, mut start: Compliant) -> Result<(Reading, f64)> {
-        let mut reader = Reader { clearance: motions.clearance, ..self.reader() };
+        let mut reader = MotionReader { clearance: motions.clearance, ..self.reader() };
         if start.integrates() {
             reader.blocks = reader.blocks.min(BRIEF);
         }
@@ -249,8 +249,8 @@ impl Stage<'_> {
         Ok((reading?, cost))
     }
 
-    fn reader(&self) -> Reader {
-        Reader::new(self.rig(), self.excitation.frequency(), self.question)
+    fn reader(&self) -> MotionReader {
+        MotionReader::new(self.rig(), self.excitation.frequency(), self.question)
     }
 
     /// A mass 1 loose on its spring, from rest; with the contact's spring and damper where they are known.
