@@ -6,7 +6,7 @@ mod map;
 pub use chart::chart;
 pub use map::maps;
 
-use crate::precision::{BenchmarkScene, BorderCell as Asked, FailureMap, Family, MeasuredMethod};
+use crate::precision::{BenchmarkScene, BorderCell, FailureMap, Family, MeasuredMethod};
 use crate::report::layout::{headed, table};
 use crate::report::{Cell, Table};
 use map::OUTCOMES;
@@ -72,7 +72,7 @@ pub fn failures(map: &FailureMap) -> Table {
         "Failures",
         &map.cells,
         &[
-            ("family", "", &|c: &&Asked| c.family.name().into()),
+            ("family", "", &|c: &&BorderCell| c.family.name().into()),
             ("border", "", &|c| c.border.as_str().into()),
             ("scene", "", &|c| c.scene.as_str().into()),
             ("method", "", &|c| c.method.as_str().into()),

@@ -233,8 +233,10 @@ fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
 /// # Errors
 /// If a list or a spectrum cannot be read, or an excitation cannot be found.
 pub fn responses(campaign: &Campaign, progress: &dyn Progress) -> Result<Vec<Response>> {
-    let taken: Result<Vec<Taken>> =
-        taken(campaign, all_entries(campaign)?, progress).into_iter().map(|(_, taken)| taken).collect();
+    let taken: Result<Vec<Taken>> = read_responses(campaign, all_entries(campaign)?, progress)
+        .into_iter()
+        .map(|(_, taken)| taken)
+        .collect();
     let mut responses: Vec<Response> = taken?.into_iter().map(|(_, response, _)| response).collect();
     pairing::name(&mut responses.iter_mut().collect::<Vec<_>>());
     Ok(responses)
@@ -243,7 +245,7 @@ pub fn responses(campaign: &Campaign, progress: &dyn Progress) -> Result<Vec<Res
 type Taken = (Sweep, Response, ResponseOptions);
 
 /// The sweeps of these tables by their names.
-fn taken(
+fn read_responses(
     campaign: &Campaign,
     entries: Vec<Entry<Keys>>,
     progress: &dyn Progress,
@@ -254,7 +256,7 @@ fn taken(
         let listed = Listed::of(campaign, entry)?;
         let compute = &campaign.compute;
         let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
-        let (sweep, response) = listed.taken(&options)?;
+        let (sweep, response) = listed.sweep_and_response(&options)?;
         progress.step();
         Ok((sweep, response, options))
     };
@@ -327,7 +329,7 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        let taken = taken(job.campaign, entries.to_vec(), job.progress).into_iter();
+        let taken = read_responses(job.campaign, entries.to_vec(), job.progress).into_iter();
         let mut taken: Vec<Taken> = taken.filter_map(|(name, taken)| job.found(&name, taken)).collect();
         pairing::name(&mut taken.iter_mut().map(|(_, response, _)| response).collect::<Vec<_>>());
         let matrix = |(sweep, response, options): Taken| (waterfall(&sweep, &options, &response), response);

@@ -21,7 +21,7 @@ pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
     // A hint of the crates below knows no name of the file.
     let file = std::env::args_os().skip(2).find(|word| Path::new(word).is_file());
     let spoken = |error: &Error| {
-        let text = error.spoken(|key, value| voice.set(key, value));
+        let text = error.text_with(|key, value| voice.set(key, value));
         let text = match (text.strip_suffix(" FILE"), &file) {
             (Some(command), Some(file)) => format!("{command} {}", print::typed(Path::new(file))),
             _ => text,

@@ -196,7 +196,7 @@ impl MeasuredFile<frf::Keys> {
             Stored { unit, calibration, ..Stored::default() }.apply(&mut reader)?;
             Listed { files: Files::Spectra(list), reader, findings: Vec::new() }
         };
-        let (_, response) = listed.taken(&ResponseOptions::default())?;
+        let (_, response) = listed.sweep_and_response(&ResponseOptions::default())?;
         frf::Function::of_response(&response).map(Some)
     }
 }

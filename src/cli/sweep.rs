@@ -7,7 +7,7 @@ use crate::analysis::{self, Answer, in_order, is_pattern, matching};
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
 use crate::measure::response::{ResponseOptions, ResponsePoint};
-use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
+use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::proposal::{Proposal, more_steps, of_steps};
 use crate::read::{Folder, Owner, SweepList, SweepReader, plain};
@@ -159,7 +159,7 @@ impl CommandArgs for Taken {
         let answer = if self.sweep.legacy {
             largest_lines(&listed.spectra()?.1)?
         } else {
-            let (_, found) = listed.taken(&self.options())?;
+            let (_, found) = listed.sweep_and_response(&self.options())?;
             let all = std::slice::from_ref(&found);
             let mut answer = Answer::of(&found)?;
             answer.add("", &found.findings);
@@ -223,7 +223,7 @@ impl CommandArgs for WaterfallArgs {
             let excitation = legacy::rounded(&legacy::excitation(&sweep)?);
             let rows = legacy::waterfall(&sweep);
             let shape = (excitation.len(), sweep.axis.len());
-            Matrix {
+            Waterfall {
                 name: sweep.name.clone(),
                 frequency: sweep.axis.values(),
                 excitation,
@@ -235,7 +235,7 @@ impl CommandArgs for WaterfallArgs {
             }
         } else {
             let options = self.taken.options();
-            let (sweep, response) = listed.taken(&options)?;
+            let (sweep, response) = listed.sweep_and_response(&options)?;
             waterfall(&sweep, &options, &response)
         };
         let rows = matrix.magnitude.rows();
@@ -280,7 +280,7 @@ impl CommandArgs for ExcitationArgs {
             let (_, sweep) = listed.spectra()?;
             (excitation::excitations(&sweep, self.sweep.fmin.unwrap_or(0.0))?, sweep.findings)
         } else {
-            let (sweep, found) = listed.taken(&ResponseOptions::default())?;
+            let (sweep, found) = listed.sweep_and_response(&ResponseOptions::default())?;
             let point = |(point, step): (&ResponsePoint, &SweepPoint)| excitation::Excitation {
                 file: step.name(),
                 frequency: point.excitation,

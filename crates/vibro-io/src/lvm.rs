@@ -45,12 +45,12 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
     let text = encoding::decode(&bytes);
     let mut lines = NumberedLines { rest: text.lines(), number: 0 };
     let general = Head::of(&mut lines);
-    let separator = match general.said("separator").map(str::to_lowercase).as_deref() {
+    let separator = match general.tag_value("separator").map(str::to_lowercase).as_deref() {
         Some("comma") => ',',
         Some("semicolon") => ';',
         _ => '\t',
     };
-    let columns = general.said("x_columns").unwrap_or("One").to_lowercase();
+    let columns = general.tag_value("x_columns").unwrap_or("One").to_lowercase();
     let (mut records, mut findings, mut missed) = (Vec::new(), Vec::new(), Missing::default());
     let mut segments = 0;
     loop {
@@ -141,7 +141,7 @@ impl<'a> Head<'a> {
     }
 
     /// The value of a tag that has one.
-    fn said(&self, tag: &str) -> Option<&'a str> {
+    fn tag_value(&self, tag: &str) -> Option<&'a str> {
         self.tags.get(tag)?.iter().copied().find(|value| !value.is_empty())
     }
 
@@ -195,7 +195,7 @@ impl<'h, 'a> Segment<'h, 'a> {
         let column = |name: &&str| SegmentColumn { name: (*name).to_owned(), ..SegmentColumn::default() };
         let mut columns: Vec<SegmentColumn> = names[..comment].iter().map(column).collect();
         let mut comments = Vec::new();
-        let mut decimal = general.said("decimal_separator").and_then(|mark| mark.bytes().next());
+        let mut decimal = general.tag_value("decimal_separator").and_then(|mark| mark.bytes().next());
         let (mut row, mut blank, mut ahead) = (0, 0, lines.clone());
         while let Some(line) = ahead.next() {
             if line.trim().is_empty() {

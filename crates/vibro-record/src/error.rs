@@ -139,7 +139,7 @@ impl Error {
 
     /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as
     /// `--low-pass`.
-    pub fn spoken(&self, typed: impl Fn(&str, &str) -> String) -> String {
+    pub fn text_with(&self, typed: impl Fn(&str, &str) -> String) -> String {
         let Inner { place, excerpt, hint, settings, .. } = &*self.0;
         let what = self.what(place);
         let values = settings.iter().any(|(_, value)| !value.is_empty());
@@ -317,11 +317,9 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            &self.spoken(
-                |key, value| if value.is_empty() { key.to_owned() } else { format!("{key} = {value}") },
-            ),
-        )
+        f.write_str(&self.text_with(|key, value| {
+            if value.is_empty() { key.to_owned() } else { format!("{key} = {value}") }
+        }))
     }
 }
 
@@ -350,7 +348,7 @@ mod tests {
         let error = Error::refused("no rate").hint("state the sampling rate").setting("base_band");
         assert_eq!(error.to_string(), "no rate\n  try: state the sampling rate (base_band)");
         let option = |key: &str, _: &str| format!("--{}", key.replace('_', "-"));
-        assert_eq!(error.spoken(option), "no rate\n  try: state the sampling rate (--base-band)");
+        assert_eq!(error.text_with(option), "no rate\n  try: state the sampling rate (--base-band)");
     }
 
     #[test]

@@ -492,14 +492,14 @@ impl Made<'_> {
     fn spectral(&self, name: &str, unit: Option<(&str, Option<Scaling>)>) -> Spectral {
         let (unit, scaling) = unit.unwrap_or_default();
         let by_unit = if is_density(unit) { Some(Scaling::Psd) } else { scaling };
-        let own = self.said("window", name).and_then(|window| Window::from_name(&window));
+        let own = self.remark_about("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
-            scaling: self.said("scaling", name).and_then(|s| Scaling::from_name(&s)).or(by_unit),
+            scaling: self.remark_about("scaling", name).and_then(|s| Scaling::from_name(&s)).or(by_unit),
             // A remark about another column says nothing of this one.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),
-            enbw: self.said("enbw", name).and_then(|e| number::parse(e.as_bytes())),
-            frf: self.said("kind", name).is_some_and(|k| k == "frf"),
+            enbw: self.remark_about("enbw", name).and_then(|e| number::parse(e.as_bytes())),
+            frf: self.remark_about("kind", name).is_some_and(|k| k == "frf"),
             doubt: None,
         }
     }
@@ -509,7 +509,7 @@ impl Made<'_> {
     }
 
     /// A remark about one column, `key: value of name`, or about all, `key: value`.
-    fn said(&self, key: &str, name: &str) -> Option<String> {
+    fn remark_about(&self, key: &str, name: &str) -> Option<String> {
         let of = format!(" of {name}");
         let own = self.remarks(key).find_map(|v| v.strip_suffix(of.as_str()));
         let value = own.or_else(|| self.remarks(key).find(|v| !v.contains(" of ")))?;

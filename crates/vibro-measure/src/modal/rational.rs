@@ -47,7 +47,7 @@ struct Scaled<'a> {
 }
 
 /// How much of the lines modes `starts` leave at the least, unweighted: to choose among first guesses.
-pub(super) fn left_by(
+pub(super) fn residual_sum(
     measured: &Measured,
     part: std::ops::Range<usize>,
     starts: &[(f64, f64)],

@@ -1,6 +1,6 @@
 //! Which lines belong to which peak, which peaks are modes, and on which lines they are fitted.
 
-use super::rational::{Rational, left_by, rational};
+use super::rational::{Rational, rational, residual_sum};
 use super::{Measured, Pole};
 use crate::peaks::local_maxima;
 use crate::residuals::NO_SUPPORT;
@@ -180,7 +180,7 @@ fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]
             starts[m].0 = frequency * (1.0 - bandwidths * zeta);
         }
         starts.push((at, zeta));
-        let left = left_by(lines, group.lines.clone(), &starts, others)?;
+        let left = residual_sum(lines, group.lines.clone(), &starts, others)?;
         Some((left, starts))
     };
     let places = (0..starts.len()).flat_map(|m| BESIDE_A_MODE.map(|bandwidths| (m, bandwidths)));

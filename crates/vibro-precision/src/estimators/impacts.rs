@@ -45,7 +45,7 @@ fn plain() -> SyntheticTrain {
 
 impl SyntheticTrain {
     /// The trace, the samples at which impacts stand, and the interval in samples.
-    fn made(&self, noise: &mut Noise) -> (Trace, Vec<f64>, f64) {
+    fn synthesised(&self, noise: &mut Noise) -> (Trace, Vec<f64>, f64) {
         let interval = noise.between(240.0, 290.0);
         let start = noise.between(200.0, 300.0);
         let n = (start + interval * self.count as f64) as usize;
@@ -67,7 +67,7 @@ impl SyntheticTrain {
 
     fn rate(self) -> impl Fn(&mut Noise) -> Case<Trace> {
         move |noise| {
-            let (data, _, interval) = self.made(noise);
+            let (data, _, interval) = self.synthesised(noise);
             let truth = RATE / interval;
             Case { data, truth, unit: truth, tolerance: 0.01 * truth }
         }
@@ -124,7 +124,7 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
         let bound = f64::sqrt(2.0) * onset_bound(sigma) / RATE;
         Ensemble::new(format!("noise of {} %", 100.0 * sigma), 31_000, move |noise: &mut Noise| {
             let (data, at, _) =
-                SyntheticTrain { count: COUNT, noise: sigma, jitter: 0.01, ..plain() }.made(noise);
+                SyntheticTrain { count: COUNT, noise: sigma, jitter: 0.01, ..plain() }.synthesised(noise);
             Case { data, truth: middle(&at) / RATE, unit: bound, tolerance: 1.0 / RATE }
         })
     });
