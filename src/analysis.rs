@@ -28,8 +28,8 @@ mod page;
 
 pub use answer::Answer;
 pub use evidence::Evidence;
-pub use job::{INPUTS, Progress, REPORT, RESULTS, Ran, answers, run};
-pub use kept::Kept;
+pub use job::{CampaignOutcome, INPUTS, Progress, REPORT, RESULTS, answers, run};
+pub use kept::AnswerCache;
 pub(crate) use recordings::{OWN, Recordings, in_order, is_pattern, matching, recordings, unnamed};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};

@@ -56,7 +56,7 @@ const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         "Measure",
         &[
-            CommandRow::of::<sweep::Taken>(
+            CommandRow::of::<sweep::ResponseArgs>(
                 "response step*.csv --out figures",
                 "Response of a sweep at the excitation frequency, with resonances and jumps",
             ),
@@ -251,7 +251,7 @@ pub fn main() -> u8 {
     };
     let replace = last.and_then(|typed| typed.try_get_one("replace").ok()?).copied().unwrap_or(false);
     // Nothing has set it before.
-    let _ = print::WRITTEN.set(print::Written { medium, replace });
+    let _ = print::WRITTEN.set(print::OutputSettings { medium, replace });
     if let Err(error) = numbers(last.unwrap_or(&typed)) {
         return complain::error(&error, Voice::Command, json);
     }

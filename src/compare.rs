@@ -9,7 +9,7 @@ mod predicting;
 mod prediction;
 mod simulated;
 
-pub use fit::{Block, Fit, FitPoint, Fitted, LeftOut, Profile, Rung, Unidentified, fit};
+pub use fit::{Block, Fit, FitPoint, FittedParameter, LeftOut, Profile, Rung, Unidentified, fit};
 pub use overlay::{Level, Overlay, overlay};
 pub use pair::{Pair, PeakPair, Score};
 pub use prediction::{Motion, MotionKind, Prediction, Verdict};

@@ -14,7 +14,7 @@ use folder::{FileSeries, Inventory};
 pub use joined::more_steps;
 use notes::Note;
 
-use crate::analysis::{self, Kept, Progress};
+use crate::analysis::{self, AnswerCache, Progress};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Place, Result};
 use crate::read::Folder;
@@ -60,7 +60,7 @@ pub struct TableKey {
     /// Its value as TOML; empty where it is missing.
     pub value: String,
     /// How it is known.
-    pub known: Known,
+    pub known: KeyStatus,
 }
 
 /// Characters of a key and its value beside which the comments of a table stand in a column.
@@ -69,7 +69,7 @@ const WIDEST: usize = 60;
 /// How the value of a key is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Known {
+pub enum KeyStatus {
     /// The files say it.
     Found,
     /// It was concluded; the reason.
@@ -80,12 +80,12 @@ pub enum Known {
     Missing(&'static str),
 }
 
-impl Known {
+impl KeyStatus {
     /// The reason of a guess, or what is missing.
     pub fn why(self) -> Option<&'static str> {
         match self {
-            Known::Found => None,
-            Known::Guessed(why) | Known::Open(why) | Known::Missing(why) => Some(why),
+            KeyStatus::Found => None,
+            KeyStatus::Guessed(why) | KeyStatus::Open(why) | KeyStatus::Missing(why) => Some(why),
         }
     }
 }
@@ -107,7 +107,7 @@ impl Table {
         format!("{}: {}{guess}", self.files, self.about)
     }
 
-    fn with(mut self, key: &'static str, value: impl Serialize, known: Known) -> Table {
+    fn with(mut self, key: &'static str, value: impl Serialize, known: KeyStatus) -> Table {
         // A string of JSON is one of TOML, and so are its numbers, words and lists of these.
         let value = serde_json::to_string(&value).unwrap_or_default();
         self.rows.push(TableKey { key, value, known });
@@ -115,24 +115,24 @@ impl Table {
     }
 
     fn found(self, key: &'static str, value: impl Serialize) -> Table {
-        self.with(key, value, Known::Found)
+        self.with(key, value, KeyStatus::Found)
     }
 
     fn guessed(self, key: &'static str, value: impl Serialize, why: &'static str) -> Table {
-        self.with(key, value, Known::Guessed(why))
+        self.with(key, value, KeyStatus::Guessed(why))
     }
 
     /// A key that may be stated, and a value where the table is tried, or none.
     fn open(self, key: &'static str, instead: &str, what: &'static str) -> Table {
-        self.without(key, instead, Known::Open(what))
+        self.without(key, instead, KeyStatus::Open(what))
     }
 
     /// A key that must be stated, and a value where the table is tried.
     fn missing(self, key: &'static str, instead: &str, what: &'static str) -> Table {
-        self.without(key, instead, Known::Missing(what))
+        self.without(key, instead, KeyStatus::Missing(what))
     }
 
-    fn without(mut self, key: &'static str, instead: &str, known: Known) -> Table {
+    fn without(mut self, key: &'static str, instead: &str, known: KeyStatus) -> Table {
         self.rows.push(TableKey { key, value: instead.to_owned(), known });
         self
     }
@@ -140,8 +140,8 @@ impl Table {
     /// The same with what stands in for values that are not stated.
     fn tried(mut self) -> Table {
         for row in &mut self.rows {
-            if matches!(row.known, Known::Open(_) | Known::Missing(_)) && !row.value.is_empty() {
-                row.known = Known::Found;
+            if matches!(row.known, KeyStatus::Open(_) | KeyStatus::Missing(_)) && !row.value.is_empty() {
+                row.known = KeyStatus::Found;
             }
         }
         self
@@ -157,7 +157,7 @@ impl Table {
 
     /// Whether a key is missing: it cannot run before that is filled in.
     pub fn lacks(&self) -> bool {
-        self.rows.iter().any(|row| matches!(row.known, Known::Missing(_)))
+        self.rows.iter().any(|row| matches!(row.known, KeyStatus::Missing(_)))
     }
 
     /// Its name in the report.
@@ -173,7 +173,7 @@ impl Table {
 
     /// Whether a key is open that a line of notes may state. The mass of a sweep is a number, not a weight.
     fn asks(&self, row: &TableKey, note: &Note) -> bool {
-        let open = matches!(row.known, Known::Open(_) | Known::Missing(_));
+        let open = matches!(row.known, KeyStatus::Open(_) | KeyStatus::Missing(_));
         open && note.is_of(row.key) && (self.section, row.key) != ("sweep", "mass")
     }
 
@@ -185,8 +185,8 @@ impl Table {
         };
         let mut text = format!("[[{}]]\n", self.section);
         let row = |row: &TableKey| match row.known {
-            Known::Open(_) => format!("# {} =", row.key),
-            Known::Missing(_) => format!("{} =", row.key),
+            KeyStatus::Open(_) => format!("# {} =", row.key),
+            KeyStatus::Missing(_) => format!("{} =", row.key),
             _ => format!("{} = {}", row.key, row.value),
         };
         let commented = self.rows.iter().filter(|row| row.known.why().is_some());
@@ -194,10 +194,10 @@ impl Table {
         for one in &self.rows {
             let row = row(one);
             let _ = match one.known {
-                Known::Found => writeln!(text, "{row}"),
-                Known::Guessed(why) => writeln!(text, "{row:wide$}   # guessed: {why}"),
-                Known::Open(what) => writeln!(text, "{row:wide$}   # open: {what}{}", said(one)),
-                Known::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", said(one)),
+                KeyStatus::Found => writeln!(text, "{row}"),
+                KeyStatus::Guessed(why) => writeln!(text, "{row:wide$}   # guessed: {why}"),
+                KeyStatus::Open(what) => writeln!(text, "{row:wide$}   # open: {what}{}", said(one)),
+                KeyStatus::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", said(one)),
             };
         }
         let about = format!("# {}\n", shown(self.in_words()));
@@ -225,7 +225,7 @@ impl Proposal {
         within: &Folder,
         reading: &Reading,
         known: Option<&Campaign>,
-        kept: &Kept,
+        kept: &AnswerCache,
         progress: &dyn Progress,
     ) -> Result<Proposal> {
         let folder = within.root();
@@ -285,7 +285,7 @@ impl Proposal {
                 // Drops of one series have one name.
                 let same = key != "file" && (key != "name" || table.section == "drop");
                 for row in table.rows.iter_mut().filter(|row| same && row.key == key) {
-                    (row.value, row.known) = (value.clone(), Known::Found);
+                    (row.value, row.known) = (value.clone(), KeyStatus::Found);
                 }
             }
             let name = table.value(if table.section == "sweep" { "name" } else { "sweep" }).to_owned();

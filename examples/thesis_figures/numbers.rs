@@ -6,7 +6,7 @@ use std::path::Path;
 use vibroimpact::Result;
 use vibroimpact::analysis;
 use vibroimpact::analysis::figures;
-use vibroimpact::measure::drill::{Beam, From};
+use vibroimpact::measure::drill::{AngleOrigin, Beam};
 use vibroimpact::measure::pulse::two_times;
 use vibroimpact::measure::response::ResponseOptions;
 use vibroimpact::measure::restitution::Drop;
@@ -100,14 +100,14 @@ pub fn numbers() -> Result<Sheet> {
             why,
         ));
     }
-    let normal = Beam::new(30.0, From::Normal)?;
+    let normal = Beam::new(30.0, AngleOrigin::Normal)?;
     let why = "if the 30° are counted from the normal to the motion";
     claims.push(Claim::number("factor of a beam at 30°", "2", normal.factor, (3, ""), 1e-9, why));
     let why = "counted from the line of motion it is 1/cos 30°";
     claims.push(Claim::number(
         "factor of a beam at 30°",
         "2",
-        Beam::new(30.0, From::Axis)?.factor,
+        Beam::new(30.0, AngleOrigin::Axis)?.factor,
         (3, ""),
         1e-9,
         why,

@@ -1,7 +1,7 @@
 //! What a campaign is computed from, by content.
 
 use super::file_name;
-use super::kept::Kept;
+use super::kept::AnswerCache;
 use crate::campaign::Campaign;
 use crate::read::listed;
 use crate::record::shown;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// A line for the program, the campaign and `all` of its recordings, as `sha256sum` writes them; names are
 /// relative to the folder of the campaign.
-pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &Kept) -> String {
+pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &AnswerCache) -> String {
     for path in &mut all {
         *path = campaign.within().file(path).to_owned();
     }

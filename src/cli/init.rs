@@ -3,10 +3,10 @@
 use super::print::folder_of;
 use super::{complain, print};
 use crate::analysis;
-use crate::analysis::Kept;
+use crate::analysis::AnswerCache;
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
-use crate::proposal::{Known, Proposal, Table, TableKey};
+use crate::proposal::{KeyStatus, Proposal, Table, TableKey};
 use crate::read::{Folder, Occupant, Owner};
 use crate::record::shown;
 use crate::report::words::{Voice, graded, put};
@@ -47,7 +47,7 @@ impl super::CommandArgs for Init {
             path.exists().then(|| analysis::open_in(&within, &path).map_err(|e| foreign(&within, &path, e)));
         let known = known.transpose()?;
         let proposal = print::busy(json, "looking at files", |bar| {
-            Proposal::of(&within, &self.reading, known.as_ref(), &Kept::default(), bar)
+            Proposal::of(&within, &self.reading, known.as_ref(), &AnswerCache::default(), bar)
         })?;
         let text = match &known {
             Some(known) => {
@@ -71,9 +71,9 @@ impl super::CommandArgs for Init {
         if json {
             print::object(json!({
                 "written": path.display().to_string(),
-                "found": keys(&proposal, |known| known == Known::Found),
-                "guessed": keys(&proposal, |known| matches!(known, Known::Guessed(_))),
-                "missing": keys(&proposal, |known| matches!(known, Known::Open(_) | Known::Missing(_))),
+                "found": keys(&proposal, |known| known == KeyStatus::Found),
+                "guessed": keys(&proposal, |known| matches!(known, KeyStatus::Guessed(_))),
+                "missing": keys(&proposal, |known| matches!(known, KeyStatus::Open(_) | KeyStatus::Missing(_))),
                 "left": proposal.left,
                 "warnings": [],
                 "findings": [],
@@ -108,7 +108,7 @@ fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
 }
 
 /// The keys that are known in one way.
-fn keys(proposal: &Proposal, of: impl Fn(Known) -> bool) -> Vec<Value> {
+fn keys(proposal: &Proposal, of: impl Fn(KeyStatus) -> bool) -> Vec<Value> {
     let of = &of;
     let rows = |table: &Table| -> Vec<Value> {
         let known = table.rows.iter().filter(|row| of(row.known));
@@ -130,9 +130,9 @@ pub fn tell(proposal: &Proposal) {
         complain::line(&format!("{} -> [[{}]]{filled}", table.in_words(), table.section));
         for TableKey { key, value, known } in &table.rows {
             match known {
-                Known::Found | Known::Open(_) => {}
-                Known::Guessed(why) => complain::line(&format!("  guessed: {key} = {value} ({why})")),
-                Known::Missing(what) => complain::line(&format!("  missing: {key}, {what}")),
+                KeyStatus::Found | KeyStatus::Open(_) => {}
+                KeyStatus::Guessed(why) => complain::line(&format!("  guessed: {key} = {value} ({why})")),
+                KeyStatus::Missing(what) => complain::line(&format!("  missing: {key}, {what}")),
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::sweep::{SweepPlace, of_script};
 use super::{CommandArgs, complain, print};
 use crate::analysis::drill::cycles;
-use crate::analysis::sweep::{Files, Listed, Stored, named};
+use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, named};
 use crate::analysis::{self, Analysis, Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
@@ -193,7 +193,7 @@ impl MeasuredFile<frf::Keys> {
             let (unit, calibration) = (self.record.reading.unit.clone(), self.record.channel.calibration);
             let (name, folder) = (path.to_owned(), folder.clone());
             let mut reader = SweepReader { name, folder, ..SweepReader::default() };
-            Stored { unit, calibration, ..Stored::default() }.apply(&mut reader)?;
+            StoredResponseKeys { unit, calibration, ..StoredResponseKeys::default() }.apply(&mut reader)?;
             Listed { files: Files::Spectra(list), reader, findings: Vec::new() }
         };
         let (_, response) = listed.sweep_and_response(&ResponseOptions::default())?;

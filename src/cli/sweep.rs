@@ -1,8 +1,8 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
 
 use super::{CommandArgs, init, print};
-use crate::analysis::Kept;
-use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
+use crate::analysis::AnswerCache;
+use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, figures, named, tables};
 use crate::analysis::{self, Answer, in_order, is_pattern, matching};
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
@@ -31,14 +31,14 @@ pub struct SweepSource {
     /// Allow files outside the folder of the list
     allow_outside: bool,
     #[command(flatten)]
-    stored: Stored,
+    stored: StoredResponseKeys,
     /// Lowest frequency used, in Hz [default: two lines or a quarter of the lowest excitation]
     fmin: Option<f64>,
 }
 
 /// How a response is taken from a spectrum.
 #[derive(Debug, clap::Args)]
-pub struct Taken {
+pub struct ResponseArgs {
     #[command(flatten)]
     sweep: SweepSource,
     /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity
@@ -56,7 +56,7 @@ pub struct Taken {
 #[derive(Debug, clap::Args)]
 pub struct WaterfallArgs {
     #[command(flatten)]
-    taken: Taken,
+    taken: ResponseArgs,
     /// Highest frequency drawn, in Hz [default: the last line to be seen]
     fmax: Option<f64>,
 }
@@ -83,7 +83,8 @@ impl SweepSource {
         Ok(match typed.as_slice() {
             [path] if path.is_dir() => {
                 let within = folder.at(*path);
-                let mut proposal = Proposal::of(&within, &Reading::default(), None, &Kept::default(), &())?;
+                let mut proposal =
+                    Proposal::of(&within, &Reading::default(), None, &AnswerCache::default(), &())?;
                 proposal.tables.retain(|table| table.section == "sweep");
                 proposal.left.clear();
                 Some(proposal)
@@ -150,7 +151,7 @@ impl SweepPlace<'_> {
     }
 }
 
-impl CommandArgs for Taken {
+impl CommandArgs for ResponseArgs {
     /// Prints the response.
     fn run(&self, json: bool) -> Result<u8> {
         let folder = self.sweep.folder();
@@ -179,7 +180,7 @@ impl CommandArgs for Taken {
 const RESPONSE: Names = Names::Numbered(&["response", "receptance"]);
 const WATERFALL: Names = Names::Numbered(&["waterfall", "map"]);
 
-impl Taken {
+impl ResponseArgs {
     fn options(&self) -> ResponseOptions {
         ResponseOptions {
             band: usize::from(self.peak_lines),

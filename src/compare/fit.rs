@@ -18,7 +18,7 @@ mod search;
 mod uncertainty;
 mod unknown;
 
-pub use answer::{Fit, FitPoint, Fitted, LeftOut};
+pub use answer::{Fit, FitPoint, FittedParameter, LeftOut};
 pub use hold_out::{Block, Rung};
 pub use uncertainty::{Profile, Unidentified};
 
@@ -33,7 +33,7 @@ use crate::measure::response::Response;
 use crate::model::Rig;
 use answer::AssessedFit;
 use compliance::corrected;
-use converge::{Converged, Least, assigned};
+use converge::{Converged, LeastSquares, assigned};
 use data::{Data, GUESS, StepAmplitude, SweepStep};
 use hold_out::rungs;
 use problem::{Problem, shown};

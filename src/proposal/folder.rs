@@ -1,6 +1,6 @@
 //! The recordings of a folder: lists of sweeps, and files in series.
 
-use super::{Known, Table};
+use super::{KeyStatus, Table};
 use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
@@ -184,7 +184,7 @@ impl FileSeries {
             }
             None => table.found("traces", &self.files),
         };
-        let table = table.with("force", self.channel(force), Known::Guessed("the channel in N"));
+        let table = table.with("force", self.channel(force), KeyStatus::Guessed("the channel in N"));
         let responses: Vec<_> = responses.into_iter().map(|k| self.channel(k)).collect();
         Some(match responses.as_slice() {
             [one] => table.guessed("response", one, "the other channel"),

@@ -5,7 +5,7 @@ use super::folder::{FileSeries, columns, name};
 use super::trial::{STEPS, Trial};
 use crate::analysis::sweep::order::same;
 use crate::analysis::tone::Strongest;
-use crate::analysis::{self, Kept, file_name, in_order};
+use crate::analysis::{self, AnswerCache, file_name, in_order};
 use crate::campaign::Reading;
 use crate::read::{Folder, Header, plain};
 use crate::record::{Finding, Record};
@@ -24,7 +24,7 @@ const FEW: usize = 8;
 const MOST: usize = 64;
 
 /// The series, those joined whose files are alike but for their names.
-pub(super) fn all(series: Vec<FileSeries>, folder: &Folder, kept: &Kept) -> Vec<FileSeries> {
+pub(super) fn all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCache) -> Vec<FileSeries> {
     let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, one) in series.iter().enumerate() {
         families.entry(one.family()).or_default().push(i);
@@ -196,7 +196,7 @@ pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
     let series =
         FileSeries { name: String::new(), files: names, headers: own, pattern: None, alike: true, reading };
     let (force, _) = series.force_and_responses()?;
-    let trial = Trial { folder: &folder, reading: &series.reading, kept: &Kept::default() };
+    let trial = Trial { folder: &folder, reading: &series.reading, kept: &AnswerCache::default() };
     let tones = |files: &[&String]| trial.frequencies(force, files);
     let few: Vec<&String> = spread(alike.len(), FEW).into_iter().map(|k| &alike[k]).collect();
     tones(&few).iter().flatten().next()?;

@@ -1,6 +1,6 @@
 //! The names of series, and the place for them.
 
-use crate::style::{LEADING, Look, MARKER, OUTLINE, SMALL};
+use crate::style::{LEADING, MARKER, OUTLINE, SMALL, SeriesLook};
 use crate::{Anchor, Canvas, Clutter, Form, Heatmap, Key, Marker, Pen, Point, Rect, Series, Shape, font};
 
 /// Length of a sample with a line and of one without, and its distance from the name.
@@ -23,13 +23,13 @@ struct LegendEntry {
     shape: Shape,
     /// Whether its sample has a line.
     lined: bool,
-    look: Look,
+    look: SeriesLook,
 }
 
 impl KeyList {
     /// Entries of all named series and classes; reference lines carry their names themselves. Headings have
     /// no sample.
-    pub fn new(series: &[Series], looks: &[Look], map: Option<&Heatmap>) -> KeyList {
+    pub fn new(series: &[Series], looks: &[SeriesLook], map: Option<&Heatmap>) -> KeyList {
         let mut entries: Vec<LegendEntry> = Vec::new();
         for (series, look) in series.iter().zip(looks) {
             let Series { name, shape, stroke, .. } = series;
@@ -45,7 +45,7 @@ impl KeyList {
             entries.extend(names.iter().enumerate().map(|(i, name)| {
                 let colour = Heatmap::class_colour(i);
                 let pen = Pen::solid(colour, OUTLINE);
-                let look = Look { colour, fill: colour, pen, marker: Marker::Circle };
+                let look = SeriesLook { colour, fill: colour, pen, marker: Marker::Circle };
                 LegendEntry { name: name.clone(), shape: Shape::Band, lined: false, look }
             }));
         }
@@ -118,7 +118,7 @@ impl KeyList {
 
 impl LegendEntry {
     fn draw(&self, canvas: &mut Canvas, (x, y): Point, sample: f64, room: f64) {
-        let Look { colour, fill, pen, marker } = self.look;
+        let SeriesLook { colour, fill, pen, marker } = self.look;
         let middle = (x + sample / 2.0, y);
         let swatch = || vec![Rect { x: middle.0 - 5.0, y: y - 3.2, w: 10.0, h: 6.4 }.corners()];
         if self.lined {

@@ -1,7 +1,7 @@
 //! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse
 //! or step is due.
 
-use super::least::{Least, number};
+use super::least::{NumberRange, number};
 use super::linear::{ORDER, Terms};
 use super::waves::MOST_SINES;
 use super::{Excitation, Part, Pulses, Sine};
@@ -75,7 +75,7 @@ impl Forcing {
     /// the phase stands for.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         excitation.check()?;
-        number("phase", phase, "rad", Least::Any)?;
+        number("phase", phase, "rad", NumberRange::Any)?;
         let frequency = excitation.frequency();
         let phase = phase.rem_euclid(TAU);
         // The remainder of a tiny negative phase rounds to 2π.

@@ -28,7 +28,7 @@ mod stage;
 mod starts;
 
 pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
-pub use motions::Known;
+pub use motions::KnownMotion;
 pub use question::{Change, Question};
 pub use rung::{Model, Need, Needed, Rung};
 pub use starts::Followed;
@@ -64,7 +64,7 @@ pub struct Choice {
     /// be computed.
     pub sensitivity: Vec<Sensitivity>,
     /// Motions that the rig can be in, as far as they are known.
-    pub motions: Vec<Known>,
+    pub motions: Vec<KnownMotion>,
     /// States that others were looked for from; `None` with a history and for a loose mass.
     pub followed: Option<Followed>,
     /// What is to be known of it; why a rung is passed over stands with the rung.

@@ -9,7 +9,7 @@ mod train;
 mod turns;
 mod validity;
 
-pub use sine::{Shown, backbone, shown};
+pub use sine::{ShownOrbit, backbone, shown};
 pub use soft::{Compliance, Softened, softened};
 
 pub use validity::{Loss, Validity};

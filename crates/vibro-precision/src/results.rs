@@ -19,7 +19,7 @@ pub struct Results {
 /// What another program has measured: one method with one setting on one scene.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Added {
+struct AddedMeasurement {
     scene: String,
     /// Program, version and method.
     method: String,
@@ -83,11 +83,12 @@ impl Results {
     /// If the file cannot be read, is not such a list, has a time or an error that is none, or gives a method
     /// the name of one of this library's, whose line it would become.
     pub fn add(&mut self, path: &Path) -> Result<Vec<String>> {
-        let lines: Vec<Added> = read(path, "a list of lines, each with scene, method, error and time_ns")?;
+        let lines: Vec<AddedMeasurement> =
+            read(path, "a list of lines, each with scene, method, error and time_ns")?;
         let ours = |m: &MeasuredMethod| m.ours.then(|| m.method.clone());
         let own: Vec<String> = self.scenes.iter().flat_map(|s| s.methods.iter().filter_map(ours)).collect();
         let mut left = Vec::new();
-        for Added { scene, method, setting, error, time_ns, why } in lines {
+        for AddedMeasurement { scene, method, setting, error, time_ns, why } in lines {
             let answer = error.ok_or_else(|| why.unwrap_or_else(|| "no answer".to_owned()));
             let line = MeasuredMethod {
                 other_program: true,

@@ -25,8 +25,8 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// What is swept: the excitation frequency, or force, the size of the force or of the impulse
-    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
-    pub over: Over,
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<SweptParameter>, default_value = "frequency"))]
+    pub over: SweptParameter,
     /// Lower end in Hz, in N (N s for impulses) over the force
     pub from: f64,
     /// Upper end, in the same unit
@@ -60,7 +60,7 @@ pub struct Keys {
 /// What is swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Over {
+pub enum SweptParameter {
     /// The excitation frequency.
     Frequency,
     /// The size of the force, or of the impulse.
@@ -88,7 +88,7 @@ impl Keys {
     /// # Errors
     /// If the scene or a key cannot be, nothing drives the rig, or a motion cannot be followed.
     pub fn answer(&self) -> Result<Answer> {
-        let over_force = self.over == Over::Force;
+        let over_force = self.over == SweptParameter::Force;
         // A frequency for the scene where it is swept: any within.
         let frequency = if over_force { self.frequency } else { Some(self.from) };
         let Driven { scene, excitation, finding } = self.scene.driven(frequency)?;
@@ -135,7 +135,7 @@ impl Keys {
         let rest = Simulation::at_rest(rig);
         apart(directions, |direction| {
             let start = if direction == Direction::Up { plan.from } else { plan.to };
-            if self.over == Over::Frequency {
+            if self.over == SweptParameter::Frequency {
                 let mut motion = make(&excitation.at_frequency(start), rest, 0.0)?;
                 return plan.frequency(&mut *motion, excitation.size(), direction);
             }

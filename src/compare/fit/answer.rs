@@ -15,7 +15,7 @@ use std::borrow::Cow;
 
 /// A parameter as it was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Fitted {
+pub struct FittedParameter {
     /// Parameter.
     pub parameter: Parameter,
     /// Value with its standard uncertainty, `None` where it is not identifiable.
@@ -82,7 +82,7 @@ impl LeftOut {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
     /// Parameters in the order they were asked for.
-    pub parameters: Vec<Fitted>,
+    pub parameters: Vec<FittedParameter>,
     /// Correlations of the same, row by row.
     pub correlations: Vec<Vec<f64>>,
     /// The rig found. The overlay and its scores are of the rig as it was stated.
@@ -192,7 +192,7 @@ impl AssessedFit<'_> {
     }
 
     /// The parameter number `i`.
-    pub fn fitted(&self, base: &Setting, i: usize, in_doubt: bool) -> Fitted {
+    pub fn fitted(&self, base: &Setting, i: usize, in_doubt: bool) -> FittedParameter {
         let (problem, u) = (&self.found.least.problem, self.found.least.minimum.parameters[i]);
         let Unknown { parameter, coordinate, prior } = problem.unknowns[i];
         let reason = if in_doubt { Some(Unidentified::InDoubt) } else { self.uncertainty.unidentified[i] };
@@ -202,7 +202,7 @@ impl AssessedFit<'_> {
         let profiled = profile.and_then(|p| Some([p.interval[0]?, p.interval[1]?]));
         let sloped = || coordinate.interval(u, NORMAL * self.uncertainty.std(i));
         let (unit, n) = (parameter.unit(), problem.rows().0);
-        Fitted {
+        FittedParameter {
             parameter,
             estimate: Estimate::new(value, identifiable.then_some(std), unit, n, METHOD),
             start: base.get(parameter),

@@ -24,7 +24,7 @@ const CHANCE: f64 = 3.09;
 
 /// The least sum of squares with given motions.
 #[derive(Debug, Clone)]
-pub struct Least<'a> {
+pub struct LeastSquares<'a> {
     pub problem: Problem<'a>,
     pub minimum: Minimum,
     /// χ²/ν of data and priors by their stated uncertainties; NaN without degrees of freedom.
@@ -36,7 +36,7 @@ pub struct Least<'a> {
 /// Parameters at the least sum of squares, with the motions that belong to them.
 #[derive(Debug, Clone)]
 pub struct Converged<'a> {
-    pub least: Least<'a>,
+    pub least: LeastSquares<'a>,
     /// Amplitudes left out because their motion changed from round to round.
     pub wavering: usize,
     /// Amplitudes left out as outliers.
@@ -107,7 +107,7 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// If there are fewer points than parameters.
-    pub fn least(mut self, start: &[f64]) -> Result<Least<'a>> {
+    pub fn least(mut self, start: &[f64]) -> Result<LeastSquares<'a>> {
         self.enough(self.rows().0)?;
         let mut rescaled = 0;
         let mut u = start.to_vec();
@@ -116,7 +116,7 @@ impl<'a> Problem<'a> {
             let minimum = self.solve(&u)?;
             let (reduced, whiteness) = self.goodness(&minimum.residuals);
             if rescaled == 2 {
-                return Ok(Least { problem: self, minimum, reduced, whiteness });
+                return Ok(LeastSquares { problem: self, minimum, reduced, whiteness });
             }
             let least = if self.data.guessed && self.freedom() > 0 { f64::MIN_POSITIVE } else { 1.0 };
             // A scale that the residuals had to tell is itself uncertain.
@@ -160,7 +160,7 @@ fn leave_out(kinds: &mut [Option<MotionKind>], steps: &BTreeSet<usize>) {
     }
 }
 
-impl Least<'_> {
+impl LeastSquares<'_> {
     /// Whether χ²/ν is larger than chance makes it (E. B. Wilson & M. M. Hilferty 1931).
     pub(crate) fn beyond_chance(&self) -> bool {
         let part = 2.0 / (9.0 * self.problem.freedom() as f64);

@@ -1,6 +1,6 @@
 //! Columns to records: abscissa, units, complex pairs.
 
-use super::axis::{Printed, choose};
+use super::axis::{PrintedAbscissa, choose};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
@@ -35,7 +35,7 @@ pub fn build(
     let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
-    let made = Made { text, tail, dialect, is_table, options, stated };
+    let made = RecordContext { text, tail, dialect, is_table, options, stated };
     let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let sparse = rows.sparse.into_iter().chain(std::iter::repeat(None));
@@ -234,7 +234,7 @@ impl Column {
 }
 
 /// What all records share.
-struct Made<'a> {
+struct RecordContext<'a> {
     text: &'a Text<'a>,
     tail: &'a [u8],
     dialect: &'a Dialect,
@@ -243,7 +243,7 @@ struct Made<'a> {
     stated: Stated,
 }
 
-impl Made<'_> {
+impl RecordContext<'_> {
     /// Whether the first of plain columns only numbers the rows: the axis stands beside it or in the head.
     fn numbered(&self, table: &[Column]) -> bool {
         let beside = || table.len() > 2 && table[1].rises();
@@ -277,7 +277,7 @@ impl Made<'_> {
     }
 
     /// Axis from its column, and what is to be said of it.
-    fn printed(&self, column: Column, others: &[Column]) -> Result<Printed> {
+    fn printed(&self, column: Column, others: &[Column]) -> Result<PrintedAbscissa> {
         let at = format!("column {}", column.at);
         let (name, label) = match column.name.name.as_str() {
             "" if column.at == 1 => ("first column", "first column".to_owned()),
@@ -337,7 +337,15 @@ impl Made<'_> {
             .map(|found| if found.code == "axis-unit-assumed" { found.name("head", head) } else { found });
         let findings = assumed.into_iter().chain(found).collect();
         let resolution = own * factor;
-        Ok(Printed { axis, label, resolution, assumed: by_name.is_none(), origin: since, clock, findings })
+        Ok(PrintedAbscissa {
+            axis,
+            label,
+            resolution,
+            assumed: by_name.is_none(),
+            origin: since,
+            clock,
+            findings,
+        })
     }
 
     /// Unit of a column without a name, and its factor to s, by which it agrees with the stated rate.

@@ -8,7 +8,7 @@ use crate::forcing::Forcing;
 use crate::forcing::Tick;
 use crate::impact::Impact;
 use crate::law::Law;
-use crate::least::{Least, number};
+use crate::least::{NumberRange, number};
 use crate::linear::{Linear, Quantity, QuantityCourse};
 use crate::motion::{Event, Motion, Path, Piece};
 use crate::{Buffer, Excitation, Rig, State, scales};
@@ -119,7 +119,7 @@ impl Compliant {
                 "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
             return Err(Error::usage("a loose mass with a contact law that is not linear", expected));
         }
-        number("buffer gap", buffer.gap, "m", Least::Zero)?;
+        number("buffer gap", buffer.gap, "m", NumberRange::Zero)?;
         Compliant::start(rig, excitation, law, Some(buffer), state, phase)
     }
 

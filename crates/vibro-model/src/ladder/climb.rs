@@ -1,6 +1,6 @@
 //! From rung to rung: what each answers, how far that moves at the rungs above, and which one is good enough.
 
-use super::motions::{Motions, On};
+use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Change};
 use super::reading::Settling;
 use super::rung::{Model, Need, Needed, Rung};
@@ -132,7 +132,7 @@ impl<'a> Climb<'a> {
         if let Some(motions) = &self.motions {
             (choice.motions, choice.followed) = (motions.known.clone(), motions.followed);
         }
-        if self.motions.as_ref().is_some_and(|m| m.on == On::Open) {
+        if self.motions.as_ref().is_some_and(|m| m.on == CurrentMotion::Open) {
             choice.needs.push(Need::History);
             return choice;
         }

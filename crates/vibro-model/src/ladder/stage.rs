@@ -1,6 +1,6 @@
 //! What each rung answers at one excitation of a scene, and whether its own checks pass.
 
-use super::motions::{Motions, On};
+use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Question};
 use super::reading::{BRIEF, MotionReader, Reading, Settling};
 use super::rung::{Found, Model, Rung};
@@ -125,9 +125,11 @@ impl DrivenScene<'_> {
                 let unsure = Finding::note("clearance-not-sure").number("clearance", clear);
                 (false, vec![unsure.number("std", std)])
             }
-            On::Open => (true, vec![met()]),
-            On::Free => (true, vec![met(), into(motions)]),
-            On::Orbit(_) | On::Other => (false, vec![met(), Finding::note("other-motion"), into(motions)]),
+            CurrentMotion::Open => (true, vec![met()]),
+            CurrentMotion::Free => (true, vec![met(), into(motions)]),
+            CurrentMotion::Orbit(_) | CurrentMotion::Other => {
+                (false, vec![met(), Finding::note("other-motion"), into(motions)])
+            }
         };
         Ok(Rung::answering(Answer::exact(value), cost, valid, reasons))
     }
@@ -149,11 +151,13 @@ impl DrivenScene<'_> {
             Finding::note("orbit-real").number("radius", radius).number("distance", v.grazing_distance)
         }];
         match motions.on {
-            On::Orbit(_) if real => reasons.push(into(motions)),
-            On::Free | On::Other if real => reasons.extend([Finding::note("other-motion"), into(motions)]),
+            CurrentMotion::Orbit(_) if real => reasons.push(into(motions)),
+            CurrentMotion::Free | CurrentMotion::Other if real => {
+                reasons.extend([Finding::note("other-motion"), into(motions)]);
+            }
             _ => {}
         }
-        let valid = real && matches!(motions.on, On::Orbit(_) | On::Open);
+        let valid = real && matches!(motions.on, CurrentMotion::Orbit(_) | CurrentMotion::Open);
         let answer = Answer::exact(self.question.observable.of_orbit(orbit));
         Ok(Rung::answering(answer, motions.closed_cost, valid, reasons))
     }

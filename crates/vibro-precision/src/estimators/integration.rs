@@ -83,7 +83,7 @@ fn filtered(v: &Vibration) -> Result<EstimatorAnswer> {
 /// A vibration between two frequencies in Hz, in noise so many decibels below it; on the velocity, in its
 /// amplitudes, a level and a slope over the whole record.
 #[derive(Clone, Copy)]
-struct Made {
+struct SyntheticVibration {
     n: usize,
     band: (f64, f64),
     level: f64,
@@ -91,12 +91,13 @@ struct Made {
     decibel: f64,
 }
 
-const CLEAN: Made = Made { n: N, band: (15.0, 25.0), level: 0.0, drift: 0.0, decibel: 40.0 };
+const CLEAN: SyntheticVibration =
+    SyntheticVibration { n: N, band: (15.0, 25.0), level: 0.0, drift: 0.0, decibel: 40.0 };
 
-impl Made {
+impl SyntheticVibration {
     fn kind(self, name: impl Into<String>, seed: u64) -> Ensemble<Vibration> {
         Ensemble::new(name, seed, move |noise: &mut Noise| {
-            let Made { n, band, level, drift, decibel } = self;
+            let SyntheticVibration { n, band, level, drift, decibel } = self;
             let (frequency, phase) = (noise.between(band.0, band.1), noise.between(0.0, TAU));
             let size = AMPLITUDE * TAU * frequency;
             let sigma = size * (0.5 / 10f64.powf(decibel / 10.0)).sqrt();
@@ -115,10 +116,10 @@ impl Made {
 pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     let settings = [
         ("noise alone", CLEAN),
-        ("level of a tenth", Made { level: 0.1, ..CLEAN }),
-        ("level of 10", Made { level: 10.0, ..CLEAN }),
-        ("drift of 1", Made { drift: 1.0, ..CLEAN }),
-        ("both", Made { level: 10.0, drift: 1.0, ..CLEAN }),
+        ("level of a tenth", SyntheticVibration { level: 0.1, ..CLEAN }),
+        ("level of 10", SyntheticVibration { level: 10.0, ..CLEAN }),
+        ("drift of 1", SyntheticVibration { drift: 1.0, ..CLEAN }),
+        ("both", SyntheticVibration { level: 10.0, drift: 1.0, ..CLEAN }),
     ]
     .map(|(name, made)| made.kind(name, 40_000));
     let texts = [
@@ -134,23 +135,23 @@ pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
 
 /// What methods of integration do at their borders.
 pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
-    let kind = |(name, made): (&str, Made)| made.kind(name, 41_000);
+    let kind = |(name, made): (&str, SyntheticVibration)| made.kind(name, 41_000);
     let level = [
-        ("level of 1000 amplitudes", Made { level: 1e3, ..CLEAN }),
-        ("drift of 10 amplitudes", Made { drift: 10.0, ..CLEAN }),
-        ("drift of 1000 amplitudes", Made { drift: 1e3, ..CLEAN }),
-        ("level and drift of 100 amplitudes", Made { level: 100.0, drift: 100.0, ..CLEAN }),
+        ("level of 1000 amplitudes", SyntheticVibration { level: 1e3, ..CLEAN }),
+        ("drift of 10 amplitudes", SyntheticVibration { drift: 10.0, ..CLEAN }),
+        ("drift of 1000 amplitudes", SyntheticVibration { drift: 1e3, ..CLEAN }),
+        ("level and drift of 100 amplitudes", SyntheticVibration { level: 100.0, drift: 100.0, ..CLEAN }),
     ];
     let noise = [20.0, 0.0, -20.0, -40.0]
-        .map(|decibel| Made { decibel, ..CLEAN }.kind(format!("{decibel} dB"), 41_000));
+        .map(|decibel| SyntheticVibration { decibel, ..CLEAN }.kind(format!("{decibel} dB"), 41_000));
     let band = [
-        ("half a period", Made { band: (0.2, 0.3), ..CLEAN }),
-        ("1.5 periods", Made { band: (0.7, 0.8), ..CLEAN }),
-        ("3 periods", Made { band: (1.4, 1.6), ..CLEAN }),
-        ("8 periods", Made { band: (3.8, 4.2), ..CLEAN }),
-        ("a tenth of the rate", Made { band: (200.0, 210.0), ..CLEAN }),
-        ("0.45 of the rate", Made { band: (920.0, 925.0), ..CLEAN }),
-        ("64 samples", Made { n: 64, band: (100.0, 120.0), ..CLEAN }),
+        ("half a period", SyntheticVibration { band: (0.2, 0.3), ..CLEAN }),
+        ("1.5 periods", SyntheticVibration { band: (0.7, 0.8), ..CLEAN }),
+        ("3 periods", SyntheticVibration { band: (1.4, 1.6), ..CLEAN }),
+        ("8 periods", SyntheticVibration { band: (3.8, 4.2), ..CLEAN }),
+        ("a tenth of the rate", SyntheticVibration { band: (200.0, 210.0), ..CLEAN }),
+        ("0.45 of the rate", SyntheticVibration { band: (920.0, 925.0), ..CLEAN }),
+        ("64 samples", SyntheticVibration { n: 64, band: (100.0, 120.0), ..CLEAN }),
     ];
     let mut all = questions("displacement: level and drift", &METHODS, level.map(kind), quick);
     all.extend(questions("displacement: noise", &METHODS, noise, quick));

@@ -49,7 +49,7 @@ pub enum Stepper {
 }
 
 /// One step.
-pub struct Taken {
+pub struct SolverStep {
     /// Time of its start in s.
     pub start: f64,
     /// Its size in s.
@@ -79,23 +79,23 @@ impl Stepper {
     }
 
     /// One step, at most to `until`.
-    pub fn step(&mut self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], until: f64) -> Result<Taken, Found> {
+    pub fn step(&mut self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], until: f64) -> Result<SolverStep, Found> {
         let step = match self {
             Stepper::Fixed(t, y, h) => {
                 let (start, from, duration) = (*t, *y, h.min(until - *t));
                 (*t, *y) =
                     (if duration < *h { until } else { start + duration }, rk4(&f, start, y, duration));
-                return Ok(Taken { start, duration, end: *y, from, dense: None });
+                return Ok(SolverStep { start, duration, end: *y, from, dense: None });
             }
             Stepper::Five(integrator) => integrator.step(f, until)?,
             Stepper::Eight(integrator) => integrator.step(f, until)?,
         };
         let Step { start, duration, end, .. } = step;
-        Ok(Taken { start, duration, end, from: end, dense: Some(step) })
+        Ok(SolverStep { start, duration, end, from: end, dense: Some(step) })
     }
 }
 
-impl Taken {
+impl SolverStep {
     /// State at `t` after its start.
     pub fn at(&self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64) -> [f64; 4] {
         self.dense.as_ref().map_or_else(|| rk4(&f, self.start, &self.from, t), |step| step.at(t))
