@@ -28,14 +28,14 @@ mod page;
 
 pub use answer::Answer;
 pub use evidence::Evidence;
-pub use job::{INPUTS, Progress, REPORT, RESULTS, Ran, answers, run};
-pub use kept::Kept;
+pub use job::{CampaignOutcome, INPUTS, Progress, REPORT, RESULTS, answers, run};
+pub use kept::AnswerCache;
 pub(crate) use recordings::{OWN, Recordings, in_order, is_pattern, matching, recordings, unnamed};
 pub use sweep::modelled::fit;
 pub use sweep::{named, responses};
 
 pub(crate) use job::Job;
-pub(crate) use named::{Named, few, twice};
+pub(crate) use named::{NamedFile, few, twice};
 pub(crate) use source::{Source, file_name, name_of};
 
 /// Figures of results, as data.
@@ -134,20 +134,20 @@ pub(crate) trait OfFile {
 
 /// A row of the table of kinds.
 #[derive(Clone, Copy)]
-pub(crate) struct Kind {
+pub(crate) struct AnalysisKind {
     section: &'static str,
     title: &'static str,
     names: Names,
     check: fn(&Campaign) -> Result<Vec<Fault>>,
     files: fn(&Campaign) -> Result<Vec<PathBuf>>,
     channels: fn(&Campaign) -> Result<Vec<Error>>,
-    records: fn(&Campaign) -> Result<Vec<Named>>,
+    records: fn(&Campaign) -> Result<Vec<NamedFile>>,
     run: fn(&mut Job<'_>) -> Result<()>,
 }
 
-impl Kind {
-    const fn of<A: Analysis>() -> Kind {
-        Kind {
+impl AnalysisKind {
+    const fn of<A: Analysis>() -> AnalysisKind {
+        AnalysisKind {
             section: A::SECTION,
             title: A::TITLE,
             names: A::FILES,
@@ -161,15 +161,15 @@ impl Kind {
 }
 
 /// All kinds of records, in the order in which they are measured and shown.
-pub(crate) const KINDS: &[Kind] = &[
-    Kind::of::<sweep::Keys>(),
-    Kind::of::<spectrum::Keys>(),
-    Kind::of::<frf::Keys>(),
-    Kind::of::<drill::Keys>(),
-    Kind::of::<impacts::Keys>(),
-    Kind::of::<drop::Keys>(),
-    Kind::of::<decay::Keys>(),
-    Kind::of::<pulse::Keys>(),
+pub(crate) const KINDS: &[AnalysisKind] = &[
+    AnalysisKind::of::<sweep::Keys>(),
+    AnalysisKind::of::<spectrum::Keys>(),
+    AnalysisKind::of::<frf::Keys>(),
+    AnalysisKind::of::<drill::Keys>(),
+    AnalysisKind::of::<impacts::Keys>(),
+    AnalysisKind::of::<drop::Keys>(),
+    AnalysisKind::of::<decay::Keys>(),
+    AnalysisKind::of::<pulse::Keys>(),
 ];
 
 /// Names of the sections of a campaign, in the order in which they are measured and shown.
@@ -234,7 +234,7 @@ pub fn files(campaign: &Campaign) -> Result<Vec<PathBuf>> {
 }
 
 /// What all kinds of records have, one behind the other.
-pub(crate) fn of_kinds<T>(each: impl Fn(&Kind) -> Result<Vec<T>>) -> Result<Vec<T>> {
+pub(crate) fn of_kinds<T>(each: impl Fn(&AnalysisKind) -> Result<Vec<T>>) -> Result<Vec<T>> {
     Ok(KINDS.iter().map(each).collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
@@ -341,7 +341,7 @@ fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
     Ok(files.flatten().collect())
 }
 
-fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Named>> {
+fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
     let mut all = Vec::new();
     for entry in &entries::<A>(campaign)? {
         let files: Vec<PathBuf> = match &entry.file {
@@ -352,7 +352,7 @@ fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Named>> {
         let (own, also) = (&entry.channel.channel, entry.keys.channels());
         let record = format!("{own:?} {also:?} {:?}", entry.reading.stated());
         let (section, table) = (A::SECTION, name_of(entry));
-        let named = |file: PathBuf| Named {
+        let named = |file: PathBuf| NamedFile {
             file: plain(&file),
             section,
             table: table.clone(),

@@ -26,28 +26,28 @@ use std::path::PathBuf;
 
 /// All commands by what they are for, in the order of the help: what is typed behind `vibro`, for example,
 /// and what it does. A new one is a row.
-const GROUPS: &[(&str, &[Row])] = &[
+const GROUPS: &[(&str, &[CommandRow])] = &[
     (
         "Begin with a folder of recordings",
         &[
-            Row::of::<init::Init>("init measurements", "Write a campaign for what lies in a folder"),
-            Row::of::<campaign::Run>(
+            CommandRow::of::<init::Init>("init measurements", "Write a campaign for what lies in a folder"),
+            CommandRow::of::<campaign::Run>(
                 "run measurements",
                 "Run a campaign or a folder: results, tables, figures, report",
             ),
-            Row::of::<init::Check>("check campaign.toml", "Check a campaign without computing"),
-            Row::of::<demo::Open>("open measurements", "Open the report of a folder in a browser"),
-            Row::of::<demo::Demo>("demo bench", "Write an example with its recordings, and run it"),
+            CommandRow::of::<init::Check>("check campaign.toml", "Check a campaign without computing"),
+            CommandRow::of::<demo::Open>("open measurements", "Open the report of a folder in a browser"),
+            CommandRow::of::<demo::Demo>("demo bench", "Write an example with its recordings, and run it"),
         ],
     ),
     (
         "Files",
         &[
-            Row::of::<info::Info>(
+            CommandRow::of::<info::Info>(
                 "info measurement.uff",
                 "List the records of a file: channels, units, sampling rate",
             ),
-            Row::of::<convert::Convert>(
+            CommandRow::of::<convert::Convert>(
                 "convert measurement.uff measurement.csv",
                 "Convert a file to UFF-58, CSV, WAV or NPY, by the ending of OUTPUT",
             ),
@@ -56,43 +56,43 @@ const GROUPS: &[(&str, &[Row])] = &[
     (
         "Measure",
         &[
-            Row::of::<sweep::Taken>(
+            CommandRow::of::<sweep::ResponseArgs>(
                 "response step*.csv --out figures",
                 "Response of a sweep at the excitation frequency, with resonances and jumps",
             ),
-            Row::of::<sweep::Waterfall>(
+            CommandRow::of::<sweep::WaterfallArgs>(
                 "waterfall LIST.TXT --unit mm/s --out figures",
                 "Waterfall of all response spectra of a sweep",
             ),
-            Row::of::<sweep::Excitation>(
+            CommandRow::of::<sweep::ExcitationArgs>(
                 "excitation LIST.TXT",
                 "Excitation frequency of every point of a sweep",
             ),
-            Row::of::<record::Measured<spectrum::Keys>>(
+            CommandRow::of::<record::MeasuredFile<spectrum::Keys>>(
                 "spectrum trace.csv --channel velocity --out figures",
                 "Spectrum of a channel, or frequency response function between two",
             ),
-            Row::of::<record::Measured<frf::Keys>>(
+            CommandRow::of::<record::MeasuredFile<frf::Keys>>(
                 "modal blows.csv --reference force --hammer",
                 "Natural frequency, damping and modal constant of the modes of a frequency response function",
             ),
-            Row::of::<record::Measured<decay::Keys>>(
+            CommandRow::of::<record::MeasuredFile<decay::Keys>>(
                 "decay release.csv",
                 "Natural frequency and damping of each mode of a free decay",
             ),
-            Row::of::<record::Impacts>(
+            CommandRow::of::<record::Impacts>(
                 "impacts contact.csv --excitation 11.2",
                 "Impacts in a contact signal: interval, frequency, impacts per cycle",
             ),
-            Row::of::<record::Restitution>(
+            CommandRow::of::<record::Restitution>(
                 "restitution drop1.csv drop2.csv --height 0.57 --height-std 0.001",
                 "Coefficient of restitution from drops, bounces or velocities, every method side by side",
             ),
-            Row::of::<record::Pulse>(
+            CommandRow::of::<record::Pulse>(
                 "pulse contact.csv --low-pass none",
                 "Damping ratio, frequency and restitution of a contact from its pulse",
             ),
-            Row::of::<record::Drill>(
+            CommandRow::of::<record::Drill>(
                 "drill drill.wav --velocity striker --beam-angle 0 --beam-from axis --sensitivity 2",
                 "Speed, impacts and average turn of a hammer drill",
             ),
@@ -101,15 +101,15 @@ const GROUPS: &[(&str, &[Row])] = &[
     (
         "Model",
         &[
-            Row::of::<model::Model>(
+            CommandRow::of::<model::Model>(
                 "model orbit --frequency 11.2 --force 0.5",
                 "Model of a rig: periodic motions, simulation, sweep, map, choice of a model",
             ),
-            Row::of::<campaign::Compare>(
+            CommandRow::of::<campaign::Compare>(
                 "compare campaign.toml --fit gap,restitution",
                 "Compare the measured responses of a campaign with the model; fit parameters of the rig",
             ),
-            Row::of::<precision::Precision>(
+            CommandRow::of::<precision::Precision>(
                 "precision --quick",
                 "Speed and accuracy of every method on scenes with a known truth",
             ),
@@ -118,22 +118,22 @@ const GROUPS: &[(&str, &[Row])] = &[
     (
         "Shell",
         &[
-            Row::of::<shell::Completions>(
+            CommandRow::of::<shell::Completions>(
                 "completions bash > ~/.local/share/bash-completion/completions/vibro",
                 "Print the completions for a shell",
             ),
-            Row::of::<shell::Man>("man > vibro.1", "Print the manual page"),
+            CommandRow::of::<shell::Man>("man > vibro.1", "Print the manual page"),
         ],
     ),
 ];
 
 /// All commands.
-fn rows() -> impl Iterator<Item = &'static Row> {
+fn rows() -> impl Iterator<Item = &'static CommandRow> {
     GROUPS.iter().flat_map(|(_, rows)| rows.iter())
 }
 
 /// What is typed behind the name of a command, and what it does.
-trait Run: Args {
+trait CommandArgs: Args {
     /// Who reads what is complained of: what a campaign says is corrected there.
     const VOICE: Voice = Voice::Command;
 
@@ -142,7 +142,7 @@ trait Run: Args {
 }
 
 /// A row of the table of commands.
-struct Row {
+struct CommandRow {
     /// What is typed behind `vibro`, for example.
     example: &'static str,
     about: &'static str,
@@ -151,13 +151,13 @@ struct Row {
     run: fn(&ArgMatches, bool) -> Result<u8>,
 }
 
-impl Row {
-    const fn of<T: Run>(example: &'static str, about: &'static str) -> Row {
+impl CommandRow {
+    const fn of<T: CommandArgs>(example: &'static str, about: &'static str) -> CommandRow {
         let run = |typed: &ArgMatches, json| match T::from_arg_matches(typed) {
             Ok(typed) => typed.run(json),
             Err(error) => Ok(complain::usage(&error, json)),
         };
-        Row { example, about, voice: T::VOICE, options: T::augment_args, run }
+        CommandRow { example, about, voice: T::VOICE, options: T::augment_args, run }
     }
 
     /// The name of the command.
@@ -187,7 +187,7 @@ const FIRST: [&str; 5] = ["init", "run", "demo", "info", "response"];
 
 /// What stands there where no command was typed.
 fn short() -> String {
-    let lines: String = rows().filter(|row| FIRST.contains(&row.name())).map(Row::line).collect();
+    let lines: String = rows().filter(|row| FIRST.contains(&row.name())).map(CommandRow::line).collect();
     format!(
         "{ABOUT}\n\nUsage: vibro COMMAND\n\n{lines}\nAll commands: vibro --help. Options and an example: vibro COMMAND --help\n"
     )
@@ -195,8 +195,8 @@ fn short() -> String {
 
 /// All commands by what they are for.
 fn long() -> String {
-    let group = |(name, rows): &(&str, &[Row])| {
-        format!("{name}:\n{}\n", rows.iter().map(Row::line).collect::<String>())
+    let group = |(name, rows): &(&str, &[CommandRow])| {
+        format!("{name}:\n{}\n", rows.iter().map(CommandRow::line).collect::<String>())
     };
     let groups: String = GROUPS.iter().map(group).collect();
     format!(
@@ -251,7 +251,7 @@ pub fn main() -> u8 {
     };
     let replace = last.and_then(|typed| typed.try_get_one("replace").ok()?).copied().unwrap_or(false);
     // Nothing has set it before.
-    let _ = print::WRITTEN.set(print::Written { medium, replace });
+    let _ = print::WRITTEN.set(print::OutputSettings { medium, replace });
     if let Err(error) = numbers(last.unwrap_or(&typed)) {
         return complain::error(&error, Voice::Command, json);
     }

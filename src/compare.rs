@@ -9,10 +9,10 @@ mod predicting;
 mod prediction;
 mod simulated;
 
-pub use fit::{Block, Fit, FitPoint, Fitted, LeftOut, Profile, Rung, Unidentified, fit};
+pub use fit::{Block, Fit, FitPoint, FittedParameter, LeftOut, Profile, Rung, Unidentified, fit};
 pub use overlay::{Level, Overlay, overlay};
 pub use pair::{Pair, PeakPair, Score};
-pub use prediction::{Kind, Motion, Prediction, Verdict};
+pub use prediction::{Motion, MotionKind, Prediction, Verdict};
 
 pub(crate) use forcing::{Forcing, levels};
 pub(crate) use named::{Named, named};

@@ -16,7 +16,7 @@
 //! use vibroimpact::analysis::{named, open};
 //! use vibroimpact::measure::response::ResponseOptions;
 //! let campaign = open("examples/two_mass_rig/campaign.toml")?;
-//! let (_, found) = named(&campaign, Some("mass 1, up"))?.taken(&ResponseOptions::default())?;
+//! let (_, found) = named(&campaign, Some("mass 1, up"))?.sweep_and_response(&ResponseOptions::default())?;
 //! let amplitudes = found.points.iter().map(|p| &p.amplitude);
 //! let largest = amplitudes.max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
 //! assert!((largest.value - 14.19e-3).abs() < 0.02e-3); // m

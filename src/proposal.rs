@@ -10,11 +10,11 @@ mod joined;
 mod notes;
 mod trial;
 
-use folder::{Inventory, Series};
+use folder::{FileSeries, Inventory};
 pub use joined::more_steps;
 use notes::Note;
 
-use crate::analysis::{self, Kept, Progress};
+use crate::analysis::{self, AnswerCache, Progress};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Place, Result};
 use crate::read::Folder;
@@ -49,18 +49,18 @@ pub struct Table {
     /// Whether that is a guess.
     pub guess: bool,
     /// Its keys in order.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TableKey>,
 }
 
 /// A key of a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct TableKey {
     /// Its name.
     pub key: &'static str,
     /// Its value as TOML; empty where it is missing.
     pub value: String,
     /// How it is known.
-    pub known: Known,
+    pub known: KeyStatus,
 }
 
 /// Characters of a key and its value beside which the comments of a table stand in a column.
@@ -69,7 +69,7 @@ const WIDEST: usize = 60;
 /// How the value of a key is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Known {
+pub enum KeyStatus {
     /// The files say it.
     Found,
     /// It was concluded; the reason.
@@ -80,12 +80,12 @@ pub enum Known {
     Missing(&'static str),
 }
 
-impl Known {
+impl KeyStatus {
     /// The reason of a guess, or what is missing.
     pub fn why(self) -> Option<&'static str> {
         match self {
-            Known::Found => None,
-            Known::Guessed(why) | Known::Open(why) | Known::Missing(why) => Some(why),
+            KeyStatus::Found => None,
+            KeyStatus::Guessed(why) | KeyStatus::Open(why) | KeyStatus::Missing(why) => Some(why),
         }
     }
 }
@@ -107,41 +107,41 @@ impl Table {
         format!("{}: {}{guess}", self.files, self.about)
     }
 
-    fn with(mut self, key: &'static str, value: impl Serialize, known: Known) -> Table {
+    fn with(mut self, key: &'static str, value: impl Serialize, known: KeyStatus) -> Table {
         // A string of JSON is one of TOML, and so are its numbers, words and lists of these.
         let value = serde_json::to_string(&value).unwrap_or_default();
-        self.rows.push(Row { key, value, known });
+        self.rows.push(TableKey { key, value, known });
         self
     }
 
     fn found(self, key: &'static str, value: impl Serialize) -> Table {
-        self.with(key, value, Known::Found)
+        self.with(key, value, KeyStatus::Found)
     }
 
     fn guessed(self, key: &'static str, value: impl Serialize, why: &'static str) -> Table {
-        self.with(key, value, Known::Guessed(why))
+        self.with(key, value, KeyStatus::Guessed(why))
     }
 
     /// A key that may be stated, and a value where the table is tried, or none.
     fn open(self, key: &'static str, instead: &str, what: &'static str) -> Table {
-        self.without(key, instead, Known::Open(what))
+        self.without(key, instead, KeyStatus::Open(what))
     }
 
     /// A key that must be stated, and a value where the table is tried.
     fn missing(self, key: &'static str, instead: &str, what: &'static str) -> Table {
-        self.without(key, instead, Known::Missing(what))
+        self.without(key, instead, KeyStatus::Missing(what))
     }
 
-    fn without(mut self, key: &'static str, instead: &str, known: Known) -> Table {
-        self.rows.push(Row { key, value: instead.to_owned(), known });
+    fn without(mut self, key: &'static str, instead: &str, known: KeyStatus) -> Table {
+        self.rows.push(TableKey { key, value: instead.to_owned(), known });
         self
     }
 
     /// The same with what stands in for values that are not stated.
     fn tried(mut self) -> Table {
         for row in &mut self.rows {
-            if matches!(row.known, Known::Open(_) | Known::Missing(_)) && !row.value.is_empty() {
-                row.known = Known::Found;
+            if matches!(row.known, KeyStatus::Open(_) | KeyStatus::Missing(_)) && !row.value.is_empty() {
+                row.known = KeyStatus::Found;
             }
         }
         self
@@ -157,7 +157,7 @@ impl Table {
 
     /// Whether a key is missing: it cannot run before that is filled in.
     pub fn lacks(&self) -> bool {
-        self.rows.iter().any(|row| matches!(row.known, Known::Missing(_)))
+        self.rows.iter().any(|row| matches!(row.known, KeyStatus::Missing(_)))
     }
 
     /// Its name in the report.
@@ -172,21 +172,21 @@ impl Table {
     }
 
     /// Whether a key is open that a line of notes may state. The mass of a sweep is a number, not a weight.
-    fn asks(&self, row: &Row, note: &Note) -> bool {
-        let open = matches!(row.known, Known::Open(_) | Known::Missing(_));
+    fn asks(&self, row: &TableKey, note: &Note) -> bool {
+        let open = matches!(row.known, KeyStatus::Open(_) | KeyStatus::Missing(_));
         open && note.is_of(row.key) && (self.section, row.key) != ("sweep", "mass")
     }
 
     /// As a campaign writes it, what lacks a key as a comment, with what notes state of its open keys.
     fn toml(&self, notes: &[Note]) -> String {
-        let said = |row: &Row| {
+        let said = |row: &TableKey| {
             let of_key = notes.iter().filter(|note| self.asks(row, note));
             of_key.fold(String::new(), |said, note| format!("{said}; {}: {}", note.place, note.text))
         };
         let mut text = format!("[[{}]]\n", self.section);
-        let row = |row: &Row| match row.known {
-            Known::Open(_) => format!("# {} =", row.key),
-            Known::Missing(_) => format!("{} =", row.key),
+        let row = |row: &TableKey| match row.known {
+            KeyStatus::Open(_) => format!("# {} =", row.key),
+            KeyStatus::Missing(_) => format!("{} =", row.key),
             _ => format!("{} = {}", row.key, row.value),
         };
         let commented = self.rows.iter().filter(|row| row.known.why().is_some());
@@ -194,10 +194,10 @@ impl Table {
         for one in &self.rows {
             let row = row(one);
             let _ = match one.known {
-                Known::Found => writeln!(text, "{row}"),
-                Known::Guessed(why) => writeln!(text, "{row:wide$}   # guessed: {why}"),
-                Known::Open(what) => writeln!(text, "{row:wide$}   # open: {what}{}", said(one)),
-                Known::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", said(one)),
+                KeyStatus::Found => writeln!(text, "{row}"),
+                KeyStatus::Guessed(why) => writeln!(text, "{row:wide$}   # guessed: {why}"),
+                KeyStatus::Open(what) => writeln!(text, "{row:wide$}   # open: {what}{}", said(one)),
+                KeyStatus::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", said(one)),
             };
         }
         let about = format!("# {}\n", shown(self.in_words()));
@@ -225,7 +225,7 @@ impl Proposal {
         within: &Folder,
         reading: &Reading,
         known: Option<&Campaign>,
-        kept: &Kept,
+        kept: &AnswerCache,
         progress: &dyn Progress,
     ) -> Result<Proposal> {
         let folder = within.root();
@@ -285,7 +285,7 @@ impl Proposal {
                 // Drops of one series have one name.
                 let same = key != "file" && (key != "name" || table.section == "drop");
                 for row in table.rows.iter_mut().filter(|row| same && row.key == key) {
-                    (row.value, row.known) = (value.clone(), Known::Found);
+                    (row.value, row.known) = (value.clone(), KeyStatus::Found);
                 }
             }
             let name = table.value(if table.section == "sweep" { "name" } else { "sweep" }).to_owned();
@@ -358,7 +358,7 @@ pub fn of_steps(within: &Folder, files: &[PathBuf], reading: &Reading) -> Result
     let channels: Vec<String> = headers.iter().map(|h| format!("{} [{}]", h.name, h.unit)).collect();
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let (name, reading) = (folder::name(&names), reading.clone());
-    let series = Series { name, files: names, headers, pattern: None, alike: false, reading };
+    let series = FileSeries { name, files: names, headers, pattern: None, alike: false, reading };
     let table = series.sweep().ok_or_else(|| {
         let found = format!("the channels {}", channels.join(", "));
         Error::input(Place::file(first), found, "a force in N and a displacement, velocity or acceleration")

@@ -18,6 +18,6 @@ pub use html::Page;
 pub use output::Output;
 pub use table::Table;
 pub(crate) use vibro_figure::{
-    AxisSpec, Figure, Grid, Heatmap, Ink, Kind, Legend, Marker, Medium, Panel, Plot, Series, Stroke,
+    AxisSpec, Class, Figure, Grid, Heatmap, Ink, Legend, Marker, Medium, Panel, Plot, Series, Stroke,
     Waterfall, colour,
 };

@@ -3,7 +3,7 @@
 use super::disturbance::{Mix, convert};
 use super::record::{Answer, Kind, Record};
 use std::f64::consts::{PI, TAU};
-use vibroimpact::measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
+use vibroimpact::measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, drill};
 
 pub const KINDS: &[Kind] = &[Kind {
     name: "hammer drill",
@@ -81,7 +81,7 @@ fn draw(mix: &mut Mix) -> Record {
     let counted = impacts.iter().filter(|i| i[0] > whole[0][0] && i[0] < whole[whole.len() - 1][1]).count();
     mix.note("impacts", counted as f64);
     let mut record = Record::default();
-    let Ok(beam) = Beam::new(0.0, From::Axis) else { return record };
+    let Ok(beam) = Beam::new(0.0, AngleOrigin::Axis) else { return record };
     let mut options = DrillOptions::new(1.0, beam, 1, Edge::Rising);
     (options.mass, options.struck_mass) = (Some(striker), Some(struck));
     let found = drill(&Slices { rate, channels: vec![&values, &reference] }, &options, None).ok();

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use vibroimpact::Result;
 use vibroimpact::analysis::figures;
 use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
-use vibroimpact::model::portrait::{Portrait, Sitting};
+use vibroimpact::model::portrait::{Portrait, PortraitOptions};
 use vibroimpact::model::{Excitation, Green, Impulses, Motion, Rig, Simulation};
 
 /// Impulse of the thesis' examples in N s.
@@ -157,7 +157,7 @@ fn absent() -> Result<Sheet> {
     let train = Excitation::Impulse(Impulses { impulse: IMPULSE, frequency: hertz(1.5) });
     let mut motion = Simulation::new(&rig, &train)?;
     motion.advance(3000.0 / hertz(1.5), &mut |_| {})?;
-    let portrait = Portrait::take(&mut motion, &Sitting { cycles: 300, samples: 100, shown: 6 })?;
+    let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 300, samples: 100, shown: 6 })?;
     let none = !exists(&rig, 1.5);
     let claims = vec![Claim::told(
         "motion at ν 1.5, F 0.009 N s, R 0.7",

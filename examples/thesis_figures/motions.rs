@@ -5,7 +5,7 @@ use crate::sheet::{Claim, Sheet};
 use crate::sweeps::CONTACT;
 use vibroimpact::analysis::figures;
 use vibroimpact::figure::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series};
-use vibroimpact::model::portrait::{Portrait, Sitting};
+use vibroimpact::model::portrait::{Portrait, PortraitOptions};
 use vibroimpact::model::regime::regime;
 use vibroimpact::model::{Chirp, Compliant, Excitation, Motion, Regime, Rig, Simulation, Sine, State};
 use vibroimpact::{Error, Result};
@@ -29,7 +29,7 @@ fn swept_to(name: &'static str, title: &'static str, hz: f64, in_phase: bool) ->
     let mut motion = Compliant::new(&rig, &sine, CONTACT, State::REST, 0.0)?;
     Chirp::new(0.02).advance(&mut motion, (hz - start) / 0.02, &mut |_| {})?;
     motion.advance(motion.time() + 300.0 / hz, &mut |_| {})?;
-    let portrait = Portrait::take(&mut motion, &Sitting { cycles: 40, samples: 150, shown: 4 })?;
+    let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 40, samples: 150, shown: 4 })?;
     let product: f64 = portrait.states.iter().map(|s| s.x1 * s.x2).sum();
     let squares = |of: fn(&State) -> f64| portrait.states.iter().map(|s| of(s).powi(2)).sum::<f64>().sqrt();
     let alike = product / squares(|s| s.x1) / squares(|s| s.x2);
@@ -50,7 +50,7 @@ fn eleven() -> Result<Sheet> {
     let frequency = hertz(2.13);
     let mut motion = Simulation::new(&rig, &Sine { force: 0.5, frequency })?;
     motion.advance(2000.0 / frequency, &mut |_| {})?;
-    let portrait = Portrait::take(&mut motion, &Sitting { cycles: 200, samples: 150, shown: 4 })?;
+    let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 200, samples: 150, shown: 4 })?;
     let last = portrait.pattern.strikes.last().ok_or_else(|| Error::refused("no impacts at 11.1 Hz"))?;
     let closed = under_sine(&rig, 0.5, 2.13).first().map_or(f64::NAN, |o| o.impulse);
     let once = portrait.pattern.regime == Regime::Periodic { impacts: 1, cycles: 1 };
@@ -87,7 +87,7 @@ fn irregular() -> Result<Sheet> {
     for (letter, hz, thesis) in [('a', 5.61, "irregular"), ('b', 7.49, "one impact a cycle")] {
         let mut motion = Simulation::new(&rig(restitution), &Sine { force, frequency: hz })?;
         motion.advance(3000.0 / hz, &mut |_| {})?;
-        let portrait = Portrait::take(&mut motion, &Sitting { cycles: 300, samples: 10, shown: 1 })?;
+        let portrait = Portrait::take(&mut motion, &PortraitOptions { cycles: 300, samples: 10, shown: 1 })?;
         let (n, speed): (Vec<f64>, Vec<f64>) = portrait
             .impacts
             .iter()

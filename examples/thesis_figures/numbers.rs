@@ -6,7 +6,7 @@ use std::path::Path;
 use vibroimpact::Result;
 use vibroimpact::analysis;
 use vibroimpact::analysis::figures;
-use vibroimpact::measure::drill::{Beam, From};
+use vibroimpact::measure::drill::{AngleOrigin, Beam};
 use vibroimpact::measure::pulse::two_times;
 use vibroimpact::measure::response::ResponseOptions;
 use vibroimpact::measure::restitution::Drop;
@@ -18,8 +18,9 @@ pub fn spectra() -> Result<Sheet> {
     let campaign =
         analysis::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/two_mass_rig/campaign.toml"))?;
     let options = ResponseOptions::default();
-    let points =
-        |name: &str| -> Result<_> { Ok(analysis::named(&campaign, Some(name))?.taken(&options)?.1.points) };
+    let points = |name: &str| -> Result<_> {
+        Ok(analysis::named(&campaign, Some(name))?.sweep_and_response(&options)?.1.points)
+    };
     let (up, down) = (points("mass 1, up")?, points("mass 1, down")?);
     let above = up.iter().filter(|p| p.excitation > 8.0);
     let top = above.max_by(|a, b| a.amplitude.value.total_cmp(&b.amplitude.value));
@@ -27,7 +28,7 @@ pub fn spectra() -> Result<Sheet> {
     // Steps up and down have the same frequencies.
     let there = down.iter().min_by(|a, b| (a.excitation - at).abs().total_cmp(&(b.excitation - at).abs()));
     let low = there.map_or(f64::NAN, |p| p.amplitude.value);
-    let (sweep, response) = analysis::named(&campaign, Some("mass 1, up"))?.taken(&options)?;
+    let (sweep, response) = analysis::named(&campaign, Some("mass 1, up"))?.sweep_and_response(&options)?;
     let figure = figures::waterfall(&waterfall(&sweep, &options, &response), Some(20.0))?
         .height(95.0)
         .caption("Spectra of the excited mass of the example campaign (a simulated rig with the numbers of the thesis' one, 0.1 N), sweeping up.");
@@ -99,14 +100,14 @@ pub fn numbers() -> Result<Sheet> {
             why,
         ));
     }
-    let normal = Beam::new(30.0, From::Normal)?;
+    let normal = Beam::new(30.0, AngleOrigin::Normal)?;
     let why = "if the 30° are counted from the normal to the motion";
     claims.push(Claim::number("factor of a beam at 30°", "2", normal.factor, (3, ""), 1e-9, why));
     let why = "counted from the line of motion it is 1/cos 30°";
     claims.push(Claim::number(
         "factor of a beam at 30°",
         "2",
-        Beam::new(30.0, From::Axis)?.factor,
+        Beam::new(30.0, AngleOrigin::Axis)?.factor,
         (3, ""),
         1e-9,
         why,

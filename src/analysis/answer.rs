@@ -1,7 +1,7 @@
 //! What an analysis of one record has to show.
 
 use super::Evidence;
-use super::sweep::modelled::Compared;
+use super::sweep::modelled::ComparedRig;
 use crate::error::{Error, Result};
 use crate::record::{Finding, Step};
 use crate::report::files::Files;
@@ -34,7 +34,7 @@ pub struct Answer {
     /// By which steps a file became a result, for each record that tells.
     pub histories: Vec<(String, Vec<Step>)>,
     /// The model that the measurements were compared with.
-    pub compared: Option<Compared>,
+    pub compared: Option<ComparedRig>,
     /// What it shows of the kinds of its records.
     pub evidence: Vec<Evidence>,
     /// Why its main part is missing, where the rest can be shown all the same.

@@ -9,7 +9,7 @@ use super::headline::headline;
 use super::{Analysis, Answer, Job, Source, no_file};
 use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
-use crate::measure::drill::{Beam, Cycle, DrillOptions, Edge, From, Slices, Smoothing, drill_each};
+use crate::measure::drill::{AngleOrigin, Beam, Cycle, DrillOptions, Edge, Slices, Smoothing, drill_each};
 use crate::read::Header;
 use crate::report::Cell;
 use crate::report::files::Names;
@@ -37,9 +37,9 @@ pub struct Keys {
     /// Angle of the beam in degrees
     pub beam_angle: Option<f64>,
     /// What the beam angle is counted from: normal (to the motion) or axis (of the motion)
-    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<From>))]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::campaign::word::<AngleOrigin>))]
     #[serde(alias = "from")]
-    pub beam_from: Option<From>,
+    pub beam_from: Option<AngleOrigin>,
     /// Pulses of the reference in a turn
     pub pulses_per_turn: Option<usize>,
     /// Edge of the pulse that counts: rising or falling
@@ -163,7 +163,7 @@ impl Keys {
     pub fn usable(&self) -> Result<()> {
         self.complete(&[])?;
         // A beam from which nothing is seen leaves its own record out.
-        self.options(Beam::new(0.0, From::Axis)?)?.check()?;
+        self.options(Beam::new(0.0, AngleOrigin::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {
             return Err(Error::usage("both low_pass and smoothing", "one of them").setting("smoothing"));
         }

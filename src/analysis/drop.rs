@@ -1,7 +1,7 @@
 //! Drops: `[[drop]]`, `vibro restitution`.
 
 use super::headline::headline;
-use super::job::Record;
+use super::job::AnsweredRecord;
 use super::source::{file_name, name_of};
 use super::{Analysis, Answer, Evidence, Job, Source, impacts};
 use crate::campaign::Entry;
@@ -363,7 +363,7 @@ impl Analysis for Keys {
             let found = series.answer(&name);
             let Some(answer) = job.found(&name, found) else { continue };
             let mark = (records.len() + 1).to_string();
-            records.push(Record { name, file: files, mark, answer });
+            records.push(AnsweredRecord { name, file: files, mark, answer });
         }
         job.answer("drops", records);
         Ok(())

@@ -85,7 +85,7 @@ pub struct Keys {
 
 /// A function and its modes.
 #[derive(Serialize)]
-struct Found<'a> {
+struct FunctionModes<'a> {
     quantity: &'static str,
     unit: &'a str,
     #[serde(flatten)]
@@ -94,7 +94,7 @@ struct Found<'a> {
 
 impl Keys {
     /// How the function is taken from two channels.
-    fn taken(&self) -> spectrum::Keys {
+    fn spectral_keys(&self) -> spectrum::Keys {
         spectrum::Keys {
             reference: self.reference.clone(),
             estimator: self.estimator,
@@ -117,7 +117,7 @@ impl Keys {
     /// # Errors
     /// With the key that does not.
     pub fn usable(&self) -> Result<()> {
-        let taken = self.taken();
+        let taken = self.spectral_keys();
         if self.reference.is_some() {
             if self.coherence.is_some() {
                 let found = "coherence beside a reference, from which it follows";
@@ -154,7 +154,7 @@ impl Keys {
     fn functions(&self, source: &Source<'_>, of_file: &mut Answer) -> Result<Vec<Function>> {
         if self.reference.is_some() {
             self.refuse_sine(source)?;
-            let found = self.taken().lines(source)?;
+            let found = self.spectral_keys().lines(source)?;
             of_file.add("", &found.findings);
             let records = found.records();
             let Some(Record::Frf(frf)) = records.first() else { return Ok(Vec::new()) };
@@ -189,7 +189,7 @@ impl Keys {
     /// Refuses a reference that is one sine: a function of it is known in one line, and noise over noise in
     /// all others.
     fn refuse_sine(&self, source: &Source<'_>) -> Result<()> {
-        let mut traces = self.taken().traces(source)?;
+        let mut traces = self.spectral_keys().traces(source)?;
         let names: Vec<String> = traces.channels().iter().map(|meta| meta.name.clone()).collect();
         traces.keep(&[0]);
         let mut block = vec![Vec::new()];
@@ -238,7 +238,7 @@ impl Keys {
             found => (found?, None),
         };
         let (quantity, unit) = (meta.quantity.name(), meta.unit.symbol());
-        let mut answer = Answer::of(&Found { quantity, unit, modal: &found })?;
+        let mut answer = Answer::of(&FunctionModes { quantity, unit, modal: &found })?;
         answer.result.insert("channel".to_owned(), meta.name.clone().into());
         answer.channel.clone_from(&meta.name);
         answer.add("", &meta.findings);

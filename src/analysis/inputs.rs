@@ -1,7 +1,7 @@
 //! What a campaign is computed from, by content.
 
 use super::file_name;
-use super::kept::Kept;
+use super::kept::AnswerCache;
 use crate::campaign::Campaign;
 use crate::read::listed;
 use crate::record::shown;
@@ -11,8 +11,10 @@ use std::path::{Path, PathBuf};
 
 /// A line for the program, the campaign and `all` of its recordings, as `sha256sum` writes them; names are
 /// relative to the folder of the campaign.
-pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &Kept) -> String {
-    all.iter_mut().for_each(|path| *path = campaign.within().file(path).to_owned());
+pub fn inputs(campaign: &Campaign, mut all: Vec<PathBuf>, kept: &AnswerCache) -> String {
+    for path in &mut all {
+        *path = campaign.within().file(path).to_owned();
+    }
     all.sort();
     all.dedup();
     // The reader says what is wrong with a folder or a pipe.

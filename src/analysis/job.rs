@@ -3,10 +3,10 @@
 use super::answer::{left_out, unwritten};
 use super::headline::of_record;
 use super::inputs::inputs;
-use super::kept::{Kept, digest, packed};
+use super::kept::{AnswerCache, digest, packed};
 use super::recordings::beside;
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, Answer, KINDS, Kind, faults, files as files_of, page, twice};
+use super::{Analysis, AnalysisKind, Answer, KINDS, faults, files as files_of, page, twice};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;
@@ -49,7 +49,7 @@ impl Progress for () {
 pub struct Job<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
-    kept: &'a Kept,
+    kept: &'a AnswerCache,
     /// Told how far it is.
     pub progress: &'a dyn Progress,
     /// Title of the report.
@@ -65,7 +65,7 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    fn new(campaign: &'a Campaign, kept: &'a Kept, progress: &'a dyn Progress) -> Job<'a> {
+    fn new(campaign: &'a Campaign, kept: &'a AnswerCache, progress: &'a dyn Progress) -> Job<'a> {
         let title = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
         Job { campaign, kept, progress, title, found: Answer::default(), answers: 0, again: 0, failed: None }
     }
@@ -93,10 +93,10 @@ impl<'a> Job<'a> {
 
     /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record
     /// behind their name.
-    pub fn answer(&mut self, kind: &str, records: Vec<Record>) {
+    pub fn answer(&mut self, kind: &str, records: Vec<AnsweredRecord>) {
         self.answers += records.len();
         let mut list = Vec::new();
-        for Record { name, file, mark, answer } in records {
+        for AnsweredRecord { name, file, mark, answer } in records {
             let result = self.show(&name, &mark, answer);
             let mut object = Map::new();
             object.insert("name".to_owned(), Value::String(name));
@@ -177,7 +177,7 @@ impl<'a> Job<'a> {
     /// All that records of these sections rest on: their files, and what the campaign states but for other
     /// records.
     fn rests_on(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
-        let (these, others): (Vec<&Kind>, Vec<&Kind>) =
+        let (these, others): (Vec<&AnalysisKind>, Vec<&AnalysisKind>) =
             KINDS.iter().partition(|kind| sections.contains(&kind.section));
         let files: Result<Vec<_>> = these.iter().map(|kind| (kind.files)(self.campaign)).collect();
         let stated = self.campaign.stated_without(|key| others.iter().any(|kind| kind.section == key))?;
@@ -207,7 +207,7 @@ impl<'a> Job<'a> {
         entries: &[Entry<K>],
         measure: impl Fn(&Entry<K>, &Source<'_>) -> Result<Vec<Answer>>,
     ) -> Result<()> {
-        let mut records: Vec<Record> = Vec::new();
+        let mut records: Vec<AnsweredRecord> = Vec::new();
         for entry in entries {
             let name = name_of(entry);
             let Some(mut files) = self.found(&name, K::files(self.campaign, entry)) else { continue };
@@ -238,7 +238,7 @@ impl<'a> Job<'a> {
             }
             for answer in found {
                 let file = Value::String(file_name(&path));
-                records.push(Record { name: name.clone(), file, mark: String::new(), answer });
+                records.push(AnsweredRecord { name: name.clone(), file, mark: String::new(), answer });
             }
         }
         let marks = match K::FILES {
@@ -288,7 +288,7 @@ impl<'a> Job<'a> {
 
 /// An answer with the record that gave it.
 #[derive(Debug)]
-pub struct Record {
+pub struct AnsweredRecord {
     /// Name for people.
     pub name: String,
     /// The file, or a list of files.
@@ -314,7 +314,7 @@ fn size(answer: &Answer) -> [usize; 4] {
 /// As [`run`].
 pub fn answers(
     campaign: &Campaign,
-    kept: &Kept,
+    kept: &AnswerCache,
     progress: &dyn Progress,
 ) -> Result<std::result::Result<Answer, String>> {
     let mut job = Job::new(campaign, kept, progress);
@@ -333,7 +333,7 @@ pub fn answers(
 
 /// What a campaign gave.
 #[derive(Debug)]
-pub struct Ran {
+pub struct CampaignOutcome {
     /// All answers.
     pub answer: Answer,
     /// Names of the files that were written.
@@ -349,15 +349,20 @@ pub struct Ran {
 /// # Errors
 /// If no record was answered and one of them could not be read; if a file cannot be found or written; if a
 /// file that is not vibro's stands in the way.
-pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn Progress) -> Result<Ran> {
+pub fn run(
+    campaign: &Campaign,
+    kept: &AnswerCache,
+    output: &mut Output,
+    progress: &dyn Progress,
+) -> Result<CampaignOutcome> {
     // What an earlier run has read and kept is an input, too.
     let files = files_of(campaign)?;
     for path in &files {
         campaign.within().reads(path);
     }
-    let asked = |kind: &&Kind| campaign.written(kind.section).is_ok_and(|tables| !tables.is_empty());
+    let asked = |kind: &&AnalysisKind| campaign.written(kind.section).is_ok_and(|tables| !tables.is_empty());
     let (own, kinds) =
-        ([RESULTS, REPORT, INPUTS, Kept::FILE], KINDS.iter().filter(asked).collect::<Vec<_>>());
+        ([RESULTS, REPORT, INPUTS, AnswerCache::FILE], KINDS.iter().filter(asked).collect::<Vec<_>>());
     output.expect(|name| own.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
     let mut job = Job::new(campaign, kept, progress);
     // Before anything is read: what changes meanwhile is for the next run.
@@ -403,6 +408,6 @@ pub fn run(campaign: &Campaign, kept: &Kept, output: &mut Output, progress: &dyn
     let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
     output.write(RESULTS, json + "\n")?;
     output.write(REPORT, page::page(&job, version, &inputs, &all, &pictures, &parts).html())?;
-    output.write(Kept::FILE, kept.bytes())?;
-    Ok(Ran { answer: all, files: names, answered: job.answers > 0, again: job.again })
+    output.write(AnswerCache::FILE, kept.bytes())?;
+    Ok(CampaignOutcome { answer: all, files: names, answered: job.answers > 0, again: job.again })
 }

@@ -18,7 +18,7 @@ type Stamp = Option<(u64, SystemTime)>;
 
 /// Answers and pictures by the digest of all that they rest on.
 #[derive(Debug, Default)]
-pub struct Kept {
+pub struct AnswerCache {
     /// Where files lie.
     folder: Folder,
     /// Those of the last run.
@@ -29,25 +29,25 @@ pub struct Kept {
     files: Mutex<BTreeMap<PathBuf, (Digest, Stamp)>>,
 }
 
-impl Kept {
+impl AnswerCache {
     /// The file of a folder of results in which they are kept.
     pub const FILE: &str = Output::KEPT;
 
     /// Nothing is known of an earlier run.
-    pub fn none(folder: &Folder) -> Kept {
-        Kept { folder: folder.clone(), ..Kept::default() }
+    pub fn none(folder: &Folder) -> AnswerCache {
+        AnswerCache { folder: folder.clone(), ..AnswerCache::default() }
     }
 
     /// What the last run of this very program kept in a folder of results; nothing where that cannot be read.
-    pub fn of(folder: &Folder) -> Kept {
-        let kept = Kept::none(folder);
-        let old = folder.own_file(Kept::FILE).and_then(|bytes| {
+    pub fn of(folder: &Folder) -> AnswerCache {
+        let kept = AnswerCache::none(folder);
+        let old = folder.own_file(AnswerCache::FILE).and_then(|bytes| {
             let (sum, rest) = bytes.split_at_checked(size_of::<Digest>())?;
             let (program, old): (Digest, BTreeMap<Digest, Vec<u8>>) =
                 rmp_serde::from_slice(rest).ok().filter(|_| digest([rest]) == *sum)?;
             (Some(program) == kept.program()).then_some(old)
         });
-        Kept { old: old.unwrap_or_default(), ..kept }
+        AnswerCache { old: old.unwrap_or_default(), ..kept }
     }
 
     /// Whether the last run left this.

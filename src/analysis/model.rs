@@ -92,7 +92,7 @@ const LINES: u32 = 8;
 
 /// An orbit with what is computed from it.
 #[derive(Serialize)]
-struct Judged<'a> {
+struct JudgedOrbit<'a> {
     #[serde(flatten)]
     orbit: &'a Orbit,
     /// Amplitudes of both masses at the first multiples of 1/T.
@@ -102,11 +102,11 @@ struct Judged<'a> {
     near_grazing: Option<bool>,
 }
 
-impl Judged<'_> {
+impl JudgedOrbit<'_> {
     /// `gap_std` in m.
-    fn of(orbit: &Orbit, gap_std: Option<f64>) -> Judged<'_> {
+    fn of(orbit: &Orbit, gap_std: Option<f64>) -> JudgedOrbit<'_> {
         let v = &orbit.validity;
-        Judged {
+        JudgedOrbit {
             orbit,
             lines: (1..=LINES).map(|n| orbit.line(n).map(Complex64::norm)).collect(),
             robust: gap_std.map(|std| orbit.robust(std)),

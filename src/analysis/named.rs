@@ -20,7 +20,7 @@ pub(crate) fn few<S: AsRef<str>>(names: &[S]) -> String {
 
 /// A file that a table names.
 #[derive(Debug)]
-pub(crate) struct Named {
+pub(crate) struct NamedFile {
     /// The file.
     pub file: PathBuf,
     /// Section of the table.
@@ -31,10 +31,10 @@ pub(crate) struct Named {
     pub record: String,
 }
 
-impl Named {
+impl NamedFile {
     /// Whether two tables of one file count one record twice: it is the same of the same kind, or a step of a
     /// sweep and a record of its own.
-    fn is_again(&self, first: &Named) -> bool {
+    fn is_again(&self, first: &NamedFile) -> bool {
         let steps = [first, self].map(|named| named.section == sweep::Keys::SECTION);
         steps[0] != steps[1] || self.section == first.section && self.record == first.record
     }
@@ -46,7 +46,7 @@ impl Named {
 /// As [`super::open`].
 pub(crate) fn twice(campaign: &Campaign) -> Result<Vec<Finding>> {
     let named = of_kinds(|kind| (kind.records)(campaign))?;
-    let mut by_file: BTreeMap<&PathBuf, Vec<&Named>> = BTreeMap::new();
+    let mut by_file: BTreeMap<&PathBuf, Vec<&NamedFile>> = BTreeMap::new();
     let mut pairs: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for one in &named {
         let known = by_file.entry(&one.file).or_default();

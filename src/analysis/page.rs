@@ -2,7 +2,7 @@
 
 use super::headline::shortened;
 use super::job::Part;
-use super::sweep::modelled::Compared;
+use super::sweep::modelled::ComparedRig;
 use super::{Answer, Job};
 use crate::model::Parameter;
 use crate::record::{Severity, Step};
@@ -54,7 +54,7 @@ pub fn page(
     let rest = parts.last().map_or(0, |(_, [.., findings])| findings.end);
     page =
         page.heading("Where the numbers come from").findings(&graded(&all.findings[rest..], Voice::Campaign));
-    if let Some(Compared { rig, .. }) = compared {
+    if let Some(ComparedRig { rig, .. }) = compared {
         let mut rig = *rig;
         let values: Vec<(&str, String)> =
             Parameter::of_rig().filter_map(|p| Some((p.name(), constant(p, *p.place(&mut rig)?)))).collect();

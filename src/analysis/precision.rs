@@ -6,14 +6,14 @@ mod map;
 pub use chart::chart;
 pub use map::maps;
 
-use crate::precision::{Cell as Asked, FailureMap, Family, Measured, Scene};
+use crate::precision::{BenchmarkScene, BorderCell, FailureMap, Family, MeasuredMethod};
 use crate::report::layout::{headed, table};
 use crate::report::{Cell, Table};
 use map::OUTCOMES;
 
 /// Every method of every scene with its error and time, for other programs.
-pub fn precision(scenes: &[Scene]) -> Table {
-    type Row<'a> = (&'a Scene, &'a Measured);
+pub fn precision(scenes: &[BenchmarkScene]) -> Table {
+    type Row<'a> = (&'a BenchmarkScene, &'a MeasuredMethod);
     let rows = scenes.iter().flat_map(|scene| scene.methods.iter().map(move |m| (scene, m)));
     table(
         "Precision",
@@ -43,12 +43,12 @@ fn yes(yes: bool) -> Cell {
 const CODE: [&str; 3] = ["vibro", "vibro, a common method", "other program"];
 
 /// The methods of one scene, for a reader.
-pub fn scene(scene: &Scene) -> Table {
+pub fn scene(scene: &BenchmarkScene) -> Table {
     table(
         "",
         &scene.methods,
         &[
-            ("method", "", &|m: &&Measured| m.method.as_str().into()),
+            ("method", "", &|m: &&MeasuredMethod| m.method.as_str().into()),
             ("code", "", &|m| CODE[chart::group(m)].into()),
             ("setting", "", &|m| m.setting.as_str().into()),
             ("error", "", &|m| m.error.map_or(Cell::Missing, |e| format!("{e:.1e}").into())),
@@ -72,7 +72,7 @@ pub fn failures(map: &FailureMap) -> Table {
         "Failures",
         &map.cells,
         &[
-            ("family", "", &|c: &&Asked| c.family.name().into()),
+            ("family", "", &|c: &&BorderCell| c.family.name().into()),
             ("border", "", &|c| c.border.as_str().into()),
             ("scene", "", &|c| c.scene.as_str().into()),
             ("method", "", &|c| c.method.as_str().into()),

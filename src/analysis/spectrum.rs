@@ -216,7 +216,7 @@ impl OfFile for Keys {
         answer.result.insert("channel".to_owned(), found.name.clone().into());
         answer.add("", &found.findings);
         answer.tables = vec![peaks(source.name, &found), tones(source.name, &found)];
-        answer.details.push(taken(&found));
+        answer.details.push(settings_table(&found));
         let name = if self.reference.is_some() { "frf" } else { "spectrum" };
         answer.figure(name, figures::lines(source.name, &found));
         let (files, unwritten) = files::records(name, &found.records())?;
@@ -261,7 +261,7 @@ fn peaks(name: &str, found: &SpectralResult) -> Table {
 const LOW: [(&str, &str); 3] = [("hann", "15 %"), ("rectangular", "36 %"), ("hamming", "18 %")];
 
 /// How the lines of a record were taken.
-fn taken(found: &SpectralResult) -> Table {
+fn settings_table(found: &SpectralResult) -> Table {
     table(
         "Settings of the spectra",
         [found],

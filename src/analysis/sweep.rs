@@ -9,7 +9,7 @@ pub mod stored;
 pub mod tables;
 
 pub use listed::{Files, Listed};
-pub use stored::Stored;
+pub use stored::StoredResponseKeys;
 
 use super::{Analysis, Answer, Job, Progress, all_entries, check, entries};
 use crate::campaign::{Campaign, Entry, Fault, one_or_more};
@@ -167,7 +167,7 @@ impl Keys {
             force_calibration: self.force_calibration,
             ..SweepReader::default()
         };
-        let stored = Stored {
+        let stored = StoredResponseKeys {
             unit: self.unit.clone(),
             calibration: self.calibration,
             window: self.window.clone(),
@@ -233,28 +233,30 @@ fn each(entries: Vec<Entry<Keys>>) -> Vec<Entry<Keys>> {
 /// # Errors
 /// If a list or a spectrum cannot be read, or an excitation cannot be found.
 pub fn responses(campaign: &Campaign, progress: &dyn Progress) -> Result<Vec<Response>> {
-    let taken: Result<Vec<Taken>> =
-        taken(campaign, all_entries(campaign)?, progress).into_iter().map(|(_, taken)| taken).collect();
+    let taken: Result<Vec<SweptResponse>> = read_responses(campaign, all_entries(campaign)?, progress)
+        .into_iter()
+        .map(|(_, taken)| taken)
+        .collect();
     let mut responses: Vec<Response> = taken?.into_iter().map(|(_, response, _)| response).collect();
     pairing::name(&mut responses.iter_mut().collect::<Vec<_>>());
     Ok(responses)
 }
 
-type Taken = (Sweep, Response, ResponseOptions);
+type SweptResponse = (Sweep, Response, ResponseOptions);
 
 /// The sweeps of these tables by their names.
-fn taken(
+fn read_responses(
     campaign: &Campaign,
     entries: Vec<Entry<Keys>>,
     progress: &dyn Progress,
-) -> Vec<(String, Result<Taken>)> {
+) -> Vec<(String, Result<SweptResponse>)> {
     let entries = each(entries);
     progress.start("reading sweeps", entries.len());
     let one = |entry: &Entry<Keys>| {
         let listed = Listed::of(campaign, entry)?;
         let compute = &campaign.compute;
         let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
-        let (sweep, response) = listed.taken(&options)?;
+        let (sweep, response) = listed.sweep_and_response(&options)?;
         progress.step();
         Ok((sweep, response, options))
     };
@@ -327,10 +329,12 @@ impl Analysis for Keys {
     }
 
     fn run(entries: &[Entry<Keys>], job: &mut Job<'_>) -> Result<()> {
-        let taken = taken(job.campaign, entries.to_vec(), job.progress).into_iter();
-        let mut taken: Vec<Taken> = taken.filter_map(|(name, taken)| job.found(&name, taken)).collect();
+        let taken = read_responses(job.campaign, entries.to_vec(), job.progress).into_iter();
+        let mut taken: Vec<SweptResponse> =
+            taken.filter_map(|(name, taken)| job.found(&name, taken)).collect();
         pairing::name(&mut taken.iter_mut().map(|(_, response, _)| response).collect::<Vec<_>>());
-        let matrix = |(sweep, response, options): Taken| (waterfall(&sweep, &options, &response), response);
+        let matrix =
+            |(sweep, response, options): SweptResponse| (waterfall(&sweep, &options, &response), response);
         let (matrices, responses): (Vec<Waterfall>, Vec<Response>) =
             taken.into_par_iter().map(matrix).unzip();
         job.answers += responses.len();

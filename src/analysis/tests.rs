@@ -81,7 +81,7 @@ fn a_missing_recording_is_made_by_the_command_that_is_named() {
     let campaign = of("made_by = \"make it\"\n[[impacts]]\nfile = \"x.wav\"\n").unwrap();
     let folder = tempfile::tempdir().unwrap();
     let mut output = crate::report::Output::new(folder.path(), crate::read::Owner::Run).unwrap();
-    let error = run(&campaign, &Kept::default(), &mut output, &()).unwrap_err().to_string();
+    let error = run(&campaign, &AnswerCache::default(), &mut output, &()).unwrap_err().to_string();
     assert!(error.contains("line 3") && error.contains("try: `make it` makes it"), "{error}");
 }
 
@@ -90,7 +90,7 @@ fn a_fit_without_a_rig_is_not_passed_over_in_silence() {
     let campaign = of("[fit]\nparameters = [\"gap\"]\n").unwrap();
     let mut output =
         crate::report::Output::new(tempfile::tempdir().unwrap().path(), crate::read::Owner::Run).unwrap();
-    let Ran { answer, .. } = run(&campaign, &Kept::default(), &mut output, &()).unwrap();
+    let CampaignOutcome { answer, .. } = run(&campaign, &AnswerCache::default(), &mut output, &()).unwrap();
     let said = sentences(&answer.findings, Voice::Campaign, true);
     assert!(said.iter().any(|s| s.contains("`fit` needs a table `rig`")), "{said:?}");
 }
@@ -155,7 +155,7 @@ fn a_run_needs_no_disk() {
     let run = |within: &Folder, out: &Path| {
         let (campaign, results) = (open_in(within, path).unwrap(), within.at(out));
         let mut output = crate::report::Output::new(results.clone(), crate::read::Owner::Run).unwrap();
-        run(&campaign, &Kept::none(within), &mut output, &()).unwrap();
+        run(&campaign, &AnswerCache::none(within), &mut output, &()).unwrap();
         output.commit().unwrap();
         let names = results.names().into_iter();
         names.map(|name| (results.read(&out.join(&name)).unwrap(), name)).collect::<Vec<_>>()

@@ -107,17 +107,17 @@ pub enum Word {
 
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a channel by its name between quotes, or by its number from 1")]
-enum Channel {
+enum ChannelKey {
     Name(String),
     Number(u32),
 }
 
-impl Channel {
+impl ChannelKey {
     /// As readers take it.
     fn text(self) -> String {
         match self {
-            Channel::Name(name) => name,
-            Channel::Number(number) => number.to_string(),
+            ChannelKey::Name(name) => name,
+            ChannelKey::Number(number) => number.to_string(),
         }
     }
 }
@@ -127,7 +127,7 @@ impl Channel {
 /// # Errors
 /// If it is neither a name nor a number.
 pub fn channel<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
-    Channel::deserialize(from).map(|channel| Some(channel.text()))
+    ChannelKey::deserialize(from).map(|channel| Some(channel.text()))
 }
 
 /// One name or channel, or a list of them.
@@ -138,12 +138,12 @@ pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D:
     #[derive(Deserialize)]
     #[serde(untagged, expecting = "expected a name between quotes, or a list of them")]
     enum Names {
-        One(Channel),
-        More(Vec<Channel>),
+        One(ChannelKey),
+        More(Vec<ChannelKey>),
     }
     Ok(match Names::deserialize(from)? {
         Names::One(name) => vec![name.text()],
-        Names::More(names) => names.into_iter().map(Channel::text).collect(),
+        Names::More(names) => names.into_iter().map(ChannelKey::text).collect(),
     })
 }
 
@@ -152,5 +152,5 @@ pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D:
 /// # Errors
 /// If one is neither a name nor a number.
 pub fn channels<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
-    Vec::<Channel>::deserialize(from).map(|all| all.into_iter().map(Channel::text).collect())
+    Vec::<ChannelKey>::deserialize(from).map(|all| all.into_iter().map(ChannelKey::text).collect())
 }

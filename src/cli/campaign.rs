@@ -3,7 +3,7 @@
 use super::print::folder_of;
 use super::{complain, init, print};
 use crate::analysis::sweep::modelled;
-use crate::analysis::{self, Kept, REPORT, Ran};
+use crate::analysis::{self, AnswerCache, CampaignOutcome, REPORT};
 use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
@@ -64,7 +64,7 @@ fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
 }
 
 /// The campaign; one proposed for what lies in its folder where it has no file.
-fn proposed(campaign: Campaign, kept: &Kept, json: bool) -> Result<Campaign> {
+fn proposed(campaign: Campaign, kept: &AnswerCache, json: bool) -> Result<Campaign> {
     if campaign.is_file() {
         return Ok(campaign);
     }
@@ -83,7 +83,7 @@ impl Run {
     }
 }
 
-impl super::Run for Run {
+impl super::CommandArgs for Run {
     const VOICE: Voice = Voice::Campaign;
 
     fn run(&self, json: bool) -> Result<u8> {
@@ -139,12 +139,12 @@ impl Run {
         let campaign = opened(&self.within(), &self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let results = campaign.within().at(&folder);
-        let kept = if self.again { Kept::none(&results) } else { Kept::of(&results) };
+        let kept = if self.again { AnswerCache::none(&results) } else { AnswerCache::of(&results) };
         let elsewhere = format!("--out {}", print::typed(&print::unused(&folder)));
         let mut output = print::output(results, Owner::Run, elsewhere)?;
         let campaign = proposed(campaign, &kept, json)?;
         let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);
-        let Ran { answer, files, answered, again } = print::busy(json, "campaign", run)?;
+        let CampaignOutcome { answer, files, answered, again } = print::busy(json, "campaign", run)?;
         output.commit()?;
         if again > 0 {
             let kept = counted(again, "answer");
@@ -168,14 +168,14 @@ impl Run {
     }
 }
 
-impl super::Run for Compare {
+impl super::CommandArgs for Compare {
     const VOICE: Voice = Voice::Campaign;
 
     /// Prints measured responses over the model.
     fn run(&self, json: bool) -> Result<u8> {
         let within = Folder::default().allow_outside(self.allow_outside);
         let output = print::results(&within, self.out.as_deref(), COMPARISON)?;
-        let mut campaign = proposed(opened(&within, &self.campaign)?, &Kept::default(), json)?;
+        let mut campaign = proposed(opened(&within, &self.campaign)?, &AnswerCache::default(), json)?;
         if !self.fit.is_empty() {
             let names = self.fit.iter().map(|name| FitEntry::parameter(name.trim()));
             campaign.fit.parameters = names.collect::<Result<_>>()?;

@@ -1,6 +1,6 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
-use super::{Row, print, rows};
+use super::{CommandRow, print, rows};
 use crate::campaign::{two, without_unit};
 use crate::error::Error;
 use crate::record::{Severity, nearest};
@@ -21,7 +21,7 @@ pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
     // A hint of the crates below knows no name of the file.
     let file = std::env::args_os().skip(2).find(|word| Path::new(word).is_file());
     let spoken = |error: &Error| {
-        let text = error.spoken(|key, value| voice.set(key, value));
+        let text = error.text_with(|key, value| voice.set(key, value));
         let text = match (text.strip_suffix(" FILE"), &file) {
             (Some(command), Some(file)) => format!("{command} {}", print::typed(Path::new(file))),
             _ => text,
@@ -64,7 +64,7 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
 }
 
 /// The command that was typed, with its row and the names of its own commands and options.
-fn typed() -> (String, Option<&'static Row>, Vec<String>) {
+fn typed() -> (String, Option<&'static CommandRow>, Vec<String>) {
     let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
     let row = rows().find(|row| words.first().is_some_and(|word| word == row.name()));

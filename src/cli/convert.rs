@@ -1,6 +1,6 @@
 //! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY, on the way filtered and integrated.
 
-use super::{Run, complain, print};
+use super::{CommandArgs, complain, print};
 use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
@@ -28,7 +28,7 @@ pub struct Convert {
     /// Write single instead of double precision, where the format has both
     single: bool,
     #[command(flatten)]
-    change: Change,
+    change: TraceProcessing,
     #[command(flatten)]
     channel: Channel,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub struct Convert {
 const BESIDE: [(Target, f64); 5] =
     [(Target::Uff, 3.0), (Target::Csv, 4.5), (Target::Tsv, 4.5), (Target::Npy, 2.2), (Target::Wav, 1.2)];
 
-impl Run for Convert {
+impl CommandArgs for Convert {
     /// Writes the file and prints what is in it.
     fn run(&self, json: bool) -> Result<u8> {
         let piped = self.output == Path::new("-");
@@ -94,7 +94,7 @@ impl Run for Convert {
 
 /// What is done to time traces on the way.
 #[derive(Debug, clap::Args)]
-struct Change {
+struct TraceProcessing {
     /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
     low_pass: Option<f64>,
     /// Time constant in s of exponential smoothing (delays the signal), instead of the zero-phase low-pass
@@ -117,7 +117,7 @@ struct Change {
 /// Order of one pass of every filter here.
 const ORDER: usize = 4;
 
-impl Change {
+impl TraceProcessing {
     /// Whether anything is to be done.
     fn wanted(&self) -> bool {
         self.integrate != 0 || self.smoothing.is_some() || self.low_pass.is_some() || self.high_pass.is_some()

@@ -34,7 +34,7 @@ pub struct Open {
     report: PathBuf,
 }
 
-impl super::Run for Demo {
+impl super::CommandArgs for Demo {
     /// Writes the files of an example and runs it.
     fn run(&self, json: bool) -> Result<u8> {
         let Some(name) = &self.name else {
@@ -94,7 +94,7 @@ fn write(demo: &Example, folder: &Path) -> Result<()> {
 /// Programs that open a page, on one system or another.
 const OPENERS: [&str; 3] = ["xdg-open", "open", "explorer"];
 
-impl super::Run for Open {
+impl super::CommandArgs for Open {
     /// Opens the page in a browser.
     fn run(&self, json: bool) -> Result<u8> {
         let campaign = analysis::open(self.report.join(Proposal::FILE));

@@ -1,6 +1,6 @@
 //! `vibro info`: what is in a file.
 
-use super::{Run, complain, print};
+use super::{CommandArgs, complain, print};
 use crate::analysis::{Answer, file_name};
 use crate::campaign::Reading;
 use crate::error::Result;
@@ -24,7 +24,7 @@ pub struct Info {
 const NOTES: usize = 8;
 const WIDE: usize = 90;
 
-impl Run for Info {
+impl CommandArgs for Info {
     /// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
     fn run(&self, json: bool) -> Result<u8> {
         let (within, reader) = (Folder::default(), self.reading.reader()?);

@@ -3,10 +3,10 @@
 use super::print::folder_of;
 use super::{complain, print};
 use crate::analysis;
-use crate::analysis::Kept;
+use crate::analysis::AnswerCache;
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
-use crate::proposal::{Known, Proposal, Row, Table};
+use crate::proposal::{KeyStatus, Proposal, Table, TableKey};
 use crate::read::{Folder, Occupant, Owner};
 use crate::record::shown;
 use crate::report::words::{Voice, graded, put};
@@ -34,7 +34,7 @@ pub struct Check {
     allow_outside: bool,
 }
 
-impl super::Run for Init {
+impl super::CommandArgs for Init {
     /// Writes the campaign; to one that is there it adds tables for recordings that it does not name.
     fn run(&self, json: bool) -> Result<u8> {
         let within = Folder::from(self.folder.as_path()).allow_outside(self.allow_outside);
@@ -47,7 +47,7 @@ impl super::Run for Init {
             path.exists().then(|| analysis::open_in(&within, &path).map_err(|e| foreign(&within, &path, e)));
         let known = known.transpose()?;
         let proposal = print::busy(json, "looking at files", |bar| {
-            Proposal::of(&within, &self.reading, known.as_ref(), &Kept::default(), bar)
+            Proposal::of(&within, &self.reading, known.as_ref(), &AnswerCache::default(), bar)
         })?;
         let text = match &known {
             Some(known) => {
@@ -71,9 +71,9 @@ impl super::Run for Init {
         if json {
             print::object(json!({
                 "written": path.display().to_string(),
-                "found": keys(&proposal, |known| known == Known::Found),
-                "guessed": keys(&proposal, |known| matches!(known, Known::Guessed(_))),
-                "missing": keys(&proposal, |known| matches!(known, Known::Open(_) | Known::Missing(_))),
+                "found": keys(&proposal, |known| known == KeyStatus::Found),
+                "guessed": keys(&proposal, |known| matches!(known, KeyStatus::Guessed(_))),
+                "missing": keys(&proposal, |known| matches!(known, KeyStatus::Open(_) | KeyStatus::Missing(_))),
                 "left": proposal.left,
                 "warnings": [],
                 "findings": [],
@@ -108,11 +108,11 @@ fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
 }
 
 /// The keys that are known in one way.
-fn keys(proposal: &Proposal, of: impl Fn(Known) -> bool) -> Vec<Value> {
+fn keys(proposal: &Proposal, of: impl Fn(KeyStatus) -> bool) -> Vec<Value> {
     let of = &of;
     let rows = |table: &Table| -> Vec<Value> {
         let known = table.rows.iter().filter(|row| of(row.known));
-        known.map(|Row { key, value, known }| json!({"section": table.section, "name": table.name(), "key": key, "value": value, "why": known.why()})).collect()
+        known.map(|TableKey { key, value, known }| json!({"section": table.section, "name": table.name(), "key": key, "value": value, "why": known.why()})).collect()
     };
     proposal.tables.iter().flat_map(rows).collect()
 }
@@ -128,17 +128,17 @@ pub fn tell(proposal: &Proposal) {
         series.push((table.section, table.name()));
         let filled = if table.lacks() { ", left out until it is filled in" } else { "" };
         complain::line(&format!("{} -> [[{}]]{filled}", table.in_words(), table.section));
-        for Row { key, value, known } in &table.rows {
+        for TableKey { key, value, known } in &table.rows {
             match known {
-                Known::Found | Known::Open(_) => {}
-                Known::Guessed(why) => complain::line(&format!("  guessed: {key} = {value} ({why})")),
-                Known::Missing(what) => complain::line(&format!("  missing: {key}, {what}")),
+                KeyStatus::Found | KeyStatus::Open(_) => {}
+                KeyStatus::Guessed(why) => complain::line(&format!("  guessed: {key} = {value} ({why})")),
+                KeyStatus::Missing(what) => complain::line(&format!("  missing: {key}, {what}")),
             }
         }
     }
 }
 
-impl super::Run for Check {
+impl super::CommandArgs for Check {
     const VOICE: Voice = Voice::Campaign;
 
     /// Checks keys, values and files.

@@ -1,6 +1,6 @@
 //! `vibro model`: what the motion of a rig should be.
 
-use super::{Run, print};
+use super::{CommandArgs, print};
 use crate::analysis::Answer;
 use crate::analysis::model::{branch, choose, map, orbit, response, simulate, sweep};
 use crate::error::Result;
@@ -19,25 +19,25 @@ pub struct Model {
 enum Question {
     /// All motions with one impact a period at one frequency, or those found with several, with existence and
     /// stability
-    Orbit(Asked<orbit::Keys>),
+    Orbit(ModelArgs<orbit::Keys>),
     /// Simulated motion: regime, traces, phase plane, Poincaré section
-    Simulate(Asked<simulate::Keys>),
+    Simulate(ModelArgs<simulate::Keys>),
     /// All motions with one impact a period over frequency, with folds and stability limits
-    Response(Asked<response::Keys>),
+    Response(ModelArgs<response::Keys>),
     /// Motions with P impacts in Q cycles followed over frequency, force, gap or restitution, through folds,
     /// flips and grazing
-    Continue(Asked<branch::Keys>),
+    Continue(ModelArgs<branch::Keys>),
     /// Simulated sweep of frequency or force; the state carries over from step to step
-    Sweep(Asked<sweep::Keys>),
+    Sweep(ModelArgs<sweep::Keys>),
     /// The simplest adequate model of a scene, and why
-    Choose(Asked<choose::Keys>),
+    Choose(ModelArgs<choose::Keys>),
     /// Regime and stability over two parameters
-    Map(Asked<map::Keys>),
+    Map(ModelArgs<map::Keys>),
 }
 
 /// What is asked, and where results go.
 #[derive(Debug, Args)]
-pub struct Asked<K: Args> {
+pub struct ModelArgs<K: Args> {
     #[command(flatten)]
     keys: K,
     /// Folder for figures as SVG and PNG, and tables as CSV
@@ -45,7 +45,7 @@ pub struct Asked<K: Args> {
     out: Option<PathBuf>,
 }
 
-impl Run for Model {
+impl CommandArgs for Model {
     /// Computes and prints the answer.
     fn run(&self, json: bool) -> Result<u8> {
         type Ask<'a> = Box<dyn FnOnce(&ProgressBar) -> Result<Answer> + 'a>;

@@ -1,10 +1,10 @@
 //! `vibro precision`: speed against accuracy, and where methods break.
 
-use super::{Run, print};
+use super::{CommandArgs, print};
 use crate::analysis::Answer;
 use crate::analysis::precision as shown;
 use crate::error::{Error, Result};
-use crate::precision::{Family, Results, Scene};
+use crate::precision::{BenchmarkScene, Family, Results};
 use crate::read::Folder;
 use crate::record::Finding;
 use crate::report::files::{self, Names};
@@ -45,7 +45,7 @@ const NAMES: Names = Names::Named(&["precision", "failures"]);
 
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 
-impl Run for Precision {
+impl CommandArgs for Precision {
     /// Measures, or takes up what was measured, and prints it.
     fn run(&self, json: bool) -> Result<u8> {
         let output = print::results(&Folder::default(), self.out.as_deref(), NAMES)?;
@@ -78,7 +78,7 @@ impl Run for Precision {
         for scene in scenes {
             answer.figure(format!("precision_{}", files::slug(&scene.name)), shown::chart(scene));
             let bound = scene.bound.map_or(String::new(), |b| format!("; Cramér–Rao bound: {b:.1e}"));
-            let Scene { name, says, error_of, .. } = scene;
+            let BenchmarkScene { name, says, error_of, .. } = scene;
             let mut table = shown::scene(scene);
             table.title = format!("{name}\n{says}\nError: {error_of}{bound}");
             answer.tables.push(table);

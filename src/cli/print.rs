@@ -57,7 +57,7 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
 /// # Errors
 /// As [`Output::new`].
 pub fn output(folder: Folder, owner: Owner, elsewhere: String) -> Result<Output> {
-    let Written { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
+    let OutputSettings { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
     let mut output = Output::new(folder, owner)?.replace(replace);
     (output.medium, output.elsewhere) = (medium, elsewhere);
     Ok(output)
@@ -134,7 +134,7 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// How this program writes files.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Written {
+pub struct OutputSettings {
     /// The style of all figures.
     pub medium: Medium,
     /// Whether files that are not vibro's are replaced, too.
@@ -142,7 +142,7 @@ pub struct Written {
 }
 
 /// What was typed of it.
-pub static WRITTEN: OnceLock<Written> = OnceLock::new();
+pub static WRITTEN: OnceLock<OutputSettings> = OnceLock::new();
 
 /// Prints one JSON object.
 ///

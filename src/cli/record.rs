@@ -1,9 +1,9 @@
 //! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
-use super::sweep::{Place, of_script};
-use super::{Run, complain, print};
+use super::sweep::{SweepPlace, of_script};
+use super::{CommandArgs, complain, print};
 use crate::analysis::drill::cycles;
-use crate::analysis::sweep::{Files, Listed, Stored, named};
+use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, named};
 use crate::analysis::{self, Analysis, Answer, OfFile, Source, drill, drop, frf, impacts, pulse};
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 /// Which record, how its file is read, and where results go.
 #[derive(Debug, Args)]
-pub struct Record {
+pub struct RecordArgs {
     #[command(flatten)]
     channel: Channel,
     #[command(flatten)]
@@ -33,14 +33,14 @@ pub struct Record {
 
 /// A file, and how it is measured.
 #[derive(Debug, Args)]
-pub struct Measured<K: Args> {
+pub struct MeasuredFile<K: Args> {
     /// Measurement file
     #[arg(index = 1)]
     file: PathBuf,
     #[command(flatten)]
     keys: K,
     #[command(flatten)]
-    record: Record,
+    record: RecordArgs,
 }
 
 #[derive(Debug, Args)]
@@ -48,7 +48,7 @@ pub struct Impacts {
     /// Repeat the thesis' script timeav with its mistakes
     legacy: bool,
     #[command(flatten)]
-    of: Measured<impacts::Keys>,
+    of: MeasuredFile<impacts::Keys>,
 }
 
 #[derive(Debug, Args)]
@@ -56,7 +56,7 @@ pub struct Drill {
     /// Write the velocity of every turn over the phase into this file
     each_cycle: Option<PathBuf>,
     #[command(flatten)]
-    of: Measured<drill::Keys>,
+    of: MeasuredFile<drill::Keys>,
 }
 
 #[derive(Debug, Args)]
@@ -67,7 +67,7 @@ pub struct Pulse {
     #[command(flatten)]
     keys: pulse::Keys,
     #[command(flatten)]
-    record: Record,
+    record: RecordArgs,
 }
 
 #[derive(Debug, Args)]
@@ -78,10 +78,10 @@ pub struct Restitution {
     #[command(flatten)]
     keys: drop::Keys,
     #[command(flatten)]
-    record: Record,
+    record: RecordArgs,
 }
 
-impl Record {
+impl RecordArgs {
     /// Where files lie, of which these are read, and the folder for results.
     fn results<'a>(
         &self,
@@ -120,7 +120,7 @@ impl Record {
     }
 }
 
-impl<K: Args> Measured<K> {
+impl<K: Args> MeasuredFile<K> {
     fn by<T>(
         &self,
         folder: &Folder,
@@ -131,7 +131,7 @@ impl<K: Args> Measured<K> {
     }
 }
 
-impl<K: Args + OfFile + Analysis> Run for Measured<K> {
+impl<K: Args + OfFile + Analysis> CommandArgs for MeasuredFile<K> {
     /// Prints what is found in one record.
     fn run(&self, json: bool) -> Result<u8> {
         let (folder, output) = self.record.results([&self.file], K::FILES)?;
@@ -139,7 +139,7 @@ impl<K: Args + OfFile + Analysis> Run for Measured<K> {
     }
 }
 
-impl Run for Impacts {
+impl CommandArgs for Impacts {
     /// Prints the impacts.
     fn run(&self, json: bool) -> Result<u8> {
         let (folder, output) = self.of.record.results([&self.of.file], impacts::Keys::FILES)?;
@@ -180,11 +180,11 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
     Ok(answer)
 }
 
-impl Measured<frf::Keys> {
+impl MeasuredFile<frf::Keys> {
     /// The receptance of a sweep, where the file is its list or a campaign.
     fn sweep(&self, folder: &Folder) -> Result<Option<frf::Function>> {
         let typed = self.file.to_string_lossy();
-        let Place { path, name, campaign } = Place::of(&typed);
+        let SweepPlace { path, name, campaign } = SweepPlace::of(&typed);
         let listed = if campaign {
             named(&analysis::open_in(&folder.clone().allow_outside(false), Path::new(path))?, name)?
         } else {
@@ -193,15 +193,15 @@ impl Measured<frf::Keys> {
             let (unit, calibration) = (self.record.reading.unit.clone(), self.record.channel.calibration);
             let (name, folder) = (path.to_owned(), folder.clone());
             let mut reader = SweepReader { name, folder, ..SweepReader::default() };
-            Stored { unit, calibration, ..Stored::default() }.apply(&mut reader)?;
+            StoredResponseKeys { unit, calibration, ..StoredResponseKeys::default() }.apply(&mut reader)?;
             Listed { files: Files::Spectra(list), reader, findings: Vec::new() }
         };
-        let (_, response) = listed.taken(&ResponseOptions::default())?;
+        let (_, response) = listed.sweep_and_response(&ResponseOptions::default())?;
         frf::Function::of_response(&response).map(Some)
     }
 }
 
-impl Run for Measured<frf::Keys> {
+impl CommandArgs for MeasuredFile<frf::Keys> {
     /// Prints the modes.
     fn run(&self, json: bool) -> Result<u8> {
         let (folder, output) = self.record.results([&self.file], frf::Keys::FILES)?;
@@ -221,7 +221,7 @@ impl Run for Measured<frf::Keys> {
     }
 }
 
-impl Run for Pulse {
+impl CommandArgs for Pulse {
     /// Prints damping ratio and frequency of a contact.
     fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(self.file.is_some())?;
@@ -234,7 +234,7 @@ impl Run for Pulse {
     }
 }
 
-impl Run for Restitution {
+impl CommandArgs for Restitution {
     /// Prints the restitution by every method that the data allow.
     fn run(&self, json: bool) -> Result<u8> {
         self.keys.usable(!self.files.is_empty())?;
@@ -250,7 +250,7 @@ impl Run for Restitution {
     }
 }
 
-impl Run for Drill {
+impl CommandArgs for Drill {
     /// Prints speed, impacts and the average turn.
     fn run(&self, json: bool) -> Result<u8> {
         let (folder, output) = self.of.record.results([&self.of.file], drill::Keys::FILES)?;

@@ -14,7 +14,7 @@ pub struct Completions {
 #[derive(Debug, clap::Args)]
 pub struct Man {}
 
-impl super::Run for Completions {
+impl super::CommandArgs for Completions {
     fn run(&self, _: bool) -> Result<u8> {
         let mut text = Vec::new();
         clap_complete::generate(self.shell, &mut super::command(), "vibro", &mut text);
@@ -23,7 +23,7 @@ impl super::Run for Completions {
     }
 }
 
-impl super::Run for Man {
+impl super::CommandArgs for Man {
     fn run(&self, _: bool) -> Result<u8> {
         let mut text = Vec::new();
         let page = clap_mangen::Man::new(super::command());

@@ -1,13 +1,13 @@
 //! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
 
-use super::{Run, init, print};
-use crate::analysis::Kept;
-use crate::analysis::sweep::{Files, Listed, Stored, figures, named, tables};
+use super::{CommandArgs, init, print};
+use crate::analysis::AnswerCache;
+use crate::analysis::sweep::{Files, Listed, StoredResponseKeys, figures, named, tables};
 use crate::analysis::{self, Answer, in_order, is_pattern, matching};
 use crate::campaign::Reading;
 use crate::error::{Error, Result};
 use crate::measure::response::{ResponseOptions, ResponsePoint};
-use crate::measure::waterfall::{Waterfall as Matrix, waterfall};
+use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::proposal::{Proposal, more_steps, of_steps};
 use crate::read::{Folder, Owner, SweepList, SweepReader, plain};
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 /// A stepped-sine sweep, and what its analyser stored.
 #[derive(Debug, clap::Args)]
-pub struct Source {
+pub struct SweepSource {
     /// List file, hand-over file, campaign.toml#name, a folder, or time traces: one file a step, or a
     /// pattern
     #[arg(index = 1, value_name = "SWEEP", required = true)]
@@ -31,16 +31,16 @@ pub struct Source {
     /// Allow files outside the folder of the list
     allow_outside: bool,
     #[command(flatten)]
-    stored: Stored,
+    stored: StoredResponseKeys,
     /// Lowest frequency used, in Hz [default: two lines or a quarter of the lowest excitation]
     fmin: Option<f64>,
 }
 
 /// How a response is taken from a spectrum.
 #[derive(Debug, clap::Args)]
-pub struct Taken {
+pub struct ResponseArgs {
     #[command(flatten)]
-    sweep: Source,
+    sweep: SweepSource,
     /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity
     /// to displacement]
     #[arg(value_parser = clap::value_parser!(i8).range(-2..=2))]
@@ -54,17 +54,17 @@ pub struct Taken {
 }
 
 #[derive(Debug, clap::Args)]
-pub struct Waterfall {
+pub struct WaterfallArgs {
     #[command(flatten)]
-    taken: Taken,
+    taken: ResponseArgs,
     /// Highest frequency drawn, in Hz [default: the last line to be seen]
     fmax: Option<f64>,
 }
 
 #[derive(Debug, clap::Args)]
-pub struct Excitation {
+pub struct ExcitationArgs {
     #[command(flatten)]
-    sweep: Source,
+    sweep: SweepSource,
     /// Write the two hand-over files of sineswpf, with force and with response names
     #[arg(long, num_args = 2, value_names = ["FORCE", "RESPONSE"])]
     write_lists: Option<Vec<PathBuf>>,
@@ -75,7 +75,7 @@ pub fn of_script(script: &str) -> Finding {
     Finding::caution("legacy-script").name("script", script)
 }
 
-impl Source {
+impl SweepSource {
     /// A sweep of the time traces that are named, or that lie in the folder that is.
     fn proposed(&self, folder: &Folder) -> Result<Option<Proposal>> {
         let any = folder.clone().allow_outside(true);
@@ -83,7 +83,8 @@ impl Source {
         Ok(match typed.as_slice() {
             [path] if path.is_dir() => {
                 let within = folder.at(*path);
-                let mut proposal = Proposal::of(&within, &Reading::default(), None, &Kept::default(), &())?;
+                let mut proposal =
+                    Proposal::of(&within, &Reading::default(), None, &AnswerCache::default(), &())?;
                 proposal.tables.retain(|table| table.section == "sweep");
                 proposal.left.clear();
                 Some(proposal)
@@ -108,7 +109,7 @@ impl Source {
 
     /// The files of the sweep, and how to read them.
     fn listed(&self, folder: &Folder) -> Result<Listed> {
-        let Place { path, name, campaign } = Place::of(&self.paths[0]);
+        let SweepPlace { path, name, campaign } = SweepPlace::of(&self.paths[0]);
         let mut listed = if let Some(proposal) = self.proposed(folder)? {
             init::tell(&proposal);
             let mut listed = named(&proposal.campaign()?, None)?;
@@ -134,23 +135,23 @@ impl Source {
 }
 
 /// A list of a sweep, or a campaign and the name of a sweep in it.
-pub struct Place<'a> {
+pub struct SweepPlace<'a> {
     pub path: &'a str,
     pub name: Option<&'a str>,
     pub campaign: bool,
 }
 
-impl Place<'_> {
-    pub fn of(typed: &str) -> Place<'_> {
+impl SweepPlace<'_> {
+    pub fn of(typed: &str) -> SweepPlace<'_> {
         let is_campaign = |path: &str| path.to_lowercase().ends_with(".toml");
         match typed.rsplit_once('#') {
-            Some((path, name)) if is_campaign(path) => Place { path, name: Some(name), campaign: true },
-            _ => Place { path: typed, name: None, campaign: is_campaign(typed) },
+            Some((path, name)) if is_campaign(path) => SweepPlace { path, name: Some(name), campaign: true },
+            _ => SweepPlace { path: typed, name: None, campaign: is_campaign(typed) },
         }
     }
 }
 
-impl Run for Taken {
+impl CommandArgs for ResponseArgs {
     /// Prints the response.
     fn run(&self, json: bool) -> Result<u8> {
         let folder = self.sweep.folder();
@@ -159,7 +160,7 @@ impl Run for Taken {
         let answer = if self.sweep.legacy {
             largest_lines(&listed.spectra()?.1)?
         } else {
-            let (_, found) = listed.taken(&self.options())?;
+            let (_, found) = listed.sweep_and_response(&self.options())?;
             let all = std::slice::from_ref(&found);
             let mut answer = Answer::of(&found)?;
             answer.add("", &found.findings);
@@ -179,7 +180,7 @@ impl Run for Taken {
 const RESPONSE: Names = Names::Numbered(&["response", "receptance"]);
 const WATERFALL: Names = Names::Numbered(&["waterfall", "map"]);
 
-impl Taken {
+impl ResponseArgs {
     fn options(&self) -> ResponseOptions {
         ResponseOptions {
             band: usize::from(self.peak_lines),
@@ -212,7 +213,7 @@ fn largest_lines(sweep: &Sweep) -> Result<Answer> {
     Ok(answer)
 }
 
-impl Run for Waterfall {
+impl CommandArgs for WaterfallArgs {
     /// Prints the matrix of spectra.
     fn run(&self, json: bool) -> Result<u8> {
         let folder = self.taken.sweep.folder();
@@ -223,7 +224,7 @@ impl Run for Waterfall {
             let excitation = legacy::rounded(&legacy::excitation(&sweep)?);
             let rows = legacy::waterfall(&sweep);
             let shape = (excitation.len(), sweep.axis.len());
-            Matrix {
+            Waterfall {
                 name: sweep.name.clone(),
                 frequency: sweep.axis.values(),
                 excitation,
@@ -235,7 +236,7 @@ impl Run for Waterfall {
             }
         } else {
             let options = self.taken.options();
-            let (sweep, response) = listed.taken(&options)?;
+            let (sweep, response) = listed.sweep_and_response(&options)?;
             waterfall(&sweep, &options, &response)
         };
         let rows = matrix.magnitude.rows();
@@ -258,11 +259,11 @@ impl Run for Waterfall {
     }
 }
 
-impl Run for Excitation {
+impl CommandArgs for ExcitationArgs {
     /// Prints the excitation of each point.
     fn run(&self, json: bool) -> Result<u8> {
         let folder = self.sweep.folder();
-        folder.reads(Path::new(Place::of(&self.sweep.paths[0]).path));
+        folder.reads(Path::new(SweepPlace::of(&self.sweep.paths[0]).path));
         let lists = self.lists(&folder)?;
         let listed = self.sweep.listed(&folder)?;
         let (points, findings) = if self.sweep.legacy {
@@ -280,7 +281,7 @@ impl Run for Excitation {
             let (_, sweep) = listed.spectra()?;
             (excitation::excitations(&sweep, self.sweep.fmin.unwrap_or(0.0))?, sweep.findings)
         } else {
-            let (sweep, found) = listed.taken(&ResponseOptions::default())?;
+            let (sweep, found) = listed.sweep_and_response(&ResponseOptions::default())?;
             let point = |(point, step): (&ResponsePoint, &SweepPoint)| excitation::Excitation {
                 file: step.name(),
                 frequency: point.excitation,
@@ -307,7 +308,7 @@ impl Run for Excitation {
     }
 }
 
-impl Excitation {
+impl ExcitationArgs {
     /// The hand-over files, of which none is written yet.
     fn lists(&self, folder: &Folder) -> Result<Vec<print::File>> {
         let Some([force, response]) = self.write_lists.as_deref() else { return Ok(Vec::new()) };
@@ -330,7 +331,7 @@ impl Excitation {
         }
         // The spectra are known by now.
         files.iter().try_for_each(print::File::expect)?;
-        let folder = Path::new(Place::of(&self.sweep.paths[0]).path).parent().unwrap_or(Path::new(""));
+        let folder = Path::new(SweepPlace::of(&self.sweep.paths[0]).path).parent().unwrap_or(Path::new(""));
         let write = |(file, names): (print::File, &Vec<PathBuf>)| {
             let names: Vec<_> = names.iter().map(|n| n.strip_prefix(folder).unwrap_or(n)).collect();
             file.write(legacy::hand_over(list.lines, list.base_band, excitation, &names))

@@ -18,27 +18,27 @@ mod search;
 mod uncertainty;
 mod unknown;
 
-pub use answer::{Fit, FitPoint, Fitted, LeftOut};
+pub use answer::{Fit, FitPoint, FittedParameter, LeftOut};
 pub use hold_out::{Block, Rung};
 pub use uncertainty::{Profile, Unidentified};
 
 use super::forcing::range;
 use super::pair::reached;
 use super::predicting::Swept;
-use super::prediction::{Kind, Motion, motions};
+use super::prediction::{Motion, MotionKind, motions};
 use super::simulated::{Pace, Simulated, simulated_briefly};
 use crate::campaign::FitEntry;
 use crate::error::{Error, Result};
 use crate::measure::response::Response;
 use crate::model::Rig;
-use answer::Answer;
+use answer::AssessedFit;
 use compliance::corrected;
-use converge::{Converged, Least, assigned};
-use data::{Data, GUESS, Reading, Step};
+use converge::{Converged, LeastSquares, assigned};
+use data::{Data, GUESS, StepAmplitude, SweepStep};
 use hold_out::rungs;
 use problem::{Problem, shown};
 use rayon::prelude::*;
-use search::{End, FINE, distances};
+use search::{FINE, LocalMinimum, distances};
 use uncertainty::{NORMAL, Uncertainty, profile};
 use unknown::{Setting, Unknown};
 
@@ -90,22 +90,22 @@ fn found(
     let soft = corrected.as_ref().map(|soft| problem.with(&soft.data).converge(&soft.u)).transpose()?;
     let rungs = rungs(&rigid, soft.as_ref(), responses);
     let agreeing = agreeing(&ends, &rigid)?;
-    let answer = Answer::new(soft.unwrap_or(rigid), corrected.as_ref().map(|soft| soft.lost))?;
+    let answer = AssessedFit::new(soft.unwrap_or(rigid), corrected.as_ref().map(|soft| soft.lost))?;
     let mut fit = Fit { starts, agreeing, rungs, ..answer.fit(base) };
     fit.findings.extend(answer.cautions(&fit, entry));
     Ok(fit)
 }
 
 /// The best answer of several starts, and where each start ended.
-fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Converged<'a>, Vec<End>)> {
+fn identify<'a>(problem: &Problem<'a>, starts: usize) -> Result<(Converged<'a>, Vec<LocalMinimum>)> {
     problem.enough(problem.data.clear())?;
     // Where the rig is known well, no search is nearer than the rig itself: it counts as an end that no start
     // reached.
-    let stated = End { u: problem.coordinates(&problem.base), starts: 0 };
-    let reached: Vec<End> = problem.search(starts).into_iter().chain([stated]).collect();
+    let stated = LocalMinimum { u: problem.coordinates(&problem.base), starts: 0 };
+    let reached: Vec<LocalMinimum> = problem.search(starts).into_iter().chain([stated]).collect();
     let found: Vec<Result<Converged<'a>>> = reached.par_iter().map(|end| problem.converge(&end.u)).collect();
     let ends = found.iter().zip(&reached).filter_map(|(found, end)| {
-        Some(End { u: found.as_ref().ok()?.least.minimum.parameters.clone(), ..*end })
+        Some(LocalMinimum { u: found.as_ref().ok()?.least.minimum.parameters.clone(), ..*end })
     });
     let ends = ends.collect();
     let (mut best, mut idle) = (nearest(found)?, 0);
@@ -130,7 +130,7 @@ fn nearest(found: Vec<Result<Converged<'_>>>) -> Result<Converged<'_>> {
 }
 
 /// How many starts ended within one standard uncertainty of the answer in every parameter.
-fn agreeing(ends: &[End], answer: &Converged<'_>) -> Result<usize> {
+fn agreeing(ends: &[LocalMinimum], answer: &Converged<'_>) -> Result<usize> {
     let (best, uncertainty) = (&answer.least.minimum.parameters, Uncertainty::new(&answer.least)?);
     let near = |(i, u): (usize, &f64)| (u - best[i]).abs() <= uncertainty.std(i);
     Ok(ends.iter().filter(|end| end.u.iter().enumerate().all(near)).map(|end| end.starts).sum())

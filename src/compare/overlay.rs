@@ -2,8 +2,8 @@
 
 use super::forcing::{Forcing, levels, range};
 use super::pair::{Pair, PeakPair, Score, outliers, peaks, score};
-use super::predicting::{Course, Predicting, Rungs, Swept, rungs};
-use super::prediction::{Kind, Prediction};
+use super::predicting::{Predicting, Predictor, Rungs, Swept, rungs};
+use super::prediction::{MotionKind, Prediction};
 use super::simulated::Pace;
 use crate::error::Result;
 use crate::measure::response::Response;
@@ -92,7 +92,7 @@ pub fn overlay(
     }
     let model = predicting.model(&choices);
     findings.extend(choices.iter().find_map(|r| r.finding.clone()).map(|f| f.name("model", model.name())));
-    let course = Course { rig, law: predicting.law(rig, model)?, model, pace: predicting.pace() };
+    let course = Predictor { rig, law: predicting.law(rig, model)?, model, pace: predicting.pace() };
     let (mut pairs, mut found_peaks, mut scores, mut shown) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (mean, members) in grouped {
@@ -126,7 +126,7 @@ fn of_motions(pairs: &[Pair], pace: Pace) -> Vec<Finding> {
             .count("n", count(&|p| p.choices > 1))
             .count("cycles", cycles),
         Finding::caution("irregular-motion")
-            .count("n", count(&|p| p.motion == Some(Kind::Irregular)))
+            .count("n", count(&|p| p.motion == Some(MotionKind::Irregular)))
             .count("cycles", pace.measure as usize),
         Finding::caution("motion-not-predicted").count("n", count(&|p| p.predicted.is_none())),
     ]
@@ -241,9 +241,12 @@ mod tests {
             point.force = Some(0.1);
         }
         let overlay = overlay(&rig, None, &Predicting::default(), &[sweep]).unwrap();
-        let kinds: Vec<Option<Kind>> = overlay.pairs.iter().map(|p| p.motion).collect();
-        assert!(kinds.contains(&Some(Kind::Impacting)) && kinds.contains(&Some(Kind::Free)), "{kinds:?}");
-        for pair in overlay.pairs.iter().filter(|p| p.motion == Some(Kind::Free)) {
+        let kinds: Vec<Option<MotionKind>> = overlay.pairs.iter().map(|p| p.motion).collect();
+        assert!(
+            kinds.contains(&Some(MotionKind::Impacting)) && kinds.contains(&Some(MotionKind::Free)),
+            "{kinds:?}"
+        );
+        for pair in overlay.pairs.iter().filter(|p| p.motion == Some(MotionKind::Free)) {
             assert_eq!(pair.model, Model::ClosedForm, "{pair:?}");
         }
     }

@@ -1,7 +1,7 @@
 //! Measured amplitudes and resonances beside their predictions, and how well they agree.
 
-use super::predicting::{Course, Followed, Swept};
-use super::prediction::{Kind, Motion, all_motions};
+use super::predicting::{Followed, Predictor, Swept};
+use super::prediction::{Motion, MotionKind, all_motions};
 use super::simulated::{Simulated, simulated};
 use crate::error::Result;
 use crate::measure::Estimate;
@@ -34,7 +34,7 @@ pub struct Pair {
     /// How far the predicted amplitude scatters from cycle to cycle, in m: 0 for what repeats every cycle.
     pub scatter: Option<f64>,
     /// Kind of the predicted motion.
-    pub motion: Option<Kind>,
+    pub motion: Option<MotionKind>,
     /// Impacts/cycles of its pattern, or a word.
     pub regime: Option<String>,
     /// What predicted the amplitude: the closed form where it has the motion of the simulated sweep, else
@@ -46,10 +46,10 @@ pub struct Pair {
     pub residual: Option<f64>,
 }
 
-impl Course<'_> {
+impl Predictor<'_> {
     /// The points of a sweep in their order, each with its prediction.
     pub fn pairs(&self, sweep: &Swept<'_>) -> Result<Vec<Pair>> {
-        let Course { rig, law, model, pace } = *self;
+        let Predictor { rig, law, model, pace } = *self;
         let Swept { response, mass, direction, ref forcing } = *sweep;
         let points = sweep.points();
         let driven: Vec<(f64, f64)> = points.iter().map(|p| (p.excitation, forcing.of(p).0)).collect();
@@ -70,7 +70,7 @@ impl Course<'_> {
                 upper_limit: point.upper_limit,
                 predicted,
                 scatter: simulated.map(|s| if closed.is_some() { 0.0 } else { s.scatter[of] }),
-                motion: simulated.map(|s| Kind::of(s.regime)),
+                motion: simulated.map(|s| MotionKind::of(s.regime)),
                 regime: simulated.map(|s| s.regime.to_string()),
                 model: if closed.is_some() { Model::ClosedForm } else { model },
                 choices: motions.iter().filter(|m| m.is_seen()).count(),
@@ -87,7 +87,7 @@ const SETTLED: f64 = 0.02;
 
 /// The motion of the closed form that a simulation reached.
 pub(super) fn reached<'a>(simulated: &Simulated, motions: &'a [Motion]) -> Option<&'a Motion> {
-    let kind = Kind::of(simulated.regime);
+    let kind = MotionKind::of(simulated.regime);
     motions.iter().filter(|m| m.is_seen() && m.kind == kind).find(|m| {
         // The ringing of a mass that comes to rest is compared with the other's amplitude.
         let size = |i: usize| if m.amplitude[i] > 0.0 { m.amplitude[i] } else { m.amplitude[1 - i] };

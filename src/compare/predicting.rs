@@ -1,7 +1,7 @@
 //! Measured sweeps, how they are predicted, and which models of the ladder they need.
 
 use super::forcing::Forcing;
-use super::prediction::{Kind, Prediction, in_order};
+use super::prediction::{MotionKind, Prediction, in_order};
 use super::simulated::{Pace, simulated};
 use crate::campaign::ModelEntry;
 use crate::error::{Error, Result};
@@ -51,7 +51,7 @@ impl<'a> Swept<'a> {
 
 /// How all sweeps are predicted.
 #[derive(Clone, Copy)]
-pub(super) struct Course<'a> {
+pub(super) struct Predictor<'a> {
     pub rig: &'a Rig,
     pub model: Model,
     pub law: Option<Law>,
@@ -72,14 +72,14 @@ pub(super) struct Followed {
     pub impacting: bool,
 }
 
-impl Course<'_> {
+impl Predictor<'_> {
     /// The curve that a sweep follows, in order of rising frequency: of the closed form where impacts take no
     /// time, else simulated.
     pub fn followed(&self, sweep: &Swept<'_>, curve: &Prediction) -> Vec<Followed> {
-        let point = |frequency: f64, motion: Option<(Kind, [f64; 2])>| Followed {
+        let point = |frequency: f64, motion: Option<(MotionKind, [f64; 2])>| Followed {
             frequency,
             amplitude: motion.map_or(f64::NAN, |(_, amplitude)| amplitude[usize::from(sweep.mass) - 1]),
-            impacting: motion.is_some_and(|(kind, _)| kind == Kind::Impacting),
+            impacting: motion.is_some_and(|(kind, _)| kind == MotionKind::Impacting),
         };
         if self.law.is_none() {
             let motions =
@@ -90,7 +90,7 @@ impl Course<'_> {
         let points = curve.frequency.iter().step_by(step).map(|f| (*f, sweep.forcing.at(*f)));
         let points = in_order(sweep.direction, points.collect());
         let simulated = simulated(self.rig, self.law, &points, PASSING).into_iter();
-        let motions = simulated.map(|s| s.ok().map(|s| (Kind::of(s.regime), s.amplitude)));
+        let motions = simulated.map(|s| s.ok().map(|s| (MotionKind::of(s.regime), s.amplitude)));
         let followed = points.iter().zip(motions).map(|((f, _), motion)| point(*f, motion));
         in_order(sweep.direction, followed.collect())
     }

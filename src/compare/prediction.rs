@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Kind of a predicted motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum MotionKind {
     /// One impact a cycle.
     Impacting,
     /// No impact.
@@ -22,14 +22,14 @@ pub enum Kind {
     Irregular,
 }
 
-impl Kind {
+impl MotionKind {
     /// The kind of a regime.
-    pub fn of(regime: Regime) -> Kind {
+    pub fn of(regime: Regime) -> MotionKind {
         match regime {
-            Regime::NoImpact => Kind::Free,
-            Regime::Periodic { impacts: 1, cycles: 1 } => Kind::Impacting,
-            Regime::Periodic { .. } | Regime::Chatter { cycles: Some(_) } => Kind::Pattern,
-            Regime::Chatter { cycles: None } | Regime::Irregular => Kind::Irregular,
+            Regime::NoImpact => MotionKind::Free,
+            Regime::Periodic { impacts: 1, cycles: 1 } => MotionKind::Impacting,
+            Regime::Periodic { .. } | Regime::Chatter { cycles: Some(_) } => MotionKind::Pattern,
+            Regime::Chatter { cycles: None } | Regime::Irregular => MotionKind::Irregular,
         }
     }
 }
@@ -38,7 +38,7 @@ impl Kind {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     /// Impacting once a cycle, or free.
-    pub kind: Kind,
+    pub kind: MotionKind,
     /// Observed amplitudes of x₁ and x₂ in m.
     pub amplitude: [f64; 2],
     /// Whether it can be seen, and if not, why.
@@ -93,15 +93,15 @@ impl Prediction {
     /// impacts go on but no orbit with one impact a cycle can be seen: the motion there has another
     /// pattern (after a flip, say) and is not predicted here.
     pub fn followed(&self, direction: Direction) -> Vec<Option<Motion>> {
-        let mut kind = Kind::Free;
+        let mut kind = MotionKind::Free;
         let follow = |motions: &Vec<Motion>| {
-            let seen = |kind: Kind| motions.iter().find(|m| m.is_seen() && m.kind == kind).copied();
+            let seen = |kind: MotionKind| motions.iter().find(|m| m.is_seen() && m.kind == kind).copied();
             let goes_on = match kind {
-                Kind::Free => seen(Kind::Free).is_some(),
-                _ => motions.iter().any(|m| m.kind == Kind::Impacting),
+                MotionKind::Free => seen(MotionKind::Free).is_some(),
+                _ => motions.iter().any(|m| m.kind == MotionKind::Impacting),
             };
             if !goes_on {
-                kind = if kind == Kind::Free { Kind::Impacting } else { Kind::Free };
+                kind = if kind == MotionKind::Free { MotionKind::Impacting } else { MotionKind::Free };
             }
             seen(kind)
         };
@@ -127,7 +127,7 @@ pub(super) fn all_motions(rig: &Rig, points: &[(f64, f64)]) -> Result<Vec<Vec<Mo
 pub(super) fn motions(rig: &Rig, force: f64, frequency: f64) -> Result<Vec<Motion>> {
     let (found, observable) = (orbits(rig, force, frequency)?, Observable::Fundamental);
     let impacting = found.orbits.iter().filter(|o| o.validity.exists).map(|o| Motion {
-        kind: Kind::Impacting,
+        kind: MotionKind::Impacting,
         amplitude: observable.of_orbit(o),
         verdict: match (o.validity.admissible, o.validity.stable) {
             (false, _) => Verdict::Impossible,
@@ -137,7 +137,7 @@ pub(super) fn motions(rig: &Rig, force: f64, frequency: f64) -> Result<Vec<Motio
         },
     });
     let free = Motion {
-        kind: Kind::Free,
+        kind: MotionKind::Free,
         amplitude: observable.of_no_impact(&found.no_impact),
         verdict: if found.no_impact.possible { Verdict::Seen } else { Verdict::Impossible },
     };

@@ -1,9 +1,9 @@
 //! Files that are alike: a few are tried, and stand for the others where they agree.
 
-use super::folder::Series;
-use super::found::Found;
+use super::folder::FileSeries;
+use super::found::FoundTables;
 use super::trial::Trial;
-use crate::analysis::{Kept, Progress};
+use crate::analysis::{AnswerCache, Progress};
 use crate::read::{Folder, Header};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -31,30 +31,30 @@ pub(super) fn share(values: usize) -> usize {
 
 /// What each series is, in order. Series are tried side by side, and so are their files.
 pub(super) fn all<'a>(
-    series: &'a [Series],
+    series: &'a [FileSeries],
     folder: &'a Folder,
-    kept: &'a Kept,
+    kept: &'a AnswerCache,
     progress: &dyn Progress,
-) -> Vec<Found> {
+) -> Vec<FoundTables> {
     progress.start("looking at files", series.iter().map(|one| one.files.len()).sum());
-    let trial = |one: &'a Series| Trial { folder, reading: &one.reading, kept };
-    let together = |one: &'a Series| {
+    let trial = |one: &'a FileSeries| Trial { folder, reading: &one.reading, kept };
+    let together = |one: &'a FileSeries| {
         let (trial, few) = (trial(one), one.part(spread(one.files.len(), FEW)));
         let found = trial.sweep(one, &few).or_else(|| trial.drops(one, &few))?;
         one.files.iter().for_each(|_| progress.step());
         Some(found)
     };
-    let share = share(series.iter().map(Series::values).max().unwrap_or(0));
-    let mut found: Vec<Option<Found>> = series.par_iter().with_min_len(share).map(together).collect();
+    let share = share(series.iter().map(FileSeries::values).max().unwrap_or(0));
+    let mut found: Vec<Option<FoundTables>> = series.par_iter().with_min_len(share).map(together).collect();
     let mut kin: BTreeMap<String, Vec<(usize, &String)>> = BTreeMap::new();
     for (i, one) in series.iter().enumerate().filter(|(i, _)| found[*i].is_none()) {
         kin.entry(one.kin()).or_default().extend(one.files.iter().map(|file| (i, file)));
     }
     let each = |files: &Vec<(usize, &String)>| {
         let values = series[files[0].0].values();
-        let (tries, own) = tried((files.len(), self::share(values)), Found::agrees, |k| {
+        let (tries, own) = tried((files.len(), self::share(values)), FoundTables::agrees, |k| {
             let (one, file) = (&series[files[k].0], files[k].1);
-            let alone = Series { files: vec![file.clone()], ..one.clone() };
+            let alone = FileSeries { files: vec![file.clone()], ..one.clone() };
             let found = trial(one).file(&alone, one.label(file));
             progress.step();
             found.renamed(one.label(file), [""; 3])
@@ -72,7 +72,7 @@ pub(super) fn all<'a>(
     for (i, one) in tried {
         found[i] = Some(one);
     }
-    let stated = |(mut found, one): (Found, &Series)| {
+    let stated = |(mut found, one): (FoundTables, &FileSeries)| {
         found.tables.iter_mut().for_each(|table| *table = table.stated(&one.reading));
         found
     };
@@ -116,11 +116,15 @@ fn tried<T: Clone + Send + Sync>(
     }
 }
 
-impl Series {
+impl FileSeries {
     /// Some of its files, by their places.
-    pub(super) fn part(&self, places: Vec<usize>) -> Series {
+    pub(super) fn part(&self, places: Vec<usize>) -> FileSeries {
         let pattern = self.pattern.clone().filter(|_| places.len() == self.files.len());
-        Series { files: places.into_iter().map(|k| self.files[k].clone()).collect(), pattern, ..self.clone() }
+        FileSeries {
+            files: places.into_iter().map(|k| self.files[k].clone()).collect(),
+            pattern,
+            ..self.clone()
+        }
     }
 
     /// The name of a file for tables.
@@ -129,14 +133,14 @@ impl Series {
     }
 
     /// What its files are together, where each is known or was not tried.
-    fn gathered(&self, own: &[Option<Found>], tries: usize) -> Found {
+    fn gathered(&self, own: &[Option<FoundTables>], tries: usize) -> FoundTables {
         if let (Some(pattern), [Some(one), more @ ..]) = (&self.pattern, own)
             && own.len() > FEW
             && more.iter().all(|other| other.as_ref().is_some_and(|other| other.agrees(one)))
         {
             return one.renamed("", [&self.name, pattern, &self.in_words()]);
         }
-        let mut found = Found::default();
+        let mut found = FoundTables::default();
         for (file, one) in self.files.iter().zip(own) {
             let own = one.as_ref().map(|one| one.renamed("", [self.label(file), file, file]));
             found.add(own.unwrap_or_default());
@@ -146,7 +150,7 @@ impl Series {
             let why = format!(
                 "{tries} files like these were tried and are of several kinds; write a table for each kind by hand, as docs/campaign.md shows"
             );
-            found.add(Found::left(self.part(untried).in_words(), why));
+            found.add(FoundTables::left(self.part(untried).in_words(), why));
         }
         found
     }

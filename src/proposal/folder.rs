@@ -1,6 +1,6 @@
 //! The recordings of a folder: lists of sweeps, and files in series.
 
-use super::{Known, Table};
+use super::{KeyStatus, Table};
 use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
@@ -16,14 +16,14 @@ pub(super) struct Inventory {
     /// Names and paths of list files.
     pub lists: Vec<(String, String)>,
     /// Files that belong together, in order.
-    pub series: Vec<Series>,
+    pub series: Vec<FileSeries>,
     /// Files that are no recordings, and why.
     pub left: Vec<(String, String)>,
 }
 
 /// Files of the same channels whose names differ in one number, or whatever their names are; or one file.
 #[derive(Debug, Clone)]
-pub struct Series {
+pub struct FileSeries {
     /// What their names have in common.
     pub name: String,
     /// Paths within the folder, numbers by value.
@@ -141,7 +141,7 @@ impl Inventory {
                 }
             }
             let reading = if key.2 { &untimed_reading } else { reading }.clone();
-            found.series.push(Series { name, files, headers, pattern, alike: false, reading });
+            found.series.push(FileSeries { name, files, headers, pattern, alike: false, reading });
         }
         found.name_apart();
         if let ([first, more @ ..], None) = (others.as_slice(), known) {
@@ -167,7 +167,7 @@ impl Inventory {
     }
 }
 
-impl Series {
+impl FileSeries {
     /// The table of a stepped sweep, where each file holds a force and responses.
     pub(super) fn sweep(&self) -> Option<Table> {
         let (force, responses) = self.force_and_responses()?;
@@ -184,7 +184,7 @@ impl Series {
             }
             None => table.found("traces", &self.files),
         };
-        let table = table.with("force", self.channel(force), Known::Guessed("the channel in N"));
+        let table = table.with("force", self.channel(force), KeyStatus::Guessed("the channel in N"));
         let responses: Vec<_> = responses.into_iter().map(|k| self.channel(k)).collect();
         Some(match responses.as_slice() {
             [one] => table.guessed("response", one, "the other channel"),

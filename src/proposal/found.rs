@@ -4,33 +4,33 @@ use super::Table;
 
 /// The tables of files, and those that stand in none.
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct Found {
+pub(super) struct FoundTables {
     /// Tables of a campaign.
     pub tables: Vec<Table>,
     /// Files that stand in no table, and why.
     pub left: Vec<(String, String)>,
 }
 
-impl Found {
+impl FoundTables {
     /// One table.
-    pub fn table(table: Table) -> Found {
-        Found { tables: vec![table], ..Found::default() }
+    pub fn table(table: Table) -> FoundTables {
+        FoundTables { tables: vec![table], ..FoundTables::default() }
     }
 
     /// No table, and why.
-    pub fn left(file: impl Into<String>, why: impl Into<String>) -> Found {
-        Found { left: vec![(file.into(), why.into())], ..Found::default() }
+    pub fn left(file: impl Into<String>, why: impl Into<String>) -> FoundTables {
+        FoundTables { left: vec![(file.into(), why.into())], ..FoundTables::default() }
     }
 
     /// Adds what more files are.
-    pub fn add(&mut self, more: Found) {
+    pub fn add(&mut self, more: FoundTables) {
         self.tables.extend(more.tables);
         self.left.extend(more.left);
     }
 
     /// The same of another file or of a pattern: its name, with which names of tables begin, how a table
     /// names it, and how a person is told.
-    pub fn renamed(&self, from: &str, [name, file, words]: [&str; 3]) -> Found {
+    pub fn renamed(&self, from: &str, [name, file, words]: [&str; 3]) -> FoundTables {
         let table = |table: &Table| {
             let mut table = Table { files: words.to_owned(), ..table.clone() };
             for row in &mut table.rows {
@@ -45,11 +45,11 @@ impl Found {
             table
         };
         let left = self.left.iter().map(|(_, why)| (words.to_owned(), why.clone()));
-        Found { tables: self.tables.iter().map(table).collect(), left: left.collect() }
+        FoundTables { tables: self.tables.iter().map(table).collect(), left: left.collect() }
     }
 
     /// Whether two files without their names have the same tables; why they have none may differ in numbers.
-    pub fn agrees(&self, other: &Found) -> bool {
+    pub fn agrees(&self, other: &FoundTables) -> bool {
         self.tables == other.tables && self.left.len() == other.left.len()
     }
 }

@@ -1,11 +1,11 @@
 //! Files of one folder that hold alike records under odd names: steps of one sweep, drops of one series.
 
 use super::alike::spread;
-use super::folder::{Series, columns, name};
+use super::folder::{FileSeries, columns, name};
 use super::trial::{STEPS, Trial};
 use crate::analysis::sweep::order::same;
 use crate::analysis::tone::Strongest;
-use crate::analysis::{self, Kept, file_name, in_order};
+use crate::analysis::{self, AnswerCache, file_name, in_order};
 use crate::campaign::Reading;
 use crate::read::{Folder, Header, plain};
 use crate::record::{Finding, Record};
@@ -24,26 +24,26 @@ const FEW: usize = 8;
 const MOST: usize = 64;
 
 /// The series, those joined whose files are alike but for their names.
-pub(super) fn all(series: Vec<Series>, folder: &Folder, kept: &Kept) -> Vec<Series> {
+pub(super) fn all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCache) -> Vec<FileSeries> {
     let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, one) in series.iter().enumerate() {
         families.entry(one.family()).or_default().push(i);
     }
     let sets = |places: &Vec<usize>| {
-        let members: Vec<&Series> = places.iter().map(|i| &series[*i]).collect();
+        let members: Vec<&FileSeries> = places.iter().map(|i| &series[*i]).collect();
         let trial = Trial { folder, reading: &members[0].reading, kept };
         let sets = match members[0].force_and_responses() {
             _ if members.len() < 2 => Vec::new(),
             Some((force, _)) => sweeps(&trial, &members, force),
             None => drops(&trial, &members).into_iter().collect(),
         };
-        let in_folder = |(set, joined): (Vec<usize>, Series)| {
+        let in_folder = |(set, joined): (Vec<usize>, FileSeries)| {
             (set.into_iter().map(|k| places[k]).collect::<Vec<_>>(), joined)
         };
         sets.into_iter().map(in_folder).collect::<Vec<_>>()
     };
-    let joined: Vec<(Vec<usize>, Series)> = families.values().flat_map(sets).collect();
-    let mut all: Vec<Option<Series>> = series.into_iter().map(Some).collect();
+    let joined: Vec<(Vec<usize>, FileSeries)> = families.values().flat_map(sets).collect();
+    let mut all: Vec<Option<FileSeries>> = series.into_iter().map(Some).collect();
     for (places, one) in joined {
         let first = places[0];
         for place in places {
@@ -57,7 +57,7 @@ pub(super) fn all(series: Vec<Series>, folder: &Folder, kept: &Kept) -> Vec<Seri
 /// Sweeps that are made of several of these series of steps. Frequencies tell which: a series that goes
 /// through those of a sweep once more is another sweep, and one of other frequencies, or of a few, belongs to
 /// it.
-fn sweeps(trial: &Trial<'_>, members: &[&Series], force: usize) -> Vec<(Vec<usize>, Series)> {
+fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<usize>, FileSeries)> {
     let n = |k: usize| members[k].files.len();
     let Some(base) = (0..members.len()).rev().max_by_key(|k| n(*k)) else { return Vec::new() };
     let length = |k: usize| members[k].headers[force].n as f64;
@@ -89,7 +89,7 @@ fn sweeps(trial: &Trial<'_>, members: &[&Series], force: usize) -> Vec<(Vec<usiz
         }
     }
     let joined = |set: Vec<usize>| {
-        let mut one = Series::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
+        let mut one = FileSeries::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
         let at = |file: &String| frequency.get(file).copied().unwrap_or(f64::INFINITY);
         one.files.sort_by(|a, b| at(a).total_cmp(&at(b)));
         if one.way().as_deref() == Some("down") {
@@ -103,18 +103,18 @@ fn sweeps(trial: &Trial<'_>, members: &[&Series], force: usize) -> Vec<(Vec<usiz
 
 /// A series of drops and the drops under other names that agree with it. Where two series have numbers in
 /// their names, names tell them apart.
-fn drops(trial: &Trial<'_>, members: &[&Series]) -> Option<(Vec<usize>, Series)> {
+fn drops(trial: &Trial<'_>, members: &[&FileSeries]) -> Option<(Vec<usize>, FileSeries)> {
     let (several, alone): (Vec<usize>, Vec<usize>) =
         (0..members.len()).partition(|k| members[*k].files.len() > 1);
-    let joined = |set: &[usize]| Series::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
-    let agree = |series: &Series| trial.drops(series, series).is_some();
+    let joined = |set: &[usize]| FileSeries::of_all(&set.iter().map(|k| members[*k]).collect::<Vec<_>>());
+    let agree = |series: &FileSeries| trial.drops(series, series).is_some();
     let set = match several[..] {
         [base] if alone.len() <= MOST => {
             let base_few = members[base].part(spread(members[base].files.len(), FEW));
             agree(&base_few).then_some(())?;
             let with = |k: &usize| {
                 let pair = members[base].part(vec![0]);
-                agree(&Series::of_all(&[&pair, members[*k]]))
+                agree(&FileSeries::of_all(&[&pair, members[*k]]))
             };
             [base].into_iter().chain(alone.into_iter().filter(with)).collect::<Vec<_>>()
         }
@@ -138,7 +138,7 @@ impl Trial<'_> {
     }
 }
 
-impl Series {
+impl FileSeries {
     /// What files have in common that may be one series, however they are called: folder, columns and
     /// sampling rate.
     fn family(&self) -> String {
@@ -154,7 +154,7 @@ impl Series {
     }
 
     /// All files of several series as one.
-    fn of_all(members: &[&Series]) -> Series {
+    fn of_all(members: &[&FileSeries]) -> FileSeries {
         let mut headers = members[0].headers.clone();
         for (k, header) in headers.iter_mut().enumerate() {
             if members.iter().any(|other| other.headers[k].name != header.name) {
@@ -167,7 +167,7 @@ impl Series {
         let longest = members.iter().rev().max_by_key(|one| one.files.len());
         let own = longest.filter(|one| one.files.len() > 1).map(|one| one.name.clone());
         let name = own.unwrap_or_else(|| name(&files));
-        Series { name, files, headers, pattern: None, alike: true, reading: members[0].reading.clone() }
+        FileSeries { name, files, headers, pattern: None, alike: true, reading: members[0].reading.clone() }
     }
 }
 
@@ -194,9 +194,9 @@ pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
     let alike: Vec<String> = others.par_iter().filter(is_alike).map(|path| file_name(path)).collect();
     let names = vec![String::new()];
     let series =
-        Series { name: String::new(), files: names, headers: own, pattern: None, alike: true, reading };
+        FileSeries { name: String::new(), files: names, headers: own, pattern: None, alike: true, reading };
     let (force, _) = series.force_and_responses()?;
-    let trial = Trial { folder: &folder, reading: &series.reading, kept: &Kept::default() };
+    let trial = Trial { folder: &folder, reading: &series.reading, kept: &AnswerCache::default() };
     let tones = |files: &[&String]| trial.frequencies(force, files);
     let few: Vec<&String> = spread(alike.len(), FEW).into_iter().map(|k| &alike[k]).collect();
     tones(&few).iter().flatten().next()?;

@@ -1,10 +1,10 @@
 //! Records of unknown kind, tried with one analysis after another.
 
 use super::alike::{CHANNELS, share};
-use super::folder::{Series, short};
-use super::found::Found;
+use super::folder::{FileSeries, short};
+use super::found::FoundTables;
 use super::{Proposal, Table};
-use crate::analysis::{self, Answer, Evidence, Kept};
+use crate::analysis::{self, Answer, AnswerCache, Evidence};
 use crate::campaign::Reading;
 use crate::read::{Folder, Header};
 use crate::record::{Record, Severity};
@@ -52,14 +52,14 @@ pub(super) const STEPS: usize = 5;
 const VALUES: usize = 1 << 27;
 
 /// The table of a channel of a series, under a name.
-type Kind = fn(&Series, usize, &str) -> Table;
+type Kind = fn(&FileSeries, usize, &str) -> Table;
 
 /// Tries what a record can be measured for.
 #[derive(Clone, Copy)]
 pub(super) struct Trial<'a> {
     pub folder: &'a Folder,
     pub reading: &'a Reading,
-    pub kept: &'a Kept,
+    pub kept: &'a AnswerCache,
 }
 
 impl Trial<'_> {
@@ -108,7 +108,7 @@ impl Trial<'_> {
     }
 
     /// The tables of a sweep, if a series is one; a few of its files tell whether to read all.
-    pub fn sweep(&self, series: &Series, few: &Series) -> Option<Found> {
+    pub fn sweep(&self, series: &FileSeries, few: &FileSeries) -> Option<FoundTables> {
         let table = series.sweep().filter(|_| series.files.len() >= STEPS)?;
         let answer = |table: &Table| self.answers(from_ref(table)).ok();
         if few.files.len() < series.files.len() {
@@ -126,17 +126,17 @@ impl Trial<'_> {
             let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
             table.found("name", format!("{}, modes", name(*k)))
         });
-        Some(Found { tables: [table].into_iter().chain(modes).collect(), ..Found::default() })
+        Some(FoundTables { tables: [table].into_iter().chain(modes).collect(), ..FoundTables::default() })
     }
 
     /// The tables of repeated drops, if a few files of a series are such.
-    pub fn drops(&self, series: &Series, few: &Series) -> Option<Found> {
+    pub fn drops(&self, series: &FileSeries, few: &FileSeries) -> Option<FoundTables> {
         if series.files.len() < 2 || series.headers.len() != 1 || series.values() > VALUES {
             return None;
         }
-        let drops = |series: &Series, table: Kind| {
+        let drops = |series: &FileSeries, table: Kind| {
             let one = |file: &String| {
-                table(&Series { files: vec![file.clone()], ..series.clone() }, 0, &series.name)
+                table(&FileSeries { files: vec![file.clone()], ..series.clone() }, 0, &series.name)
             };
             match series.pattern {
                 Some(_) => vec![table(series, 0, &series.name)],
@@ -149,19 +149,19 @@ impl Trial<'_> {
             !few.alike || heard.evidence.first().is_some_and(of)
         };
         let agree = |kind: &Kind| self.sensibly(&drops(few, *kind)).as_ref().is_some_and(each);
-        let kind = [Series::bounces as Kind, Series::fall].into_iter().find(agree)?;
-        Some(Found { tables: drops(series, kind), ..Found::default() })
+        let kind = [FileSeries::bounces as Kind, FileSeries::fall].into_iter().find(agree)?;
+        Some(FoundTables { tables: drops(series, kind), ..FoundTables::default() })
     }
 
     /// What one file is.
-    pub fn file(&self, series: &Series, name: &str) -> Found {
+    pub fn file(&self, series: &FileSeries, name: &str) -> FoundTables {
         let file = &series.files[0];
-        let mut found = Found::default();
+        let mut found = FoundTables::default();
         let spectra: Vec<&Header> = series.headers.iter().filter(|h| h.kind != "trace").collect();
         if !spectra.is_empty() {
             if spectra.iter().all(|h| h.kind != "frf") {
                 let why = "a spectrum; those of a sweep stand in a list file, or in [[sweep]] as force and response";
-                return Found::left(file, why);
+                return FoundTables::left(file, why);
             }
             let table = Table::new("frf", "a frequency response function", file);
             return self.answering(table.found("name", name).found("file", file));
@@ -177,26 +177,26 @@ impl Trial<'_> {
             let why = format!(
                 "{values} values, more than the {VALUES} that are tried; write its table by hand, as docs/campaign.md shows, or: vibro spectrum {file} --channel 1"
             );
-            return Found::left(file, why);
+            return FoundTables::left(file, why);
         }
         let drills = self.drill(series, name);
         if !drills.is_empty() {
-            return Found { tables: drills, ..found };
+            return FoundTables { tables: drills, ..found };
         }
         let each = (0..channels).into_par_iter().with_min_len(share(values));
         let each = each.map(|k| match series.components(k) {
             Some(of) => {
                 let why = format!("{} is the magnitude of {of}, which are taken", series.channel(k));
-                Found::left(file, why)
+                FoundTables::left(file, why)
             }
             None => self.channel(series, k, name),
         });
-        each.collect::<Vec<Found>>().into_iter().for_each(|one| found.add(one));
+        each.collect::<Vec<FoundTables>>().into_iter().for_each(|one| found.add(one));
         found
     }
 
     /// What one channel is.
-    fn channel(&self, series: &Series, k: usize, name: &str) -> Found {
+    fn channel(&self, series: &FileSeries, k: usize, name: &str) -> FoundTables {
         let [pulse, others @ ..] = series.of_channel(k, name);
         // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
         let alone = |heard: Answer| {
@@ -206,10 +206,10 @@ impl Trial<'_> {
                 && heard.findings.iter().all(|(_, finding)| finding.code != ANOTHER)
         };
         if self.answers(from_ref(&pulse)).is_ok_and(alone) {
-            return Found::table(pulse);
+            return FoundTables::table(pulse);
         }
         if let Some(table) = self.first(&others).or_else(|| self.unexplained(&others)) {
-            return Found::table(table);
+            return FoundTables::table(table);
         }
         let table = series.channel_table(k, name, "spectrum", "a time record");
         let what = "sines to fit, strongest first; gives their true amplitudes";
@@ -217,15 +217,15 @@ impl Trial<'_> {
     }
 
     /// A table that answers; else why its file does not.
-    fn answering(&self, table: Table) -> Found {
+    fn answering(&self, table: Table) -> FoundTables {
         match self.answers(from_ref(&table)) {
-            Ok(_) => Found::table(table),
-            Err(why) => Found::left(table.files, why),
+            Ok(_) => FoundTables::table(table),
+            Err(why) => FoundTables::left(table.files, why),
         }
     }
 
     /// The function between two channels: of noise, else of blows.
-    fn function(&self, series: &Series, name: &str, [force, response]: [usize; 2]) -> Found {
+    fn function(&self, series: &FileSeries, name: &str, [force, response]: [usize; 2]) -> FoundTables {
         let file = &series.files[0];
         let called = format!("{name} {}", series.headers[response].name);
         let table = |about| {
@@ -244,13 +244,13 @@ impl Trial<'_> {
         };
         let blows = table("a hammer test").guessed("hammer", true, "the force is zero between blows");
         match self.first(&[steady.clone(), blows]) {
-            Some(table) => Found::table(table),
+            Some(table) => FoundTables::table(table),
             None => self.answering(steady),
         }
     }
 
     /// Velocities beside a channel of two levels: a drill and the pulses of its crank.
-    fn drill(&self, series: &Series, name: &str) -> Vec<Table> {
+    fn drill(&self, series: &FileSeries, name: &str) -> Vec<Table> {
         let file = &series.files[0];
         let is_velocity = |h: &Header| h.quantity == "velocity" || h.unit == "V";
         let velocities = (0..series.headers.len()).filter(|k| is_velocity(&series.headers[*k]));
@@ -301,7 +301,7 @@ impl Trial<'_> {
     }
 }
 
-impl Series {
+impl FileSeries {
     /// The table of a train of bounces.
     fn bounces(&self, k: usize, name: &str) -> Table {
         self.channel_table(k, name, "drop", "impacts of a falling body")

@@ -27,7 +27,7 @@ pub struct Output {
     folder: Folder,
     owner: Owner,
     replace: bool,
-    files: Vec<Written>,
+    files: Vec<StagedFile>,
     /// What a file held that is extended.
     extended: Option<Digest>,
     /// The right to write into the folder, from the first file on.
@@ -36,7 +36,7 @@ pub struct Output {
 
 /// A file that has no name yet.
 #[derive(Debug)]
-struct Written {
+struct StagedFile {
     name: String,
     digest: Digest,
     staged: Staged,
@@ -139,7 +139,7 @@ impl Output {
             self.lock = self.folder.lock()?;
         }
         let (digest, staged) = (Sha256::digest(bytes).into(), self.folder.stage(&path, bytes)?);
-        let file = Written { name: name.to_owned(), digest, staged };
+        let file = StagedFile { name: name.to_owned(), digest, staged };
         match self.files.iter_mut().find(|file| file.name == name) {
             Some(before) => *before = file,
             None => self.files.push(file),
@@ -232,7 +232,7 @@ impl Output {
         for name in &stale {
             after.forget(name);
         }
-        for Written { name, digest, staged } in std::mem::take(&mut self.files) {
+        for StagedFile { name, digest, staged } in std::mem::take(&mut self.files) {
             if self.present(&before, &name, Some(&digest))? == Present::Replaceable {
                 meanwhile.add(self.owner, &name, digest);
                 changed.push(staged);

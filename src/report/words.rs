@@ -98,9 +98,10 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     }
     let mut all = Vec::new();
     for severity in [Severity::Doubt, Severity::Caution, Severity::Note] {
-        let mut said: Vec<Said<'_>> = Vec::new();
+        let mut said: Vec<Sentence<'_>> = Vec::new();
         for (finding, records) in groups.iter().filter(|g| g.0.severity == severity) {
-            let new = Said { finding, text: sentence(finding, voice), of: records.clone(), like: Vec::new() };
+            let new =
+                Sentence { finding, text: sentence(finding, voice), of: records.clone(), like: Vec::new() };
             match said.iter_mut().find(|known| known.takes(&new)) {
                 Some(known) if known.text == new.text => known.of.extend(new.of),
                 Some(known) => known.like.push((new.finding, new.of)),
@@ -113,17 +114,17 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
 }
 
 /// A sentence with the records that it is about, and those of which it holds with other numbers.
-struct Said<'a> {
+struct Sentence<'a> {
     finding: &'a Finding,
     text: String,
     of: Vec<&'a str>,
     like: Vec<(&'a Finding, Vec<&'a str>)>,
 }
 
-impl Said<'_> {
+impl Sentence<'_> {
     /// Whether another sentence of the same code can stand with this one: it is the same, or differs in
     /// numbers and is about other records. A doubt stands for itself.
-    fn takes(&self, other: &Said<'_>) -> bool {
+    fn takes(&self, other: &Sentence<'_>) -> bool {
         let (a, b) = (self.finding, other.finding);
         let about = |record: &&str| record.is_empty() || self.of.contains(record);
         let name = |(_, fact): &&(Cow<'_, str>, Fact)| matches!(fact, Fact::Name(_));

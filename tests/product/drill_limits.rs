@@ -1,12 +1,12 @@
 //! Drills measured with options and records that no one has.
 
-use vibroimpact::measure::drill::{Beam, DrillOptions, Edge, From, Slices, Smoothing, drill};
+use vibroimpact::measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, Smoothing, drill};
 
 #[test]
 fn no_option_of_the_library_ends_in_a_panic() {
     let velocity: Vec<f64> = (0..6000).map(|i| 5.0 * (0.03 * f64::from(i) + 0.4).fract()).collect();
     let pulse: Vec<f64> = (0..6000).map(|i| f64::from(u8::from(i % 209 < 20))).collect();
-    let plain = || DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
+    let plain = || DrillOptions::new(1.0, Beam::new(0.0, AngleOrigin::Axis).unwrap(), 1, Edge::Rising);
     let numbers = [f64::MIN_POSITIVE, 1e-300, 1e-9, 1e9, 1e300, f64::MAX, f64::INFINITY, f64::NAN, -1.0, 0.0];
     let channels = || vec![velocity.as_slice(), pulse.as_slice()];
     for x in numbers {

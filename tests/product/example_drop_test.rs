@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use vibro_demo::drop_test as records;
-use vibroimpact::analysis::{self, Kept};
+use vibroimpact::analysis::{self, AnswerCache};
 use vibroimpact::read::Owner;
 use vibroimpact::report::Output;
 
@@ -26,7 +26,7 @@ fn the_campaign_gives_back_the_truth() {
     let campaign = analysis::open(folder().join("campaign.toml")).unwrap();
     let out = tempfile::tempdir().unwrap();
     let mut output = Output::new(out.path(), Owner::Run).unwrap();
-    let results = analysis::run(&campaign, &Kept::default(), &mut output, &()).unwrap();
+    let results = analysis::run(&campaign, &AnswerCache::default(), &mut output, &()).unwrap();
     output.commit().unwrap();
     let results = Value::Object(results.answer.result);
     let estimate = |found: &Value| (found["value"].as_f64().unwrap(), found["std"].as_f64().unwrap());
@@ -74,7 +74,7 @@ fn drops_of_one_name_with_other_heights_are_left_out_with_their_line() {
         std::fs::write(out.path().join("campaign.toml"), text).unwrap();
         let campaign = analysis::open(out.path().join("campaign.toml"))?;
         let mut output = Output::new(out.path().join("out"), Owner::Run).unwrap();
-        analysis::run(&campaign, &Kept::default(), &mut output, &())
+        analysis::run(&campaign, &AnswerCache::default(), &mut output, &())
     };
     let name = "name = \"a\"\n";
     let drops = |names| run(names, 0.001).unwrap().answer.result["drops"].as_array().unwrap().len();

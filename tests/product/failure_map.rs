@@ -2,7 +2,7 @@
 //! wrong without a word, stalls or crashes.
 
 use std::collections::HashSet;
-use vibroimpact::precision::{Cell, FailureMap, Outcome, estimators, models};
+use vibroimpact::precision::{BorderCell, FailureMap, Outcome, estimators, models};
 
 fn check(map: &FailureMap) {
     let broken: Vec<String> = map
@@ -234,7 +234,8 @@ fn estimators_are_right_or_refuse_at_their_borders() {
     let mut other = Vec::new();
     for Near { method, border, scenes, why } in NEAR {
         for scene in scenes {
-            let is = |c: &&Cell| c.ours && c.method == method && c.border == border && c.scene == *scene;
+            let is =
+                |c: &&BorderCell| c.ours && c.method == method && c.border == border && c.scene == *scene;
             let cell = map.cells.iter().find(is).unwrap_or_else(|| panic!("{border}, {scene}, {method}"));
             if cell.outcome != Outcome::Right {
                 other.push(format!("{cell:?}: {why}"));
@@ -253,8 +254,9 @@ fn estimators_are_right_or_refuse_at_their_borders() {
     }
     // Nobody is left out of the list above, and the check can fail: other methods do.
     let quantity = |border: &str| border.split(':').next().unwrap_or_default().to_owned();
-    let listed =
-        |c: &Cell| NEAR.iter().any(|n| n.method == c.method && quantity(n.border) == quantity(&c.border));
+    let listed = |c: &BorderCell| {
+        NEAR.iter().any(|n| n.method == c.method && quantity(n.border) == quantity(&c.border))
+    };
     assert!(map.cells.iter().filter(|c| c.ours).all(listed));
     assert!(map.cells.iter().filter(|c| !c.ours && c.outcome == Outcome::Wrong).count() > 60);
     // What is written by hand may crash on what it did not expect, but it is given records that a person

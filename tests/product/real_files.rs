@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
-use vibroimpact::analysis::{Kept, open_in, run};
+use vibroimpact::analysis::{AnswerCache, open_in, run};
 use vibroimpact::read::Reader;
 use vibroimpact::read::{Folder, Owner};
 use vibroimpact::report::Output;
@@ -19,7 +19,7 @@ fn results(campaign: &str) -> (Value, tempfile::TempDir) {
     fs::write(&path, campaign).unwrap();
     let campaign = open_in(&Folder::default().allow_outside(true), &path).unwrap();
     let mut output = Output::new(folder.path().join("out"), Owner::Run).unwrap();
-    let found = run(&campaign, &Kept::default(), &mut output, &()).unwrap();
+    let found = run(&campaign, &AnswerCache::default(), &mut output, &()).unwrap();
     for name in &output.commit().unwrap() {
         assert!(folder.path().join("out").join(name).is_file(), "{name}");
     }

@@ -22,16 +22,16 @@ const CORNER: f64 = 2000.0;
 const STEPS: u32 = 64;
 
 /// Numbers between −1 and 1.
-struct Noise(u64);
+struct UniformNoise(u64);
 
-impl Noise {
+impl UniformNoise {
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }
 
-fn bench(noise: &mut Noise) -> String {
+fn bench(noise: &mut UniformNoise) -> String {
     let (w, step) = (TAU * FREQUENCY, 1.0 / 1024.0 / f64::from(STEPS));
     let (mut x, mut v, mut force, mut before) = (0.0, 0.0, 0.0, 0.0);
     let mut text = String::from("time [s],force [N],velocity [m/s]\n");
@@ -54,7 +54,7 @@ fn bench(noise: &mut Noise) -> String {
     text
 }
 
-fn decay(noise: &mut Noise) -> String {
+fn decay(noise: &mut UniformNoise) -> String {
     let mut text = String::from("time [s],displacement [mm]\n");
     let w = TAU * FREQUENCY;
     let damped = w * (1.0 - ZETA * ZETA).sqrt();
@@ -78,7 +78,7 @@ fn contact(t: f64) -> f64 {
 }
 
 /// y″ + √2 Ω y′ + Ω² y = Ω² F in small steps.
-fn filtered(noise: &mut Noise) -> String {
+fn filtered(noise: &mut UniformNoise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     let (w, parts) = (TAU * CORNER, 2000);
     let step = 1.0 / 50_000.0 / f64::from(parts);
@@ -94,7 +94,7 @@ fn filtered(noise: &mut Noise) -> String {
     text
 }
 
-fn pulse(noise: &mut Noise) -> String {
+fn pulse(noise: &mut UniformNoise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     for i in 0..200 {
         let t = (f64::from(i) - 50.3) / 50_000.0;
@@ -106,7 +106,7 @@ fn pulse(noise: &mut Noise) -> String {
 
 /// All files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
-    let mut noise = Noise(20);
+    let mut noise = UniformNoise(20);
     let truth = format!(
         "what,value,unit\nfrequency of the mass,{FREQUENCY},Hz\nits damping ratio,{ZETA},1\nits mass,{MASS},kg\n\
          frequency of the contact,{CONTACT},Hz\nits damping ratio,{XI},1\n"

@@ -25,9 +25,9 @@ const RATE: f64 = 5000.0;
 
 /// Noise with a seed: splitmix64 (Steele, Lea and Flood 2014), and the sum of twelve uniform numbers less
 /// six, which is close to normal and needs no function of a mathematics library.
-struct Noise(u64);
+struct NormalNoise(u64);
 
-impl Noise {
+impl NormalNoise {
     fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -56,7 +56,7 @@ fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
 
 /// Acceleration of the plate in m/s²: pulses of 0.6 ms, then its own decaying ring of 1300 Hz.
 fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
-    let mut noise = Noise(seed);
+    let mut noise = NormalNoise(seed);
     let mut text = String::from("time (s),acceleration (m/s²)\n");
     for i in 0..(seconds * RATE) as usize {
         let t = from + i as f64 / RATE;
@@ -78,7 +78,7 @@ fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
 /// Contact trace with mains hum: volts, one a line, no header, as the analyser wrote it.
 fn contact(seed: u64) -> (String, usize) {
     let (rate, n) = (128.0, 1024);
-    let mut noise = Noise(seed);
+    let mut noise = NormalNoise(seed);
     let length = f64::from(n) / rate;
     let times: Vec<f64> =
         (0..n).map(|k| 0.05 + 2.0 * f64::from(k) / EXCITATION).take_while(|t| *t < length - 0.05).collect();
@@ -103,7 +103,7 @@ fn contact(seed: u64) -> (String, usize) {
 /// All files, by name.
 pub fn all() -> Vec<(String, String)> {
     let mut files = Vec::new();
-    let mut scatter = Noise(7);
+    let mut scatter = NormalNoise(7);
     for drop in 1..=5 {
         // No two impacts are alike: 2 % from drop to drop.
         let r = RESTITUTION * (1.0 + 0.02 * scatter.normal());

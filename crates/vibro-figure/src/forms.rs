@@ -1,6 +1,6 @@
 //! Series as shapes on the page.
 
-use crate::style::{Look, MARKER, OUTLINE, SMALL};
+use crate::style::{MARKER, OUTLINE, SMALL, SeriesLook};
 use crate::{
     Anchor, Canvas, Clutter, Marker, Pen, Place, Point, Rect, Rgb, Series, Shape, WHITE, clipped, font,
     thinned,
@@ -15,7 +15,7 @@ pub(super) enum Form {
 }
 
 /// What a series consists of, the lowest first.
-pub(super) fn forms(series: &Series, look: Look, place: &Place<'_>) -> Vec<Form> {
+pub(super) fn forms(series: &Series, look: SeriesLook, place: &Place<'_>) -> Vec<Form> {
     let frame = place.frame;
     let line = |from: Point, to: Point| vec![Form::Lines(clipped(&[from, to], frame), look.pen)];
     match series.shape {

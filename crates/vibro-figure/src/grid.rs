@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// What a cell can be.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Kind {
+pub struct Class {
     /// Name in the key.
     pub name: String,
     /// Letter in the cell: told apart without colour.
@@ -27,7 +27,7 @@ struct Row {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Grid {
     columns: Vec<String>,
-    kinds: Vec<Kind>,
+    kinds: Vec<Class>,
     rows: Vec<Row>,
 }
 
@@ -44,7 +44,7 @@ const KEY: f64 = 16.0;
 
 impl Grid {
     /// A grid without rows: names of its columns, and what cells can be.
-    pub fn new(columns: Vec<String>, kinds: Vec<Kind>) -> Grid {
+    pub fn new(columns: Vec<String>, kinds: Vec<Class>) -> Grid {
         Grid { columns, kinds, rows: Vec::new() }
     }
 

@@ -1,6 +1,6 @@
 //! Figures as data for a page that draws them itself.
 
-use crate::style::{Look, looks};
+use crate::style::{SeriesLook, looks};
 use crate::{Axis, Figure, Heatmap, Key, Panel, Plot, Scale, Shape, Sheet, Waterfall};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -162,7 +162,7 @@ impl Waterfall {
     }
 }
 
-impl Look {
+impl SeriesLook {
     fn data(&self) -> Value {
         json!({
             "colour": self.colour.to_string(),

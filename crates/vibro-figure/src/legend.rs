@@ -1,6 +1,6 @@
 //! The names of series, and the place for them.
 
-use crate::style::{LEADING, Look, MARKER, OUTLINE, SMALL};
+use crate::style::{LEADING, MARKER, OUTLINE, SMALL, SeriesLook};
 use crate::{Anchor, Canvas, Clutter, Form, Heatmap, Key, Marker, Pen, Point, Rect, Series, Shape, font};
 
 /// Length of a sample with a line and of one without, and its distance from the name.
@@ -14,27 +14,27 @@ const INSET: f64 = 6.0;
 /// Names with samples.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct KeyList {
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Entry {
+struct LegendEntry {
     name: String,
     shape: Shape,
     /// Whether its sample has a line.
     lined: bool,
-    look: Look,
+    look: SeriesLook,
 }
 
 impl KeyList {
     /// Entries of all named series and classes; reference lines carry their names themselves. Headings have
     /// no sample.
-    pub fn new(series: &[Series], looks: &[Look], map: Option<&Heatmap>) -> KeyList {
-        let mut entries: Vec<Entry> = Vec::new();
+    pub fn new(series: &[Series], looks: &[SeriesLook], map: Option<&Heatmap>) -> KeyList {
+        let mut entries: Vec<LegendEntry> = Vec::new();
         for (series, look) in series.iter().zip(looks) {
             let Series { name, shape, stroke, .. } = series;
             let lined = *shape == Shape::Line || *shape == Shape::Points && stroke.is_some();
-            let entry = Entry { name: name.clone(), shape: *shape, lined, look: *look };
+            let entry = LegendEntry { name: name.clone(), shape: *shape, lined, look: *look };
             let along = matches!(shape, Shape::Vertical | Shape::Horizontal);
             // A branch in several pieces has one entry.
             if !name.is_empty() && !along && !entries.contains(&entry) {
@@ -45,8 +45,8 @@ impl KeyList {
             entries.extend(names.iter().enumerate().map(|(i, name)| {
                 let colour = Heatmap::class_colour(i);
                 let pen = Pen::solid(colour, OUTLINE);
-                let look = Look { colour, fill: colour, pen, marker: Marker::Circle };
-                Entry { name: name.clone(), shape: Shape::Band, lined: false, look }
+                let look = SeriesLook { colour, fill: colour, pen, marker: Marker::Circle };
+                LegendEntry { name: name.clone(), shape: Shape::Band, lined: false, look }
             }));
         }
         KeyList { entries }
@@ -95,7 +95,7 @@ impl KeyList {
         if self.entries.iter().any(|e| e.lined) { SAMPLE } else { SHORT }
     }
 
-    fn width(&self, entry: &Entry) -> f64 {
+    fn width(&self, entry: &LegendEntry) -> f64 {
         let before = if entry.shape == Shape::Heading { 0.0 } else { self.sample() + BESIDE };
         before + font::width(&entry.name, SMALL)
     }
@@ -103,7 +103,7 @@ impl KeyList {
     /// Where each entry begins, and in which row.
     fn flow(&self, room: f64) -> Vec<(f64, usize)> {
         let (mut x, mut row) = (0.0, 0);
-        let step = |entry: &Entry| {
+        let step = |entry: &LegendEntry| {
             let width = self.width(entry);
             if x > 0.0 && x + width > room {
                 (x, row) = (0.0, row + 1);
@@ -116,9 +116,9 @@ impl KeyList {
     }
 }
 
-impl Entry {
+impl LegendEntry {
     fn draw(&self, canvas: &mut Canvas, (x, y): Point, sample: f64, room: f64) {
-        let Look { colour, fill, pen, marker } = self.look;
+        let SeriesLook { colour, fill, pen, marker } = self.look;
         let middle = (x + sample / 2.0, y);
         let swatch = || vec![Rect { x: middle.0 - 5.0, y: y - 3.2, w: 10.0, h: 6.4 }.corners()];
         if self.lined {

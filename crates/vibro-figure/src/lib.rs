@@ -31,7 +31,7 @@ pub use axis::{AxisSpec, Scale};
 pub use canvas::escaped;
 pub use draw::Drawing;
 pub use figure::{Figure, Legend, Note, Panel, Plot};
-pub use grid::{Grid, Kind};
+pub use grid::{Class, Grid};
 pub use heatmap::Heatmap;
 pub use interactive::Matrices;
 pub use medium::Medium;

@@ -1,6 +1,6 @@
 //! A plot on its sheet: axes settled, room measured, then drawn.
 
-use crate::style::{self, FRAME, GAP, LARGE, LEADING, Look, SMALL, TICK};
+use crate::style::{self, FRAME, GAP, LARGE, LEADING, SMALL, SeriesLook, TICK};
 use crate::{
     Anchor, Axis, Canvas, Clutter, Extent, Form, Heatmap, Insets, KeyList, Legend, Place, Plot, Rect, Room,
     Shape, fitted, forms, frame, heatmap, notes,
@@ -16,7 +16,7 @@ pub(super) struct Sheet<'a> {
     /// Where there is anything to show.
     pub axes: Option<(Axis, Axis)>,
     bar: Option<Axis>,
-    looks: Vec<Look>,
+    looks: Vec<SeriesLook>,
     keys: KeyList,
     /// Where the names stand: inside the frame where automatic.
     names: Legend,
@@ -143,7 +143,7 @@ impl<'a> Sheet<'a> {
 
     /// All series as shapes, areas under lines under markers, open ones under filled ones, which are smaller.
     fn forms(&self, place: &Place<'_>) -> Vec<Form> {
-        let layer = |shape: Shape, look: &Look| match shape {
+        let layer = |shape: Shape, look: &SeriesLook| match shape {
             Shape::Band => 0,
             Shape::Bars => 1,
             Shape::Vertical | Shape::Horizontal | Shape::Heading => 2,

@@ -28,7 +28,7 @@ pub(super) const MARKER: f64 = 2.1;
 
 /// How a series looks, with nothing left to choose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Look {
+pub(super) struct SeriesLook {
     pub colour: Rgb,
     /// Colour of its areas.
     pub fill: Rgb,
@@ -38,7 +38,7 @@ pub(super) struct Look {
 }
 
 /// Chooses what was left to choose: series after series takes the next colour, dashes and marker.
-pub(super) fn looks(series: &[Series]) -> Vec<Look> {
+pub(super) fn looks(series: &[Series]) -> Vec<SeriesLook> {
     use Marker::{Circle, Cross, Diamond, FilledSquare, OpenCircle, Square, Triangle};
     const STROKES: [Stroke; 4] = [Stroke::Solid, Stroke::Dashed, Stroke::DashDot, Stroke::Dotted];
     const MARKERS: [Marker; 7] = [Circle, Square, Triangle, Diamond, OpenCircle, FilledSquare, Cross];
@@ -59,7 +59,7 @@ pub(super) fn looks(series: &[Series]) -> Vec<Look> {
             Shape::Band => (Stroke::Solid, 0.72),
             Shape::Bars => (Stroke::Solid, 0.6),
         };
-        Look {
+        SeriesLook {
             colour,
             fill: colour.tint(white),
             pen: pen(colour, series.stroke.unwrap_or(stroke)),

@@ -18,7 +18,7 @@ pub(super) struct Ticks {
 
 /// Step `mantissa`·10^`exponent` that is divided in `parts` by minor ticks.
 #[derive(Debug, Clone, Copy)]
-struct Step {
+struct TickStep {
     mantissa: i32,
     exponent: i32,
     parts: i32,
@@ -30,7 +30,7 @@ const DECIMAL: [(i32, i32); 3] = [(1, 5), (2, 4), (5, 5)];
 const DEGREES: [(i32, i32); 9] =
     [(5, 5), (10, 5), (15, 3), (30, 3), (45, 3), (90, 3), (180, 2), (360, 4), (720, 2)];
 
-impl Step {
+impl TickStep {
     /// `count` steps. Division by a positive power of ten rounds once, so that 3·10⁻¹ is the number nearest
     /// to 0.3.
     fn times(self, count: f64) -> f64 {
@@ -48,9 +48,9 @@ impl Step {
         (0..count.min(200)).map(|i| first + i as f64).collect()
     }
 
-    fn minor(self) -> Step {
+    fn minor(self) -> TickStep {
         // Every division by `parts` is exact one decade lower: 10/5, 20/4, 50/5, 150/3, …
-        Step { mantissa: self.mantissa * 10 / self.parts, exponent: self.exponent - 1, parts: 1 }
+        TickStep { mantissa: self.mantissa * 10 / self.parts, exponent: self.exponent - 1, parts: 1 }
     }
 }
 
@@ -65,8 +65,8 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
         return Ticks::default();
     }
     let most = most.clamp(2, 10);
-    let steps = |exponent: i32, of: &[(i32, i32)]| -> Vec<Step> {
-        of.iter().map(|&(mantissa, parts)| Step { mantissa, exponent, parts }).collect()
+    let steps = |exponent: i32, of: &[(i32, i32)]| -> Vec<TickStep> {
+        of.iter().map(|&(mantissa, parts)| TickStep { mantissa, exponent, parts }).collect()
     };
     let decade = (span / most as f64).log10().floor() as i32;
     let candidates = if degrees && span > 20.0 && span < 3600.0 {
@@ -79,7 +79,7 @@ pub(super) fn linear(lo: f64, hi: f64, most: usize, power: i32, degrees: bool) -
     // The coarsest step that fits may leave a single tick; the next finer one then has two to five.
     let step = candidates[if count(fits) < 2 { fits.saturating_sub(1) } else { fits }];
     let decimals = usize::try_from(power - step.exponent).unwrap_or(0);
-    let shown = Step { exponent: step.exponent - power, ..step };
+    let shown = TickStep { exponent: step.exponent - power, ..step };
     let (named, small) = (step.within(lo, hi), step.minor());
     let label = |k: f64| Tick { at: step.times(k).clamp(lo, hi), label: fixed(shown.times(k), decimals) };
     let between = small.within(lo, hi).into_iter().filter(|k| k.rem_euclid(f64::from(step.parts)) != 0.0);
@@ -117,7 +117,7 @@ pub(super) fn logarithmic(lo: f64, hi: f64, most: usize) -> Ticks {
     let plain = lo > -3.5 && hi < 4.5;
     let label = |&(decade, digit): &(i32, i32)| match digit {
         _ if plain => {
-            let value = Step { mantissa: digit, exponent: decade, parts: 1 }.times(1.0);
+            let value = TickStep { mantissa: digit, exponent: decade, parts: 1 }.times(1.0);
             fixed(value, usize::try_from(-decade).unwrap_or(0))
         }
         1 => power_of_ten(decade),

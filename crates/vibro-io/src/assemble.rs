@@ -100,7 +100,7 @@ pub fn domain(kind: &AxisKind) -> (&'static str, &'static str) {
 
 /// An axis that is made of values one by one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
+pub struct JudgedAxis {
     pub axis: Axis,
     /// Relative standard uncertainty of an even step.
     pub clock: f64,
@@ -110,7 +110,13 @@ pub struct Judged {
 
 /// Judges `values` (SI), of which half a unit in the last digit is `resolution`; `what` names them, e.g.
 /// `column "t"`. Instants that jitter stay as they are where they are `resampled`.
-pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str, resampled: bool) -> Judged {
+pub fn from_values(
+    kind: AxisKind,
+    values: Vec<f64>,
+    resolution: f64,
+    what: &str,
+    resampled: bool,
+) -> JudgedAxis {
     let n = values.len();
     let mean = (values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0)) / n.max(2) as f64;
     // Digits that are fine hide nothing, and equal steps of any size nothing that can be seen.
@@ -118,10 +124,10 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     let axis = Axis::from_values(kind, values, tolerance);
     let Axis { kind, grid: Grid::Uneven(values) } = axis else {
         let clock = axis.step().map_or(0.0, |step| uniform_std(resolution, n) / step);
-        return Judged { axis, clock, found: None };
+        return JudgedAxis { axis, clock, found: None };
     };
     if n < 2 {
-        return Judged { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found: None };
+        return JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found: None };
     }
     let time = kind == AxisKind::Time;
     let clock = if time { Clock::of(&values, resolution) } else { Clock::rounded(&values, resolution) };
@@ -145,7 +151,7 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
         let found = clock.finding(what);
         let found = if clock.jitter > 0.0 { Some(found) } else { said(found) };
         let grid = Grid::Even { start: clock.start, step: clock.step, n };
-        return Judged { axis: Axis { kind, grid }, clock: clock.relative(), found };
+        return JudgedAxis { axis: Axis { kind, grid }, clock: clock.relative(), found };
     }
     // Several samples within one printed digit have one time.
     let rises = smallest > 0.0 || (smallest == 0.0 && !is_fine(resolution, mean));
@@ -153,7 +159,7 @@ pub fn from_values(kind: AxisKind, values: Vec<f64>, resolution: f64, what: &str
     let code = if smallest > 0.0 { "axis-uneven" } else { "axis-backwards" };
     let found = gaps.filter(|_| time).unwrap_or_else(|| Finding::caution(code));
     let found = if kept { None } else { said(found) };
-    Judged { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found }
+    JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found }
 }
 
 /// What is said, under this code, of times with even stretches between lost samples, pauses or restarts.
@@ -319,7 +325,8 @@ mod tests {
     fn whole_seconds_of_a_faster_logger_give_its_rate() {
         for n in [34, 65, 1003] {
             let printed = (0..n).map(|i| (0.7 + 0.1 * f64::from(i)).floor()).collect();
-            let Judged { axis, found, .. } = from_values(AxisKind::Time, printed, 0.5, "column \"t\"", false);
+            let JudgedAxis { axis, found, .. } =
+                from_values(AxisKind::Time, printed, 0.5, "column \"t\"", false);
             // 0.7 + 0.1 i meets a whole second or just misses it by rounding: one sample in all that lie
             // between.
             assert!((axis.step().unwrap() - 0.1).abs() < 0.1 / f64::from(n - 20), "{n}: {:?}", axis.step());

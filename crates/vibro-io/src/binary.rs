@@ -1,10 +1,10 @@
 //! Binary numbers of the kinds that files hold, in rows of any width and either byte order.
 
-use Kind::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
+use NumberType::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
 
 /// What a number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum NumberType {
     I8,
     I16,
     I24,
@@ -23,24 +23,24 @@ pub enum Kind {
 }
 
 /// Numbers of every size: with a sign, without one, floats.
-const NUMBERS: [Kind; 10] = [I8, I16, I32, I64, U8, U16, U32, U64, F32, F64];
+const NUMBERS: [NumberType; 10] = [I8, I16, I32, I64, U8, U16, U32, U64, F32, F64];
 
-impl Kind {
+impl NumberType {
     /// The number of this code; `codes` are those of signed integers of 1, 2, 4 and 8 bytes, of unsigned
     /// ones, and of floats of 4 and 8.
-    pub fn coded(code: u32, codes: [u32; 10]) -> Option<Kind> {
+    pub fn coded(code: u32, codes: [u32; 10]) -> Option<NumberType> {
         codes.iter().position(|known| *known == code).map(|at| NUMBERS[at])
     }
 
     /// Bytes.
     pub fn size(self) -> u64 {
         match self {
-            I8 | U8 | Kind::Bit(_) => 1,
+            I8 | U8 | NumberType::Bit(_) => 1,
             I16 | U16 => 2,
-            Kind::I24 => 3,
+            NumberType::I24 => 3,
             I32 | U32 | F32 => 4,
             I64 | U64 | F64 => 8,
-            Kind::Time => 16,
+            NumberType::Time => 16,
         }
     }
 
@@ -53,15 +53,15 @@ impl Kind {
             U8 => column(at, out, |b| f64::from(u8::from_le_bytes(b))),
             I16 => column(at, out, |b| f64::from(i16::from_le_bytes(b))),
             U16 => column(at, out, |b| f64::from(u16::from_le_bytes(b))),
-            Kind::I24 => column(at, out, |[a, b, c]| f64::from(i32::from_le_bytes([0, a, b, c]) >> 8)),
+            NumberType::I24 => column(at, out, |[a, b, c]| f64::from(i32::from_le_bytes([0, a, b, c]) >> 8)),
             I32 => column(at, out, |b| f64::from(i32::from_le_bytes(b))),
             U32 => column(at, out, |b| f64::from(u32::from_le_bytes(b))),
             I64 => column(at, out, |b| i64::from_le_bytes(b) as f64),
             U64 => column(at, out, |b| u64::from_le_bytes(b) as f64),
             F32 => column(at, out, |b| f64::from(f32::from_le_bytes(b))),
             F64 => column(at, out, f64::from_le_bytes),
-            Kind::Time => column(at, out, time),
-            Kind::Bit(bit) => column(at, out, |[byte]| f64::from(byte >> bit & 1)),
+            NumberType::Time => column(at, out, time),
+            NumberType::Bit(bit) => column(at, out, |[byte]| f64::from(byte >> bit & 1)),
         }
     }
 }

@@ -5,14 +5,14 @@ use super::text::encoding;
 use vibro_record::{Error, Place};
 
 /// How a format is told: by bytes at an offset, or by the ending of a file that is no text.
-enum By {
+enum Signature {
     Bytes(usize, &'static [u8]),
     Ending(&'static [&'static str]),
     /// Endings, and the first bytes.
     Named(&'static str, &'static [u8]),
 }
 
-use By::{Bytes, Ending, Named};
+use Signature::{Bytes, Ending, Named};
 
 const UFF: &str = "choose File > Export > Universal File (UFF-58)";
 const DEWESOFT: &str = "choose Export > UNV/UFF, MAT or CSV in Dewesoft";
@@ -27,7 +27,7 @@ const EBCDIC: &[u8] = b"\xc3\x40\xf1";
 const AUDIO: &str = "turn it into WAV, e.g. with Audacity; a lossy recording is no measurement";
 
 /// Name of a format, what tells it, and the export to choose.
-const TABLE: &[(&str, By, &str)] = &[
+const TABLE: &[(&str, Signature, &str)] = &[
     ("a Polytec vibrometer file", Ending(&["svd", "pvd"]), UFF),
     ("a Dewesoft recording", Ending(&["dxd", "d7d", "dxz"]), DEWESOFT),
     ("a text file of Octave", Bytes(0, OCTAVE), "save it with `save -v7 name.mat`"),
@@ -76,14 +76,14 @@ const TABLE: &[(&str, By, &str)] = &[
 /// What to say of a source of a format that is known and not read.
 pub fn complaint(source: &Source) -> Option<Error> {
     let (head, ending) = (source.head(), source.extension());
-    let is = |(_, by, _): &&(&str, By, &str)| match by {
+    let is = |(_, by, _): &&(&str, Signature, &str)| match by {
         Ending(endings) => endings.contains(&ending.as_str()) && !encoding::is_text(head),
         Named(endings, begins) => head.starts_with(begins) && endings.split(' ').any(|e| e == ending),
         Bytes(at, begins) => head.get(*at..).is_some_and(|head| head.starts_with(begins)),
     };
     // MAT-files of version 7.3 are HDF5 and have a complaint of their own; one matrix of Octave reads as
     // text.
-    let fine = |by: &By| match by {
+    let fine = |by: &Signature| match by {
         Bytes(_, OCTAVE) => encoding::decode(head).matches("# name:").count() < 2,
         _ => ending == "mat",
     };

@@ -67,7 +67,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let (dialect, variables) = if matlab::is(&members) {
         (&dialect::DIALECT, matlab::variables(&mut file, members, survey)?)
     } else {
-        let mut walk = Walk { file: &mut file, survey, variables: Vec::new() };
+        let mut walk = GroupWalk { file: &mut file, survey, variables: Vec::new() };
         let scale = walk.stated("", &root.attributes().unwrap_or_default(), AS_STORED);
         walk.group("", members, scale)?;
         (&DIALECT, walk.variables)
@@ -78,13 +78,13 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     variables::contents(source, dialect, variables, file.close(), options)
 }
 
-struct Walk<'a> {
+struct GroupWalk<'a> {
     file: &'a mut File,
     survey: bool,
     variables: Vec<(String, Content)>,
 }
 
-impl Walk<'_> {
+impl GroupWalk<'_> {
     /// Adds what stands in a group, whose path ends with `/`.
     fn group(&mut self, path: &str, members: Vec<(String, Member)>, scale: Scale) -> Result<()> {
         for (name, member) in members {

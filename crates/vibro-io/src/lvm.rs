@@ -22,7 +22,7 @@ use super::text::decoded::in_line;
 use super::text::encoding;
 use super::text::names::Name;
 use super::{Source, number};
-use crate::assemble::{self, Abscissa, Judged, Spectral, from_values, to_si};
+use crate::assemble::{self, Abscissa, JudgedAxis, Spectral, from_values, to_si};
 use crate::held::Contents;
 use crate::options::Options;
 use std::collections::HashMap;
@@ -43,14 +43,14 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
     let bytes = source.all()?;
     let bytes = encoding::with_lf(bytes.into_owned());
     let text = encoding::decode(&bytes);
-    let mut lines = Lines { rest: text.lines(), number: 0 };
+    let mut lines = NumberedLines { rest: text.lines(), number: 0 };
     let general = Head::of(&mut lines);
-    let separator = match general.said("separator").map(str::to_lowercase).as_deref() {
+    let separator = match general.tag_value("separator").map(str::to_lowercase).as_deref() {
         Some("comma") => ',',
         Some("semicolon") => ';',
         _ => '\t',
     };
-    let columns = general.said("x_columns").unwrap_or("One").to_lowercase();
+    let columns = general.tag_value("x_columns").unwrap_or("One").to_lowercase();
     let (mut records, mut findings, mut missed) = (Vec::new(), Vec::new(), Missing::default());
     let mut segments = 0;
     loop {
@@ -79,12 +79,12 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
 
 /// Lines with their numbers.
 #[derive(Clone)]
-struct Lines<'a> {
+struct NumberedLines<'a> {
     rest: std::str::Lines<'a>,
     number: u64,
 }
 
-impl<'a> Iterator for Lines<'a> {
+impl<'a> Iterator for NumberedLines<'a> {
     type Item = &'a str;
 
     /// The next line outside of special blocks.
@@ -119,7 +119,7 @@ struct Head<'a> {
 }
 
 impl<'a> Head<'a> {
-    fn of(lines: &mut Lines<'a>) -> Head<'a> {
+    fn of(lines: &mut NumberedLines<'a>) -> Head<'a> {
         let mut head = Head::default();
         for line in lines {
             if line.starts_with(END_OF_HEADER) {
@@ -141,7 +141,7 @@ impl<'a> Head<'a> {
     }
 
     /// The value of a tag that has one.
-    fn said(&self, tag: &str) -> Option<&'a str> {
+    fn tag_value(&self, tag: &str) -> Option<&'a str> {
         self.tags.get(tag)?.iter().copied().find(|value| !value.is_empty())
     }
 
@@ -153,7 +153,7 @@ impl<'a> Head<'a> {
 
 /// A column of a segment.
 #[derive(Debug, Default)]
-struct Column {
+struct SegmentColumn {
     name: String,
     values: Vec<f64>,
     /// Half a unit in the last digit.
@@ -165,7 +165,7 @@ struct Segment<'h, 'a> {
     general: &'h Head<'a>,
     head: &'h Head<'a>,
     /// Columns of the rows: channels, and X columns before them.
-    columns: Vec<Column>,
+    columns: Vec<SegmentColumn>,
     /// Index of each channel's column and of its X column, where there is one.
     channels: Vec<(usize, Option<usize>)>,
     comments: Vec<String>,
@@ -174,7 +174,7 @@ struct Segment<'h, 'a> {
 impl<'h, 'a> Segment<'h, 'a> {
     /// Reads the names and the rows behind a head, up to a blank line that no row follows.
     fn read(
-        lines: &mut Lines<'a>,
+        lines: &mut NumberedLines<'a>,
         general: &'h Head<'a>,
         head: &'h Head<'a>,
         separator: char,
@@ -192,10 +192,10 @@ impl<'h, 'a> Segment<'h, 'a> {
             let expected = "a line X_Value, then one name a channel";
             return Err(Error::input(in_line(lines.number), "no names of channels", expected));
         }
-        let column = |name: &&str| Column { name: (*name).to_owned(), ..Column::default() };
-        let mut columns: Vec<Column> = names[..comment].iter().map(column).collect();
+        let column = |name: &&str| SegmentColumn { name: (*name).to_owned(), ..SegmentColumn::default() };
+        let mut columns: Vec<SegmentColumn> = names[..comment].iter().map(column).collect();
         let mut comments = Vec::new();
-        let mut decimal = general.said("decimal_separator").and_then(|mark| mark.bytes().next());
+        let mut decimal = general.tag_value("decimal_separator").and_then(|mark| mark.bytes().next());
         let (mut row, mut blank, mut ahead) = (0, 0, lines.clone());
         while let Some(line) = ahead.next() {
             if line.trim().is_empty() {
@@ -280,7 +280,7 @@ impl<'h, 'a> Segment<'h, 'a> {
     fn abscissa(
         &self,
         channel: usize,
-        x: Option<&Column>,
+        x: Option<&SegmentColumn>,
         n: usize,
         resampled: bool,
         meta: &mut Meta,
@@ -299,7 +299,7 @@ impl<'h, 'a> Segment<'h, 'a> {
             (start - values[0]).abs() <= resolution && (last - values[n - 1]).abs() <= 2.0 * resolution
         };
         let label = format!("column {:?}", x.name);
-        let Judged { axis, clock, found } =
+        let JudgedAxis { axis, clock, found } =
             from_values(kind.clone(), values.to_vec(), resolution, &label, resampled);
         if let (Some(stated), Some(step)) = (stated, axis.step()) {
             if agrees(&stated) {

@@ -24,7 +24,7 @@ const COMPOUND: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
 /// How a workbook is stored.
 #[cfg(feature = "zip")]
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+enum Workbook {
     /// `.xls`.
     #[cfg(feature = "sheets")]
     Compound,
@@ -35,14 +35,14 @@ enum Kind {
 }
 
 /// A file of an archive or a sheet of a workbook.
-struct Part {
+struct Member {
     name: String,
     source: Source,
     /// Whether the program of sheets does not show it.
     hidden: bool,
 }
 
-impl Part {
+impl Member {
     fn bytes(&self) -> &[u8] {
         self.source.in_memory().unwrap_or_default()
     }
@@ -61,12 +61,12 @@ impl Part {
 }
 
 /// Parts with their rows, the longest first, and how many of them compare with it.
-type Ranked = (Vec<(usize, Part)>, usize);
+type Ranked = (Vec<(usize, Member)>, usize);
 
 /// All parts of an archive or a workbook; `None` of other files.
 fn ranked(source: &Source, limit: Limit) -> Result<Option<Ranked>> {
     let Some(parts) = parts(source, None, limit)? else { return Ok(None) };
-    let mut parts: Vec<(usize, Part)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
+    let mut parts: Vec<(usize, Member)> = parts.into_iter().map(|part| (part.rows(), part)).collect();
     if parts.iter().any(|(rows, part)| *rows > 0 && !part.hidden) {
         parts.iter_mut().filter(|(_, part)| part.hidden).for_each(|(rows, _)| *rows = 0);
     }
@@ -115,9 +115,9 @@ pub fn alike(source: &Source, limit: Limit) -> Result<Vec<PathBuf>> {
     Ok(parts.into_iter().map(|(_, part)| part.source.path().to_owned()).collect())
 }
 
-fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Part)>) -> String {
-    let name = |part: &Part| format!("{}{}", part.name, if part.hidden { " (hidden)" } else { "" });
-    let rows = |(rows, part): &(usize, Part)| match rows {
+fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Member)>) -> String {
+    let name = |part: &Member| format!("{}{}", part.name, if part.hidden { " (hidden)" } else { "" });
+    let rows = |(rows, part): &(usize, Member)| match rows {
         0 => name(part),
         _ if text::encoding::is_text(part.bytes()) => {
             format!("{} ({})", name(part), counted(*rows, "row"))
@@ -128,7 +128,7 @@ fn listed<'a>(parts: impl Iterator<Item = &'a (usize, Part)>) -> String {
 }
 
 /// What to type where a file holds no table, but perhaps another one that does.
-fn unpack(packed: Option<&(usize, Part)>) -> String {
+fn unpack(packed: Option<&(usize, Member)>) -> String {
     let name = packed.map_or("the file with the samples", |(_, part)| part.name.as_str());
     format!("unpack it, and name {name}")
 }
@@ -170,14 +170,14 @@ pub fn is_packed(source: &Source) -> bool {
 /// All parts that are not empty, or the one of this name; `None` where the file has none, or its kind is not
 /// built in.
 #[cfg_attr(not(feature = "zip"), allow(clippy::unnecessary_wraps))]
-fn parts(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Option<Vec<Part>>> {
+fn parts(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Option<Vec<Member>>> {
     #[cfg(feature = "zip")]
     if source.head().starts_with(ZIP) {
         return members(source, named, limit).map(Some);
     }
     #[cfg(feature = "sheets")]
     if source.head().starts_with(COMPOUND) {
-        return sheets::of(source, Kind::Compound, named, limit).map(Some);
+        return sheets::of(source, Workbook::Compound, named, limit).map(Some);
     }
     let _ = (source, named, limit, ZIP, COMPOUND);
     Ok(None)
@@ -200,12 +200,12 @@ fn damaged(source: &Source, why: impl std::fmt::Display) -> Error {
 
 /// The files of a zip archive, or the sheets of a workbook that is one.
 #[cfg(feature = "zip")]
-fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Part>> {
+fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Member>> {
     use std::io::{BufReader, Read};
     let mut archive =
         zip::ZipArchive::new(BufReader::new(source.open()?)).map_err(|why| damaged(source, why))?;
     let has = |name: &str| archive.index_for_name(name).is_some();
-    let book = [("xl/workbook.xml", Kind::Xml), ("content.xml", Kind::OpenDocument)];
+    let book = [("xl/workbook.xml", Workbook::Xml), ("content.xml", Workbook::OpenDocument)];
     let book = book.into_iter().find(|(name, _)| has(name)).map(|(_, kind)| kind);
     let (mut parts, mut held) = (Vec::new(), 0.0);
     for i in 0..archive.len() {
@@ -229,7 +229,7 @@ fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Pa
         unpacked.map_err(|why| damaged(source, format!("{name}: {why}")))?;
         if !bytes.is_empty() {
             let source = Source::memory(source.path().join(&name), bytes)?;
-            parts.push(Part { name, source, hidden: false });
+            parts.push(Member { name, source, hidden: false });
         }
     }
     match book {

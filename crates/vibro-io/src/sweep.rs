@@ -141,7 +141,7 @@ impl SweepReader {
             spectrum.window.or(Some(Window::Hann))
         });
         // The reader has taken a unit that the file states to SI already.
-        let (written, taken) = (&spectrum.meta.unit, taken(&spectrum.meta));
+        let (written, taken) = (&spectrum.meta.unit, factor_to_si(&spectrum.meta));
         let meant = self.meant();
         let raw = matches!(written.quantity(), Quantity::Voltage | Quantity::Ratio);
         let (factor, unit) = match &self.unit {
@@ -209,7 +209,7 @@ const SPECTRA: &str = "list the spectra of the analyser; time records and freque
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
 /// The factor by which the reader took stored numbers to SI.
-fn taken(meta: &Meta) -> f64 {
+fn factor_to_si(meta: &Meta) -> f64 {
     let steps = meta.history.iter().filter(|step| step.name == "to_si").flat_map(|step| &step.arguments);
     steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
 }

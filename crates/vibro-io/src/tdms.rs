@@ -22,9 +22,9 @@ use crate::assemble;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held, rises};
 use crate::options::Options;
-use axes::Clock;
+use axes::AbscissaChannel;
 use description::Value;
-use layout::Layout;
+use layout::RawData;
 use rayon::prelude::*;
 use scale::Scales;
 use segment::Object;
@@ -54,13 +54,13 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let mut file = BufReader::with_capacity(BLOCK, source.open()?);
     let (objects, layouts, mut findings) = segment::all(&mut file, source.len())?;
     if !survey {
-        options.hold(layouts.iter().map(Layout::values).sum())?;
+        options.hold(layouts.iter().map(RawData::values).sum())?;
     }
     let mut above: Vec<&Object> = objects.iter().filter(|object| object.path.len() < 2).collect();
     above.sort_by_key(|object| Reverse(object.path.len()));
     let raw = objects.iter().map(|object| {
         // The slots of one value need not lie side by side.
-        let kept = if survey && object.slots.len() == 1 { Kept::Undecided } else { Kept::Values };
+        let kept = if survey && object.slots.len() == 1 { KeptValues::Undecided } else { KeptValues::Values };
         Raw { object, scales: Scales::of(&above, object), columns: Vec::new(), kept }
     });
     let mut raw: Vec<Raw> = raw.collect();
@@ -74,8 +74,8 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             .map_err(|e| Error::io("read", source.path(), e))
     };
     raw.par_chunks_mut(each).enumerate().try_for_each(fill)?;
-    raw.par_iter_mut().filter(|raw| matches!(raw.kept, Kept::Ends(_))).for_each(|raw| raw.look(0));
-    if raw.iter().any(|raw| matches!(&raw.kept, Kept::Ends(ends) if !ends.finite())) {
+    raw.par_iter_mut().filter(|raw| matches!(raw.kept, KeptValues::Ends(_))).for_each(|raw| raw.look(0));
+    if raw.iter().any(|raw| matches!(&raw.kept, KeptValues::Ends(ends) if !ends.finite())) {
         return read(source, options, false);
     }
     let (mut channels, mut left) = (Vec::new(), None);
@@ -139,7 +139,7 @@ struct Channel<'a> {
     name: &'a str,
     values: Held,
     /// The channel of its group that is its abscissa.
-    clock: Option<Arc<Clock>>,
+    clock: Option<Arc<AbscissaChannel>>,
 }
 
 /// The unit or scale that changes between values of a channel: no single one holds for all.
@@ -154,7 +154,7 @@ fn changed(object: &Object) -> Option<String> {
 
 /// What is kept of the values of an object.
 #[derive(Clone)]
-enum Kept {
+enum KeptValues {
     /// All of them.
     Values,
     /// Both ends are enough, unless the first values rise.
@@ -168,7 +168,7 @@ struct Raw<'a> {
     scales: Scales<'a>,
     /// Raw values, one column a slot.
     columns: Vec<Vec<f64>>,
-    kept: Kept,
+    kept: KeptValues,
 }
 
 impl Raw<'_> {
@@ -177,31 +177,33 @@ impl Raw<'_> {
         if self.columns.iter().all(|column| column.len() <= many) {
             return;
         }
-        let new = matches!(self.kept, Kept::Undecided);
+        let new = matches!(self.kept, KeptValues::Undecided);
         let (mut ends, columns) = match &mut self.kept {
-            Kept::Undecided => (Extremes::NONE, self.columns.clone()),
-            Kept::Ends(ends) => (std::mem::replace(ends, Extremes::NONE), std::mem::take(&mut self.columns)),
-            Kept::Values => return,
+            KeptValues::Undecided => (Extremes::NONE, self.columns.clone()),
+            KeptValues::Ends(ends) => {
+                (std::mem::replace(ends, Extremes::NONE), std::mem::take(&mut self.columns))
+            }
+            KeptValues::Values => return,
         };
         self.kept = match self.scales.apply(&self.object.slots, columns) {
             Ok(Values::Real(mut values)) if !(new && rises(&values)) => {
                 ends.take(&values);
                 values.clear();
                 self.columns = vec![values];
-                Kept::Ends(ends)
+                KeptValues::Ends(ends)
             }
-            _ => Kept::Values,
+            _ => KeptValues::Values,
         };
     }
 
     fn is_empty(&self) -> bool {
-        !matches!(self.kept, Kept::Ends(_)) && self.columns.iter().all(Vec::is_empty)
+        !matches!(self.kept, KeptValues::Ends(_)) && self.columns.iter().all(Vec::is_empty)
     }
 
     /// Measured values, or the scale that is not known.
     fn measured(self) -> std::result::Result<Held, String> {
         match self.kept {
-            Kept::Ends(ends) => Ok(Held::Ends(ends)),
+            KeptValues::Ends(ends) => Ok(Held::Ends(ends)),
             _ => self.scales.apply(&self.object.slots, self.columns).map(Held::Values),
         }
     }
@@ -210,7 +212,7 @@ impl Raw<'_> {
 /// Reads what a segment has of the objects from `first` on behind what `raw` holds of them.
 fn values(
     file: &mut BufReader<impl Read + Seek>,
-    layout: &Layout,
+    layout: &RawData,
     first: usize,
     raw: &mut [Raw],
 ) -> std::io::Result<()> {

@@ -33,7 +33,7 @@ use crate::options::Options;
 use crate::{Format, Limit, Source, level, magnitude, missing, number};
 use decoded::{Text, with_text};
 use dialect::Dialect;
-use fast::Shape;
+use fast::RowShape;
 use header::Stated;
 use rows::Rows;
 pub(crate) use tables::{LONGER, rows as count_rows};
@@ -103,7 +103,7 @@ struct Read {
     columns: Vec<records::Built>,
     findings: Vec<Finding>,
     /// Where clean rows stand: their shape, and the byte behind the last.
-    clean: Option<(Shape, u64)>,
+    clean: Option<(RowShape, u64)>,
 }
 
 fn read(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Contents> {
@@ -173,7 +173,7 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
             return records_of(text, &tail, &Dialect { columns: 1, ..dialect.clone() }, rows, options);
         }
     }
-    let shape = Shape::of(dialect, text.source.head());
+    let shape = RowShape::of(dialect, text.source.head());
     let end = text.source.len() - (tail.len() - tail.trim_ascii_end().len()) as u64;
     let one_step = plain && options.wrapped.is_none() && dialect.clock.is_none() && stated.of_one_series;
     let clean = shape.map(|shape| fast::read(text.source, &shape, end, &kept)).transpose()?.flatten();

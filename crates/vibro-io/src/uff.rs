@@ -16,7 +16,7 @@
 pub mod stream;
 
 use super::Source;
-use super::uff58::{self, System, codes};
+use super::uff58::{self, UnitSystem, codes};
 use crate::held::Contents;
 use crate::options::Options;
 use stream::{Stream, is_delimiter, set_number};
@@ -52,7 +52,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
     // Other data sets with their counts, and lines outside any, with the place of the first.
     let mut others: Vec<(u32, usize)> = Vec::new();
     let mut outside: Option<(Place, usize)> = None;
-    let (mut system, mut delimited, mut cut) = (System::default(), false, None);
+    let (mut system, mut delimited, mut cut) = (UnitSystem::default(), false, None);
     while let Some(line) = stream.next_line() {
         if line.trim_ascii().is_empty() {
             continue;
@@ -82,7 +82,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
         } else {
             count(&mut others, number);
             if number == 164 {
-                match System::read(&mut stream) {
+                match UnitSystem::read(&mut stream) {
                     Some(stated) => system = stated,
                     None => findings.push(Finding::caution("no-unit-factors")),
                 }

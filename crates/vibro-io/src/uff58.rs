@@ -31,7 +31,7 @@ use vibro_record::{Error, Finding, Record, Result};
 
 pub(crate) use heading::KINDS;
 pub use heading::LINES;
-pub use ordinate::System;
+pub use ordinate::UnitSystem;
 pub(crate) use values::Layout;
 
 /// Reads the data set whose number `line` was taken last, with its closing delimiter. Where the header is cut
@@ -42,7 +42,7 @@ pub(crate) use values::Layout;
 pub fn read(
     stream: &mut Stream,
     (line, binary): (&[u8], bool),
-    system: &System,
+    system: &UnitSystem,
     options: &Options,
     file: &str,
 ) -> Result<std::result::Result<Record, (usize, Error)>> {

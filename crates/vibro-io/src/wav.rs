@@ -18,11 +18,11 @@ pub(crate) use scales::{Scale, Scales};
 use super::missing::Missing;
 use super::source::ReadSeek;
 use super::{Source, span};
-use crate::binary::Kind;
+use crate::binary::NumberType;
 use crate::held::Contents;
 use crate::options::Options;
 use crate::options::named;
-use layout::Layout;
+use layout::WavHeader;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;
 use vibro_record::lanes::{self, Extremes};
@@ -66,7 +66,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
 /// Some channels of a wave file, read block by block in their units, so that memory does not grow with its
 /// length.
 pub(crate) struct Wave {
-    pub layout: Layout,
+    pub layout: WavHeader,
     reader: Box<dyn ReadSeek>,
     path: PathBuf,
     bytes: Vec<u8>,
@@ -137,7 +137,8 @@ impl Wave {
         let name = scale.map(|s| s.name.clone()).filter(|name| !name.is_empty());
         let name = name.unwrap_or_else(|| format!("channel {}", channel + 1));
         let mut meta = Meta::new(name, Unit::opaque(FULL_SCALE));
-        let kind = if matches!(layout.sample, Kind::F32 | Kind::F64) { "float" } else { "integer" };
+        let kind =
+            if matches!(layout.sample, NumberType::F32 | NumberType::F64) { "float" } else { "integer" };
         let samples = format!("{}-bit {kind}", 8 * layout.sample.size());
         meta.step("read", &[("file", &source.name()), ("format", &"wav"), ("samples", &samples)]);
         meta.notes.clone_from(&layout.notes);
@@ -172,12 +173,12 @@ impl Wave {
 }
 
 /// Zero of integer samples, and how far full scale is from it; floats are fractions of full scale.
-fn full_scale(sample: Kind) -> (f64, f64) {
+fn full_scale(sample: NumberType) -> (f64, f64) {
     match sample {
-        Kind::U8 => (128.0, 128.0),
-        Kind::I16 => (0.0, 32_768.0),
-        Kind::I24 => (0.0, 8_388_608.0),
-        Kind::I32 => (0.0, 2_147_483_648.0),
+        NumberType::U8 => (128.0, 128.0),
+        NumberType::I16 => (0.0, 32_768.0),
+        NumberType::I24 => (0.0, 8_388_608.0),
+        NumberType::I32 => (0.0, 2_147_483_648.0),
         _ => (0.0, 1.0),
     }
 }

@@ -1,6 +1,6 @@
 //! A polynomial over 0..1, with bounds that let none of its falls through zero be missed.
 
-use super::root::{Bounded, Look, walk};
+use super::root::{Bounded, RootAhead, walk};
 
 /// A polynomial of K terms over 0..1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +65,7 @@ impl<const K: usize> Polynomial<K> {
             let here = self.at(part);
             let falls = here.slope < 0.0;
             if falls && here.value <= 0.0 {
-                return Look::Root(0.0);
+                return RootAhead::Root(0.0);
             }
             let mut step = here.step();
             let bend = if falls { 0.0 } else { self.bend(part) };
@@ -74,7 +74,7 @@ impl<const K: usize> Polynomial<K> {
                 let slope = (6.0 * here.slope / self.third).sqrt();
                 step = step.max(value.max(slope).max(3.0 * bend / self.third));
             }
-            Look::Step { step, falls }
+            RootAhead::Step { step, falls }
         };
         walk(0.0, 1.0, look).map(|(part, _)| part)
     }

@@ -124,13 +124,13 @@ pub fn first_landing(
     walk(from, to, |t| {
         let here = f(t);
         if here.slope < 0.0 && here.value <= 0.0 {
-            return Look::Root(0.0);
+            return RootAhead::Root(0.0);
         }
         calls += 1;
         if calls % FRESH == 0 {
             match limits(t) {
                 Some(fresh) => bounds = fresh,
-                None => return Look::Never,
+                None => return RootAhead::Never,
             }
         }
         if here.slope < 0.0 {
@@ -141,15 +141,15 @@ pub fn first_landing(
             if error <= rounding * bounds.jerk
                 && let Some(last) = here.clear_root()
             {
-                return if t + last <= to { Look::Root(last) } else { Look::Never };
+                return if t + last <= to { RootAhead::Root(last) } else { RootAhead::Never };
             }
         }
-        Look::Step { step: here.step(bounds), falls: here.slope < 0.0 }
+        RootAhead::Step { step: here.step(bounds), falls: here.slope < 0.0 }
     })
 }
 
 /// What is seen of a function at an argument.
-pub(super) enum Look {
+pub(super) enum RootAhead {
     /// A root so far ahead.
     Root(f64),
     /// No root is to come.
@@ -161,13 +161,13 @@ pub(super) enum Look {
 /// Goes from `from` to `to` by steps that pass no root: the last argument looked at, and how far ahead of it
 /// the root is.
 #[inline]
-pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> Look) -> Option<(f64, f64)> {
+pub(super) fn walk(from: f64, to: f64, mut look: impl FnMut(f64) -> RootAhead) -> Option<(f64, f64)> {
     let mut t = from;
     loop {
         let (step, falls) = match look(t) {
-            Look::Root(ahead) => return Some((t, ahead)),
-            Look::Never => return None,
-            Look::Step { step, falls } => (step, falls),
+            RootAhead::Root(ahead) => return Some((t, ahead)),
+            RootAhead::Never => return None,
+            RootAhead::Step { step, falls } => (step, falls),
         };
         let next = t + step;
         if next <= t {
@@ -195,7 +195,11 @@ pub fn first_fall(from: f64, to: f64, noise: f64, f: impl Fn(f64) -> Bounded) ->
     let look = |t| {
         let here = f(t);
         let falls = here.slope < 0.0;
-        if falls && here.value <= noise { Look::Root(0.0) } else { Look::Step { step: here.step(), falls } }
+        if falls && here.value <= noise {
+            RootAhead::Root(0.0)
+        } else {
+            RootAhead::Step { step: here.step(), falls }
+        }
     };
     walk(from, to, look).map(|(t, _)| t)
 }

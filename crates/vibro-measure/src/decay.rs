@@ -12,7 +12,7 @@ mod usable;
 
 use super::Estimate;
 use super::residuals::chi_squared_above;
-use damped::{Damped, Group, LINES, OWN, lines};
+use damped::{Damped, LINES, OWN, SineGroup, lines};
 pub use result::{DecayMode, DecayOptions, DecayResult, Level};
 use sines::{ENOUGH, MOST, Sines, decays};
 use std::f64::consts::TAU;
@@ -170,7 +170,7 @@ impl Sines {
             let centre = starts[0].0 as usize;
             let range = centre.saturating_sub(LINES.0 as usize).max(1)
                 ..(centre + LINES.0 as usize + 2).min(spectrum.len() - 1);
-            let group = Group::fit(&spectrum, range.clone(), n, &starts).ok()?;
+            let group = SineGroup::fit(&spectrum, range.clone(), n, &starts).ok()?;
             let mode = mode(&group, 0, n, self.rate, unit);
             // Another mode that is there when this is over is not this one.
             let own = range.contains(&(group.sines[0].periods.max(0.0) as usize));
@@ -192,7 +192,7 @@ impl Sines {
 }
 
 /// A sine of a part of `n` samples as a mode.
-fn mode(group: &Group, m: usize, n: usize, rate: f64, unit: &'static str) -> DecayMode {
+fn mode(group: &SineGroup, m: usize, n: usize, rate: f64, unit: &'static str) -> DecayMode {
     let sine = group.sines[m];
     let duration = n as f64 / rate;
     let (sigma, damped) = (sine.decay / duration, TAU * sine.periods / duration);

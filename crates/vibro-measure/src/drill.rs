@@ -6,7 +6,7 @@
 //! reference the turns run from impact to impact. Beside the channels a record takes 25 bytes a sample.
 //!
 //! ```
-//! use vibro_measure::drill::{Beam, DrillOptions, Edge, From, Slices, drill};
+//! use vibro_measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, drill};
 //! let rate = 20_000.0;
 //! let turn = |i: u32| f64::from(i) / 400.0; // 50 turns a second
 //! // A volt is 2 m/s; 6 m/s before an impact that leaves −1 m/s, and back to the same place.
@@ -14,7 +14,7 @@
 //! let speed = |s: f64| -1.0 + 7.0 * s - 5.0 * (std::f64::consts::PI * s).sin().powi(2);
 //! let volts: Vec<f64> = (0..20_000).map(|i| 0.5 * speed((turn(i) + 0.4).fract())).collect();
 //! let pulse: Vec<f64> = (0..20_000).map(|i| if turn(i).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
-//! let options = DrillOptions::new(2.0, Beam::new(0.0, From::Axis)?, 1, Edge::Rising);
+//! let options = DrillOptions::new(2.0, Beam::new(0.0, AngleOrigin::Axis)?, 1, Edge::Rising);
 //! let found = drill(&Slices { rate, channels: vec![&volts, &pulse] }, &options, None)?;
 //! assert!((found.speed.value - 50.0).abs() < 1e-3);
 //! assert!((found.impacts[0].before - 6.0).abs() < 0.05 && (found.impacts[0].phase - 0.6).abs() < 0.003);
@@ -36,7 +36,7 @@ pub use cycles::{Bandwidth, Cycle, Phases};
 pub use floor::NoiseFloor;
 use groups::Offset;
 pub use groups::{Group, Impact};
-pub use options::{Beam, Corner, DrillOptions, From, Smoothing, TurnsFrom};
+pub use options::{AngleOrigin, Beam, Corner, DrillOptions, Smoothing, TurnsFrom};
 pub use result::{Displacement, Drill, Pulses};
 pub use survey::FaultCount;
 pub(crate) use survey::levels;
@@ -48,8 +48,8 @@ use crate::exposure::exposure;
 use crate::mean::{Mean, scatter};
 use cycles::Cycles;
 use jumps::Jumps;
-use survey::{State, Survey};
-use train::Train;
+use survey::{ChannelStatistics, State};
+use train::TurnImpacts;
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result, median};
 
@@ -94,7 +94,7 @@ pub fn drill_each(
     let factor = options.sensitivity * options.beam.factor;
     let scaled = |volts: &[f64]| volts.iter().map(|v| v * factor).collect::<Vec<f64>>();
     let mut velocity = scaled(record.channels[0]);
-    let survey = Survey::of(&velocity);
+    let survey = ChannelStatistics::of(&velocity);
     if survey.low >= survey.high {
         let error = Error::refused("the velocity is constant, or missing");
         return Err(error.hint("check that the laser sees the target").setting("velocity"));
@@ -273,7 +273,7 @@ impl Marks {
         let part = velocity.len() as f64 / PARTS as f64;
         let parts = (0..PARTS).map(|k| (k, Turn { start: part * k as f64, end: part * (k + 1) as f64 }));
         let jumps = Jumps::of(velocity, states, options.lengths(rate), parts, None);
-        let Train { at, std, others } = Train::of(&jumps.finish(rate, 0.0).0, rate)?;
+        let TurnImpacts { at, std, others } = TurnImpacts::of(&jumps.finish(rate, 0.0).0, rate)?;
         Ok(Marks { at, std, sharp: false, others })
     }
 }
@@ -306,7 +306,7 @@ mod tests {
         let volts: Vec<f64> = (0..80_000).map(|i| range * (turn(i) + 0.65).fract().powf(p) - back).collect();
         let pulse: Vec<f64> = (0..80_000).map(|i| f64::from(u8::from(turn(i).fract() < 0.1))).collect();
         for smoothing in [Smoothing::Off, Smoothing::LowPass(12_500.0), Smoothing::LowPass(2000.0)] {
-            let beam = Beam::new(0.0, From::Axis).unwrap();
+            let beam = Beam::new(0.0, AngleOrigin::Axis).unwrap();
             let options = DrillOptions { smoothing, ..DrillOptions::new(1.0, beam, 1, Edge::Rising) };
             let found = drill(&Slices { rate, channels: vec![&volts, &pulse] }, &options, None).unwrap();
             let stroke = &found.displacement.stroke;
@@ -326,7 +326,7 @@ mod tests {
         let pulse: Vec<f64> = (0..20_000).map(|i| if turn(i).fract() < 0.1 { 5.0 } else { 0.0 }).collect();
         let found = |late: i32, delay: f64| {
             let values = volts(late);
-            let beam = Beam::new(0.0, From::Axis).unwrap();
+            let beam = Beam::new(0.0, AngleOrigin::Axis).unwrap();
             let options = DrillOptions { delay, ..DrillOptions::new(2.0, beam, 1, Edge::Rising) };
             let channels = Slices { rate: 20_000.0, channels: vec![&values, &pulse] };
             let found = drill(&channels, &options, None).unwrap();

@@ -41,7 +41,7 @@ fn analogue() -> [Analogue; 3] {
 }
 
 /// One axis of a handle, weighted; the half second in which the weighting settles is left out.
-struct Axis {
+struct WeightedAxis {
     /// Mean square, and that of each whole second.
     mean_square: f64,
     seconds: Vec<f64>,
@@ -69,8 +69,8 @@ fn weighted(values: &[f64], rate: f64) -> Result<Vec<f64>> {
     Ok(out)
 }
 
-impl Axis {
-    fn new(values: &[f64], rate: f64) -> Result<Axis> {
+impl WeightedAxis {
+    fn new(values: &[f64], rate: f64) -> Result<WeightedAxis> {
         let refused = |why: String, hint| Err(Error::refused(why).hint(hint).setting("handle"));
         let missing = values.iter().filter(|v| !v.is_finite()).count();
         if missing > 0 {
@@ -87,7 +87,7 @@ impl Axis {
         let mean_square = |part: &[f64]| part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
         let largest =
             |values: &[f64], mean: f64| values.iter().fold(0.0, |top: f64, v| top.max((v - mean).abs()));
-        Ok(Axis {
+        Ok(WeightedAxis {
             mean_square: mean_square(counted),
             seconds: counted.chunks_exact(span).map(mean_square).collect(),
             peak: largest(counted, 0.0),
@@ -135,7 +135,8 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
         return Err(Error::usage(format!("{} axes of a handle", handles.len()), "one to three"));
     }
     check_hours(hours)?;
-    let all: Vec<Axis> = handles.iter().map(|values| Axis::new(values, rate)).collect::<Result<_>>()?;
+    let all: Vec<WeightedAxis> =
+        handles.iter().map(|values| WeightedAxis::new(values, rate)).collect::<Result<_>>()?;
     let total: f64 = all.iter().map(|a| a.mean_square).sum();
     if total <= 0.0 {
         return Err(Error::refused("the handle does not vibrate: its acceleration does not change"));

@@ -27,7 +27,7 @@ use super::Estimate;
 use super::mean::{average, scatter};
 use crate::swings::Swings;
 use echoes::echoes;
-use interval::{Counted, count, evened, pattern};
+use interval::{CountedImpacts, count, evened, pattern};
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result, Severity, Trace, median};
 
@@ -246,7 +246,7 @@ fn irregular(steps: &[f64]) -> bool {
 
 /// Standard deviation of the intervals between neighbours without a missed impact between them; `None` of
 /// fewer than two.
-fn spread(times: &[f64], counted: &Counted) -> Option<f64> {
+fn spread(times: &[f64], counted: &CountedImpacts) -> Option<f64> {
     let pairs = times.windows(2).zip(counted.index.windows(2));
     let single: Vec<f64> = pairs.filter(|(_, k)| k[1] - k[0] == 1).map(|(t, _)| t[1] - t[0]).collect();
     Some(scatter(&single)).filter(|s| s.is_finite())

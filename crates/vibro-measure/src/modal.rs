@@ -21,11 +21,11 @@ pub use result::{ByMethod, ModalOptions, ModalResult, Mode, Pole};
 
 use rational::{Rational, rational};
 use report::Candidate;
-use selection::{Group, averaging, chosen, complete, groups, together};
+use selection::{PeakGroup, averaging, chosen, complete, groups, together};
 use vibro_record::{Error, Finding, Result};
 
 /// Peaks and the modes that were fitted to them.
-type Fitted = (Group, Rational);
+type Fitted = (PeakGroup, Rational);
 
 /// Finds the modes of a frequency response function.
 ///

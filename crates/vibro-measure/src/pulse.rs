@@ -19,7 +19,7 @@ use super::Estimate;
 use super::residuals::NO_SUPPORT;
 
 use contact::Rebound;
-use fit::{Fitted, Samples};
+use fit::{FittedPulse, Samples};
 use normalised::{Normalised, locate};
 use result::contact_estimates;
 use vibro_record::units::Quantity;
@@ -194,7 +194,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
 
 /// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the
 /// others more, no exponents are fitted.
-fn rivals(samples: &Samples<'_>, main: Fitted) -> Vec<Fitted> {
+fn rivals(samples: &Samples<'_>, main: FittedPulse) -> Vec<FittedPulse> {
     let mut fits = vec![main];
     for rival in ContactModel::RIVALS {
         let behind = fits[1..].iter().all(|fit| fit.aicc() - fits[0].aicc() > NO_SUPPORT);

@@ -23,7 +23,7 @@ use vibro_record::{Error, Finding, Result};
 /// One method's answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Way {
+pub struct MethodAnswer {
     /// Name of the method.
     pub method: &'static str,
     /// Its answer.
@@ -37,7 +37,7 @@ pub struct Restitution {
     /// The answer with the smallest uncertainty; null where methods disagree.
     pub restitution: Estimate,
     /// All answers.
-    pub by: Vec<Way>,
+    pub by: Vec<MethodAnswer>,
     /// Whether the answers agree within their uncertainties; null where one that has none leaves that open.
     /// A single answer agrees.
     pub agree: Option<bool>,
@@ -124,8 +124,9 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         Err(error) => return Err(error),
     }
     if contact_std > 0.0 {
-        let by_contact = |(way, part): (&Way, &f64)| 1e3 * contact_std * part * way.restitution.value;
-        let matters = |at: (&Way, &f64)| at.0.restitution.std.is_some_and(|s| by_contact(at) > s);
+        let by_contact =
+            |(way, part): (&MethodAnswer, &f64)| 1e3 * contact_std * part * way.restitution.value;
+        let matters = |at: (&MethodAnswer, &f64)| at.0.restitution.std.is_some_and(|s| by_contact(at) > s);
         let moved: Vec<f64> = by.iter().zip(&bias).map(by_contact).collect();
         if contact > 0.0 {
             let seen = Finding::note("contact-time-seen").number("duration", contact);
@@ -142,7 +143,7 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     if let Some(velocities) = &measured.velocities {
         by.extend(velocities.answers()?);
     }
-    let uncertainty = |way: &Way| way.restitution.std.unwrap_or(f64::INFINITY);
+    let uncertainty = |way: &MethodAnswer| way.restitution.std.unwrap_or(f64::INFINITY);
     let Some(surest) = by.iter().min_by(|a, b| uncertainty(a).total_cmp(&uncertainty(b))) else {
         let none = if measured.trains.is_empty() {
             Error::usage("nothing from which restitution follows", "what was measured of an impact")
@@ -186,7 +187,7 @@ const GROSS: f64 = 0.2;
 
 /// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree.
 /// Methods may share numbers, as a drop and its train do: the largest possible correlation is assumed.
-fn agreement(by: &[Way], findings: &mut Vec<Finding>) -> Option<bool> {
+fn agreement(by: &[MethodAnswer], findings: &mut Vec<Finding>) -> Option<bool> {
     let mut agree = Some(true);
     for (i, a) in by.iter().enumerate() {
         for b in &by[i + 1..] {

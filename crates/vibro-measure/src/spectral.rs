@@ -4,7 +4,7 @@ mod options;
 mod result;
 
 pub use options::{Method, SpectralOptions};
-pub use result::{Lines, Response, SpectralResult};
+pub use result::{FrfDetails, Lines, SpectralResult};
 
 use super::stands_out::{FALSE_ALARMS, REACH, floor};
 use super::tones;

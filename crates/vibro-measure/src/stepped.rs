@@ -51,11 +51,11 @@ pub fn stepped(
     options: &ResponseOptions,
 ) -> Result<(Sweep, Response)> {
     let taken = steps.into_iter().map(|(path, step)| {
-        let taken = step.and_then(|step| Ok((Step::of(&step)?, step))).map_err(|e| e.in_file(&path));
+        let taken = step.and_then(|step| Ok((StepReading::of(&step)?, step))).map_err(|e| e.in_file(&path));
         (path, taken)
     });
     let (taken, left_out) = answered(taken)?;
-    let (taken, steps): (Vec<Step>, Vec<StepTraces>) = taken.into_iter().unzip();
+    let (taken, steps): (Vec<StepReading>, Vec<StepTraces>) = taken.into_iter().unzip();
     let rate = taken.first().map_or(0.0, |step| step.rate);
     if let Some((step, at)) = taken.iter().zip(&steps).find(|(step, _)| (step.rate / rate - 1.0).abs() > 1e-6)
     {
@@ -100,7 +100,7 @@ const SHAKER: &str = "check the channel of the force, and that the shaker ran";
 const NAMED: usize = 4;
 
 /// What the traces of a step say.
-struct Step {
+struct StepReading {
     rate: f64,
     samples: usize,
     /// First sample of the settled part.
@@ -119,8 +119,8 @@ struct Step {
     findings: Vec<Finding>,
 }
 
-impl Step {
-    fn of(step: &StepTraces) -> Result<Step> {
+impl StepReading {
+    fn of(step: &StepTraces) -> Result<StepReading> {
         let StepTraces { force, response, .. } = step;
         let together = || {
             Error::refused("force and response are not sampled together").hint("export both with one clock")
@@ -181,7 +181,7 @@ impl Step {
             force.1 = force.1.filter(|_| cut_force == 0);
         }
         let begins = blocks.start(begins);
-        Ok(Step { rate, samples, begins, frequency, force, response, ratio, whiteness, findings })
+        Ok(StepReading { rate, samples, begins, frequency, force, response, ratio, whiteness, findings })
     }
 
     fn excitation(&self, step: &StepTraces) -> Excitation {

@@ -82,7 +82,7 @@ pub struct Tones {
 /// If the trace has no spectrum ([`spectrum::plain`]), no line stands out of the noise, fewer than one and a
 /// half periods are there, or the sine lies within a quarter of a line of half the sampling rate.
 pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Tones> {
-    Ok(Fit::new(trace, &[Lines::of(trace)?.strongest(near)?])?.estimates(trace))
+    Ok(SineFit::new(trace, &[HannLines::of(trace)?.strongest(near)?])?.estimates(trace))
 }
 
 /// The `count` strongest sines of a trace; fewer, with a finding, where no more stand out of the noise or can
@@ -107,8 +107,8 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
     if !(1..=MOST).contains(&count) {
         return Err(Error::usage(format!("{count} tones"), format!("1 to {MOST}")));
     }
-    let lines = Lines::of(trace)?;
-    let mut fitted = Fit::new(trace, &[lines.strongest(None)?])?;
+    let lines = HannLines::of(trace)?;
+    let mut fitted = SineFit::new(trace, &[lines.strongest(None)?])?;
     let mut fewer = None;
     while fitted.omega.len() < count && fewer.is_none() {
         match fitted.one_more(trace, lines.spacing) {
@@ -124,19 +124,19 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
 }
 
 /// Lines of a record under a Hann window, without its mean.
-struct Lines {
+struct HannLines {
     magnitudes: Vec<f64>,
     powers: Vec<f64>,
     /// Distance of two lines in Hz.
     spacing: f64,
 }
 
-impl Lines {
-    fn of(trace: &Trace) -> Result<Lines> {
+impl HannLines {
+    fn of(trace: &Trace) -> Result<HannLines> {
         let lines = spectrum::plain(trace, Window::Hann, Scaling::Peak, true)?;
         let magnitudes = lines.values.magnitudes();
         let powers = magnitudes.iter().map(|m| m * m).collect();
-        Ok(Lines { magnitudes, powers, spacing: lines.axis.step().unwrap_or(0.0) })
+        Ok(HannLines { magnitudes, powers, spacing: lines.axis.step().unwrap_or(0.0) })
     }
 
     /// Height of the line nearest to `frequency` in Hz.
@@ -159,7 +159,7 @@ impl Lines {
     /// The frequency of the strongest line that stands out of the noise, or of those within two lines of
     /// `near` Hz, interpolated between lines.
     fn strongest(&self, near: Option<f64>) -> Result<f64> {
-        let Lines { magnitudes, powers, spacing } = self;
+        let HannLines { magnitudes, powers, spacing } = self;
         let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / spacing).abs() <= NEAR);
         let mut lines: Vec<usize> = (1..magnitudes.len().saturating_sub(1)).filter(within).collect();
         lines.sort_by(|a, b| magnitudes[*b].total_cmp(&magnitudes[*a]));
@@ -187,7 +187,7 @@ impl Lines {
 
 /// Sines and a mean fitted to a record. Time runs from its middle, in parts of half of it: frequency and
 /// phase are then almost uncorrelated.
-struct Fit {
+struct SineFit {
     /// Angular frequencies.
     omega: Vec<f64>,
     /// a and b of each sine, then the mean.
@@ -207,9 +207,9 @@ fn time(i: usize, n: usize) -> f64 {
     (2 * i + 1) as f64 / n as f64 - 1.0
 }
 
-impl Fit {
+impl SineFit {
     /// By Gauss–Newton, from first guesses of the frequencies in Hz within half a line.
-    fn new(trace: &Trace, start: &[f64]) -> Result<Fit> {
+    fn new(trace: &Trace, start: &[f64]) -> Result<SineFit> {
         let (n, rate) = (trace.values.len(), trace.rate().unwrap_or(1.0));
         // Of the slowest sine the crests are the flattest.
         let slowest = start.iter().copied().fold(f64::INFINITY, f64::min);
@@ -220,7 +220,7 @@ impl Fit {
         for i in clipped {
             cut[i] = if trace.values[i] == low { -1.0 } else { 1.0 };
         }
-        let fit = Fit::of(trace, start, cut)?;
+        let fit = SineFit::of(trace, start, cut)?;
         // Noise lifts the highest samples of a whole record above the sines; where they lie below, they are
         // cut off.
         let (rest, mut cut) = (fit.rest(trace), fit.cut.clone());
@@ -233,11 +233,11 @@ impl Fit {
                 }
             }
         }
-        if cut == fit.cut { Ok(fit) } else { Fit::of(trace, start, cut) }
+        if cut == fit.cut { Ok(fit) } else { SineFit::of(trace, start, cut) }
     }
 
     /// With samples that are cut off.
-    fn of(trace: &Trace, start: &[f64], cut: Vec<f64>) -> Result<Fit> {
+    fn of(trace: &Trace, start: &[f64], cut: Vec<f64>) -> Result<SineFit> {
         let (n, count) = (trace.values.len(), start.len());
         let half = 0.5 * n as f64 / trace.rate().unwrap_or(1.0);
         let size = 3 * count + 1;
@@ -307,7 +307,7 @@ impl Fit {
                     );
                     return Err(Error::refused(why).hint("sample faster"));
                 }
-                let mut fit = Fit { omega, linear, inverse, noise, half, cut };
+                let mut fit = SineFit { omega, linear, inverse, noise, half, cut };
                 let (squares, known) = fit
                     .left(trace)
                     .iter()
@@ -322,16 +322,16 @@ impl Fit {
 
     /// The fit with one more sine; `None` where no other line stands out of the noise, or it cannot be parted
     /// from the others.
-    fn one_more(&self, trace: &Trace, spacing: f64) -> Option<Fit> {
+    fn one_more(&self, trace: &Trace, spacing: f64) -> Option<SineFit> {
         // What rounding leaves of exact sines has lines, too.
         if self.is_exact() {
             return None;
         }
         let frequencies =
-            |fit: &Fit| -> Vec<f64> { fit.omega.iter().map(|w| w / (TAU * fit.half)).collect() };
+            |fit: &SineFit| -> Vec<f64> { fit.omega.iter().map(|w| w / (TAU * fit.half)).collect() };
         let mut start = frequencies(self);
-        start.push(Lines::of(&self.rest(trace)).ok()?.strongest(None).ok()?);
-        let more = Fit::new(trace, &start).ok()?;
+        start.push(HannLines::of(&self.rest(trace)).ok()?.strongest(None).ok()?);
+        let more = SineFit::new(trace, &start).ok()?;
         let mut f = frequencies(&more);
         f.sort_by(f64::total_cmp);
         let parted = f.windows(2).all(|w| w[1] - w[0] >= NEAREST * spacing) && more.noise < self.noise;
@@ -367,7 +367,7 @@ impl Fit {
     fn estimates(&self, trace: &Trace) -> Tones {
         let n = trace.values.len();
         let (rest, unit) = (self.rest(trace), trace.meta.unit.quantity().symbol());
-        let lines = if self.is_exact() { None } else { Lines::of(&rest).ok() };
+        let lines = if self.is_exact() { None } else { HannLines::of(&rest).ok() };
         let other = lines.as_ref().and_then(|lines| lines.strongest(None).ok());
         // Samples that are cut off have less noise in what is left: lines are compared with white noise of
         // its own size.
@@ -415,7 +415,7 @@ impl Tone {
     /// A sine of a part r of the amplitude moves the frequency of a least-squares fit over T by up to
     /// 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T, amplitude and phase in the middle by up to r, so the phase at the
     /// first sample by 2.3 r; the fit may have taken up half of it.
-    fn widened(&mut self, left: &Lines, strongest: Option<f64>) -> Option<Finding> {
+    fn widened(&mut self, left: &HannLines, strongest: Option<f64>) -> Option<Finding> {
         let at = self.frequency.value;
         let other = left.strongest(Some(at)).ok()?;
         let strongest = strongest.unwrap_or(other);

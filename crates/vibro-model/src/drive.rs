@@ -9,7 +9,7 @@ use vibro_record::Result;
 
 /// What a sine force does, phase 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Line {
+struct SineResponse {
     /// F L₁(iω), of mass 1 alone, in m, and its modulus.
     alone: Complex64,
     amplitude: f64,
@@ -22,7 +22,7 @@ struct Line {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drive {
     pub forcing: Forcing,
-    lines: [Option<Line>; MOST_SINES],
+    lines: [Option<SineResponse>; MOST_SINES],
 }
 
 impl Drive {
@@ -39,7 +39,7 @@ impl Drive {
             let steady = Steady::new(rig, &Sine { force: tone.force, frequency: tone.frequency })?;
             let compliance = rig.joined().map_or(Complex64::ONE, |both| both.receptance(steady.omega));
             let (alone, amplitude) = (steady.response, steady.amplitude());
-            *line = Some(Line { alone, amplitude, together: compliance * tone.force });
+            *line = Some(SineResponse { alone, amplitude, together: compliance * tone.force });
         }
         Ok(Drive { forcing, lines })
     }
@@ -64,7 +64,7 @@ impl Drive {
     }
 
     #[inline]
-    fn waves(&self, of: impl Fn(&Line) -> (Complex64, f64)) -> Waves {
+    fn waves(&self, of: impl Fn(&SineResponse) -> (Complex64, f64)) -> Waves {
         let mut waves = Waves::default();
         for (line, tone) in self.lines.iter().flatten().zip(self.forcing.tones()) {
             let (response, amplitude) = of(line);

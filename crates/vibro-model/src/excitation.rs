@@ -1,6 +1,6 @@
 //! What drives mass 1.
 
-use super::least::{Least, number};
+use super::least::{NumberRange, number};
 use super::waves::MOST_SINES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -93,12 +93,12 @@ impl Excitation {
         match self {
             Excitation::Sine(sine) => sine.check(),
             Excitation::Impulse(train) => {
-                check("impulse", train.impulse, "N s", Least::Any)?;
-                check("frequency", train.frequency, "Hz", Least::AboveZero)
+                check("impulse", train.impulse, "N s", NumberRange::Any)?;
+                check("frequency", train.frequency, "Hz", NumberRange::AboveZero)
             }
             Excitation::Pulse(train) => {
-                check("force", train.force, "N", Least::Any)?;
-                check("frequency", train.frequency, "Hz", Least::AboveZero)?;
+                check("force", train.force, "N", NumberRange::Any)?;
+                check("frequency", train.frequency, "Hz", NumberRange::AboveZero)?;
                 let cycle = 1.0 / train.frequency;
                 if train.width > 0.0 && train.width < cycle {
                     return Ok(());
@@ -114,7 +114,7 @@ impl Excitation {
                 }
                 for Part { force, frequency, phase } in parts.iter().copied() {
                     Sine { force, frequency }.check()?;
-                    check("phase", phase, "rad", Least::Any)?;
+                    check("phase", phase, "rad", NumberRange::Any)?;
                 }
                 Ok(())
             }
@@ -204,7 +204,7 @@ impl From<Sine> for Excitation {
     }
 }
 
-fn check(key: &'static str, value: f64, unit: &str, least: Least) -> Result<()> {
+fn check(key: &'static str, value: f64, unit: &str, least: NumberRange) -> Result<()> {
     number(key, value, unit, least).map_err(|error| error.setting(key))
 }
 
@@ -214,8 +214,8 @@ impl Sine {
     /// # Errors
     /// If a number cannot be.
     pub fn check(&self) -> Result<()> {
-        check("force", self.force, "N", Least::Zero)?;
-        check("frequency", self.frequency, "Hz", Least::AboveZero)
+        check("force", self.force, "N", NumberRange::Zero)?;
+        check("frequency", self.frequency, "Hz", NumberRange::AboveZero)
     }
 
     /// Angular frequency ω in rad/s.

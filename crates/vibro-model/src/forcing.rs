@@ -1,7 +1,7 @@
 //! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse
 //! or step is due.
 
-use super::least::{Least, number};
+use super::least::{NumberRange, number};
 use super::linear::{ORDER, Terms};
 use super::waves::MOST_SINES;
 use super::{Excitation, Part, Pulses, Sine};
@@ -28,7 +28,7 @@ pub(super) enum Tick {
 
 /// What comes once a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Train {
+enum ForceTrain {
     /// Nothing: the force is smooth.
     None,
     /// An impulse in N s.
@@ -60,7 +60,7 @@ impl Tone {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],
-    train: Train,
+    train: ForceTrain,
     /// Cycles a second.
     pub frequency: f64,
     /// Phase of the cycle in 0..2π.
@@ -75,13 +75,13 @@ impl Forcing {
     /// the phase stands for.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         excitation.check()?;
-        number("phase", phase, "rad", Least::Any)?;
+        number("phase", phase, "rad", NumberRange::Any)?;
         let frequency = excitation.frequency();
         let phase = phase.rem_euclid(TAU);
         // The remainder of a tiny negative phase rounds to 2π.
         let phase = if phase < TAU { phase } else { 0.0 };
         let tones = [None; MOST_SINES];
-        let mut forcing = Forcing { tones, train: Train::None, frequency, phase, left: 0.0 };
+        let mut forcing = Forcing { tones, train: ForceTrain::None, frequency, phase, left: 0.0 };
         match excitation {
             Excitation::Sine(sine) => {
                 forcing.tones[0] = Some(Tone { force: sine.force, frequency, phase });
@@ -93,9 +93,9 @@ impl Forcing {
                     *tone = Some(Tone { force, frequency: own, phase });
                 }
             }
-            Excitation::Impulse(impulses) => forcing.train = Train::Impulses(impulses.impulse),
+            Excitation::Impulse(impulses) => forcing.train = ForceTrain::Impulses(impulses.impulse),
             Excitation::Pulse(Pulses { force, width, .. }) => {
-                forcing.train = Train::Pulses { force: *force, width: *width };
+                forcing.train = ForceTrain::Pulses { force: *force, width: *width };
                 if phase > 0.0 {
                     forcing.left = (width - phase / (TAU * frequency)).max(0.0);
                 }
@@ -113,7 +113,7 @@ impl Forcing {
     /// Changes the frequency from now on; every phase goes on, and a pulse under way keeps its width.
     pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
         Sine { force: 0.0, frequency: hz }.check()?;
-        if let Train::Pulses { width, .. } = self.train
+        if let ForceTrain::Pulses { width, .. } = self.train
             && width * hz >= 1.0
         {
             let found = format!("pulses of {width} s at {hz} Hz");
@@ -153,7 +153,7 @@ impl Forcing {
     #[inline]
     pub fn constant(&self) -> f64 {
         match self.train {
-            Train::Pulses { force, .. } if self.left > 0.0 => force,
+            ForceTrain::Pulses { force, .. } if self.left > 0.0 => force,
             _ => 0.0,
         }
     }
@@ -190,9 +190,9 @@ impl Forcing {
     #[inline]
     pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
         let begin = match self.train {
-            Train::None => return (f64::INFINITY, None),
-            Train::Impulses(impulse) => Tick::Kick(impulse),
-            Train::Pulses { .. } => Tick::On,
+            ForceTrain::None => return (f64::INFINITY, None),
+            ForceTrain::Impulses(impulse) => Tick::Kick(impulse),
+            ForceTrain::Pulses { .. } => Tick::On,
         };
         let whole = if self.phase == 0.0 { 0.0 } else { (TAU - self.phase) / (TAU * self.frequency) };
         let (wait, tick) =
@@ -208,7 +208,7 @@ impl Forcing {
             tone.phase = within(tone.phase + tone.omega() * t);
         }
         let phase = self.phase + TAU * self.frequency * t;
-        if self.train == Train::None {
+        if self.train == ForceTrain::None {
             self.phase = within(phase);
         } else if self.phase > 0.0 {
             self.phase = phase.min(TAU.next_down());
@@ -225,7 +225,7 @@ impl Forcing {
             return;
         }
         self.phase = f64::MIN_POSITIVE;
-        if let Train::Pulses { width, .. } = self.train {
+        if let ForceTrain::Pulses { width, .. } = self.train {
             self.left = width;
         }
     }

@@ -28,7 +28,7 @@ mod stage;
 mod starts;
 
 pub use axis::{MOST_POINTS, Stretch, Summary, Survey, choose_over};
-pub use motions::Known;
+pub use motions::KnownMotion;
 pub use question::{Change, Question};
 pub use rung::{Model, Need, Needed, Rung};
 pub use starts::Followed;
@@ -38,7 +38,7 @@ use super::{Law, Rig, Scene, scales};
 use climb::Climb;
 use question::Answer;
 use serde::Serialize;
-use stage::{Stage, curved, is_curved, keys};
+use stage::{DrivenScene, curved, is_curved, keys};
 use vibro_record::{Error, Finding, Result};
 
 /// The rung that is good enough for a scene, and how that was found.
@@ -64,7 +64,7 @@ pub struct Choice {
     /// be computed.
     pub sensitivity: Vec<Sensitivity>,
     /// Motions that the rig can be in, as far as they are known.
-    pub motions: Vec<Known>,
+    pub motions: Vec<KnownMotion>,
     /// States that others were looked for from; `None` with a history and for a loose mass.
     pub followed: Option<Followed>,
     /// What is to be known of it; why a rung is passed over stands with the rung.
@@ -158,7 +158,7 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
     }
     scales::check_swings(&scene.rig, frequency, MOST_SWINGS)?;
     scales::check_slow(&scene.rig, frequency, reading::MOST_CYCLES)?;
-    let stage = Stage { scene, excitation: &excitation, question };
+    let stage = DrivenScene { scene, excitation: &excitation, question };
     let mut choice = Climb::new(stage)?.choose(bend);
     if bend && question.gap_std > 0.0 {
         choice.gap = gaps(&choice, &stage);
@@ -168,14 +168,14 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
 }
 
 /// The changes of the chosen answer at both ends of the gap's uncertainty.
-fn gaps(choice: &Choice, stage: &Stage<'_>) -> Vec<Option<Change>> {
+fn gaps(choice: &Choice, stage: &DrivenScene<'_>) -> Vec<Option<Change>> {
     let (Some(model), Some(value)) = (choice.chosen, choice.answer()) else { return Vec::new() };
     let here = Answer { spread: choice.rung(model).spread, ..Answer::exact(value) };
     let question = Question { gap_std: 0.0, ..*stage.question };
     let at = |std: f64| {
         let rig = Rig { gap: stage.scene.rig.gap + std, ..stage.scene.rig };
         let scene = Scene { rig, ..stage.scene.clone() };
-        let there = Climb::new(Stage { scene: &scene, question: &question, ..*stage }).ok()?;
+        let there = Climb::new(DrivenScene { scene: &scene, question: &question, ..*stage }).ok()?;
         Some(here.change(&there.answer(model)?, model, &question))
     };
     [-1.0, 1.0].map(|sign| at(sign * stage.question.gap_std)).to_vec()

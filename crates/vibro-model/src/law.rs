@@ -2,7 +2,7 @@
 
 pub mod conversion;
 
-use crate::least::{Least, number};
+use crate::least::{NumberRange, number};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -43,7 +43,7 @@ impl Law {
     /// If the stiffness or the mass is not above 0, or the restitution is outside 0 < R ≤ 1.
     pub fn kelvin_voigt(stiffness: f64, restitution: f64, mass: f64) -> Result<Law> {
         Law::KelvinVoigt { stiffness, damping: 0.0 }.check()?;
-        number("reduced mass", mass, "kg", Least::AboveZero)?;
+        number("reduced mass", mass, "kg", NumberRange::AboveZero)?;
         let ratio = conversion::damping_ratio(restitution)?;
         Ok(Law::KelvinVoigt { stiffness, damping: 2.0 * ratio * (stiffness * mass).sqrt() })
     }
@@ -54,7 +54,7 @@ impl Law {
     /// If the stiffness or the speed is not above 0, the exponent is below 1, or the restitution is outside 0
     /// < R ≤ 1.
     pub fn hunt_crossley(stiffness: f64, exponent: f64, restitution: f64, speed: f64) -> Result<Law> {
-        number("approach speed", speed, "m/s", Least::AboveZero)?;
+        number("approach speed", speed, "m/s", NumberRange::AboveZero)?;
         let law = Law::HuntCrossley { stiffness, exponent, damping: conversion::loss(restitution)? / speed };
         law.check().map(|()| law)
     }
@@ -68,8 +68,8 @@ impl Law {
         let (stiffness, exponent, damping) = self.numbers();
         let linear = matches!(self, Law::KelvinVoigt { .. });
         let (unit, damping_unit) = if linear { ("N/m", "N s/m") } else { ("N/mⁿ", "s/m") };
-        number("contact stiffness", stiffness, unit, Least::AboveZero)?;
-        number("contact damping", damping, damping_unit, Least::Zero)?;
+        number("contact stiffness", stiffness, unit, NumberRange::AboveZero)?;
+        number("contact damping", damping, damping_unit, NumberRange::Zero)?;
         if !(1.0..=10.0).contains(&exponent) {
             return Err(Error::usage(format!("contact exponent is {exponent}"), "a value from 1 to 10"));
         }

@@ -4,7 +4,7 @@ use vibro_record::{Error, Result};
 
 /// What a number may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Least {
+pub enum NumberRange {
     Any,
     Zero,
     AboveZero,
@@ -16,12 +16,12 @@ pub enum Least {
 ///
 /// # Errors
 /// If it is not.
-pub fn number(name: &str, value: f64, unit: &str, least: Least) -> Result<()> {
+pub fn number(name: &str, value: f64, unit: &str, least: NumberRange) -> Result<()> {
     let (fine, expected) = match least {
-        Least::Any => (true, "a finite value"),
-        Least::Zero => (value >= 0.0, "a finite value of 0 or more"),
-        Least::AboveZero => (value > 0.0, "a finite value above 0"),
-        Least::Part => ((0.0..=1.0).contains(&value), "a value from 0 to 1"),
+        NumberRange::Any => (true, "a finite value"),
+        NumberRange::Zero => (value >= 0.0, "a finite value of 0 or more"),
+        NumberRange::AboveZero => (value > 0.0, "a finite value above 0"),
+        NumberRange::Part => ((0.0..=1.0).contains(&value), "a value from 0 to 1"),
     };
     if fine && value.is_finite() {
         return Ok(());

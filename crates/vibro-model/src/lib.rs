@@ -63,7 +63,7 @@ pub use law::Law;
 pub use motion::{Event, Motion, Path, Piece};
 pub use observable::Observable;
 pub use orbit::{
-    Compliance, Loss, Orbit, Orbits, Shown, Softened, Validity, backbone, no_impact, orbits, orbits_of,
+    Compliance, Loss, Orbit, Orbits, ShownOrbit, Softened, Validity, backbone, no_impact, orbits, orbits_of,
     shown, softened,
 };
 pub use parameter::Parameter;

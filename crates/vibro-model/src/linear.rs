@@ -84,13 +84,13 @@ pub struct Taylor {
 impl Taylor {
     /// The course of a quantity that is linear in the state.
     #[inline]
-    pub fn read(&self, quantity: &Quantity, force: &Terms) -> Course {
+    pub fn read(&self, quantity: &Quantity, force: &Terms) -> QuantityCourse {
         let mut terms = [0.0; ORDER + 1];
         for ((term, y), force) in terms.iter_mut().zip(&self.terms).zip(force) {
             *term = dot(&quantity.weights, y) + quantity.force * force;
         }
         terms[0] += quantity.offset;
-        Course { polynomial: Polynomial::new(terms), duration: self.duration }
+        QuantityCourse { polynomial: Polynomial::new(terms), duration: self.duration }
     }
 }
 
@@ -134,12 +134,12 @@ impl Quantity {
 
 /// The course of a quantity within one piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Course {
+pub struct QuantityCourse {
     polynomial: Polynomial<{ ORDER + 1 }>,
     duration: f64,
 }
 
-impl Course {
+impl QuantityCourse {
     /// Integral over the first `t` seconds.
     pub fn integral(&self, t: f64) -> f64 {
         if self.duration > 0.0 { self.polynomial.integral(t / self.duration) * self.duration } else { 0.0 }

@@ -13,7 +13,7 @@ use vibro_record::{Error, Result};
 /// Values of one parameter with equal distances: the ends finite, the lower one first, and at least 2 values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Axis {
+pub struct MapAxis {
     /// The parameter.
     pub key: Parameter,
     /// First value.
@@ -24,7 +24,7 @@ pub struct Axis {
     pub n: usize,
 }
 
-impl Axis {
+impl MapAxis {
     /// The `i`-th value.
     pub fn value(&self, i: usize) -> f64 {
         if i == 0 { self.low } else { self.low + (self.high - self.low) * (i as f64 / (self.n - 1) as f64) }
@@ -36,18 +36,18 @@ impl Axis {
     }
 }
 
-impl std::str::FromStr for Axis {
+impl std::str::FromStr for MapAxis {
     type Err = Error;
 
     /// `name:low:high:n`.
-    fn from_str(text: &str) -> Result<Axis> {
+    fn from_str(text: &str) -> Result<MapAxis> {
         let parse = || {
             let mut parts = text.split(':');
             let key = Parameter::named(parts.next()?)?;
             let mut number = || parts.next()?.trim().parse::<f64>().ok().filter(|v| v.is_finite());
             let (low, high) = (number()?, number()?);
             let n = parts.next()?.trim().parse().ok()?;
-            (parts.next().is_none() && low < high && n >= 2).then_some(Axis { key, low, high, n })
+            (parts.next().is_none() && low < high && n >= 2).then_some(MapAxis { key, low, high, n })
         };
         parse().ok_or_else(|| {
             let names: Vec<_> = Parameter::all().map(Parameter::name).collect();
@@ -65,9 +65,9 @@ pub struct Plan {
     /// What drives mass 1.
     pub excitation: Excitation,
     /// Parameter across.
-    pub x: Axis,
+    pub x: MapAxis,
     /// Parameter upwards.
-    pub y: Axis,
+    pub y: MapAxis,
     /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, or where it is within
     /// 1e-3 of a stable motion and draws nearer.
     pub cycles: u32,

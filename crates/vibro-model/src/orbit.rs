@@ -9,7 +9,7 @@ mod train;
 mod turns;
 mod validity;
 
-pub use sine::{Shown, backbone, shown};
+pub use sine::{ShownOrbit, backbone, shown};
 pub use soft::{Compliance, Softened, softened};
 
 pub use validity::{Loss, Validity};
@@ -19,7 +19,7 @@ pub(super) use validity::Judged;
 
 use super::{Excitation, NoImpact, Rig, Sine, State, Steady, scales};
 use conditions::Conditions;
-use driven::Response;
+use driven::PulseResponse;
 use num_complex::Complex64;
 use serde::{Serialize, Serializer};
 use serde_json::json;
@@ -218,12 +218,12 @@ fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<
 }
 
 /// Response of mass 1 alone to a train of impulses or pulses.
-fn train(rig: &Rig, excitation: &Excitation) -> Result<Response> {
+fn train(rig: &Rig, excitation: &Excitation) -> Result<PulseResponse> {
     driven(excitation.size())?;
     let (m, oscillator, cycle) = (rig.masses()[0], rig.oscillators()[0], 1.0 / excitation.frequency());
     match *excitation {
-        Excitation::Impulse(train) => Response::impulse(m, oscillator, cycle, train.impulse),
-        Excitation::Pulse(train) => Response::pulse(m, oscillator, cycle, train.force, train.width),
+        Excitation::Impulse(train) => PulseResponse::impulse(m, oscillator, cycle, train.impulse),
+        Excitation::Pulse(train) => PulseResponse::pulse(m, oscillator, cycle, train.force, train.width),
         Excitation::Sine(_) | Excitation::Sines(_) => {
             Err(Error::refused("several sines at once have no closed form")
                 .hint("follow the motion by simulating it"))

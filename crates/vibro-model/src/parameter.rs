@@ -1,6 +1,6 @@
 //! The table of what can be varied: the rig's values and those of its excitation.
 
-use super::least::{Least, number};
+use super::least::{NumberRange, number};
 use super::{Excitation, Rig, Sine};
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
@@ -42,22 +42,22 @@ pub enum Parameter {
 
 /// A parameter's name, unit, least value, the mass that it belongs to (0 or 1; none of the contact and the
 /// excitation), and its place in a rig.
-type Row = (Parameter, &'static str, &'static str, Least, Option<u8>, Option<fn(&mut Rig) -> &mut f64>);
+type Row = (Parameter, &'static str, &'static str, NumberRange, Option<u8>, Option<fn(&mut Rig) -> &mut f64>);
 
 /// One row for each, in the order of the names.
 const TABLE: [Row; 12] = [
-    (Parameter::M1, "m1", "kg", Least::AboveZero, Some(0), Some(|rig| &mut rig.m1)),
-    (Parameter::M2, "m2", "kg", Least::AboveZero, Some(1), Some(|rig| &mut rig.m2)),
-    (Parameter::K1, "k1", "N/m", Least::AboveZero, Some(0), Some(|rig| &mut rig.k1)),
-    (Parameter::K2, "k2", "N/m", Least::AboveZero, Some(1), Some(|rig| &mut rig.k2)),
-    (Parameter::C1, "c1", "N s/m", Least::Zero, Some(0), Some(|rig| &mut rig.c1)),
-    (Parameter::C2, "c2", "N s/m", Least::Zero, Some(1), Some(|rig| &mut rig.c2)),
-    (Parameter::Gap, "gap", "m", Least::Any, None, Some(|rig| &mut rig.gap)),
-    (Parameter::Restitution, "restitution", "1", Least::Part, None, Some(|rig| &mut rig.restitution)),
-    (Parameter::Frequency, "frequency", "Hz", Least::AboveZero, None, None),
-    (Parameter::Force, "force", "N", Least::Zero, None, None),
-    (Parameter::Impulse, "impulse", "N s", Least::Any, None, None),
-    (Parameter::Width, "width", "s", Least::AboveZero, None, None),
+    (Parameter::M1, "m1", "kg", NumberRange::AboveZero, Some(0), Some(|rig| &mut rig.m1)),
+    (Parameter::M2, "m2", "kg", NumberRange::AboveZero, Some(1), Some(|rig| &mut rig.m2)),
+    (Parameter::K1, "k1", "N/m", NumberRange::AboveZero, Some(0), Some(|rig| &mut rig.k1)),
+    (Parameter::K2, "k2", "N/m", NumberRange::AboveZero, Some(1), Some(|rig| &mut rig.k2)),
+    (Parameter::C1, "c1", "N s/m", NumberRange::Zero, Some(0), Some(|rig| &mut rig.c1)),
+    (Parameter::C2, "c2", "N s/m", NumberRange::Zero, Some(1), Some(|rig| &mut rig.c2)),
+    (Parameter::Gap, "gap", "m", NumberRange::Any, None, Some(|rig| &mut rig.gap)),
+    (Parameter::Restitution, "restitution", "1", NumberRange::Part, None, Some(|rig| &mut rig.restitution)),
+    (Parameter::Frequency, "frequency", "Hz", NumberRange::AboveZero, None, None),
+    (Parameter::Force, "force", "N", NumberRange::Zero, None, None),
+    (Parameter::Impulse, "impulse", "N s", NumberRange::Any, None, None),
+    (Parameter::Width, "width", "s", NumberRange::AboveZero, None, None),
 ];
 
 impl Parameter {
@@ -98,9 +98,9 @@ impl Parameter {
     /// Least and largest value that it can have.
     pub fn limits(self) -> (f64, f64) {
         match self.row().3 {
-            Least::Any => (f64::NEG_INFINITY, f64::INFINITY),
-            Least::Zero | Least::AboveZero => (0.0, f64::INFINITY),
-            Least::Part => (0.0, 1.0),
+            NumberRange::Any => (f64::NEG_INFINITY, f64::INFINITY),
+            NumberRange::Zero | NumberRange::AboveZero => (0.0, f64::INFINITY),
+            NumberRange::Part => (0.0, 1.0),
         }
     }
 

@@ -36,7 +36,7 @@ pub struct Portrait {
 
 /// How a portrait is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sitting {
+pub struct PortraitOptions {
     /// Cycles followed.
     pub cycles: u32,
     /// Samples a cycle of the traces.
@@ -50,7 +50,7 @@ impl Portrait {
     ///
     /// # Errors
     /// If no cycle or more than `MOST_CYCLES` are asked for, or as [`Motion::advance`].
-    pub fn take(motion: &mut dyn Motion, sitting: &Sitting) -> Result<Portrait> {
+    pub fn take(motion: &mut dyn Motion, sitting: &PortraitOptions) -> Result<Portrait> {
         if !(1..=MOST_CYCLES).contains(&sitting.cycles) {
             return Err(Error::usage(
                 format!("{} cycles to be looked at", sitting.cycles),
@@ -145,7 +145,7 @@ mod tests {
         let mut motion = Simulation::new(&Rig::thesis(), &sine).unwrap();
         motion.run(0.33, |_| {}).unwrap();
         let mut again = motion.clone();
-        let sitting = Sitting { cycles: 30, samples: 50, shown: 4 };
+        let sitting = PortraitOptions { cycles: 30, samples: 50, shown: 4 };
         let portrait = Portrait::take(&mut motion, &sitting).unwrap();
         assert_eq!((portrait.time.len(), portrait.states.len(), portrait.section.len()), (200, 200, 30));
         for (time, state) in portrait.time.iter().zip(&portrait.states).step_by(17) {
@@ -169,7 +169,8 @@ mod tests {
     fn the_states_around_an_impact_stand_where_the_masses_meet() {
         let rig = Rig::thesis();
         let mut motion = Simulation::new(&rig, &Sine { force: 0.5, frequency: 11.0 }).unwrap();
-        let portrait = Portrait::take(&mut motion, &Sitting { cycles: 30, samples: 50, shown: 30 }).unwrap();
+        let portrait =
+            Portrait::take(&mut motion, &PortraitOptions { cycles: 30, samples: 50, shown: 30 }).unwrap();
         assert_eq!(portrait.jumps.len(), portrait.impacts.len());
         assert!(!portrait.jumps.is_empty());
         for ((time, before, after), impact) in portrait.jumps.iter().zip(&portrait.impacts) {
@@ -188,7 +189,7 @@ mod tests {
     fn no_cycles_and_too_many_are_refused() {
         let mut motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.5, frequency: 11.0 }).unwrap();
         for cycles in [0, MOST_CYCLES + 1] {
-            assert!(Portrait::take(&mut motion, &Sitting { cycles, samples: 10, shown: 1 }).is_err());
+            assert!(Portrait::take(&mut motion, &PortraitOptions { cycles, samples: 10, shown: 1 }).is_err());
         }
     }
 }

@@ -175,23 +175,23 @@ impl Watch {
 
     /// The shortest pattern that repeats.
     fn repeated(&self, strikes: &VecDeque<Strike>) -> Option<Repeated> {
-        let compared = Compared::new(strikes, self.frequency);
+        let compared = ComparedStrikes::new(strikes, self.frequency);
         let longest = (LONGEST as usize).min(strikes.len() / 2);
         (1..=longest).find_map(|p| compared.last(p).filter(|r| r.distance <= SAME || compared.falls(p)))
     }
 }
 
 /// Impacts to be compared.
-struct Compared<'a> {
+struct ComparedStrikes<'a> {
     strikes: &'a VecDeque<Strike>,
     frequency: f64,
     speed: f64,
 }
 
-impl Compared<'_> {
-    fn new(strikes: &VecDeque<Strike>, frequency: f64) -> Compared<'_> {
+impl ComparedStrikes<'_> {
+    fn new(strikes: &VecDeque<Strike>, frequency: f64) -> ComparedStrikes<'_> {
         let fastest = |v: f64, s: &Strike| v.max(s.before.v1.abs()).max(s.before.v2.abs());
-        Compared { strikes, frequency, speed: strikes.iter().fold(f64::MIN_POSITIVE, fastest) }
+        ComparedStrikes { strikes, frequency, speed: strikes.iter().fold(f64::MIN_POSITIVE, fastest) }
     }
 
     /// Largest distance of the impacts in `range` to those `p` before.

@@ -27,18 +27,18 @@ const AT_LEAST: f64 = 10.0;
 
 /// How both masses move in a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Course {
+pub enum LegMotion {
     /// Each on its own.
     Apart(Flight),
     /// In contact.
     Together(Pair),
 }
 
-impl Path for Course {
+impl Path for LegMotion {
     fn state(&self, t: f64) -> State {
         match self {
-            Course::Apart(flight) => flight.state(t),
-            Course::Together(pair) => pair.state(t),
+            LegMotion::Apart(flight) => flight.state(t),
+            LegMotion::Together(pair) => pair.state(t),
         }
     }
 }
@@ -51,7 +51,7 @@ pub struct Leg {
     /// Duration in s.
     pub duration: f64,
     /// The motion.
-    pub course: Course,
+    pub course: LegMotion,
     /// What ended it.
     pub event: Event,
 }
@@ -212,7 +212,7 @@ impl Simulation {
                     self.hold = Hold::Apart;
                 }
                 let event = landing.map(|_| self.collide()).transpose()?.map(Event::Impact);
-                (Course::Apart(flight), duration, event)
+                (LegMotion::Apart(flight), duration, event)
             }
             Hold::Settling(left) => {
                 let pair = self.pair()?;
@@ -221,7 +221,7 @@ impl Simulation {
                 self.go(duration);
                 let ends = left <= ahead;
                 self.hold = if ends { Hold::Together } else { Hold::Settling(left - duration) };
-                (Course::Together(pair), duration, ends.then_some(Event::Stick))
+                (LegMotion::Together(pair), duration, ends.then_some(Event::Stick))
             }
             Hold::Together => {
                 let pair = self.pair()?;
@@ -232,7 +232,7 @@ impl Simulation {
                 if release.is_some() {
                     self.hold = Hold::Parting;
                 }
-                (Course::Together(pair), duration, release.map(|_| Event::Release))
+                (LegMotion::Together(pair), duration, release.map(|_| Event::Release))
             }
         };
         let event = match (event, tick) {

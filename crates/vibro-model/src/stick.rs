@@ -19,12 +19,12 @@ pub struct Pair {
     /// Forced motion in m, or the sine forces in N on a wall.
     waves: Waves,
     gap: f64,
-    course: Course,
+    course: PairMotion,
 }
 
 /// How a pair moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Course {
+enum PairMotion {
     Moving {
         /// Where x₁ would rest, in m.
         rest: f64,
@@ -46,20 +46,24 @@ impl Pair {
     pub(super) fn new(rig: &Rig, waves: Waves, force: f64, x1: f64, v: f64) -> Pair {
         let [first, passive] = rig.bodies();
         let Some(both) = rig.joined() else {
-            return Pair { waves, gap: rig.gap, course: Course::Still { force, stiffness: first.stiffness } };
+            return Pair {
+                waves,
+                gap: rig.gap,
+                course: PairMotion::Still { force, stiffness: first.stiffness },
+            };
         };
         let [x, slope, ..] = waves.at(0.0);
         let rest = (force + passive.stiffness * rig.gap) / both.stiffness;
         let free = Free { oscillator: both.oscillator(), x: x1 - rest - x, v: v - slope };
-        let course = Course::Moving { rest, free, passive };
+        let course = PairMotion::Moving { rest, free, passive };
         Pair { waves, gap: rig.gap, course }
     }
 
     /// State at `t` ≥ 0.
     pub fn state(&self, t: f64) -> State {
         match &self.course {
-            Course::Still { .. } => State { x1: self.gap, ..State::REST },
-            Course::Moving { rest, free, .. } => {
+            PairMotion::Still { .. } => State { x1: self.gap, ..State::REST },
+            PairMotion::Moving { rest, free, .. } => {
                 let [x, v, ..] = self.series(*rest, free, t).0;
                 State { x1: x, v1: v, x2: x - self.gap, v2: v }
             }
@@ -69,12 +73,12 @@ impl Pair {
     /// Contact force N in N at `t`, its rate, and a bound on its second derivative for all later times.
     pub fn force(&self, t: f64) -> Bounded {
         match &self.course {
-            Course::Still { force, stiffness } => {
+            PairMotion::Still { force, stiffness } => {
                 let [sines, slope, ..] = self.waves.at(t);
                 let curvature = self.waves.limits.curvature;
                 Bounded { value: sines + force - stiffness * self.gap, slope, curvature }
             }
-            Course::Moving { rest, free, passive } => {
+            PairMotion::Moving { rest, free, passive } => {
                 let ([x, v, a, jerk, ..], [bend, third, fourth]) = self.series(*rest, free, t);
                 Bounded {
                     value: passive.mass * a + passive.damping * v + passive.stiffness * (x - self.gap),
@@ -88,10 +92,10 @@ impl Pair {
     /// Rounding error of the contact force in N: a few ε of the largest term.
     pub(super) fn noise(&self) -> f64 {
         let size = match &self.course {
-            Course::Still { force, stiffness } => {
+            PairMotion::Still { force, stiffness } => {
                 self.waves.amplitude + force.abs() + stiffness * self.gap.abs()
             }
-            Course::Moving { rest, free, passive } => {
+            PairMotion::Moving { rest, free, passive } => {
                 let ([x, ..], [bend, ..]) = self.series(*rest, free, 0.0);
                 passive.mass * bend + passive.stiffness * (x.abs() + rest.abs() + self.gap.abs())
             }
@@ -123,8 +127,8 @@ impl Pair {
     /// Whether the motion is a number: not where the pair is driven at its undamped resonance.
     pub(super) fn is_finite(&self) -> bool {
         let free = match &self.course {
-            Course::Still { .. } => true,
-            Course::Moving { free, .. } => free.x.is_finite() && free.v.is_finite(),
+            PairMotion::Still { .. } => true,
+            PairMotion::Moving { free, .. } => free.x.is_finite() && free.v.is_finite(),
         };
         self.waves.amplitude.is_finite() && free
     }

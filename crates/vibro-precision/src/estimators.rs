@@ -12,16 +12,16 @@ mod rivals;
 mod sine;
 mod trial;
 
-use super::failure::Question;
-use super::{FailureMap, Family, Measured, Scene};
+use super::failure::BorderQuestion;
+use super::{BenchmarkScene, FailureMap, Family, MeasuredMethod};
 use nalgebra::DMatrix;
 use vibro_record::{Spectrum, Sweep, SweepPoint, Values};
 
 /// Every scene of the estimators, each method measured; `quick` takes fewer records.
-pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<Scene> {
-    let parts: [fn(bool) -> Vec<Scene>; 5] =
+pub(crate) fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Vec<BenchmarkScene> {
+    let parts: [fn(bool) -> Vec<BenchmarkScene>; 5] =
         [sine::scenes, integration::scenes, damping::scenes, impacts::scenes, pulse::scenes];
-    let mut all: Vec<Scene> = Vec::new();
+    let mut all: Vec<BenchmarkScene> = Vec::new();
     for scenes in parts {
         all.extend(scenes(quick));
         progress(all.last().map_or("", |scene| &scene.name));
@@ -42,15 +42,15 @@ pub fn failures(quick: bool) -> FailureMap {
     FailureMap::answered(Family::Estimators, questions(quick))
 }
 
-fn questions(quick: bool) -> Vec<Question> {
-    let parts: [fn(bool) -> Vec<Question>; 5] =
+fn questions(quick: bool) -> Vec<BorderQuestion> {
+    let parts: [fn(bool) -> Vec<BorderQuestion>; 5] =
         [sine::borders, integration::borders, damping::borders, impacts::borders, pulse::borders];
     parts.iter().flat_map(|part| part(quick)).collect()
 }
 
 /// A scene of estimators: its texts, the bound, and what the methods made of it.
-fn scene(texts: [&str; 4], bound: f64, methods: Vec<Measured>) -> Scene {
-    Scene { bound: Some(bound), methods, ..Scene::new(Family::Estimators, texts) }
+fn scene(texts: [&str; 4], bound: f64, methods: Vec<MeasuredMethod>) -> BenchmarkScene {
+    BenchmarkScene { bound: Some(bound), methods, ..BenchmarkScene::new(Family::Estimators, texts) }
 }
 
 /// Cramér–Rao bounds: standard deviations of unbiased estimates of the parameters `p` from the values of
@@ -100,7 +100,7 @@ fn one_point(response: Spectrum, force: Option<Vec<f64>>, given: Option<f64>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cell, Outcome};
+    use crate::{BorderCell, Outcome};
     use std::f64::consts::TAU;
 
     #[test]
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn displacements_are_right_or_refused_at_their_borders() {
         let map = FailureMap::answered(Family::Estimators, integration::borders(true));
-        assert_eq!(map.broken().collect::<Vec<_>>(), Vec::<&Cell>::new());
+        assert_eq!(map.broken().collect::<Vec<_>>(), Vec::<&BorderCell>::new());
         // Neither a map of refusals nor a check that all methods pass.
         let count =
             |ours, outcome| map.cells.iter().filter(|c| c.ours == ours && c.outcome == outcome).count();

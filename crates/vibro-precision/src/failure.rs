@@ -35,7 +35,7 @@ impl Outcome {
 
 /// One method at one scene of a border.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
+pub struct BorderCell {
     /// Which kind of method.
     pub family: Family,
     /// Name of the method.
@@ -61,7 +61,7 @@ pub struct Cell {
 #[serde(transparent)]
 pub struct FailureMap {
     /// The cells.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<BorderCell>,
 }
 
 /// What came of a question.
@@ -96,7 +96,7 @@ impl From<Found> for Error {
 }
 
 /// One cell of a map, still to be asked for.
-pub(crate) struct Question {
+pub(crate) struct BorderQuestion {
     pub method: &'static str,
     pub ours: bool,
     pub border: &'static str,
@@ -106,13 +106,13 @@ pub(crate) struct Question {
 
 impl FailureMap {
     /// Asks every question, as many side by side as there are cores.
-    pub(crate) fn answered(family: Family, questions: Vec<Question>) -> FailureMap {
-        let cell = |Question { method, ours, border, scene, answer }: Question| {
+    pub(crate) fn answered(family: Family, questions: Vec<BorderQuestion>) -> FailureMap {
+        let cell = |BorderQuestion { method, ours, border, scene, answer }: BorderQuestion| {
             let panicked = |_| Found::new(Outcome::Crashed, "it panicked, with its message printed");
             let Found { outcome, why, stated } =
                 catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(panicked);
             let (method, border) = (method.to_owned(), border.to_owned());
-            Cell { family, method, ours, border, scene, outcome, why, stated }
+            BorderCell { family, method, ours, border, scene, outcome, why, stated }
         };
         FailureMap { cells: questions.into_par_iter().map(cell).collect() }
     }
@@ -130,11 +130,11 @@ impl FailureMap {
     /// The map of each quantity, which its borders name before a colon, with that name; the whole where none
     /// does.
     pub fn parts(&self) -> Vec<(&str, FailureMap)> {
-        fn split(cell: &Cell) -> (&str, &str) {
+        fn split(cell: &BorderCell) -> (&str, &str) {
             cell.border.split_once(": ").unwrap_or(("", &cell.border))
         }
-        let part = |cells: &[Cell]| {
-            let short = |cell: &Cell| Cell { border: split(cell).1.to_owned(), ..cell.clone() };
+        let part = |cells: &[BorderCell]| {
+            let short = |cell: &BorderCell| BorderCell { border: split(cell).1.to_owned(), ..cell.clone() };
             FailureMap { cells: cells.iter().map(short).collect() }
         };
         let parts = self.cells.chunk_by(|a, b| split(a).0 == split(b).0);
@@ -148,7 +148,7 @@ impl FailureMap {
     }
 
     /// The cells of this library's methods that should not be: wrong, stalled or crashed.
-    pub fn broken(&self) -> impl Iterator<Item = &Cell> {
+    pub fn broken(&self) -> impl Iterator<Item = &BorderCell> {
         let bad = [Outcome::Wrong, Outcome::Stalled, Outcome::Crashed];
         self.cells.iter().filter(move |c| c.ours && bad.contains(&c.outcome))
     }
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_cell() {
-        let question = |scene: &str, answer: Box<dyn FnOnce() -> Found + Send>| Question {
+        let question = |scene: &str, answer: Box<dyn FnOnce() -> Found + Send>| BorderQuestion {
             method: "one",
             ours: true,
             border: "panics",

@@ -1,9 +1,9 @@
 //! Speed against accuracy, and where methods break.
 //!
-//! A [`Scene`] has a known truth; every method answers it with each of its settings, and error and time are
-//! measured together. A [`FailureMap`] tells what the methods do at the borders of what they can: right,
-//! refused with a reason, wrong without a word, stalled, crashed. Two families: models of the motion, and
-//! estimators of what is measured of it.
+//! A [`BenchmarkScene`] has a known truth; every method answers it with each of its settings, and error and
+//! time are measured together. A [`FailureMap`] tells what the methods do at the borders of what they can:
+//! right, refused with a reason, wrong without a word, stalled, crashed. Two families: models of the motion,
+//! and estimators of what is measured of it.
 //!
 //! ```no_run
 //! use vibro_precision::{Family, Results};
@@ -22,10 +22,10 @@ pub mod models;
 mod results;
 mod scene;
 
-pub use failure::{Cell, FailureMap, Outcome};
+pub use failure::{BorderCell, FailureMap, Outcome};
 pub use results::Results;
-pub use scene::{Family, Measured, Scene};
+pub use scene::{BenchmarkScene, Family, MeasuredMethod};
 
 // What several modules speak of.
-use failure::{Found, Question};
+use failure::{BorderQuestion, Found};
 use scene::timed;

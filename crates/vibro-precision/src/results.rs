@@ -1,6 +1,6 @@
 //! All that one run of the bench has measured, and what other programs have.
 
-use super::{Cell, FailureMap, Family, Measured, Scene};
+use super::{BenchmarkScene, BorderCell, FailureMap, Family, MeasuredMethod};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -10,7 +10,7 @@ use vibro_record::{Error, Result};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// The scenes.
-    pub scenes: Vec<Scene>,
+    pub scenes: Vec<BenchmarkScene>,
     /// What came at the borders; empty where they were not asked for.
     #[serde(default, skip_serializing_if = "FailureMap::is_empty")]
     pub failures: FailureMap,
@@ -19,7 +19,7 @@ pub struct Results {
 /// What another program has measured: one method with one setting on one scene.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Added {
+struct AddedMeasurement {
     scene: String,
     /// Program, version and method.
     method: String,
@@ -47,7 +47,7 @@ impl Results {
             Family::Models => crate::models::scenes(quick, progress)?,
             Family::Estimators => crate::estimators::scenes(quick, progress),
         };
-        scenes.iter_mut().for_each(Scene::mark_front);
+        scenes.iter_mut().for_each(BenchmarkScene::mark_front);
         self.scenes.append(&mut scenes);
         if failures {
             progress("borders");
@@ -83,14 +83,17 @@ impl Results {
     /// If the file cannot be read, is not such a list, has a time or an error that is none, or gives a method
     /// the name of one of this library's, whose line it would become.
     pub fn add(&mut self, path: &Path) -> Result<Vec<String>> {
-        let lines: Vec<Added> = read(path, "a list of lines, each with scene, method, error and time_ns")?;
-        let ours = |m: &Measured| m.ours.then(|| m.method.clone());
+        let lines: Vec<AddedMeasurement> =
+            read(path, "a list of lines, each with scene, method, error and time_ns")?;
+        let ours = |m: &MeasuredMethod| m.ours.then(|| m.method.clone());
         let own: Vec<String> = self.scenes.iter().flat_map(|s| s.methods.iter().filter_map(ours)).collect();
         let mut left = Vec::new();
-        for Added { scene, method, setting, error, time_ns, why } in lines {
+        for AddedMeasurement { scene, method, setting, error, time_ns, why } in lines {
             let answer = error.ok_or_else(|| why.unwrap_or_else(|| "no answer".to_owned()));
-            let line =
-                Measured { other_program: true, ..Measured::new((&method, false), setting, time_ns, answer) };
+            let line = MeasuredMethod {
+                other_program: true,
+                ..MeasuredMethod::new((&method, false), setting, time_ns, answer)
+            };
             check(path, &scene, &line)?;
             if own.contains(&method) {
                 let found = format!("{}: {scene}, {method}: a method of this library", path.display());
@@ -101,14 +104,14 @@ impl Results {
                 None => left.push(scene),
             }
         }
-        self.scenes.iter_mut().for_each(Scene::mark_front);
+        self.scenes.iter_mut().for_each(BenchmarkScene::mark_front);
         Ok(left)
     }
 
     /// Leaves out what belongs to another family.
     pub fn retain(&mut self, wanted: impl Fn(Family) -> bool) {
         self.scenes.retain(|scene| wanted(scene.family));
-        self.failures.cells.retain(|cell: &Cell| wanted(cell.family));
+        self.failures.cells.retain(|cell: &BorderCell| wanted(cell.family));
     }
 }
 
@@ -118,7 +121,7 @@ fn read<T: DeserializeOwned>(path: &Path, expected: &str) -> Result<T> {
 }
 
 /// Refuses what cannot have been measured.
-fn check(path: &Path, scene: &str, m: &Measured) -> Result<()> {
+fn check(path: &Path, scene: &str, m: &MeasuredMethod) -> Result<()> {
     // An error of 0 is one below what the truth resolves.
     let numbers = [("time_ns", Some(m.time_ns)), ("error", m.error.filter(|e| *e != 0.0))];
     for (key, value) in numbers {
@@ -138,9 +141,9 @@ mod tests {
     fn a_peer_does_not_take_the_name_of_one_of_our_methods() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("peer.json");
-        let method = |name: &str, ours| Measured::new((name, ours), String::new(), 1e3, Ok(1e-9));
+        let method = |name: &str, ours| MeasuredMethod::new((name, ours), String::new(), 1e3, Ok(1e-9));
         let methods = vec![method("exact flights", true), method("Euler loop", false)];
-        let scene = Scene { methods, ..Scene::new(Family::Models, ["one", "", "", ""]) };
+        let scene = BenchmarkScene { methods, ..BenchmarkScene::new(Family::Models, ["one", "", "", ""]) };
         let mut results = Results { scenes: vec![scene], ..Results::default() };
         let mut added = |name: &str| {
             let line = format!(r#"[{{"scene": "one", "method": "{name}", "error": 1e-12, "time_ns": 1.0}}]"#);

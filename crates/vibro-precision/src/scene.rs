@@ -26,7 +26,7 @@ impl Family {
 // Each is a key of the JSON that other programs read.
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
+pub struct MeasuredMethod {
     /// Name of the method.
     pub method: String,
     /// A model's setting: step, tolerance, …; empty where it has none. Of an estimator the record it was
@@ -51,23 +51,33 @@ pub struct Measured {
     pub front: bool,
 }
 
-impl Measured {
+impl MeasuredMethod {
     /// A method's error, or why it has none; coded in this project.
     pub(crate) fn new(
         (method, ours): (&str, bool),
         setting: String,
         time_ns: f64,
         answer: Result<f64, String>,
-    ) -> Measured {
+    ) -> MeasuredMethod {
         let (method, failed) = (method.to_owned(), answer.is_err());
         let (error, why) = (answer.as_ref().ok().copied(), answer.err());
-        Measured { method, setting, ours, other_program: false, error, time_ns, failed, why, front: false }
+        MeasuredMethod {
+            method,
+            setting,
+            ours,
+            other_program: false,
+            error,
+            time_ns,
+            failed,
+            why,
+            front: false,
+        }
     }
 }
 
 /// A scene with a known truth and what each method made of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Scene {
+pub struct BenchmarkScene {
     /// Name, short enough for a file.
     pub name: String,
     /// Which kind of method it asks.
@@ -81,18 +91,18 @@ pub struct Scene {
     /// Cramér–Rao bound of the standard deviation, in the unit of the error.
     pub bound: Option<f64>,
     /// The methods, those of one name one after another.
-    pub methods: Vec<Measured>,
+    pub methods: Vec<MeasuredMethod>,
 }
 
 /// Errors that differ by less than this part are told apart by rounding, and by no chart.
 const TIE: f64 = 1e-3;
 
-impl Scene {
+impl BenchmarkScene {
     /// A scene that no method has been run on: its name, what it is, what the error is, where the truth comes
     /// from.
-    pub(crate) fn new<S: Into<String>>(family: Family, texts: [S; 4]) -> Scene {
+    pub(crate) fn new<S: Into<String>>(family: Family, texts: [S; 4]) -> BenchmarkScene {
         let [name, says, error_of, truth] = texts.map(Into::into);
-        Scene { name, family, says, error_of, truth, bound: None, methods: Vec::new() }
+        BenchmarkScene { name, family, says, error_of, truth, bound: None, methods: Vec::new() }
     }
 
     /// Marks those than which no other is both faster and more accurate (the Pareto front); none that failed.
@@ -101,7 +111,7 @@ impl Scene {
     /// setting of a model is the model's own choice; that of an estimator is the record, and only answers
     /// to the same record compete.
     pub(crate) fn mark_front(&mut self) {
-        let beats = |a: &Measured, b: &Measured| match (a.error, b.error) {
+        let beats = |a: &MeasuredMethod, b: &MeasuredMethod| match (a.error, b.error) {
             (Some(e), Some(error)) => {
                 (self.family == Family::Models || a.setting == b.setting)
                     && e <= error * (1.0 + TIE)
@@ -110,7 +120,7 @@ impl Scene {
             }
             _ => false,
         };
-        let on = |m: &Measured| m.error.is_some() && !self.methods.iter().any(|other| beats(other, m));
+        let on = |m: &MeasuredMethod| m.error.is_some() && !self.methods.iter().any(|other| beats(other, m));
         let marks: Vec<bool> = self.methods.iter().map(on).collect();
         for (method, front) in self.methods.iter_mut().zip(marks) {
             method.front = front;
@@ -150,10 +160,10 @@ mod tests {
 
     fn marks(family: Family, methods: &[(&str, Option<f64>, f64)]) -> Vec<bool> {
         let method = |&(setting, error, time): &(&str, Option<f64>, f64)| {
-            Measured::new(("", false), setting.to_owned(), time, error.ok_or_else(String::new))
+            MeasuredMethod::new(("", false), setting.to_owned(), time, error.ok_or_else(String::new))
         };
         let methods = methods.iter().map(method).collect();
-        let mut scene = Scene { methods, ..Scene::new(family, [""; 4]) };
+        let mut scene = BenchmarkScene { methods, ..BenchmarkScene::new(family, [""; 4]) };
         scene.mark_front();
         scene.methods.iter().map(|m| m.front).collect()
     }

@@ -92,7 +92,7 @@ impl Clock {
         if n < FEWEST {
             return None;
         }
-        let line = Line::through(instants);
+        let line = FittedLine::through(instants);
         let tolerance = tolerance(line.step);
         let near = |(i, t): (usize, &f64)| (t - line.at(i)).abs() <= tolerance;
         let risen = line.step > 0.0 && line.step.is_finite();
@@ -242,7 +242,7 @@ fn step_std(instants: &[f64], jitter: f64) -> f64 {
     if n < PARTS * FEWEST_OF_PART {
         return independent;
     }
-    let of = |part: usize| Line::through(&instants[part * n / PARTS..(part + 1) * n / PARTS]).step;
+    let of = |part: usize| FittedLine::through(&instants[part * n / PARTS..(part + 1) * n / PARTS]).step;
     let steps: Vec<f64> = (0..PARTS).map(of).collect();
     let mean = steps.iter().sum::<f64>() / PARTS as f64;
     let squares: f64 = steps.iter().map(|step| (step - mean).powi(2)).sum();
@@ -250,20 +250,20 @@ fn step_std(instants: &[f64], jitter: f64) -> f64 {
 }
 
 /// The line through instants by least squares.
-struct Line {
+struct FittedLine {
     centre: f64,
     mean: f64,
     step: f64,
 }
 
-impl Line {
-    fn through(instants: &[f64]) -> Line {
+impl FittedLine {
+    fn through(instants: &[f64]) -> FittedLine {
         // Differences from the first: seconds since 1970 have few digits left for a step.
         let (n, first) = (instants.len() as f64, instants[0]);
         let centre = (n - 1.0) / 2.0;
         let mean = first + instants.iter().map(|t| t - first).sum::<f64>() / n;
         let moment: f64 = instants.iter().enumerate().map(|(i, t)| (i as f64 - centre) * (t - first)).sum();
-        Line { centre, mean, step: moment / (n * (n * n - 1.0) / 12.0) }
+        FittedLine { centre, mean, step: moment / (n * (n * n - 1.0) / 12.0) }
     }
 
     fn at(&self, i: usize) -> f64 {

@@ -17,7 +17,7 @@ pub struct Error(Box<Inner>);
 
 #[derive(Debug)]
 struct Inner {
-    kind: Kind,
+    kind: Failure,
     /// Place in the input.
     place: Place,
     /// What stands there, what the system refused, or why there is no answer.
@@ -34,7 +34,7 @@ struct Inner {
 
 /// The three ways in which a request fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum Failure {
     /// The operating system refused to open, read or write.
     Io,
     /// Input that cannot be read as what it should be, or wrong usage.
@@ -80,14 +80,14 @@ impl Place {
 }
 
 impl Error {
-    fn new(kind: Kind, place: Place, found: String, expected: String) -> Self {
+    fn new(kind: Failure, place: Place, found: String, expected: String) -> Self {
         let (excerpt, hint, settings) = (String::new(), String::new(), Vec::new());
         Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings }))
     }
 
     /// Input at `place` is not what it should be.
     pub fn input(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Error::new(Kind::Input, place, found.into(), expected.into())
+        Error::new(Failure::Input, place, found.into(), expected.into())
     }
 
     /// Wrong usage: no file is at fault.
@@ -97,7 +97,7 @@ impl Error {
 
     /// The data or the parameters do not allow an answer.
     pub fn refused(why: impl Into<String>) -> Self {
-        Error::new(Kind::Refused, Place::default(), why.into(), String::new())
+        Error::new(Failure::Refused, Place::default(), why.into(), String::new())
     }
 
     /// The system refused `action` on `path`.
@@ -110,7 +110,7 @@ impl Error {
         // Without Rust's ` (os error 2)`.
         let plain = source.split(" (os error").next().unwrap_or_default().to_lowercase();
         let found = format!("cannot {action} {}: {plain}", shown(path));
-        let error = Error::new(Kind::Io, Place::default(), found, String::new());
+        let error = Error::new(Failure::Io, Place::default(), found, String::new());
         if absent { error.hint(instead(Path::new(""), path)) } else { error }
     }
 
@@ -139,7 +139,7 @@ impl Error {
 
     /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as
     /// `--low-pass`.
-    pub fn spoken(&self, typed: impl Fn(&str, &str) -> String) -> String {
+    pub fn text_with(&self, typed: impl Fn(&str, &str) -> String) -> String {
         let Inner { place, excerpt, hint, settings, .. } = &*self.0;
         let what = self.what(place);
         let values = settings.iter().any(|(_, value)| !value.is_empty());
@@ -182,7 +182,7 @@ impl Error {
 
     /// What is known of input, to be completed; nothing of other errors.
     fn fault(&mut self) -> Option<&mut Inner> {
-        Some(&mut *self.0).filter(|inner| inner.kind == Kind::Input)
+        Some(&mut *self.0).filter(|inner| inner.kind == Failure::Input)
     }
 
     /// Adds to what was found, in brackets.
@@ -245,7 +245,7 @@ impl Error {
 
     /// Names the record that an answer was refused of.
     pub fn of_record(mut self, name: &str) -> Self {
-        if self.0.kind == Kind::Refused {
+        if self.0.kind == Failure::Refused {
             self.0.found = format!("{name}: {}", self.0.found);
         }
         self
@@ -254,12 +254,12 @@ impl Error {
     /// Whether it is wrong usage, of no place in a file, that neither advice nor a setting stands beside.
     pub fn is_bare_usage(&self) -> bool {
         let Inner { kind, place, hint, settings, .. } = &*self.0;
-        *kind == Kind::Input && *place == Place::default() && hint.is_empty() && settings.is_empty()
+        *kind == Failure::Input && *place == Place::default() && hint.is_empty() && settings.is_empty()
     }
 
     /// Why the data or the parameters do not allow an answer; nothing where it is another error.
     pub fn refusal(&self) -> Option<&str> {
-        (self.0.kind == Kind::Refused).then_some(self.0.found.as_str())
+        (self.0.kind == Failure::Refused).then_some(self.0.found.as_str())
     }
 
     /// Where and what is wrong, on one line, without what to try.
@@ -269,7 +269,7 @@ impl Error {
 
     /// Exit code of the command: 1 no answer possible, 2 unreadable input or wrong usage.
     pub fn exit_code(&self) -> u8 {
-        if self.0.kind == Kind::Refused { 1 } else { 2 }
+        if self.0.kind == Failure::Refused { 1 } else { 2 }
     }
 }
 
@@ -317,11 +317,9 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            &self.spoken(
-                |key, value| if value.is_empty() { key.to_owned() } else { format!("{key} = {value}") },
-            ),
-        )
+        f.write_str(&self.text_with(|key, value| {
+            if value.is_empty() { key.to_owned() } else { format!("{key} = {value}") }
+        }))
     }
 }
 
@@ -350,7 +348,7 @@ mod tests {
         let error = Error::refused("no rate").hint("state the sampling rate").setting("base_band");
         assert_eq!(error.to_string(), "no rate\n  try: state the sampling rate (base_band)");
         let option = |key: &str, _: &str| format!("--{}", key.replace('_', "-"));
-        assert_eq!(error.spoken(option), "no rate\n  try: state the sampling rate (--base-band)");
+        assert_eq!(error.text_with(option), "no rate\n  try: state the sampling rate (--base-band)");
     }
 
     #[test]

@@ -15,7 +15,7 @@ const COARSEST: f64 = 250.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rails {
     /// Largest and smallest value.
-    ends: [End; 2],
+    ends: [Rail; 2],
     /// The value before the run of equal ones that is under way, that value, and how often it came.
     before: f64,
     last: f64,
@@ -27,7 +27,7 @@ pub struct Rails {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct End {
+struct Rail {
     value: f64,
     /// Samples there.
     count: usize,
@@ -39,7 +39,7 @@ struct End {
 
 impl Default for Rails {
     fn default() -> Rails {
-        let end = |value| End { value, count: 0, fall: 0.0, flats: 0 };
+        let end = |value| Rail { value, count: 0, fall: 0.0, flats: 0 };
         let ends = [end(f64::NEG_INFINITY), end(f64::INFINITY)];
         Rails { ends, before: f64::NAN, last: f64::NAN, run: 0, step: f64::INFINITY, flats: 0 }
     }
@@ -78,7 +78,7 @@ impl Rails {
         all.leave(f64::NAN);
         let step = self.step.min(reach / COARSEST).max(0.0);
         let elsewhere = all.flats.saturating_sub(all.ends.iter().map(|end| end.flats).sum());
-        let rests = move |end: &End| end.fall > ROUNDED * step && end.flats > elsewhere;
+        let rests = move |end: &Rail| end.fall > ROUNDED * step && end.flats > elsewhere;
         all.ends.into_iter().filter(rests).map(|end| (end.value, end.count))
     }
 
@@ -96,10 +96,10 @@ impl Rails {
     }
 }
 
-impl End {
+impl Rail {
     fn reach(&mut self, value: f64) {
         if value != self.value {
-            *self = End { value, count: 0, fall: 0.0, flats: 0 };
+            *self = Rail { value, count: 0, fall: 0.0, flats: 0 };
         }
         self.count += 1;
     }

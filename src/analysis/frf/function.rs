@@ -34,7 +34,7 @@ impl Function {
     pub fn of_sweep(campaign: &Campaign, name: Option<&str>) -> Result<Function> {
         let compute = &campaign.compute;
         let options = ResponseOptions { band: compute.peak_lines, integrate: None, fmin: compute.fmin };
-        let (_, response) = sweep::named(campaign, name)?.taken(&options)?;
+        let (_, response) = sweep::named(campaign, name)?.sweep_and_response(&options)?;
         Function::of_response(&response)
     }
 

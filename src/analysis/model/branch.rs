@@ -21,8 +21,8 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// What is varied: frequency, force, gap, restitution
-    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
-    pub over: Over,
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<BranchParameter>, default_value = "frequency"))]
+    pub over: BranchParameter,
     /// Lower end, in Hz, N, m or 1
     pub from: f64,
     /// Upper end, in the same unit
@@ -44,7 +44,7 @@ pub struct Keys {
 /// What is varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Over {
+pub enum BranchParameter {
     /// The excitation frequency.
     Frequency,
     /// The amplitude of the force.
@@ -55,13 +55,13 @@ pub enum Over {
     Restitution,
 }
 
-impl From<Over> for Parameter {
-    fn from(over: Over) -> Parameter {
+impl From<BranchParameter> for Parameter {
+    fn from(over: BranchParameter) -> Parameter {
         match over {
-            Over::Frequency => Parameter::Frequency,
-            Over::Force => Parameter::Force,
-            Over::Gap => Parameter::Gap,
-            Over::Restitution => Parameter::Restitution,
+            BranchParameter::Frequency => Parameter::Frequency,
+            BranchParameter::Force => Parameter::Force,
+            BranchParameter::Gap => Parameter::Gap,
+            BranchParameter::Restitution => Parameter::Restitution,
         }
     }
 }
@@ -78,7 +78,8 @@ impl Keys {
         let over = Parameter::from(self.over);
         // The ends first: the middle between them is a start.
         check_range(over, self.from, self.to, self.from)?;
-        let middle = Some(f64::midpoint(self.from, self.to)).filter(|_| self.over == Over::Frequency);
+        let middle =
+            Some(f64::midpoint(self.from, self.to)).filter(|_| self.over == BranchParameter::Frequency);
         let Driven { scene, excitation, finding } = self.scene.driven(self.frequency.or(middle))?;
         let (rig, sine) = (scene.rig, pattern::sine(&excitation)?);
         check_range(over, self.from, self.to, over.of(&rig, &sine))?;
@@ -120,9 +121,9 @@ impl Keys {
             if over.unit() == "1" { "" } else { over.unit() }
         );
         let (where_from, setting) = match self.over {
-            Over::Frequency => ("start at another frequency", "frequency"),
-            Over::Force => ("start at another force", "force"),
-            Over::Gap | Over::Restitution => ("start at another value", "set"),
+            BranchParameter::Frequency => ("start at another frequency", "frequency"),
+            BranchParameter::Force => ("start at another force", "force"),
+            BranchParameter::Gap | BranchParameter::Restitution => ("start at another value", "set"),
         };
         let shown = match (self.impacts, self.cycles) {
             (1, 1) => "`vibro model response` shows where there are motions",
@@ -164,20 +165,20 @@ fn ones(rig: &Rig, sine: &Sine) -> Result<Vec<PeriodicOrbit>> {
 
 /// A point of a branch, and the value over which that is followed.
 #[derive(Serialize)]
-struct Point {
+struct BranchPoint {
     #[serde(flatten)]
     orbit: Value,
     value: f64,
 }
 
 fn told(over: Parameter, branch: &Branch) -> Value {
-    let with = |orbit: &PeriodicOrbit| Point {
+    let with = |orbit: &PeriodicOrbit| BranchPoint {
         orbit: pattern::told(orbit, None),
         value: over.of(&orbit.rig, &orbit.sine),
     };
     let mark = |m: &crate::model::continuation::Mark| json!({ "kind": m.kind, "after": m.after, "orbit": with(&m.orbit) });
     json!({
-        "points": branch.points.iter().map(with).collect::<Vec<Point>>(),
+        "points": branch.points.iter().map(with).collect::<Vec<BranchPoint>>(),
         "marks": branch.marks.iter().map(mark).collect::<Vec<Value>>(),
         "ends": branch.ends,
     })

@@ -92,7 +92,7 @@ impl Keys {
 }
 
 fn single(choice: &Choice, question: &Question, answer: &mut Answer) -> Result<()> {
-    answer.result.extend(Answer::of(&Worded::of(choice))?.result);
+    answer.result.extend(Answer::of(&WordedChoice::of(choice))?.result);
     answer.add("", &choice.findings);
     answer.table("rungs", rungs(choice, question));
     if !choice.sensitivity.is_empty() {
@@ -114,8 +114,8 @@ fn along(survey: &Survey, question: &Question, answer: &mut Answer) -> Result<()
     let points = survey.points.len();
     let why =
         |of: &Summary| format!("Valid at {} and chosen at {} of {points} points.", of.valid_at, of.chosen_at);
-    let rungs: Vec<_> = survey.rungs.iter().map(|rung| Why { rung, why: why(rung) }).collect();
-    let worded: Vec<Worded> = survey.points.iter().map(Worded::of).collect();
+    let rungs: Vec<_> = survey.rungs.iter().map(|rung| RungReason { rung, why: why(rung) }).collect();
+    let worded: Vec<WordedChoice> = survey.points.iter().map(WordedChoice::of).collect();
     let found = json!({
         "chosen": survey.chosen, "rungs": rungs, "stretches": survey.stretches, "points": worded,
     });
@@ -171,7 +171,7 @@ fn fates(choice: &Choice) -> Vec<(String, &'static str, String)> {
 
 /// A rung, and in words why it answers or does not.
 #[derive(Serialize)]
-struct Why<'a, T> {
+struct RungReason<'a, T> {
     #[serde(flatten)]
     rung: &'a T,
     why: String,
@@ -179,20 +179,20 @@ struct Why<'a, T> {
 
 /// A choice with its reasons in words. Its rungs stand in place of those of the choice, which have no words.
 #[derive(Serialize)]
-struct Worded<'a> {
+struct WordedChoice<'a> {
     #[serde(flatten)]
     choice: &'a Choice,
-    rungs: Vec<Why<'a, Rung>>,
+    rungs: Vec<RungReason<'a, Rung>>,
     reasons: Vec<String>,
 }
 
-impl Worded<'_> {
-    fn of(choice: &Choice) -> Worded<'_> {
+impl WordedChoice<'_> {
+    fn of(choice: &Choice) -> WordedChoice<'_> {
         let rungs = fates(choice).into_iter().map(|(names, fate, why)| format!("{names}: {fate}. {why}"));
         let found: Vec<_> = choice.findings.iter().map(|f| (String::new(), f.clone())).collect();
-        Worded {
+        WordedChoice {
             choice,
-            rungs: choice.rungs.iter().map(|rung| Why { rung, why: why(rung) }).collect(),
+            rungs: choice.rungs.iter().map(|rung| RungReason { rung, why: why(rung) }).collect(),
             reasons: rungs.chain(sentences(&found, Voice::Command, true)).collect(),
         }
     }

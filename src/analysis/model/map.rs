@@ -3,7 +3,7 @@
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::{Answer, Progress};
 use crate::error::Result;
-use crate::model::map::{Axis, Cell, Plan};
+use crate::model::map::{Cell, MapAxis, Plan};
 use crate::record::Finding;
 use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
@@ -39,7 +39,7 @@ impl Keys {
     /// # Errors
     /// If the scene or a key cannot be, or nothing drives the rig.
     pub fn answer(&self, progress: &dyn Progress) -> Result<Answer> {
-        let (x, y): (Axis, Axis) = (self.x.parse()?, self.y.parse()?);
+        let (x, y): (MapAxis, MapAxis) = (self.x.parse()?, self.y.parse()?);
         // What is varied needs not be given: the excitation then begins at its low end.
         let or_varied = |given: Option<f64>, name: &str| {
             given.or_else(|| [&x, &y].into_iter().find(|a| a.key.name() == name).map(|a| a.low))

@@ -1,7 +1,7 @@
 //! All motions with one impact a period at one frequency, and those with several that are found: `vibro model
 //! orbit`.
 
-use super::{Driven, Judged, SceneKeys, check_gap_std, figures, pattern};
+use super::{Driven, JudgedOrbit, SceneKeys, check_gap_std, figures, pattern};
 use crate::analysis::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
@@ -52,8 +52,9 @@ impl Keys {
         let mut softening = Vec::new();
         let (contact, soft) = soften(&driven, &found, &mut softening)?;
         let both = found.orbits.iter().zip(&soft);
-        let listed: Vec<WithSoft> =
-            both.map(|(orbit, soft)| WithSoft { orbit: Judged::of(orbit, self.gap_std), soft }).collect();
+        let listed: Vec<SoftenedOrbit> = both
+            .map(|(orbit, soft)| SoftenedOrbit { orbit: JudgedOrbit::of(orbit, self.gap_std), soft })
+            .collect();
         let mut answer = Answer::of(&json!({
             "scene": scene,
             "orbits": listed,
@@ -114,9 +115,9 @@ impl Keys {
 /// The contact and what it changes in each orbit; a finding where that is not known.
 /// An orbit, and what it becomes where its contacts take time.
 #[derive(Serialize)]
-struct WithSoft<'a> {
+struct SoftenedOrbit<'a> {
     #[serde(flatten)]
-    orbit: Judged<'a>,
+    orbit: JudgedOrbit<'a>,
     soft: &'a Option<Softened>,
 }
 

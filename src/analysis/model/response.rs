@@ -1,6 +1,6 @@
 //! Motions with one impact a period over frequency: `vibro model response`.
 
-use super::{Driven, Judged, SceneKeys, check_gap_std, figures};
+use super::{Driven, JudgedOrbit, SceneKeys, check_gap_std, figures};
 use crate::analysis::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
@@ -72,7 +72,7 @@ impl Keys {
     fn point(&self, point: &ResponsePoint) -> Value {
         json!({
             "frequency": point.frequency,
-            "orbits": point.orbits.iter().map(|o| Judged::of(o, self.gap_std)).collect::<Vec<_>>(),
+            "orbits": point.orbits.iter().map(|o| JudgedOrbit::of(o, self.gap_std)).collect::<Vec<_>>(),
             "no_impact": point.no_impact,
             "backbone": point.backbone.as_ref().map(|o| json!({
                 "impulse": o.impulse,

@@ -4,7 +4,7 @@ use super::contact::{self, Contact};
 use super::{Driven, SceneKeys, figures};
 use crate::analysis::Answer;
 use crate::error::{Error, Result};
-use crate::model::portrait::{Portrait, Sitting};
+use crate::model::portrait::{Portrait, PortraitOptions};
 use crate::model::{Motion, Regime, Rig, Simulation, State};
 use crate::record::Finding;
 use crate::report::Table;
@@ -51,7 +51,7 @@ const SHOWN: u32 = 12;
 const SAMPLES: u32 = 400;
 
 /// What a motion did in the cycles that were looked at.
-struct Seen {
+struct ObservedMotion {
     portrait: Portrait,
     /// Time in s, phase in rad and state at the end.
     end: (f64, f64, State),
@@ -74,7 +74,7 @@ impl Keys {
         let start = self.start(&scene.rig)?;
         let make = contact::motions(&scene, self.model, self.grazing)?;
         let seen = self.seen(&mut *make(&excitation, start, self.phase)?)?;
-        let Seen { portrait, end: (time, phase, state), grazing, flights } = &seen;
+        let ObservedMotion { portrait, end: (time, phase, state), grazing, flights } = &seen;
         let State { x1, v1, x2, v2 } = state;
         let mut answer = Answer::of(&json!({
             "scene": scene,
@@ -113,19 +113,19 @@ impl Keys {
     }
 
     /// What a motion does after it has settled.
-    fn seen(&self, motion: &mut dyn Motion) -> Result<Seen> {
+    fn seen(&self, motion: &mut dyn Motion) -> Result<ObservedMotion> {
         let end = motion.time() + f64::from(self.settle) / motion.frequency();
         motion.advance(end, &mut |_| {})?;
         let before = motion.counted().map(|counts| counts.grazing);
-        let sitting = Sitting { cycles: self.cycles, samples: SAMPLES, shown: SHOWN };
+        let sitting = PortraitOptions { cycles: self.cycles, samples: SAMPLES, shown: SHOWN };
         let portrait = Portrait::take(motion, &sitting)?;
         let (end, counts) = ((motion.time(), motion.phase(), motion.state()), motion.counted());
         let grazing = counts.zip(before).map(|(counts, before)| counts.grazing - before);
-        Ok(Seen { portrait, end, grazing, flights: counts.map(|counts| counts.flights) })
+        Ok(ObservedMotion { portrait, end, grazing, flights: counts.map(|counts| counts.flights) })
     }
 
     /// What is not to be relied on.
-    fn doubts(&self, seen: &Seen, rig: &Rig) -> Vec<Finding> {
+    fn doubts(&self, seen: &ObservedMotion, rig: &Rig) -> Vec<Finding> {
         let mut found = Vec::new();
         let pattern = &seen.portrait.pattern;
         if let Some(grazing) = seen.grazing.filter(|n| *n > 0) {
@@ -153,7 +153,7 @@ impl Keys {
     }
 }
 
-fn summary(seen: &Seen) -> Table {
+fn summary(seen: &ObservedMotion) -> Table {
     let Portrait { impacts, pattern, sticks, reaction, .. } = &seen.portrait;
     let regime = match pattern.regime {
         Regime::Periodic { impacts, cycles } => {

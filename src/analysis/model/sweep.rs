@@ -25,8 +25,8 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", command(flatten))]
     pub scene: SceneKeys,
     /// What is swept: the excitation frequency, or force, the size of the force or of the impulse
-    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<Over>, default_value = "frequency"))]
-    pub over: Over,
+    #[cfg_attr(feature = "cli", arg(value_name = "WHAT", value_parser = crate::campaign::word::<SweptParameter>, default_value = "frequency"))]
+    pub over: SweptParameter,
     /// Lower end in Hz, in N (N s for impulses) over the force
     pub from: f64,
     /// Upper end, in the same unit
@@ -37,8 +37,8 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(help = contact::HELP, value_name = "LAW", value_parser = crate::campaign::word::<Contact>, default_value = "restitution"))]
     pub model: Contact,
     /// Direction: up, down, both
-    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Way>, default_value = "both"))]
-    pub direction: Way,
+    #[cfg_attr(feature = "cli", arg(value_name = "WAY", value_parser = crate::campaign::word::<Directions>, default_value = "both"))]
+    pub direction: Directions,
     /// Change the frequency continuously by this many Hz/s, instead of in steps
     #[cfg_attr(feature = "cli", arg(conflicts_with_all = ["settle", "measure"]))]
     pub sweep_rate: Option<f64>,
@@ -60,7 +60,7 @@ pub struct Keys {
 /// What is swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Over {
+pub enum SweptParameter {
     /// The excitation frequency.
     Frequency,
     /// The size of the force, or of the impulse.
@@ -70,7 +70,7 @@ pub enum Over {
 /// The ways in which it is swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Way {
+pub enum Directions {
     /// Values rise.
     Up,
     /// Values fall.
@@ -88,7 +88,7 @@ impl Keys {
     /// # Errors
     /// If the scene or a key cannot be, nothing drives the rig, or a motion cannot be followed.
     pub fn answer(&self) -> Result<Answer> {
-        let over_force = self.over == Over::Force;
+        let over_force = self.over == SweptParameter::Force;
         // A frequency for the scene where it is swept: any within.
         let frequency = if over_force { self.frequency } else { Some(self.from) };
         let Driven { scene, excitation, finding } = self.scene.driven(frequency)?;
@@ -128,14 +128,14 @@ impl Keys {
         plan: &Plan,
     ) -> Result<Swept> {
         let directions: &[Direction] = match self.direction {
-            Way::Up => &[Direction::Up],
-            Way::Down => &[Direction::Down],
-            Way::Both => &[Direction::Up, Direction::Down],
+            Directions::Up => &[Direction::Up],
+            Directions::Down => &[Direction::Down],
+            Directions::Both => &[Direction::Up, Direction::Down],
         };
         let rest = Simulation::at_rest(rig);
         apart(directions, |direction| {
             let start = if direction == Direction::Up { plan.from } else { plan.to };
-            if self.over == Over::Frequency {
+            if self.over == SweptParameter::Frequency {
                 let mut motion = make(&excitation.at_frequency(start), rest, 0.0)?;
                 return plan.frequency(&mut *motion, excitation.size(), direction);
             }

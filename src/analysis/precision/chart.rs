@@ -1,7 +1,7 @@
 //! Speed against accuracy.
 
 use crate::figure::Shape;
-use crate::precision::{Family, Measured, Scene};
+use crate::precision::{BenchmarkScene, Family, MeasuredMethod};
 use crate::report::layout::capital;
 use crate::report::{AxisSpec, Figure, Ink, Legend, Marker, Plot, Series, Stroke};
 use crate::units::notation::typeset;
@@ -34,10 +34,10 @@ const OFTEN: [&str; 10] = [
 const GROUPS: [&str; 3] = ["Methods of vibro", "Common methods, coded in vibro", "Other programs"];
 
 /// Whose code it is: its place in [`GROUPS`].
-pub fn group(m: &Measured) -> usize {
+pub fn group(m: &MeasuredMethod) -> usize {
     match m {
-        Measured { ours: true, .. } => 0,
-        Measured { other_program: false, .. } => 1,
+        MeasuredMethod { ours: true, .. } => 0,
+        MeasuredMethod { other_program: false, .. } => 1,
         _ => 2,
     }
 }
@@ -59,7 +59,7 @@ struct View {
 }
 
 impl View {
-    fn of(scene: &Scene, failing: usize) -> View {
+    fn of(scene: &BenchmarkScene, failing: usize) -> View {
         let span = |values: &mut dyn Iterator<Item = f64>, none: [f64; 2]| {
             let (low, high) = values
                 .map(f64::log10)
@@ -84,8 +84,8 @@ impl View {
 /// Error over time of every method of a scene, one line a method; what failed stands as crosses at the upper
 /// edge, each method in a row of its own. Points of models are their settings; those of estimators are kinds
 /// of records, which letters name.
-pub fn chart(scene: &Scene) -> Figure {
-    let mut lines: Vec<&[Measured]> = scene.methods.chunk_by(|a, b| a.method == b.method).collect();
+pub fn chart(scene: &BenchmarkScene) -> Figure {
+    let mut lines: Vec<&[MeasuredMethod]> = scene.methods.chunk_by(|a, b| a.method == b.method).collect();
     lines.sort_by_key(|line| group(&line[0]));
     let view = View::of(scene, lines.iter().filter(|l| l.iter().any(|m| error(m).is_none())).count());
     let power = |decades: f64| 10f64.powf(decades);
@@ -128,7 +128,7 @@ pub fn chart(scene: &Scene) -> Figure {
             (Ink::Nth(turn % 6), turn + 1 + round, round, stroke)
         };
         let row = power(view.top + view.row * (crosses.len() as f64 + 0.5));
-        let place = |m: &Measured| (seconds(m), error(m).unwrap_or(row));
+        let place = |m: &MeasuredMethod| (seconds(m), error(m).unwrap_or(row));
         let points = |name: String, failed: bool| {
             let of = line.iter().filter(|m| error(m).is_none() == failed);
             let (x, y): (Vec<f64>, Vec<f64>) = of.map(place).unzip();
@@ -175,19 +175,24 @@ pub fn chart(scene: &Scene) -> Figure {
 }
 
 /// The tolerance of another program's answer, where it has one.
-fn tolerance(m: &Measured) -> Option<&str> {
+fn tolerance(m: &MeasuredMethod) -> Option<&str> {
     let number = m.setting.strip_prefix("tolerance ")?;
     (m.other_program && error(m).is_some() && number.parse::<f64>().is_ok()).then_some(number)
 }
 
 /// Writes their tolerance beside the points of other programs.
-fn toleranced(plot: Plot, lines: Vec<Vec<((f64, f64), &Measured)>>) -> Plot {
+fn toleranced(plot: Plot, lines: Vec<Vec<((f64, f64), &MeasuredMethod)>>) -> Plot {
     let told = lines.into_iter().flatten().filter_map(|(at, m)| Some((at, tolerance(m)?)));
     told.fold(plot, |plot, ((x, y), number)| plot.note(typeset(number), x, y))
 }
 
 /// Names the record of each point by a letter, a capital on the front of that record.
-fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f64), &Measured)>>) -> Plot {
+fn lettered(
+    mut plot: Plot,
+    scene: &BenchmarkScene,
+    view: &View,
+    lines: Vec<Vec<((f64, f64), &MeasuredMethod)>>,
+) -> Plot {
     let mut records: Vec<&str> = Vec::new();
     for m in &scene.methods {
         if !records.contains(&m.setting.as_str()) {
@@ -197,7 +202,7 @@ fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f6
     if !(2..=26).contains(&records.len()) {
         return plot;
     }
-    let letter = |m: &Measured| {
+    let letter = |m: &MeasuredMethod| {
         let place = records.iter().position(|r| *r == m.setting).unwrap_or_default();
         char::from(if m.front { b'A' } else { b'a' } + place as u8)
     };
@@ -219,18 +224,18 @@ fn lettered(mut plot: Plot, scene: &Scene, view: &View, lines: Vec<Vec<((f64, f6
     plot
 }
 
-fn seconds(m: &Measured) -> f64 {
+fn seconds(m: &MeasuredMethod) -> f64 {
     1e-9 * m.time_ns
 }
 
 /// Error that can be drawn: an answer without any counts as rounding.
-fn error(m: &Measured) -> Option<f64> {
+fn error(m: &MeasuredMethod) -> Option<f64> {
     m.error.filter(|e| e.is_finite()).map(|e| e.abs().max(1e-17))
 }
 
 /// The border of what has been reached: down from the upper edge at the fastest, along to the most accurate,
 /// and on.
-fn stairs(scene: &Scene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
+fn stairs(scene: &BenchmarkScene, edge: f64, last: f64) -> (Vec<f64>, Vec<f64>) {
     let on = scene.methods.iter().filter(|m| m.front);
     let mut front: Vec<(f64, f64)> = on.filter_map(|m| Some((seconds(m), error(m)?))).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -250,8 +255,8 @@ mod tests {
     use super::*;
     use crate::report::Panel;
 
-    fn measured(method: &str, setting: &str, error: Option<f64>, front: bool) -> Measured {
-        Measured {
+    fn measured(method: &str, setting: &str, error: Option<f64>, front: bool) -> MeasuredMethod {
+        MeasuredMethod {
             method: method.into(),
             setting: setting.into(),
             ours: false,
@@ -264,8 +269,8 @@ mod tests {
         }
     }
 
-    fn scene(family: Family, methods: Vec<Measured>) -> Scene {
-        Scene {
+    fn scene(family: Family, methods: Vec<MeasuredMethod>) -> BenchmarkScene {
+        BenchmarkScene {
             name: "scene".into(),
             family,
             says: "A scene.".into(),
@@ -314,10 +319,13 @@ mod tests {
     fn the_legend_says_whose_code_a_method_is() {
         let methods = vec![
             measured("RK45", "tolerance 1e-6", Some(1e-2), true),
-            Measured { ours: true, ..measured("exact", "", Some(1e-9), true) },
-            Measured { other_program: true, ..measured("Peer 1.0", "tolerance 1e-6", Some(1e-3), true) },
-            Measured { other_program: true, ..measured("Peer 1.0", "tolerance 1e-9", None, true) },
-            Measured { other_program: true, ..measured("Peer 2.0", "step 1 ms", Some(1e-4), true) },
+            MeasuredMethod { ours: true, ..measured("exact", "", Some(1e-9), true) },
+            MeasuredMethod {
+                other_program: true,
+                ..measured("Peer 1.0", "tolerance 1e-6", Some(1e-3), true)
+            },
+            MeasuredMethod { other_program: true, ..measured("Peer 1.0", "tolerance 1e-9", None, true) },
+            MeasuredMethod { other_program: true, ..measured("Peer 2.0", "step 1 ms", Some(1e-4), true) },
         ];
         let Panel::Plot(plot) = chart(&scene(Family::Models, methods)).panels.remove(0) else {
             panic!("a plot")
@@ -353,7 +361,8 @@ mod tests {
 
     /// Colour and form of the crosses of each method that failed.
     fn crosses(methods: &[(&str, bool)]) -> Vec<(Ink, Option<Marker>)> {
-        let failing = |&(name, ours): &(&str, bool)| Measured { ours, ..measured(name, "", None, false) };
+        let failing =
+            |&(name, ours): &(&str, bool)| MeasuredMethod { ours, ..measured(name, "", None, false) };
         let methods = methods.iter().map(failing).collect();
         let Panel::Plot(plot) = chart(&scene(Family::Models, methods)).panels.remove(0) else {
             panic!("a plot")

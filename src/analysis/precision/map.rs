@@ -2,7 +2,7 @@
 
 use crate::precision::{FailureMap, Family, Outcome};
 use crate::report::colour::{BLACK, Rgb, SERIES, WHITE};
-use crate::report::{Figure, Grid, Kind};
+use crate::report::{Class, Figure, Grid};
 use crate::units::notation::typeset;
 
 /// Outcomes with their letters, colours and how much white is in them; the letters tell them apart without
@@ -28,7 +28,7 @@ pub fn maps(family: Family, map: &FailureMap) -> Vec<(String, Figure)> {
 
 /// Methods across, scenes of each border down, what came in each cell.
 fn grid(map: &FailureMap, title: String) -> Figure {
-    let kind = |(outcome, letter, colour, white): (Outcome, &str, Rgb, f64)| Kind {
+    let kind = |(outcome, letter, colour, white): (Outcome, &str, Rgb, f64)| Class {
         name: outcome.name().to_owned(),
         letter: letter.to_owned(),
         colour: colour.tint(white),

@@ -83,7 +83,7 @@ impl Listed {
     ///
     /// # Errors
     /// If a file cannot be read, or holds no response.
-    pub fn taken(&self, options: &ResponseOptions) -> Result<(Sweep, Response)> {
+    pub fn sweep_and_response(&self, options: &ResponseOptions) -> Result<(Sweep, Response)> {
         match &self.files {
             Files::Spectra(list) => {
                 let sweep = answerable(self.reader.read(list)?, options)?;

@@ -101,7 +101,7 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<Table>> {
         }
         let stiffness = campaign.contact.and_then(|contact| contact.stiffness);
         let sliders = laid.as_ref().and_then(|overlay| Sliders::of(rig, overlay, stiffness));
-        job.found.compared = laid.is_some().then_some(Compared { rig: *rig, sliders });
+        job.found.compared = laid.is_some().then_some(ComparedRig { rig: *rig, sliders });
     }
     job.put("rig", &rig)?;
     job.put("overlay", &laid)?;
@@ -111,7 +111,7 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<Table>> {
 
 /// A rig that measurements were compared with.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Compared {
+pub struct ComparedRig {
     /// The rig.
     pub rig: Rig,
     /// What its sliders begin with, where there is something to move.

@@ -12,7 +12,7 @@ pub(crate) const MOTION: [Quantity; 3] = [Quantity::Displacement, Quantity::Velo
 /// What is stated of stored responses.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
-pub struct Stored {
+pub struct StoredResponseKeys {
     /// Unit of the stored responses [default: what the files say, else the SI unit of the quantity, m where
     /// none is stated]
     pub unit: Option<String>,
@@ -30,7 +30,7 @@ pub struct Stored {
     pub analyser_integrated: Option<u8>,
 }
 
-impl Stored {
+impl StoredResponseKeys {
     /// Tells a reader.
     ///
     /// # Errors

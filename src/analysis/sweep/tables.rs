@@ -1,7 +1,7 @@
 //! Tables of sweeps, and of sweeps against the model.
 
 use crate::analysis::headline::{headline, remarked};
-use crate::compare::{Fit, Kind, Overlay};
+use crate::compare::{Fit, MotionKind, Overlay};
 use crate::measure::response::{Response, ResponsePoint};
 use crate::report::layout::{pair, table};
 use crate::report::{Cell, Column, Table};
@@ -158,10 +158,10 @@ pub fn pairs(overlay: &Overlay) -> Table {
             ("impacts/cycles", "", &|p| p.regime.as_deref().unwrap_or("-").into()),
             ("predicted motion", "", &|p| {
                 Cell::from(match p.motion {
-                    Some(Kind::Impacting) => "impacting",
-                    Some(Kind::Free) => "free",
-                    Some(Kind::Pattern) => "another pattern",
-                    Some(Kind::Irregular) => "irregular",
+                    Some(MotionKind::Impacting) => "impacting",
+                    Some(MotionKind::Free) => "free",
+                    Some(MotionKind::Pattern) => "another pattern",
+                    Some(MotionKind::Irregular) => "irregular",
                     None => "no prediction",
                 })
             }),

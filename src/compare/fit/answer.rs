@@ -1,7 +1,8 @@
 //! What a fit says of the rig, and what a person must know of it.
 
 use super::{
-    Converged, GUESS, Kind, NORMAL, Profile, Rung, Setting, Step, Uncertainty, Unidentified, Unknown, profile,
+    Converged, GUESS, MotionKind, NORMAL, Profile, Rung, Setting, SweepStep, Uncertainty, Unidentified,
+    Unknown, profile,
 };
 use crate::campaign::FitEntry;
 use crate::error::Result;
@@ -14,7 +15,7 @@ use std::borrow::Cow;
 
 /// A parameter as it was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Fitted {
+pub struct FittedParameter {
     /// Parameter.
     pub parameter: Parameter,
     /// Value with its standard uncertainty, `None` where it is not identifiable.
@@ -45,7 +46,7 @@ pub struct FitPoint {
     /// Excitation frequency in Hz.
     pub frequency: f64,
     /// Motion it was taken for.
-    pub motion: Kind,
+    pub motion: MotionKind,
     /// Measured amplitude in m.
     pub measured: f64,
     /// Amplitude in m by the parameters found.
@@ -81,7 +82,7 @@ impl LeftOut {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
     /// Parameters in the order they were asked for.
-    pub parameters: Vec<Fitted>,
+    pub parameters: Vec<FittedParameter>,
     /// Correlations of the same, row by row.
     pub correlations: Vec<Vec<f64>>,
     /// The rig found. The overlay and its scores are of the rig as it was stated.
@@ -116,7 +117,7 @@ pub struct Fit {
 }
 
 /// A converged search with what its sum of squares says.
-pub struct Answer<'a> {
+pub struct AssessedFit<'a> {
     pub found: Converged<'a>,
     pub uncertainty: Uncertainty,
     pub profile: Option<Profile>,
@@ -124,22 +125,22 @@ pub struct Answer<'a> {
     pub lost: Option<usize>,
 }
 
-impl<'a> Answer<'a> {
+impl<'a> AssessedFit<'a> {
     /// Of a search in which `lost` amplitudes were no longer seen.
     ///
     /// # Errors
     /// As [`Uncertainty::new`].
-    pub fn new(found: Converged<'a>, lost: Option<usize>) -> Result<Answer<'a>> {
+    pub fn new(found: Converged<'a>, lost: Option<usize>) -> Result<AssessedFit<'a>> {
         let uncertainty = Uncertainty::new(&found.least)?;
         let profile = profile(&found.least, &uncertainty, uncertainty.worst());
-        Ok(Answer { found, uncertainty, profile, lost })
+        Ok(AssessedFit { found, uncertainty, profile, lost })
     }
 }
 
 /// How the parameters are found; all that is not fitted is taken as exact.
 const METHOD: &str = "least squares of both masses and directions by the closed form";
 
-impl Answer<'_> {
+impl AssessedFit<'_> {
     /// The result, but for starts, rungs and cautions.
     pub fn fit(&self, base: &Setting) -> Fit {
         let (least, setting) = (&self.found.least, self.found.setting());
@@ -171,7 +172,7 @@ impl Answer<'_> {
             force: setting.force,
             n: used.len(),
             left_out: LeftOut {
-                faint: data.steps.iter().flat_map(Step::faint).count(),
+                faint: data.steps.iter().flat_map(SweepStep::faint).count(),
                 other_motion: (data.clear() - used.len()).saturating_sub(wavering + far),
                 far,
                 wavering,
@@ -191,7 +192,7 @@ impl Answer<'_> {
     }
 
     /// The parameter number `i`.
-    pub fn fitted(&self, base: &Setting, i: usize, in_doubt: bool) -> Fitted {
+    pub fn fitted(&self, base: &Setting, i: usize, in_doubt: bool) -> FittedParameter {
         let (problem, u) = (&self.found.least.problem, self.found.least.minimum.parameters[i]);
         let Unknown { parameter, coordinate, prior } = problem.unknowns[i];
         let reason = if in_doubt { Some(Unidentified::InDoubt) } else { self.uncertainty.unidentified[i] };
@@ -201,7 +202,7 @@ impl Answer<'_> {
         let profiled = profile.and_then(|p| Some([p.interval[0]?, p.interval[1]?]));
         let sloped = || coordinate.interval(u, NORMAL * self.uncertainty.std(i));
         let (unit, n) = (parameter.unit(), problem.rows().0);
-        Fitted {
+        FittedParameter {
             parameter,
             estimate: Estimate::new(value, identifiable.then_some(std), unit, n, METHOD),
             start: base.get(parameter),
@@ -242,7 +243,7 @@ const POOR: f64 = 1.25;
 /// A force that differs by more than this part is another one: a load cell is calibrated to 1 or 2 %.
 const OTHER: f64 = 0.05;
 
-impl Answer<'_> {
+impl AssessedFit<'_> {
     /// Why the answer as a whole may be wrong, and its uncertainties mean nothing.
     pub fn doubts(&self) -> Vec<Finding> {
         let (least, found, problem) = (&self.found.least, &self.found, &self.found.least.problem);

@@ -1,6 +1,6 @@
 //! The compliance of the contact, taken out of the points.
 
-use super::{Converged, Data, Kind, Problem, Reading, Setting, Step, assigned};
+use super::{Converged, Data, MotionKind, Problem, Setting, StepAmplitude, SweepStep, assigned};
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
@@ -13,7 +13,7 @@ const STILL: f64 = 0.1;
 
 /// Points as they would be with a rigid contact.
 #[derive(Debug, Clone)]
-pub struct Corrected {
+pub struct CorrectedPoints {
     pub data: Data,
     /// Amplitudes for which the contact lasts too long; they are no longer seen.
     pub lost: usize,
@@ -30,7 +30,7 @@ pub struct Corrected {
 ///
 /// # Errors
 /// If too few points are left.
-pub fn corrected(answer: &Converged<'_>, stiffness: f64) -> Result<Corrected> {
+pub fn corrected(answer: &Converged<'_>, stiffness: f64) -> Result<CorrectedPoints> {
     let from = |setting: &Setting| corrected_from(answer, setting, stiffness);
     // A rigid answer may be a rig whose contacts last too long to be corrected: then from the rig as it was
     // stated.
@@ -42,7 +42,7 @@ pub fn corrected(answer: &Converged<'_>, stiffness: f64) -> Result<Corrected> {
     }
 }
 
-fn corrected_from(answer: &Converged<'_>, from: &Setting, stiffness: f64) -> Result<Corrected> {
+fn corrected_from(answer: &Converged<'_>, from: &Setting, stiffness: f64) -> Result<CorrectedPoints> {
     let problem = &answer.least.problem;
     let mut now = without(problem, problem.data, from, stiffness)?;
     for _ in 0..ROUNDS {
@@ -58,16 +58,21 @@ fn corrected_from(answer: &Converged<'_>, from: &Setting, stiffness: f64) -> Res
 
 /// The points of the problem without what the contact makes of them in this setting. The motions are those of
 /// `latest` points: uncorrected ones may be outliers for want of the correction.
-fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f64) -> Result<Corrected> {
+fn without(
+    problem: &Problem<'_>,
+    latest: &Data,
+    setting: &Setting,
+    stiffness: f64,
+) -> Result<CorrectedPoints> {
     let kinds = assigned(latest, setting, latest.pace)?.kinds;
     let (mut data, mut lost) = (problem.data.clone(), 0);
     for (step, kind) in data.steps.iter_mut().zip(kinds) {
-        if kind != Some(Kind::Impacting) {
+        if kind != Some(MotionKind::Impacting) {
             continue;
         }
         let force = problem.data.force_at(setting, step);
         let Some((factors, left)) = factors(setting, stiffness, force, step.frequency) else {
-            lost += Step::clear(step).count();
+            lost += SweepStep::clear(step).count();
             step.readings = [None, None];
             continue;
         };
@@ -79,13 +84,13 @@ fn without(problem: &Problem<'_>, latest: &Data, setting: &Setting, stiffness: f
             reading.compliance = factor;
         }
     }
-    Ok(Corrected { data, lost, u: problem.coordinates(setting) })
+    Ok(CorrectedPoints { data, lost, u: problem.coordinates(setting) })
 }
 
 /// Largest change of an amplitude in standard deviations.
 fn change(before: &Data, after: &Data) -> f64 {
     let readings = |data: &Data| -> Vec<_> { data.steps.iter().flat_map(|s| s.readings.clone()).collect() };
-    let one = |(a, b): (&Option<Reading>, &Option<Reading>)| match (a, b) {
+    let one = |(a, b): (&Option<StepAmplitude>, &Option<StepAmplitude>)| match (a, b) {
         (Some(a), Some(b)) => (b.amplitude - a.amplitude).abs() / b.std,
         (None, None) => 0.0,
         _ => f64::INFINITY,

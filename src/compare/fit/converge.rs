@@ -1,8 +1,8 @@
 //! Motions by history and parameters by least squares, in turn until both stay.
 
 use super::{
-    Data, FINE, Kind, Motion, Pace, Problem, Reading, Setting, Simulated, Step, distances, motions, reached,
-    shown, simulated_briefly,
+    Data, FINE, Motion, MotionKind, Pace, Problem, Setting, Simulated, StepAmplitude, SweepStep, distances,
+    motions, reached, shown, simulated_briefly,
 };
 use crate::error::Result;
 use crate::math::Minimum;
@@ -24,7 +24,7 @@ const CHANCE: f64 = 3.09;
 
 /// The least sum of squares with given motions.
 #[derive(Debug, Clone)]
-pub struct Least<'a> {
+pub struct LeastSquares<'a> {
     pub problem: Problem<'a>,
     pub minimum: Minimum,
     /// χ²/ν of data and priors by their stated uncertainties; NaN without degrees of freedom.
@@ -36,7 +36,7 @@ pub struct Least<'a> {
 /// Parameters at the least sum of squares, with the motions that belong to them.
 #[derive(Debug, Clone)]
 pub struct Converged<'a> {
-    pub least: Least<'a>,
+    pub least: LeastSquares<'a>,
     /// Amplitudes left out because their motion changed from round to round.
     pub wavering: usize,
     /// Amplitudes left out as outliers.
@@ -107,7 +107,7 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// If there are fewer points than parameters.
-    pub fn least(mut self, start: &[f64]) -> Result<Least<'a>> {
+    pub fn least(mut self, start: &[f64]) -> Result<LeastSquares<'a>> {
         self.enough(self.rows().0)?;
         let mut rescaled = 0;
         let mut u = start.to_vec();
@@ -116,7 +116,7 @@ impl<'a> Problem<'a> {
             let minimum = self.solve(&u)?;
             let (reduced, whiteness) = self.goodness(&minimum.residuals);
             if rescaled == 2 {
-                return Ok(Least { problem: self, minimum, reduced, whiteness });
+                return Ok(LeastSquares { problem: self, minimum, reduced, whiteness });
             }
             let least = if self.data.guessed && self.freedom() > 0 { f64::MIN_POSITIVE } else { 1.0 };
             // A scale that the residuals had to tell is itself uncertain.
@@ -130,7 +130,7 @@ impl<'a> Problem<'a> {
     /// (z², 1) over all κ.
     fn left_over(&self, u: &[f64], motions: &Motions) -> f64 {
         let (data, setting) = (self.data, self.setting(u));
-        let one = |((step, kind), simulated): ((&Step, &Option<Kind>), &Option<[f64; 2]>)| {
+        let one = |((step, kind), simulated): ((&SweepStep, &Option<MotionKind>), &Option<[f64; 2]>)| {
             let far = |shows: [f64; 2]| -> f64 {
                 let z = FINE.iter().flat_map(|part| distances(data, step, shows, *part));
                 z.map(|z| z.powi(2).min(1.0)).sum()
@@ -154,13 +154,13 @@ impl<'a> Problem<'a> {
     }
 }
 
-fn leave_out(kinds: &mut [Option<Kind>], steps: &BTreeSet<usize>) {
+fn leave_out(kinds: &mut [Option<MotionKind>], steps: &BTreeSet<usize>) {
     for i in steps {
         kinds[*i] = None;
     }
 }
 
-impl Least<'_> {
+impl LeastSquares<'_> {
     /// Whether χ²/ν is larger than chance makes it (E. B. Wilson & M. M. Hilferty 1931).
     pub(crate) fn beyond_chance(&self) -> bool {
         let part = 2.0 / (9.0 * self.problem.freedom() as f64);
@@ -172,9 +172,9 @@ impl Least<'_> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motions {
     /// `None` where it is none of the closed form.
-    pub kinds: Vec<Option<Kind>>,
+    pub kinds: Vec<Option<MotionKind>>,
     /// The same by the simulated sweep alone, whatever was measured.
-    pub history: Vec<Option<Kind>>,
+    pub history: Vec<Option<MotionKind>>,
     /// Amplitudes of both masses in m of the simulated sweep; `None` where it has no answer.
     pub simulated: Vec<Option<[f64; 2]>>,
 }
@@ -198,9 +198,9 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
             let nearest = seen.min_by(|a, b| away(step, a).total_cmp(&away(step, b)));
             // A mass that moves is not free; of two impacting motions the closed form of a fit is the upper
             // one.
-            let upper = motions.first().filter(|m| m.kind == Kind::Impacting);
+            let upper = motions.first().filter(|m| m.kind == MotionKind::Impacting);
             let kind = history.and(nearest).map(|m| m.kind).filter(|kind| match kind {
-                Kind::Free => step.readings[1].as_ref().is_none_or(|r| r.upper_limit.is_some()),
+                MotionKind::Free => step.readings[1].as_ref().is_none_or(|r| r.upper_limit.is_some()),
                 _ => upper.is_some_and(Motion::is_seen),
             });
             Ok((*i, kind, history.map(|m| m.kind), simulated.map(|s| s.amplitude)))
@@ -217,9 +217,9 @@ pub fn assigned(data: &Data, setting: &Setting, pace: Pace) -> Result<Motions> {
 }
 
 /// Sum of |ln (measured/predicted)|; a mass that rests where it was seen to move is as far as can be.
-fn away(step: &Step, motion: &Motion) -> f64 {
+fn away(step: &SweepStep, motion: &Motion) -> f64 {
     let above = |(mass, limit): (usize, f64)| (motion.amplitude[mass] / limit).ln().max(0.0);
-    let moves = |(mass, reading): (usize, &Reading)| reading.log_ratio(motion.amplitude[mass]).abs();
+    let moves = |(mass, reading): (usize, &StepAmplitude)| reading.log_ratio(motion.amplitude[mass]).abs();
     step.clear().map(moves).sum::<f64>() + step.faint().map(above).sum::<f64>()
 }
 
@@ -235,7 +235,11 @@ const OUTLIERS: f64 = 0.25;
 ///
 /// They are left out one after the other, the farthest first, since it moves what the points share. Where the
 /// points scatter more than they should, by the median, that counts for a standard deviation.
-pub fn without_outliers(data: &Data, setting: &Setting, mut kinds: Vec<Option<Kind>>) -> Vec<Option<Kind>> {
+pub fn without_outliers(
+    data: &Data,
+    setting: &Setting,
+    mut kinds: Vec<Option<MotionKind>>,
+) -> Vec<Option<MotionKind>> {
     for _ in 0..(OUTLIERS * kinds.len() as f64) as usize {
         let mut problem = Problem::new(data, setting, Vec::new()).of(kinds.clone());
         problem.weigh(&[]);

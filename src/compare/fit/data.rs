@@ -1,13 +1,13 @@
 //! The measured points of a fit, both masses of one step together.
 
-use super::{Kind, Pace, Setting, Swept};
+use super::{MotionKind, Pace, Setting, Swept};
 use crate::error::Result;
 use crate::measure::response::{Response, ResponsePoint};
 use crate::record::{Direction, median};
 
 /// The amplitude of one mass at one step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
+pub struct StepAmplitude {
     /// Index of the sweep.
     pub sweep: usize,
     /// Amplitude in m; above 0.
@@ -21,7 +21,7 @@ pub struct Reading {
     pub compliance: f64,
 }
 
-impl Reading {
+impl StepAmplitude {
     /// ln (measured/predicted), e^20 at most: a motion that shows nothing, or does not exist, is as far as
     /// can be.
     pub fn log_ratio(&self, predicted: f64) -> f64 {
@@ -33,7 +33,7 @@ impl Reading {
 
 /// One step of a sweep: both masses where they were measured under the very same force.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct SweepStep {
     /// Excitation frequency in Hz.
     pub frequency: f64,
     /// Its standard uncertainty in Hz; 0 where it is not known.
@@ -43,12 +43,12 @@ pub struct Step {
     /// Its standard uncertainty in N; 0 where it is not known.
     pub force_std: f64,
     /// Mass 1 and mass 2.
-    pub readings: [Option<Reading>; 2],
+    pub readings: [Option<StepAmplitude>; 2],
 }
 
-impl Step {
+impl SweepStep {
     /// Amplitudes above the noise floor, with the index of their mass.
-    pub fn clear(&self) -> impl Iterator<Item = (usize, &Reading)> {
+    pub fn clear(&self) -> impl Iterator<Item = (usize, &StepAmplitude)> {
         let readings = (0..2).filter_map(|mass| Some((mass, self.readings[mass].as_ref()?)));
         readings.filter(|(_, reading)| reading.upper_limit.is_none())
     }
@@ -65,7 +65,7 @@ pub struct Data {
     /// Names and directions of the sweeps.
     pub sweeps: Vec<(String, Direction)>,
     /// Steps of all sequences.
-    pub steps: Vec<Step>,
+    pub steps: Vec<SweepStep>,
     /// Steps that were passed one after another, in the order of their measurement.
     pub sequences: Vec<Vec<usize>>,
     /// Reference of the forces in N: the stated one, or the median of the measured ones.
@@ -128,18 +128,18 @@ impl Data {
     }
 
     /// Force in N at a step in this setting.
-    pub fn force_at(&self, setting: &Setting, step: &Step) -> f64 {
+    pub fn force_at(&self, setting: &Setting, step: &SweepStep) -> f64 {
         step.force * setting.force / self.force
     }
 
     /// What a spectrum shows of both masses in m at a step, of the motion of this kind.
-    pub fn shows(&self, setting: &Setting, kind: Kind, step: &Step) -> [f64; 2] {
+    pub fn shows(&self, setting: &Setting, kind: MotionKind, step: &SweepStep) -> [f64; 2] {
         setting.shows(kind, self.force_at(setting, step), step.frequency)
     }
 
     /// Amplitudes above the noise floor.
     pub fn clear(&self) -> usize {
-        self.steps.iter().flat_map(Step::clear).count()
+        self.steps.iter().flat_map(SweepStep::clear).count()
     }
 
     /// Adds a sweep: beside the other mass, where that passed the very same steps. `relative` is the standard
@@ -150,10 +150,10 @@ impl Data {
         let step = |p: &&ResponsePoint| {
             let (frequency, (force, force_std)) = (p.excitation, swept.forcing.of(p));
             let frequency_std = p.excitation_std.unwrap_or(0.0);
-            Step { frequency, frequency_std, force, force_std, readings: [None, None] }
+            SweepStep { frequency, frequency_std, force, force_std, readings: [None, None] }
         };
-        let new: Vec<Step> = points.iter().map(step).collect();
-        let same = |(i, n): (&usize, &Step)| {
+        let new: Vec<SweepStep> = points.iter().map(step).collect();
+        let same = |(i, n): (&usize, &SweepStep)| {
             let s = &self.steps[*i];
             s.readings[mass].is_none() && (s.frequency, s.force) == (n.frequency, n.force)
         };
@@ -172,7 +172,7 @@ impl Data {
                 let std = point.amplitude.std.filter(|s| *s > 0.0).unwrap_or(relative * amplitude);
                 let upper_limit = point.upper_limit;
                 self.steps[place].readings[mass] =
-                    Some(Reading { sweep, amplitude, std, upper_limit, compliance: 1.0 });
+                    Some(StepAmplitude { sweep, amplitude, std, upper_limit, compliance: 1.0 });
             }
         }
     }

@@ -1,7 +1,7 @@
 //! No more model than the points ask for: models of rising order, each judged by points that it was not
 //! fitted to.
 
-use super::{Converged, Data, Kind, Problem, Setting, assigned};
+use super::{Converged, Data, MotionKind, Problem, Setting, assigned};
 use crate::measure::residuals::aicc;
 use crate::measure::response::Response;
 use crate::model::Parameter;
@@ -64,7 +64,7 @@ pub fn rungs(rigid: &Converged<'_>, soft: Option<&Converged<'_>>, responses: &[R
     let full = &rigid.least.problem;
     let mut linear = full.clone();
     for (kind, step) in linear.kinds.iter_mut().zip(&full.data.steps) {
-        *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| Kind::Free);
+        *kind = kind.filter(|_| step.clear().any(|(mass, _)| mass == 0)).map(|_| MotionKind::Free);
     }
     linear.unknowns.retain(|u| !u.parameter.needs_impacts());
     let blocks = blocks(full.data, responses);
@@ -99,7 +99,7 @@ fn rung(
     // One set of weights, that of the answer, for all models: sums of squares over different ones cannot be
     // compared.
     let off = answer.off(|step, kind| {
-        let kind = if impacts { kind } else { Kind::Free };
+        let kind = if impacts { kind } else { MotionKind::Free };
         let shows = answer.data.shows(&setting, kind, step);
         if std::ptr::eq(problem.data, answer.data) {
             return shows;
@@ -157,7 +157,7 @@ fn error(data: &Data, setting: &Setting, impacts: bool, steps: &[usize]) -> Opti
         let step = &data.steps[*i];
         let of = |kind| data.shows(setting, kind, step);
         let predicted = motions.as_ref().map_or_else(
-            || of(Kind::Free),
+            || of(MotionKind::Free),
             |motions| motions.history[*i].map(of).or(motions.simulated[*i]).unwrap_or([f64::NAN; 2]),
         );
         step.clear().map(move |(mass, reading)| reading.log_ratio(predicted[mass]).abs().min(1.0))

@@ -1,6 +1,6 @@
 //! Weighted residuals of the steps whose motion is known.
 
-use super::{Data, Kind, Reading, Setting, Step, Unknown, range};
+use super::{Data, MotionKind, Setting, StepAmplitude, SweepStep, Unknown, range};
 use crate::error::{Error, Result};
 use crate::math::{Minimum, minimise};
 use crate::model::Parameter;
@@ -17,7 +17,7 @@ pub struct Problem<'a> {
     pub base: Setting,
     pub unknowns: Vec<Unknown>,
     /// Motion of each step; `None` leaves it out.
-    pub kinds: Vec<Option<Kind>>,
+    pub kinds: Vec<Option<MotionKind>>,
     /// Errors of frequency and force, by step.
     step_errors: Vec<SharedErrors>,
     /// Errors of the calibrations.
@@ -41,7 +41,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The same with these motions; weights are still to be taken.
-    pub fn of(&self, kinds: Vec<Option<Kind>>) -> Problem<'a> {
+    pub fn of(&self, kinds: Vec<Option<MotionKind>>) -> Problem<'a> {
         Problem { kinds, ..self.with(self.data) }
     }
 
@@ -93,7 +93,7 @@ impl Problem<'_> {
     }
 
     /// Amplitudes that take part, with the indices of step and mass.
-    pub fn used(&self) -> impl Iterator<Item = (usize, usize, &Reading)> {
+    pub fn used(&self) -> impl Iterator<Item = (usize, usize, &StepAmplitude)> {
         let steps = self.data.steps.iter().zip(&self.kinds).enumerate();
         steps.flat_map(|(i, (step, kind))| shown(step, *kind).map(move |(mass, reading)| (i, mass, reading)))
     }
@@ -113,7 +113,7 @@ impl Problem<'_> {
     /// `u`.
     pub fn weigh(&mut self, u: &[f64]) {
         let setting = self.setting(u);
-        let errors = |(step, kind): (&Step, &Option<Kind>)| {
+        let errors = |(step, kind): (&SweepStep, &Option<MotionKind>)| {
             let Some(kind) = *kind else { return SharedErrors::default() };
             let force = self.data.force_at(&setting, step);
             let column = |std: f64, slopes: [f64; 2]| {
@@ -162,7 +162,7 @@ impl Problem<'_> {
     }
 
     /// What `of` makes of each step and its motion, in m for both masses, over their standard deviations.
-    fn whitened(&self, of: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
+    fn whitened(&self, of: impl Fn(&SweepStep, MotionKind) -> [f64; 2]) -> Vec<f64> {
         let mut all = Vec::new();
         for ((step, kind), errors) in self.data.steps.iter().zip(&self.kinds).zip(&self.step_errors) {
             let Some(kind) = *kind else { continue };
@@ -177,7 +177,7 @@ impl Problem<'_> {
     }
 
     /// Measured less what `shows` gives for each step and its motion, in standard deviations.
-    pub fn off(&self, shows: impl Fn(&Step, Kind) -> [f64; 2]) -> Vec<f64> {
+    pub fn off(&self, shows: impl Fn(&SweepStep, MotionKind) -> [f64; 2]) -> Vec<f64> {
         let widened = self.scale.sqrt();
         let mut all = self.whitened(|step, kind| {
             let shows = shows(step, kind);
@@ -212,9 +212,9 @@ impl Problem<'_> {
 }
 
 /// Clear amplitudes that depend on the parameters in a motion of this kind: a mass at rest shows none.
-pub fn shown(step: &Step, kind: Option<Kind>) -> impl Iterator<Item = (usize, &Reading)> {
+pub fn shown(step: &SweepStep, kind: Option<MotionKind>) -> impl Iterator<Item = (usize, &StepAmplitude)> {
     step.clear().filter(move |(mass, _)| match kind {
-        Some(Kind::Impacting) => true,
+        Some(MotionKind::Impacting) => true,
         Some(_) => *mass == 0,
         None => false,
     })

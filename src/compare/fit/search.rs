@@ -8,7 +8,7 @@
 //! valley that most points share is found before its floor (graduated non-convexity: A. Blake & A. Zisserman,
 //! *Visual Reconstruction* (1987), 7).
 
-use super::{Data, Kind, Problem, Setting, Step, Unknown};
+use super::{Data, MotionKind, Problem, Setting, SweepStep, Unknown};
 use crate::math::minimise;
 use crate::model::Parameter;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ const ROUNDS: usize = 4;
 
 /// Where some starts ended.
 #[derive(Debug, Clone, PartialEq)]
-pub struct End {
+pub struct LocalMinimum {
     /// Coordinates of the unknowns.
     pub u: Vec<f64>,
     /// How many starts ended there.
@@ -50,7 +50,7 @@ pub struct End {
 impl Problem<'_> {
     /// Follows `starts` starting points, the first from the base itself; gives where they ended, each place
     /// once, the cheapest first.
-    pub fn search(&self, starts: usize) -> Vec<End> {
+    pub fn search(&self, starts: usize) -> Vec<LocalMinimum> {
         let ranked = |places: Vec<Vec<f64>>| {
             let mut costs: Vec<_> = places.into_par_iter().map(|u| (self.cost(&u), u)).collect();
             costs.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -59,14 +59,14 @@ impl Problem<'_> {
         let screened = ranked((1..=SCREENED * (starts - 1)).map(|i| self.spread(i)).collect());
         let mut all = vec![self.coordinates(&self.base)];
         all.extend(screened.into_iter().take(starts - 1).map(|s| s.1));
-        let mut ends: Vec<(f64, End)> = Vec::new();
+        let mut ends: Vec<(f64, LocalMinimum)> = Vec::new();
         for (cost, u) in ranked(all.par_iter().map(|u| self.follow(u)).collect()) {
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_PLACE * a.abs().max(b.abs());
             match ends.last_mut() {
                 Some((least, end)) if cost - *least <= SAME_COST && end.u.iter().zip(&u).all(near) => {
                     end.starts += 1;
                 }
-                _ => ends.push((cost, End { u, starts: 1 })),
+                _ => ends.push((cost, LocalMinimum { u, starts: 1 })),
             }
         }
         ends.into_iter().map(|end| end.1).collect()
@@ -143,7 +143,7 @@ impl Problem<'_> {
     /// priors.
     fn cost(&self, u: &[f64]) -> f64 {
         let setting = self.setting(u);
-        let one = |step: &Step| self.nearest(&setting, step, COARSE[1]).1;
+        let one = |step: &SweepStep| self.nearest(&setting, step, COARSE[1]).1;
         self.prior_cost(&setting) + self.data.steps.iter().map(one).sum::<f64>()
     }
 
@@ -159,9 +159,9 @@ impl Problem<'_> {
     }
 
     /// The motion nearest to a step, and what its points cost.
-    fn nearest(&self, setting: &Setting, step: &Step, part: f64) -> (Kind, f64) {
+    fn nearest(&self, setting: &Setting, step: &SweepStep, part: f64) -> (MotionKind, f64) {
         let [impacting, free] =
-            [Kind::Impacting, Kind::Free].map(|kind| self.data.shows(setting, kind, step));
+            [MotionKind::Impacting, MotionKind::Free].map(|kind| self.data.shows(setting, kind, step));
         // A mass in the noise speaks against impacts; without weight in the sum, since it is the same for all
         // parameters.
         let silent = step.faint().any(|(mass, limit)| impacting[mass] > 2.0 * limit);
@@ -169,7 +169,11 @@ impl Problem<'_> {
         let clears = free[0] < REACH * setting.rig.gap;
         let [impacting, free] = [impacting, free]
             .map(|shows| distances(self.data, step, shows, part).map(|z| z.powi(2).ln_1p()).sum::<f64>());
-        if silent || clears && free < impacting { (Kind::Free, free) } else { (Kind::Impacting, impacting) }
+        if silent || clears && free < impacting {
+            (MotionKind::Free, free)
+        } else {
+            (MotionKind::Impacting, impacting)
+        }
     }
 }
 
@@ -179,7 +183,7 @@ fn radical_inverse(i: usize, base: usize) -> f64 {
 }
 
 /// z of a step's points, where these amplitudes are predicted.
-pub fn distances(data: &Data, step: &Step, shows: [f64; 2], part: f64) -> impl Iterator<Item = f64> {
+pub fn distances(data: &Data, step: &SweepStep, shows: [f64; 2], part: f64) -> impl Iterator<Item = f64> {
     step.clear().map(move |(mass, reading)| {
         let own = WIDE * (reading.std / reading.amplitude).hypot(data.calibration);
         reading.log_ratio(shows[mass]) / part.hypot(own)

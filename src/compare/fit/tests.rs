@@ -1,6 +1,6 @@
-use super::super::prediction::Kind;
+use super::super::prediction::MotionKind;
 use super::converge::assigned;
-use super::data::{Reading, Step};
+use super::data::{StepAmplitude, SweepStep};
 use super::uncertainty::NORMAL;
 use super::*;
 use crate::math::Noise;
@@ -26,12 +26,12 @@ const FAINT: f64 = 20.0 / 3.0;
 /// Sweeps up and down of this rig with the noise of the example's points: 0.3 µm in x, faint below 2 µm, and
 /// 1.5e-4 Hz in frequency (0.05 Hz a line). Steps of another pattern have the amplitudes of the simulated
 /// sweep.
-fn truth(setting: &Setting, pace: Pace) -> (Data, Vec<Option<Kind>>) {
+fn truth(setting: &Setting, pace: Pace) -> (Data, Vec<Option<MotionKind>>) {
     swept(setting, pace, &FREQUENCIES, 0.3e-6)
 }
 
 /// The same at these frequencies, rising, with this noise in m.
-fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Data, Vec<Option<Kind>>) {
+fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Data, Vec<Option<MotionKind>>) {
     let mut data = Data {
         sweeps: ["mass 1, up", "mass 2, up", "mass 1, down", "mass 2, down"]
             .map(|n| (n.to_owned(), if n.ends_with("up") { Direction::Up } else { Direction::Down }))
@@ -58,7 +58,7 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
                 let limit = (amplitude[mass] < FAINT * noise).then_some(3.0 * noise);
                 // A mass at rest shows the noise.
                 let amplitude = amplitude[mass].max(noise);
-                Some(Reading {
+                Some(StepAmplitude {
                     sweep: mass + 2 * usize::from(down),
                     amplitude,
                     std: noise,
@@ -67,7 +67,7 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
                 })
             };
             let readings = [seen(0), seen(1)];
-            data.steps.push(Step {
+            data.steps.push(SweepStep {
                 frequency: *frequency,
                 frequency_std: 1.5e-4,
                 force: *force,
@@ -84,7 +84,7 @@ fn swept(setting: &Setting, pace: Pace, frequencies: &[f64], noise: f64) -> (Dat
 
 /// The same with noise: amplitudes of the closed form where it has the motion, at a frequency that is not
 /// quite the stated one.
-fn noisy(truth: &Data, kinds: &[Option<Kind>], setting: &Setting, seed: u64) -> Data {
+fn noisy(truth: &Data, kinds: &[Option<MotionKind>], setting: &Setting, seed: u64) -> Data {
     let mut normal = Noise::new(seed);
     for _ in 0..16 {
         normal.normal();
@@ -151,7 +151,7 @@ const FEW: u64 = 8;
 fn covered(
     seeds: u64,
     setting: &Setting,
-    kinds: &[Option<Kind>],
+    kinds: &[Option<MotionKind>],
     drawn: impl Fn(u64) -> (Data, Vec<Unknown>) + Sync,
 ) {
     println!("seeds 1 to {seeds}");
@@ -289,7 +289,7 @@ fn least_from<'a>(
     data: &'a Data,
     setting: &Setting,
     unknowns: Vec<Unknown>,
-    kinds: &[Option<Kind>],
+    kinds: &[Option<MotionKind>],
 ) -> Converged<'a> {
     let problem = Problem::new(data, setting, unknowns).of(kinds.to_vec());
     let u = problem.coordinates(setting);
@@ -310,7 +310,7 @@ fn away(settled: &Converged<'_>, truth: &Setting) -> Vec<f64> {
 /// Why these parameters are not identifiable, with the steps and masses that `keep` lets through.
 fn unidentified(
     names: &[&str],
-    keep: impl Fn(usize, &Step, Option<Kind>) -> bool,
+    keep: impl Fn(usize, &SweepStep, Option<MotionKind>) -> bool,
 ) -> Vec<Option<Unidentified>> {
     let setting = example();
     let (clean, kinds) = truth(&setting, PACE);
@@ -322,7 +322,7 @@ fn unidentified(
             }
         }
     }
-    let kinds: Vec<Option<Kind>> =
+    let kinds: Vec<Option<MotionKind>> =
         kinds.iter().zip(&data.steps).map(|(kind, step)| kind.filter(|_| step.clear().count() > 0)).collect();
     let unknowns = unknowns(names, &setting);
     let settled = least_from(&data, &setting, unknowns, &kinds);
@@ -332,7 +332,8 @@ fn unidentified(
 #[test]
 fn what_the_points_do_not_determine_is_named() {
     // Free motions of mass 1 say nothing of mass 2, of the gap, or of impacts.
-    let free = |mass: usize, _: &Step, kind: Option<Kind>| mass == 0 && kind == Some(Kind::Free);
+    let free =
+        |mass: usize, _: &SweepStep, kind: Option<MotionKind>| mass == 0 && kind == Some(MotionKind::Free);
     let found = unidentified(&["force", "c2", "k2", "restitution"], free);
     let needs = Some(Unidentified::NeedsImpacts);
     assert_eq!(found, [None, needs, needs, needs]);
@@ -395,7 +396,7 @@ fn a_prior_is_used_and_named_where_it_determines_the_parameter() {
         toml::from_str("parameters = [\"gap\", \"c1\"]\nprior.c1 = [0.1, 1e-7]\nprior.gap = [1e-3, 1e-4]")
             .unwrap();
     let unknowns = Unknown::all(&entry, &setting).unwrap();
-    let answer = Answer::new(least_from(&data, &setting, unknowns, &kinds), None).unwrap();
+    let answer = AssessedFit::new(least_from(&data, &setting, unknowns, &kinds), None).unwrap();
     assert_eq!(answer.doubts(), []);
     let [gap, c1] = [0, 1].map(|i| answer.fitted(&setting, i, false));
     assert!(!gap.rests_on_prior && gap.identifiable, "{gap:?}");
@@ -414,7 +415,7 @@ fn the_simplest_model_that_predicts_what_it_has_not_seen_is_chosen() {
     let setting = example();
     let (clean, kinds) = truth(&setting, PACE);
     let data = noisy(&clean, &kinds, &setting, 11);
-    let free: Vec<Option<Kind>> = kinds.iter().map(|k| k.filter(|k| *k == Kind::Free)).collect();
+    let free: Vec<Option<MotionKind>> = kinds.iter().map(|k| k.filter(|k| *k == MotionKind::Free)).collect();
     let mut still = data.clone();
     for (step, _) in still.steps.iter_mut().zip(&free).filter(|(_, kind)| kind.is_none()) {
         step.readings = [None, None];

@@ -1,7 +1,7 @@
 //! How well the points determine each parameter: by the slopes at the least sum of squares, and by its
 //! profile.
 
-use super::{Kind, Least, Problem};
+use super::{LeastSquares, MotionKind, Problem};
 use crate::error::{Error, Result};
 use crate::model::Parameter;
 use nalgebra::{DMatrix, DVector, SVD};
@@ -71,7 +71,7 @@ impl Uncertainty {
     ///
     /// # Errors
     /// If the singular values cannot be found.
-    pub fn new(least: &Least<'_>) -> Result<Uncertainty> {
+    pub fn new(least: &LeastSquares<'_>) -> Result<Uncertainty> {
         let (problem, u) = (&least.problem, &least.minimum.parameters);
         let (setting, n) = (problem.setting(u), u.len());
         let mut jacobian = least.minimum.jacobian.clone();
@@ -127,7 +127,7 @@ impl Uncertainty {
         if !is_loose(i) && self.limits[i].is_none() {
             return None;
         }
-        let without_impacts = !problem.kinds.contains(&Some(Kind::Impacting));
+        let without_impacts = !problem.kinds.contains(&Some(MotionKind::Impacting));
         Some(if parameter.needs_impacts() && without_impacts {
             Unidentified::NeedsImpacts
         } else if self.limits[i].is_some() {
@@ -217,7 +217,7 @@ impl Profile {
 }
 
 /// Profile of the unknown number `which`, but not beyond a bound (D. J. Venzon & S. H. Moolgavkar 1988).
-pub fn profile(least: &Least<'_>, uncertainty: &Uncertainty, which: usize) -> Option<Profile> {
+pub fn profile(least: &LeastSquares<'_>, uncertainty: &Uncertainty, which: usize) -> Option<Profile> {
     let (problem, best) = (&least.problem, &least.minimum.parameters);
     let unknown = *problem.unknowns.get(which)?;
     let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();

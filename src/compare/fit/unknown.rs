@@ -1,6 +1,6 @@
 //! The parameters that a fit looks for, their coordinates without bounds, and the rig that has them.
 
-use super::Kind;
+use super::MotionKind;
 use crate::campaign::FitEntry;
 use crate::error::{Error, Result};
 use crate::model::{Parameter, Rig, Sine, Steady, shown};
@@ -143,12 +143,12 @@ impl Setting {
 
     /// What a spectrum shows of both masses in m, of the motion of this kind at this force and frequency; NaN
     /// where it cannot be.
-    pub fn shows(&self, kind: Kind, force: f64, frequency: f64) -> [f64; 2] {
+    pub fn shows(&self, kind: MotionKind, force: f64, frequency: f64) -> [f64; 2] {
         let sine = Sine { force, frequency };
         match kind {
-            Kind::Impacting => shown(&self.rig, &sine).map_or([f64::NAN; 2], |s| s.amplitude),
-            Kind::Free => Steady::new(&self.rig, &sine).map_or([f64::NAN; 2], |s| [s.amplitude(), 0.0]),
-            Kind::Pattern | Kind::Irregular => [f64::NAN; 2],
+            MotionKind::Impacting => shown(&self.rig, &sine).map_or([f64::NAN; 2], |s| s.amplitude),
+            MotionKind::Free => Steady::new(&self.rig, &sine).map_or([f64::NAN; 2], |s| [s.amplitude(), 0.0]),
+            MotionKind::Pattern | MotionKind::Irregular => [f64::NAN; 2],
         }
     }
 }

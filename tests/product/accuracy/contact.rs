@@ -5,7 +5,7 @@ use super::draws::Draws;
 use super::noise::Noise;
 use super::score::Score;
 use vibroimpact::measure::Estimate;
-use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, drill};
+use vibroimpact::measure::drill::{AngleOrigin, Beam, Drill, DrillOptions, Edge, Slices, drill};
 use vibroimpact::record::Fact;
 
 const RATE: f64 = 51_200.0;
@@ -95,7 +95,7 @@ fn case(spoilt: Spoilt, seed: u64) -> Drill {
             5.0 * (rise(near) - rise(near - 100.0)) + 0.01 * noise.normal()
         })
         .collect();
-    let mut options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
+    let mut options = DrillOptions::new(1.0, Beam::new(0.0, AngleOrigin::Axis).unwrap(), 1, Edge::Rising);
     options.mass = Some(0.14);
     drill(&Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap()
 }

@@ -4,7 +4,7 @@ use super::draws::{Draws, none_far};
 use crate::drill::noise::Noise;
 use crate::drill::stroke::{Machine, Run, Struck};
 use vibroimpact::measure::Estimate;
-use vibroimpact::measure::drill::{Beam, Drill, DrillOptions, Edge, From, Slices, TurnsFrom, drill};
+use vibroimpact::measure::drill::{AngleOrigin, Beam, Drill, DrillOptions, Edge, Slices, TurnsFrom, drill};
 
 const CASES: u64 = 240;
 /// Whole records: ten parts are checked one by one, each scatters by 0.75 % of this many, and none may be
@@ -124,7 +124,7 @@ fn case(seed: u64) -> Case {
         dropouts += 1;
         at += 3000 + (15_000.0 * noise.uniform()) as usize;
     }
-    let mut options = DrillOptions::new(2.0, Beam::new(30.0, From::Normal).unwrap(), 1, Edge::Rising);
+    let mut options = DrillOptions::new(2.0, Beam::new(30.0, AngleOrigin::Normal).unwrap(), 1, Edge::Rising);
     (options.mass, options.struck_mass) = (Some(MASS), Some(STRUCK));
     let found = drill(&Slices { rate: RATE, channels: vec![&volts, &pulse] }, &options, None).unwrap();
     let options = DrillOptions { turns_from: TurnsFrom::Impacts, ..options };
@@ -271,7 +271,7 @@ fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
     }
     let velocity: Vec<f64> = run.velocity(RATE, count).iter().map(|v| v + 0.005 * noise.normal()).collect();
     let pulse: Vec<f64> = run.pulse(RATE, count).iter().map(|p| 5.0 * p + 0.02 * noise.normal()).collect();
-    let mut options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
+    let mut options = DrillOptions::new(1.0, Beam::new(0.0, AngleOrigin::Axis).unwrap(), 1, Edge::Rising);
     (options.mass, options.struck_mass) = (Some(MASS), Some(STRUCK));
     let found = drill(&Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
     assert!(found.groups.len() == 1 && found.cycles.abs_diff(turns) <= 1, "seed {seed}: {}", found.cycles);
@@ -319,7 +319,7 @@ fn strokes(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 2]) {
                 + 0.02 * noise.normal()
         })
         .collect();
-    let options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
+    let options = DrillOptions::new(1.0, Beam::new(0.0, AngleOrigin::Axis).unwrap(), 1, Edge::Rising);
     let found = drill(&Slices { rate: RATE, channels: vec![&velocity, &pulse] }, &options, None).unwrap();
     means[0].estimate(&found.displacement.stroke, amplitude / speed / std::f64::consts::PI);
     means[1].estimate(&found.displacement.drift, offset / speed);

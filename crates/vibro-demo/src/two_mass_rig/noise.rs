@@ -3,17 +3,17 @@
 use std::f64::consts::TAU;
 
 /// Gaussian numbers from splitmix64 (Steele, Lea, Flood 2014) by the method of Box and Muller (1958).
-pub struct Noise {
+pub struct GaussianNoise {
     state: u64,
     spare: Option<f64>,
 }
 
-impl Noise {
+impl GaussianNoise {
     /// Noise of one channel at one point; each has its own, so that any point can be made without the others.
     /// `draw` 0 is that of the files of the example; others are as if all were measured again.
-    pub fn new(draw: u64, direction: u64, point: u64, channel: u64) -> Noise {
+    pub fn new(draw: u64, direction: u64, point: u64, channel: u64) -> GaussianNoise {
         let state = (draw << 40) | (direction << 32) | (point << 8) | channel;
-        let mut noise = Noise { state, spare: None };
+        let mut noise = GaussianNoise { state, spare: None };
         // Neighbouring seeds part after the first output.
         noise.bits();
         noise

@@ -5,7 +5,7 @@
 
 use super::lzf;
 use crate::assemble::fewer;
-use crate::binary::Kind;
+use crate::binary::NumberType;
 use crate::held::{Held, rises};
 use crate::variables::EXPORT;
 use crate::{Options, Source};
@@ -390,7 +390,7 @@ fn decoded(
 }
 
 /// Which numbers those of a datatype are, and whether big-endian.
-fn number(kind: &Datatype) -> Option<(Kind, bool)> {
+fn number(kind: &Datatype) -> Option<(NumberType, bool)> {
     /// Beside the bytes of an integer without a sign, and of a float.
     const UNSIGNED: u32 = 0x100;
     const FLOAT: u32 = 0x200;
@@ -401,7 +401,7 @@ fn number(kind: &Datatype) -> Option<(Kind, bool)> {
         Datatype::FloatingPoint { size, byte_order } => (u32::from(*size) | FLOAT, byte_order),
         _ => return None,
     };
-    let kind = Kind::coded(code, [1, 2, 4, 8, 0x101, 0x102, 0x104, 0x108, 0x204, 0x208])?;
+    let kind = NumberType::coded(code, [1, 2, 4, 8, 0x101, 0x102, 0x104, 0x108, 0x204, 0x208])?;
     Some((kind, *order == ByteOrder::BigEndian))
 }
 
@@ -418,8 +418,8 @@ fn column(bytes: &[u8], offset: usize, width: usize, of: &Datatype) -> Option<Ve
 fn description(kind: &Datatype) -> Option<Vec<u8>> {
     let (number, big_endian) = number(kind)?;
     let (flags, sign, properties): (u8, u8, &[u8]) = match (number, kind) {
-        (Kind::F32, _) => (0x20, 31, &[23, 8, 0, 23, 127, 0, 0, 0]),
-        (Kind::F64, _) => (0x20, 63, &[52, 11, 0, 52, 0xff, 3, 0, 0]),
+        (NumberType::F32, _) => (0x20, 31, &[23, 8, 0, 23, 127, 0, 0, 0]),
+        (NumberType::F64, _) => (0x20, 63, &[52, 11, 0, 52, 0xff, 3, 0, 0]),
         (_, Datatype::FixedPoint { signed: true, .. }) => (8, 0, &[]),
         _ => (0, 0, &[]),
     };

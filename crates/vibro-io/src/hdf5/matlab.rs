@@ -37,14 +37,14 @@ pub fn variables(file: &mut File, mut members: Vec<(String, Member)>, survey: bo
         let found = file.members(&group, "")?.into_iter();
         referred = found.map(|(_, member)| (member.address(), member)).collect();
     }
-    let mut walk = Walk { file, survey, referred, variables: Vec::new() };
+    let mut walk = VariableWalk { file, survey, referred, variables: Vec::new() };
     for (name, member) in members {
         if name == OBJECTS { walk.file.pass(&name, "object") } else { walk.member(&name, member)? }
     }
     Ok(walk.variables)
 }
 
-struct Walk<'a> {
+struct VariableWalk<'a> {
     file: &'a mut File,
     /// Whether the ends of values are enough.
     survey: bool,
@@ -53,7 +53,7 @@ struct Walk<'a> {
     variables: Variables,
 }
 
-impl Walk<'_> {
+impl VariableWalk<'_> {
     fn member(&mut self, name: &str, member: Member) -> Result<()> {
         let group = match member {
             Member::Dataset(dataset) => return self.dataset(name, &dataset),

@@ -3,7 +3,7 @@
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 5 MAT-File Format".
 
 use crate::Options;
-use crate::binary::Kind;
+use crate::binary::NumberType;
 use crate::variables::{Array, Content, MOST_TEXT};
 use flate2::read::ZlibDecoder;
 use std::io::Read;
@@ -94,7 +94,7 @@ impl<'a> Elements<'a> {
 
 /// Numbers of a kind; `None` for one that is not of numbers.
 pub fn numbers(kind: u32, bytes: &[u8], big: bool) -> Option<Vec<f64>> {
-    let kind = Kind::coded(kind, [1, 3, 5, 12, 2, 4, 6, 13, 7, 9])?;
+    let kind = NumberType::coded(kind, [1, 3, 5, 12, 2, 4, 6, 13, 7, 9])?;
     let (width, mut values) = (kind.size() as usize, Vec::new());
     kind.take(bytes, 0, width, big, &mut values);
     Some(values)

@@ -1,6 +1,6 @@
 //! Sheets of workbooks as text: cells between tabs, numbers with all their digits, dates as clocks.
 
-use super::{Kind, Part, damaged};
+use super::{Member, Workbook, damaged};
 use crate::{Limit, Source, number};
 use calamine::{
     Data, ExcelDateTime, ExcelDateTimeType, Ods, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError,
@@ -26,18 +26,18 @@ const ROUNDING: i64 = 1;
 ///
 /// # Errors
 /// If the workbook is damaged or encrypted, or takes more than the limit.
-pub fn of(source: &Source, kind: Kind, named: Option<&Path>, limit: Limit) -> Result<Vec<Part>> {
+pub fn of(source: &Source, kind: Workbook, named: Option<&Path>, limit: Limit) -> Result<Vec<Member>> {
     // The crate subtracts the ends of a sheet, and panics where the larger comes first.
     let read = AssertUnwindSafe(|| match kind {
-        Kind::Compound => {
+        Workbook::Compound => {
             let book = Xls::new(checked(source, limit)?);
             ranges(book.map_err(|why| damaged(source, why))?, (source, named), limit)
         }
-        Kind::OpenDocument => {
+        Workbook::OpenDocument => {
             let book = Ods::new(BufReader::new(source.open()?));
             ranges(book.map_err(|why| damaged(source, why))?, (source, named), limit)
         }
-        Kind::Xml => streamed((source, named), limit),
+        Workbook::Xml => streamed((source, named), limit),
     });
     catch_unwind(read).unwrap_or_else(|_| Err(damaged(source, "its records contradict each other")))
 }
@@ -126,7 +126,7 @@ fn ranges<R: Read + Seek, B: Reader<R>>(
     mut book: B,
     (source, named): (&Source, Option<&Path>),
     limit: Limit,
-) -> Result<Vec<Part>>
+) -> Result<Vec<Member>>
 where
     B::Error: Display,
 {
@@ -141,7 +141,7 @@ where
 }
 
 /// As [`ranges`], without room for the cells between used ones.
-fn streamed((source, named): (&Source, Option<&Path>), limit: Limit) -> Result<Vec<Part>> {
+fn streamed((source, named): (&Source, Option<&Path>), limit: Limit) -> Result<Vec<Member>> {
     let mut book =
         Xlsx::new(BufReader::new(source.open()?)).map_err(|why: XlsxError| damaged(source, why))?;
     let mut parts = Vec::new();
@@ -164,7 +164,7 @@ fn streamed((source, named): (&Source, Option<&Path>), limit: Limit) -> Result<V
 }
 
 /// A sheet as text; each line is a row, so that complaints name it.
-fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Part>> {
+fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Result<Option<Member>> {
     cells.retain(|(.., cell)| *cell != Data::Empty);
     with_points(&mut cells);
     cells.sort_by_key(|(row, column, _)| (*row, *column));
@@ -179,7 +179,8 @@ fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Resu
             instants.entry(*column).or_default().push(*instant);
         }
     }
-    let clocks: BTreeMap<u32, Clock> = instants.iter().map(|(at, all)| (*at, Clock::of(all))).collect();
+    let clocks: BTreeMap<u32, DateFormat> =
+        instants.iter().map(|(at, all)| (*at, DateFormat::of(all))).collect();
     let (mut text, mut at) = (String::new(), 0);
     for row in cells.chunk_by(|a, b| a.0 == b.0) {
         text.extend((at..row[0].0).map(|_| '\n'));
@@ -195,7 +196,7 @@ fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Resu
     text.push('\n');
     let hidden = of.visible != SheetVisible::Visible;
     let source = Source::memory(source.path().join(&of.name), text)?.of_sheet();
-    Ok(Some(Part { name: of.name, source, hidden }))
+    Ok(Some(Member { name: of.name, source, hidden }))
 }
 
 /// Turns texts with decimal commas into numbers where they stand beside numbers with decimals, whose mark is
@@ -218,7 +219,7 @@ fn with_points(cells: &mut [Cell]) {
     }
 }
 
-fn write_cell(text: &mut String, cell: &Data, clock: Option<&Clock>) {
+fn write_cell(text: &mut String, cell: &Data, clock: Option<&DateFormat>) {
     // Writing to a string cannot fail.
     let _ = match cell {
         Data::Float(value) => {
@@ -255,7 +256,7 @@ fn digits(value: f64) -> String {
 }
 
 /// How the dates of a column are printed: as finely as they were before they became days.
-struct Clock {
+struct DateFormat {
     decimals: usize,
     /// Whether there are days.
     dated: bool,
@@ -267,15 +268,15 @@ fn microseconds(instant: &ExcelDateTime) -> i64 {
     (instant.as_f64() * DAY as f64).round() as i64
 }
 
-impl Clock {
-    fn of(all: &[ExcelDateTime]) -> Clock {
+impl DateFormat {
+    fn of(all: &[ExcelDateTime]) -> DateFormat {
         let fits = |decimals: &usize| {
             let unit = 10i64.pow((DECIMALS - decimals) as u32);
             let off = |instant| (microseconds(instant) + unit / 2).rem_euclid(unit) - unit / 2;
             all.iter().all(|instant| off(instant).abs() <= ROUNDING)
         };
         let days = |instant: &ExcelDateTime| instant.as_f64();
-        Clock {
+        DateFormat {
             decimals: (0..DECIMALS).find(fits).unwrap_or(DECIMALS),
             dated: all.iter().any(|instant| days(instant) >= 1.0),
             timed: all.iter().any(|instant| days(instant).fract() != 0.0)

@@ -3,7 +3,7 @@
 use super::Channel;
 use super::description::{Slot, Value};
 use super::segment::Object;
-use crate::assemble::{Abscissa, Judged, domain, drift, epoch, from_values, kind_of, short};
+use crate::assemble::{Abscissa, JudgedAxis, domain, drift, epoch, from_values, kind_of, short};
 use crate::options::Options;
 use crate::text::names::Name;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use vibro_record::units::Unit;
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Result};
 
 /// A channel that is the abscissa of others.
-pub struct Clock {
+pub struct AbscissaChannel {
     name: String,
     axis: Axis,
     /// Relative standard uncertainty of its step.
@@ -20,8 +20,8 @@ pub struct Clock {
     findings: Vec<Finding>,
 }
 
-impl Clock {
-    fn of(channel: &Channel, resampled: bool, findings: &mut Vec<Finding>) -> Option<Clock> {
+impl AbscissaChannel {
+    fn of(channel: &Channel, resampled: bool, findings: &mut Vec<Finding>) -> Option<AbscissaChannel> {
         // Of a time `h` is no other unit than this.
         let unit = channel.object.text("unit_string").map(|unit| if unit == "h" { "hour" } else { unit });
         let Name { name, unit } = Name::with_unit_row(channel.name, unit.unwrap_or_default());
@@ -56,10 +56,15 @@ impl Clock {
         let from = if instants || epoch.is_some() { values[0] } else { 0.0 };
         let resolution = drift(values, values.iter().all(|v| f64::from(*v as f32) == *v));
         let values = values.iter().map(|v| (v - from) * factor).collect();
-        let Judged { axis, clock, found } = from_values(kind, values, resolution * factor, &label, resampled);
+        let JudgedAxis { axis, clock, found } =
+            from_values(kind, values, resolution * factor, &label, resampled);
         let findings = assumed.map(|found| found.name("column", label.as_str())).into_iter().chain(found);
-        let clock =
-            Clock { name: channel.name.to_owned(), findings: findings.collect(), axis, relative: clock };
+        let clock = AbscissaChannel {
+            name: channel.name.to_owned(),
+            findings: findings.collect(),
+            axis,
+            relative: clock,
+        };
         (sure || clock.axis.step().is_some()).then_some(clock)
     }
 }
@@ -75,8 +80,9 @@ pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec
         sets.entry((channel.group, channel.values.len())).or_default().push(i);
     }
     let resampled = options.resample.is_some();
-    let clocks = channels.iter().map(|channel| Clock::of(channel, resampled, findings).map(Arc::new));
-    let mut clocks: Vec<Option<Arc<Clock>>> = clocks.collect();
+    let clocks =
+        channels.iter().map(|channel| AbscissaChannel::of(channel, resampled, findings).map(Arc::new));
+    let mut clocks: Vec<Option<Arc<AbscissaChannel>>> = clocks.collect();
     for (_, set) in sets {
         let timed = set.iter().any(|i| {
             let (kind, step, _) = stated(channels[*i].object);
@@ -87,7 +93,7 @@ pub fn assign(channels: &mut Vec<Channel>, options: &Options, findings: &mut Vec
         for i in set.iter().filter(|_| timed) {
             clocks[*i].take_if(|clock| clock.axis.kind != AxisKind::Time);
         }
-        let own: Vec<&Arc<Clock>> = set.iter().filter_map(|i| clocks[*i].as_ref()).collect();
+        let own: Vec<&Arc<AbscissaChannel>> = set.iter().filter_map(|i| clocks[*i].as_ref()).collect();
         let Some(first) = own.first().copied().cloned() else { continue };
         if own.len() == set.len() {
             for i in set {
@@ -160,7 +166,7 @@ pub fn of(channel: &Channel, options: &Options, meta: &mut Meta) -> Axis {
         }
         return Abscissa::even(kind, step).axis(n, options, meta);
     };
-    let Clock { name, axis, relative, .. } = &**clock;
+    let AbscissaChannel { name, axis, relative, .. } = &**clock;
     meta.clock = *relative;
     let own = axis.step().unwrap_or(f64::NAN);
     let abscissa = match step.filter(|(_, step)| *step > 0.0) {

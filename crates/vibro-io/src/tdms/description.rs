@@ -1,9 +1,9 @@
 //! The description of a segment, word by word: properties, and how the raw data of an object lie.
 
-use crate::binary::Kind;
+use crate::binary::NumberType;
 use vibro_record::{Error, Place, Result};
 
-/// Codes of numbers as raw data and properties, and as DAQmx scalers, see [`Kind::coded`].
+/// Codes of numbers as raw data and properties, and as DAQmx scalers, see [`NumberType::coded`].
 const NUMBERS: [u32; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 const DAQMX: [u32; 10] = [1, 3, 5, 7, 0, 2, 4, 6, 8, 9];
 
@@ -47,7 +47,7 @@ pub struct Index {
     /// Whether all channels share the rows, as those of DAQmx do.
     pub shared: bool,
     /// What each number of a row is, its buffer, its byte and its kind; none of other things.
-    pub fields: Vec<(Slot, usize, usize, Kind)>,
+    pub fields: Vec<(Slot, usize, usize, NumberType)>,
 }
 
 /// Words of a description.
@@ -102,7 +102,7 @@ impl<'a> Words<'a> {
             0x20 => return self.text().map(Value::Text),
             0x21 => return Ok(Value::Text((self.word::<1>()? != [0]).to_string())),
             0 => return Ok(Value::Other),
-            0x44 => Kind::Time,
+            0x44 => NumberType::Time,
             0x0008_000c => return self.bytes(8).map(|_| Value::Other),
             // Extended precision, and complex numbers.
             0x0b | 0x1b | 0x0010_000d => return self.bytes(16).map(|_| Value::Other),
@@ -126,12 +126,13 @@ impl<'a> Words<'a> {
         if code == 0x20 {
             return Ok(Index { rows: 1, widths: vec![self.u64()?], shared: false, fields: Vec::new() });
         }
-        let complex =
-            |kind: Kind| vec![(Slot::Real, 0, 0, kind), (Slot::Imaginary, 0, kind.size() as usize, kind)];
+        let complex = |kind: NumberType| {
+            vec![(Slot::Real, 0, 0, kind), (Slot::Imaginary, 0, kind.size() as usize, kind)]
+        };
         let fields = match code {
-            0x0008_000c => complex(Kind::F32),
-            0x0010_000d => complex(Kind::F64),
-            0x44 => vec![(Slot::Instant, 0, 0, Kind::Time)],
+            0x0008_000c => complex(NumberType::F32),
+            0x0010_000d => complex(NumberType::F64),
+            0x44 => vec![(Slot::Instant, 0, 0, NumberType::Time)],
             _ => vec![(Slot::Real, 0, 0, number(code).ok_or_else(|| self.type_unknown(code))?)],
         };
         let widths = vec![fields.iter().map(|(.., kind)| kind.size()).sum()];
@@ -149,10 +150,10 @@ impl<'a> Words<'a> {
             let (code, buffer, offset) = (self.u32()?, self.u32()? as usize, self.u32()? as usize);
             let (offset, kind) = if digital {
                 self.bytes(1)?;
-                (offset / 8, Kind::Bit((offset % 8) as u8))
+                (offset / 8, NumberType::Bit((offset % 8) as u8))
             } else {
                 self.bytes(4)?;
-                (offset, Kind::coded(code, DAQMX).ok_or_else(|| self.type_unknown(code))?)
+                (offset, NumberType::coded(code, DAQMX).ok_or_else(|| self.type_unknown(code))?)
             };
             fields.push((Slot::Scaler(self.u32()?), buffer, offset, kind));
         }
@@ -174,13 +175,13 @@ impl<'a> Words<'a> {
 }
 
 /// The number that a type is; one byte is a truth, too, and floats may have a unit.
-fn number(code: u32) -> Option<Kind> {
+fn number(code: u32) -> Option<NumberType> {
     let code = match code {
         0x21 => 5,
         0x19 | 0x1a => code - 0x10,
         code => code,
     };
-    Kind::coded(code, NUMBERS)
+    NumberType::coded(code, NUMBERS)
 }
 
 /// The place of a complaint; the reader adds the file.

@@ -1,26 +1,26 @@
 //! How raw data lie in a segment, whatever their order: parts, one after the other, of equal rows with fields
 //! in them.
 
-use crate::binary::Kind;
+use crate::binary::NumberType;
 use std::sync::Arc;
 
 /// Raw data of a segment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct RawData {
     /// Byte of the file at which they begin.
     pub at: u64,
     /// Bytes that are there.
     pub len: u64,
     pub big_endian: bool,
     /// One chunk; chunks follow each other to the end.
-    pub parts: Arc<[Part]>,
+    pub parts: Arc<[RowBlock]>,
 }
 
-impl Layout {
+impl RawData {
     /// Numbers that the raw data hold.
     pub fn values(&self) -> f64 {
         let in_chunk =
-            |of: fn(&Part) -> u64| self.parts.iter().map(move |part| part.rows as f64 * of(part) as f64);
+            |of: fn(&RowBlock) -> u64| self.parts.iter().map(move |part| part.rows as f64 * of(part) as f64);
         let numbers: f64 = in_chunk(|part| part.fields.len() as u64).sum();
         let bytes: f64 = in_chunk(|part| part.width).sum();
         if bytes > 0.0 { self.len as f64 * numbers / bytes } else { 0.0 }
@@ -29,7 +29,7 @@ impl Layout {
 
 /// Rows of equal width.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct RowBlock {
     pub rows: u64,
     /// Bytes of a row.
     pub width: u64,
@@ -45,5 +45,5 @@ pub struct Field {
     pub slot: usize,
     /// Byte of the row at which it begins.
     pub offset: usize,
-    pub kind: Kind,
+    pub kind: NumberType,
 }

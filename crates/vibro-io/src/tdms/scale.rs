@@ -16,7 +16,7 @@ pub struct Scales<'a> {
 }
 
 /// How a scale makes its values of its inputs.
-enum Step {
+enum Conversion {
     /// Raw values of a column.
     Raw(usize),
     /// Coefficients in rising order.
@@ -69,11 +69,12 @@ impl<'a> Scales<'a> {
             chain.push((number, step, inputs));
         }
         chain.reverse();
-        let raw =
-            chain.iter().filter_map(|(_, step, _)| if let Step::Raw(i) = step { Some(*i) } else { None });
+        let raw = chain
+            .iter()
+            .filter_map(|(_, step, _)| if let Conversion::Raw(i) = step { Some(*i) } else { None });
         let n = raw.map(|i| columns.get(i).map_or(0, Vec::len)).min().unwrap_or(0);
         let place = |number: u32| chain.partition_point(|(known, ..)| *known < number);
-        let steps: Vec<(&Step, Vec<usize>)> = chain
+        let steps: Vec<(&Conversion, Vec<usize>)> = chain
             .iter()
             .map(|(_, step, inputs)| (step, inputs.iter().map(|input| place(*input)).collect()))
             .collect();
@@ -81,10 +82,12 @@ impl<'a> Scales<'a> {
         let value = |row: usize| {
             for (i, (step, inputs)) in steps.iter().enumerate() {
                 made[i] = match step {
-                    Step::Raw(column) => columns[*column][row],
-                    Step::Polynomial(all) => all.iter().rev().fold(0.0, |sum, c| sum * made[inputs[0]] + c),
-                    Step::Table(table) => between(table, made[inputs[0]]),
-                    Step::Sum(sign) => made[inputs[0]] + sign * made[inputs[1]],
+                    Conversion::Raw(column) => columns[*column][row],
+                    Conversion::Polynomial(all) => {
+                        all.iter().rev().fold(0.0, |sum, c| sum * made[inputs[0]] + c)
+                    }
+                    Conversion::Table(table) => between(table, made[inputs[0]]),
+                    Conversion::Sum(sign) => made[inputs[0]] + sign * made[inputs[1]],
                 };
             }
             made[made.len() - 1]
@@ -93,12 +96,12 @@ impl<'a> Scales<'a> {
     }
 
     /// What scale `i` does.
-    fn step(&self, i: u32, slots: &[Slot]) -> Result<(Step, Vec<u32>), String> {
+    fn step(&self, i: u32, slots: &[Slot]) -> Result<(Conversion, Vec<u32>), String> {
         let number = |key: &str| self.from.number(&format!("NI_Scale[{i}]_{key}"));
         let Some(kind) = self.from.text(&format!("NI_Scale[{i}]_Scale_Type")) else {
             // The scaler of a DAQmx channel, which stands in the layout of its raw data.
             let column = slots.iter().position(|slot| *slot == Slot::Scaler(i)).unwrap_or(0);
-            return Ok((Step::Raw(column), Vec::new()));
+            return Ok((Conversion::Raw(column), Vec::new()));
         };
         let input = |key: &str| number(&format!("{kind}_{key}Input_Source")).map_or(RAW, |n| n as u32);
         let missing = |what: &str| format!("{kind} without {what}");
@@ -111,9 +114,9 @@ impl<'a> Scales<'a> {
             "Linear" => {
                 let one = |key: &str| number(key).ok_or_else(|| missing(key));
                 let slope = one("Linear_Slope")?;
-                (Step::Polynomial(vec![one("Linear_Y_Intercept")?, slope]), vec![input("")])
+                (Conversion::Polynomial(vec![one("Linear_Y_Intercept")?, slope]), vec![input("")])
             }
-            "Polynomial" => (Step::Polynomial(list("Polynomial_Coefficients")?), vec![input("")]),
+            "Polynomial" => (Conversion::Polynomial(list("Polynomial_Coefficients")?), vec![input("")]),
             "Table" => {
                 let (from, to) = (list("Table_Pre_Scaled_Values")?, list("Table_Scaled_Values")?);
                 let mut table: Vec<(f64, f64)> = from.into_iter().zip(to).collect();
@@ -121,15 +124,15 @@ impl<'a> Scales<'a> {
                 if table.len() < 2 || table.windows(2).any(|w| w[0].0 == w[1].0) {
                     return Err(missing("a table that rises"));
                 }
-                (Step::Table(table), vec![input("")])
+                (Conversion::Table(table), vec![input("")])
             }
             // NI subtracts the left operand from the right one.
             "Add" | "Subtract" => {
                 let sign = if kind == "Add" { 1.0 } else { -1.0 };
-                (Step::Sum(sign), vec![input("Right_Operand_"), input("Left_Operand_")])
+                (Conversion::Sum(sign), vec![input("Right_Operand_"), input("Left_Operand_")])
             }
             // It says who scales, and changes nothing.
-            "AdvancedAPI" => (Step::Polynomial(vec![0.0, 1.0]), vec![input("")]),
+            "AdvancedAPI" => (Conversion::Polynomial(vec![0.0, 1.0]), vec![input("")]),
             other => return Err(other.to_owned()),
         })
     }

@@ -1,7 +1,7 @@
 //! Segments of a TDMS file: objects with their properties, and where their raw data lie.
 
 use super::description::{Index, Slot, Value, Words, in_byte};
-use super::layout::{Field, Layout, Part};
+use super::layout::{Field, RawData, RowBlock};
 use std::collections::{BTreeMap, HashMap};
 use std::io::{BufReader, Read, Seek};
 use std::sync::Arc;
@@ -54,8 +54,8 @@ impl Object {
 pub fn all(
     file: &mut BufReader<impl Read + Seek>,
     len: u64,
-) -> Result<(Vec<Object>, Vec<Layout>, Vec<Finding>)> {
-    let mut known = Known::default();
+) -> Result<(Vec<Object>, Vec<RawData>, Vec<Finding>)> {
+    let mut known = SegmentState::default();
     let (mut layouts, mut findings, mut at) = (Vec::new(), Vec::new(), 0);
     while at < len {
         let io = |e| Error::io("read", "", e);
@@ -92,7 +92,7 @@ pub fn all(
                 parts.iter().fold(0u64, |sum, part| sum.saturating_add(part.rows.saturating_mul(part.width)));
             if chunk > 0 && declared.max(end) > raw_at {
                 known.declare((declared.max(end) - raw_at).div_ceil(chunk));
-                layouts.push(Layout { at: raw_at, len: end - raw_at, big_endian, parts });
+                layouts.push(RawData { at: raw_at, len: end - raw_at, big_endian, parts });
             }
         }
         at = declared;
@@ -108,7 +108,7 @@ pub fn go(file: &mut BufReader<impl Read + Seek>, to: u64) -> std::io::Result<()
 
 /// What the segments so far say.
 #[derive(Default)]
-struct Known {
+struct SegmentState {
     objects: Vec<Object>,
     by_path: HashMap<String, usize>,
     /// The last layout of each object.
@@ -118,10 +118,10 @@ struct Known {
     /// The place of an object among the active ones.
     place: HashMap<usize, usize>,
     /// The parts of the present objects, interleaved or not.
-    parts: Option<(bool, Arc<[Part]>)>,
+    parts: Option<(bool, Arc<[RowBlock]>)>,
 }
 
-impl Known {
+impl SegmentState {
     /// Takes the description of a segment.
     fn describe(&mut self, words: &mut Words, new_list: bool) -> Result<()> {
         self.parts = None;
@@ -170,7 +170,7 @@ impl Known {
     }
 
     /// The parts of a chunk, which segments without a description share.
-    fn shared_parts(&mut self, interleaved: bool, at: u64) -> Result<Arc<[Part]>> {
+    fn shared_parts(&mut self, interleaved: bool, at: u64) -> Result<Arc<[RowBlock]>> {
         let known = self.parts.take().filter(|(was, _)| *was == interleaved);
         let parts =
             known.map_or_else(|| self.parts(interleaved, at).map(Arc::from), |(_, parts)| Ok(parts))?;
@@ -179,13 +179,13 @@ impl Known {
     }
 
     /// The parts of a chunk of the segment that begins at byte `at`.
-    fn parts(&self, interleaved: bool, at: u64) -> Result<Vec<Part>> {
-        let (mut parts, mut buffers): (Vec<Part>, Vec<Part>) = (Vec::new(), Vec::new());
+    fn parts(&self, interleaved: bool, at: u64) -> Result<Vec<RowBlock>> {
+        let (mut parts, mut buffers): (Vec<RowBlock>, Vec<RowBlock>) = (Vec::new(), Vec::new());
         for (object, index) in &self.active {
             let Some(Index { rows, widths, shared, fields }) = index else { continue };
             if !shared {
                 if !interleaved || parts.is_empty() {
-                    parts.push(Part { rows: *rows, width: 0, fields: Vec::new() });
+                    parts.push(RowBlock { rows: *rows, width: 0, fields: Vec::new() });
                 }
                 let last = parts.len() - 1;
                 let part = &mut parts[last];
@@ -205,10 +205,10 @@ impl Known {
                 continue;
             }
             for width in widths.iter().skip(buffers.len()) {
-                buffers.push(Part { rows: 0, width: *width, fields: Vec::new() });
+                buffers.push(RowBlock { rows: 0, width: *width, fields: Vec::new() });
             }
             for (slot, (_, buffer, offset, kind)) in fields.iter().enumerate() {
-                let fits = |part: &&mut Part| *offset as u64 + kind.size() <= part.width;
+                let fits = |part: &&mut RowBlock| *offset as u64 + kind.size() <= part.width;
                 let Some(part) = buffers.get_mut(*buffer).filter(fits) else {
                     let found = format!("a DAQmx scaler at byte {offset} of buffer {buffer}");
                     return Err(Error::input(in_byte(at), found, "one inside its buffer"));

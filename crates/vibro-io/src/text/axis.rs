@@ -11,7 +11,7 @@ const SURE: f64 = 1e-6;
 const ROUNDED: f64 = 1e-4;
 
 /// An abscissa that stands in the file as a column.
-pub struct Printed {
+pub struct PrintedAbscissa {
     pub axis: Axis,
     /// Names the column, e.g. `column "t"`.
     pub label: String,
@@ -40,7 +40,12 @@ struct Statement {
 }
 
 impl Statement {
-    fn of(options: &Options, header: &Stated, printed: Option<&Printed>, n: usize) -> Option<Statement> {
+    fn of(
+        options: &Options,
+        header: &Stated,
+        printed: Option<&PrintedAbscissa>,
+        n: usize,
+    ) -> Option<Statement> {
         let (what, setting, hertz, header, axis) = match (options.rate, options.base_band) {
             (Some(rate), _) => ("sampling rate", "rate", rate, header.rate, Axis::time(0.0, 1.0 / rate, n)),
             (None, Some(band)) => {
@@ -74,7 +79,7 @@ impl Statement {
 /// # Errors
 /// If a person's statement contradicts a whole printed column.
 pub fn choose(
-    printed: Option<Printed>,
+    printed: Option<PrintedAbscissa>,
     n: usize,
     header: &Stated,
     options: &Options,
@@ -92,7 +97,7 @@ pub fn choose(
     statement.against(header, findings);
     let given = &statement.axis;
     let Some(printed) = printed else { return Ok((0.0, statement.axis)) };
-    let Printed { axis, label, .. } = &printed;
+    let PrintedAbscissa { axis, label, .. } = &printed;
     let about = |code| Finding::caution(code).name("column", label.as_str());
     if !matches!(axis.kind, AxisKind::Time | AxisKind::Frequency) {
         findings.push(about("column-no-axis"));
@@ -120,7 +125,7 @@ pub fn choose(
     Ok((0.0, if time { Axis::time(axis.start(), step, n) } else { statement.axis }))
 }
 
-impl Printed {
+impl PrintedAbscissa {
     fn last(&self) -> f64 {
         self.axis.at(self.axis.len().saturating_sub(1))
     }
@@ -206,8 +211,8 @@ impl Printed {
 }
 
 /// A printed axis, compared with what the header states.
-fn trusted(printed: Printed, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
-    let Printed { axis, label, findings: said, .. } = printed;
+fn trusted(printed: PrintedAbscissa, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
+    let PrintedAbscissa { axis, label, findings: said, .. } = printed;
     findings.extend(said);
     let header = match axis.kind {
         AxisKind::Time => header.rate.map(|rate| 1.0 / rate),

@@ -16,7 +16,7 @@ const MONTHS: [&str; 12] =
     ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
 
 /// A date, a time of day in s, or the half of the day that it is in (true: the second).
-enum Part<'a> {
+enum ClockField<'a> {
     Date(Vec<&'a str>),
     Time(f64),
     Half(bool),
@@ -61,14 +61,14 @@ pub fn printed_seconds(text: &str) -> String {
 
 /// Seconds since the first instant that it is given.
 #[derive(Debug, Default)]
-pub struct Clock {
+pub struct Stopwatch {
     first: Option<(f64, f64)>,
     last: f64,
     /// Days that passed without a date to say so.
     days: f64,
 }
 
-impl Clock {
+impl Stopwatch {
     pub fn seconds(&mut self, text: &str) -> Option<f64> {
         let (day, seconds) = parse(text)?;
         let (first_day, first) = *self.first.get_or_insert((day.unwrap_or(0.0), seconds));
@@ -96,9 +96,9 @@ fn parse(text: &str) -> Option<(Option<f64>, f64)> {
     let (mut date, mut time, mut half) = (None, None, None);
     for word in words(text) {
         match part(word) {
-            Some(Part::Date(cells)) => date = Some(cells),
-            Some(Part::Time(seconds)) => time = Some(seconds),
-            Some(Part::Half(second)) => half = Some(second),
+            Some(ClockField::Date(cells)) => date = Some(cells),
+            Some(ClockField::Time(seconds)) => time = Some(seconds),
+            Some(ClockField::Half(second)) => half = Some(second),
             // Milliseconds in a cell of their own.
             None => time = Some(time? + 1e-3 * number(word).filter(|ms| (0.0..1000.0).contains(ms))?),
         }
@@ -116,17 +116,17 @@ fn duration(text: &str) -> Option<f64> {
     number(text.strip_suffix(" sec")?)
 }
 
-fn part(word: &str) -> Option<Part<'_>> {
+fn part(word: &str) -> Option<ClockField<'_>> {
     match word.to_ascii_lowercase().as_str() {
-        "am" => return Some(Part::Half(false)),
-        "pm" => return Some(Part::Half(true)),
+        "am" => return Some(ClockField::Half(false)),
+        "pm" => return Some(ClockField::Half(true)),
         _ => {}
     }
     if word.contains(':') {
-        return seconds(word).map(Part::Time);
+        return seconds(word).map(ClockField::Time);
     }
     let cells: Vec<&str> = word.split(['-', '/', '.']).collect();
-    day(&cells, false).map(|_| Part::Date(cells))
+    day(&cells, false).map(|_| ClockField::Date(cells))
 }
 
 fn number(text: &str) -> Option<f64> {
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn a_clock_passes_midnight() {
-        let mut clock = Clock::default();
+        let mut clock = Stopwatch::default();
         let of = ["23:59:59", "0:00:01", "13:00:00", "0:00:00"].map(|text| clock.seconds(text).unwrap());
         assert_eq!(of, [0.0, 2.0, 46801.0, 86401.0]);
     }

@@ -26,7 +26,7 @@ const ENOUGH: usize = 24;
 
 /// How clean rows look, as bytes.
 #[derive(Debug, Clone, Copy)]
-pub struct Shape {
+pub struct RowShape {
     separator: Separator,
     /// Decimal mark.
     decimal: u8,
@@ -40,9 +40,9 @@ pub struct Shape {
     fixed: Option<(usize, usize)>,
 }
 
-impl Shape {
+impl RowShape {
     /// The shape of rows of real numbers that begin in `head`; `None` for others.
-    pub fn of(dialect: &Dialect, head: &[u8]) -> Option<Shape> {
+    pub fn of(dialect: &Dialect, head: &[u8]) -> Option<RowShape> {
         if dialect.complex || dialect.skipped > 0 || dialect.separator == Separator::Char(dialect.decimal) {
             return None;
         }
@@ -54,7 +54,7 @@ impl Shape {
         let common = rows.first().map(size).filter(|first| rows.iter().all(|row| size(row) == *first));
         let fixed = common.filter(|_| dialect.columns == 1 && exponential.is_some());
         let Dialect { separator, decimal, columns, .. } = *dialect;
-        Some(Shape { separator, decimal, columns, first_byte: first_byte as u64, exponential, fixed })
+        Some(RowShape { separator, decimal, columns, first_byte: first_byte as u64, exponential, fixed })
     }
 }
 
@@ -74,9 +74,9 @@ fn exponential(rows: &[&[u8]], separator: Separator) -> Option<(Exponential, usi
 
 /// All columns, up to the byte `end` behind which only blanks stand; `None` where the file is not clean. Of a
 /// column that is not to be `kept` and falls somewhere only the ends are held.
-pub fn read(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
+pub fn read(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     match columns(source, shape, end, kept)? {
-        None if shape.fixed.is_some() => columns(source, &Shape { fixed: None, ..*shape }, end, kept),
+        None if shape.fixed.is_some() => columns(source, &RowShape { fixed: None, ..*shape }, end, kept),
         columns => Ok(columns),
     }
 }
@@ -85,7 +85,7 @@ pub fn read(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<O
 ///
 /// The rows are counted first, so that every thread writes its values where they belong: looking at the bytes
 /// twice costs less than joining vectors. Memory that is not written to costs nothing.
-fn columns(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
+fn columns(source: &Source, shape: &RowShape, end: u64, kept: &[bool]) -> Result<Option<Vec<Held>>> {
     let from = shape.first_byte;
     let to = end.max(from);
     let pieces = ((to - from) / SMALLEST_PIECE).clamp(1, rayon::current_num_threads().max(1) as u64);
@@ -129,7 +129,7 @@ fn columns(source: &Source, shape: &Shape, end: u64, kept: &[bool]) -> Result<Op
 /// Reads all values of a piece; `None` where it is not clean.
 fn whole(
     source: &Source,
-    shape: &Shape,
+    shape: &RowShape,
     piece: (u64, u64),
     part: Vec<&mut [f64]>,
 ) -> Result<Option<Vec<Lane>>> {
@@ -141,7 +141,7 @@ fn whole(
 /// As [`whole`], where the values of a column are written only while it rises or if it is kept.
 fn surveyed(
     source: &Source,
-    shape: &Shape,
+    shape: &RowShape,
     piece: (u64, u64),
     part: Vec<&mut [f64]>,
     kept: &[bool],
@@ -223,7 +223,7 @@ fn line_ends(bytes: &[u8]) -> usize {
 }
 
 /// Number of rows of a piece.
-fn rows_in(source: &Source, shape: &Shape, (from, to): (u64, u64)) -> Result<usize> {
+fn rows_in(source: &Source, shape: &RowShape, (from, to): (u64, u64)) -> Result<usize> {
     if let Some((length, _)) = shape.fixed {
         return Ok((to - from).div_ceil(length as u64) as usize);
     }
@@ -270,7 +270,7 @@ impl Blocks {
     ///
     /// # Errors
     /// If it cannot be opened.
-    pub fn of(source: &Source, shape: &Shape, end: u64) -> Result<Blocks> {
+    pub fn of(source: &Source, shape: &RowShape, end: u64) -> Result<Blocks> {
         Blocks::open(source, (shape.first_byte, end.max(shape.first_byte)))
     }
 
@@ -303,7 +303,7 @@ impl Blocks {
 
 /// Reads whole rows to the columns of a block, which grow as they must, and gives their number; `None` where
 /// one is not clean.
-pub fn parsed(bytes: &[u8], shape: &Shape, block: &mut [Vec<f64>]) -> Option<usize> {
+pub fn parsed(bytes: &[u8], shape: &RowShape, block: &mut [Vec<f64>]) -> Option<usize> {
     let most = line_ends(bytes) + 1;
     for column in block.iter_mut().filter(|column| column.len() < most) {
         column.resize(most, 0.0);
@@ -315,7 +315,7 @@ pub fn parsed(bytes: &[u8], shape: &Shape, block: &mut [Vec<f64>]) -> Option<usi
 }
 
 /// Reads whole rows; `None` where one is not clean or there are more than were counted.
-fn rows(block: &[u8], shape: &Shape, columns: &mut [IterMut<f64>]) -> Option<()> {
+fn rows(block: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<()> {
     let mut at = 0;
     while at < block.len() {
         if let (Some((length, end)), Some((parse, width))) = (shape.fixed, shape.exponential)
@@ -353,7 +353,7 @@ fn fixed(row: &[u8], (from, to): (usize, usize), parse: Exponential) -> Option<f
 
 /// The number at the start of `bytes` and the bytes it takes.
 #[inline]
-fn value(bytes: &[u8], shape: &Shape) -> Option<(f64, usize)> {
+fn value(bytes: &[u8], shape: &RowShape) -> Option<(f64, usize)> {
     if let Some((parse, width)) = shape.exponential {
         let first = *bytes.first()?;
         let sign = usize::from(matches!(first, b'-' | b'+'));
@@ -368,7 +368,7 @@ fn value(bytes: &[u8], shape: &Shape) -> Option<(f64, usize)> {
 
 /// Reads one row; gives its bytes with its line end.
 #[inline]
-fn row(bytes: &[u8], shape: &Shape, columns: &mut [IterMut<f64>]) -> Option<usize> {
+fn row(bytes: &[u8], shape: &RowShape, columns: &mut [IterMut<f64>]) -> Option<usize> {
     let blank = |at: &mut usize| {
         while bytes.get(*at).is_some_and(|b| matches!(b, b' ' | b'\t')) {
             *at += 1;

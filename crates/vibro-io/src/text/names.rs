@@ -21,7 +21,7 @@ pub struct Name {
 
 /// One half of a complex column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum ComplexPart {
     Real,
     Imaginary,
 }
@@ -179,11 +179,11 @@ impl Name {
     }
 
     /// Real or imaginary part, and the name of the whole: `H_re`, `H (imag)`, `re(H)`, `Imaginary`, …
-    pub fn part(&self) -> Option<(Part, String)> {
+    pub fn part(&self) -> Option<(ComplexPart, String)> {
         let joints = [' ', '_', '.', ':'];
         let of = |word: &str| match word.to_lowercase().as_str() {
-            "re" | "real" => Some(Part::Real),
-            "im" | "imag" | "imaginary" => Some(Part::Imaginary),
+            "re" | "real" => Some(ComplexPart::Real),
+            "im" | "imag" | "imaginary" => Some(ComplexPart::Imaginary),
             _ => None,
         };
         let found = |word, rest: &str| Some((of(word)?, rest.trim().to_owned()));
@@ -391,12 +391,12 @@ mod tests {
     fn parts_of_complex_columns() {
         let part = |text: &str| Name::parse(text).part();
         for text in ["H_re", "H (real)", "re(H)", "Re H", "H.re", "H real [m/N]", "real_H"] {
-            assert_eq!(part(text), Some((Part::Real, "H".into())), "{text}");
+            assert_eq!(part(text), Some((ComplexPart::Real, "H".into())), "{text}");
         }
-        assert_eq!(part("H 1:im [m/N]"), Some((Part::Imaginary, "H 1".into())));
-        assert_eq!(part("Imag"), Some((Part::Imaginary, String::new())));
-        assert_eq!(part("im(H(2))"), Some((Part::Imaginary, "H(2)".into())));
-        assert_eq!(part("H (2) im"), Some((Part::Imaginary, "H (2)".into())));
+        assert_eq!(part("H 1:im [m/N]"), Some((ComplexPart::Imaginary, "H 1".into())));
+        assert_eq!(part("Imag"), Some((ComplexPart::Imaginary, String::new())));
+        assert_eq!(part("im(H(2))"), Some((ComplexPart::Imaginary, "H(2)".into())));
+        assert_eq!(part("H (2) im"), Some((ComplexPart::Imaginary, "H (2)".into())));
         for text in ["area", "impulse", "H", "", "_", "reim"] {
             assert_eq!(part(text), None, "{text}");
         }

@@ -194,7 +194,7 @@ fn is_pair(key: &str, value: &str) -> bool {
 }
 
 /// A preamble line as `key: value`: spreadsheets put key, value and unit into cells.
-pub fn said(line: &Line, separator: Separator) -> String {
+pub fn key_and_value(line: &Line, separator: Separator) -> String {
     let whole = || line.remark.unwrap_or(line.text.trim()).to_owned();
     let Some(cells) = fields(line.text, separator).ok().filter(|_| line.remark.is_none()) else {
         return whole();

@@ -1,14 +1,14 @@
 //! Columns to records: abscissa, units, complex pairs.
 
-use super::axis::{Printed, choose};
+use super::axis::{PrintedAbscissa, choose};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
-use super::names::{Name, Part};
+use super::names::{ComplexPart, Name};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
-use crate::assemble::{self, Judged, NOMINAL, Spectral, domain, from_values, kind_of, short};
+use crate::assemble::{self, JudgedAxis, NOMINAL, Spectral, domain, from_values, kind_of, short};
 use crate::held::Held;
 use crate::{Format, Options, level, number};
 use num_complex::Complex64;
@@ -35,7 +35,7 @@ pub fn build(
     let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
-    let made = Made { text, tail, dialect, is_table, options, stated };
+    let made = RecordContext { text, tail, dialect, is_table, options, stated };
     let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let sparse = rows.sparse.into_iter().chain(std::iter::repeat(None));
@@ -234,7 +234,7 @@ impl Column {
 }
 
 /// What all records share.
-struct Made<'a> {
+struct RecordContext<'a> {
     text: &'a Text<'a>,
     tail: &'a [u8],
     dialect: &'a Dialect,
@@ -243,7 +243,7 @@ struct Made<'a> {
     stated: Stated,
 }
 
-impl Made<'_> {
+impl RecordContext<'_> {
     /// Whether the first of plain columns only numbers the rows: the axis stands beside it or in the head.
     fn numbered(&self, table: &[Column]) -> bool {
         let beside = || table.len() > 2 && table[1].rises();
@@ -277,7 +277,7 @@ impl Made<'_> {
     }
 
     /// Axis from its column, and what is to be said of it.
-    fn printed(&self, column: Column, others: &[Column]) -> Result<Printed> {
+    fn printed(&self, column: Column, others: &[Column]) -> Result<PrintedAbscissa> {
         let at = format!("column {}", column.at);
         let (name, label) = match column.name.name.as_str() {
             "" if column.at == 1 => ("first column", "first column".to_owned()),
@@ -331,13 +331,21 @@ impl Made<'_> {
         }
         let head = if kind == AxisKind::Frequency { "frequency (kHz)" } else { "time (ms)" };
         let resampled = self.options.resample.is_some();
-        let Judged { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
+        let JudgedAxis { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
         let assumed = assumed
             .map(|found| if found.code == "axis-unit-assumed" { found.name("head", head) } else { found });
         let findings = assumed.into_iter().chain(found).collect();
         let resolution = own * factor;
-        Ok(Printed { axis, label, resolution, assumed: by_name.is_none(), origin: since, clock, findings })
+        Ok(PrintedAbscissa {
+            axis,
+            label,
+            resolution,
+            assumed: by_name.is_none(),
+            origin: since,
+            clock,
+            findings,
+        })
     }
 
     /// Unit of a column without a name, and its factor to s, by which it agrees with the stated rate.
@@ -415,8 +423,8 @@ impl Made<'_> {
         for column in table {
             let partner = match column.name.part() {
                 _ if !parts => None,
-                Some((Part::Imaginary, whole)) => {
-                    out.iter_mut().find(|real| real.name.part() == Some((Part::Real, whole.clone())))
+                Some((ComplexPart::Imaginary, whole)) => {
+                    out.iter_mut().find(|real| real.name.part() == Some((ComplexPart::Real, whole.clone())))
                 }
                 None if stated && n == 2 => out.first_mut(),
                 _ => None,
@@ -492,14 +500,14 @@ impl Made<'_> {
     fn spectral(&self, name: &str, unit: Option<(&str, Option<Scaling>)>) -> Spectral {
         let (unit, scaling) = unit.unwrap_or_default();
         let by_unit = if is_density(unit) { Some(Scaling::Psd) } else { scaling };
-        let own = self.said("window", name).and_then(|window| Window::from_name(&window));
+        let own = self.remark_about("window", name).and_then(|window| Window::from_name(&window));
         Spectral {
-            scaling: self.said("scaling", name).and_then(|s| Scaling::from_name(&s)).or(by_unit),
+            scaling: self.remark_about("scaling", name).and_then(|s| Scaling::from_name(&s)).or(by_unit),
             // A remark about another column says nothing of this one.
             window: own
                 .or(self.stated.window.filter(|_| !self.remarks("window").any(|v| v.contains(" of ")))),
-            enbw: self.said("enbw", name).and_then(|e| number::parse(e.as_bytes())),
-            frf: self.said("kind", name).is_some_and(|k| k == "frf"),
+            enbw: self.remark_about("enbw", name).and_then(|e| number::parse(e.as_bytes())),
+            frf: self.remark_about("kind", name).is_some_and(|k| k == "frf"),
             doubt: None,
         }
     }
@@ -509,7 +517,7 @@ impl Made<'_> {
     }
 
     /// A remark about one column, `key: value of name`, or about all, `key: value`.
-    fn said(&self, key: &str, name: &str) -> Option<String> {
+    fn remark_about(&self, key: &str, name: &str) -> Option<String> {
         let of = format!(" of {name}");
         let own = self.remarks(key).find_map(|v| v.strip_suffix(of.as_str()));
         let value = own.or_else(|| self.remarks(key).find(|v| !v.contains(" of ")))?;

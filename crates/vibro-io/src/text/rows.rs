@@ -1,6 +1,6 @@
 //! The careful path: one row after the other, each complaint with its line and column.
 
-use super::clock::Clock;
+use super::clock::Stopwatch;
 use super::decoded::{in_line, shorten};
 use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines};
@@ -51,13 +51,13 @@ pub fn read(text: &str, dialect: &Dialect, allow_missing: bool) -> Result<Rows> 
 /// As [`read`], where some columns are known to be `unused`; with no columns where some others are.
 fn read_but(text: &str, dialect: &Dialect, allow_missing: bool, unused: &[bool]) -> Result<Rows> {
     let (n, abscissa) = (dialect.columns, dialect.named_abscissa());
-    let reader = Reader { text, dialect };
+    let reader = FieldParser { text, dialect };
     let mut rows = Rows::default();
     let mut columns: Vec<Vec<Complex64>> = vec![Vec::new(); n];
     let (mut missing, mut blank_since, mut blanks) = (Missing::default(), None, Vec::new());
     // The same with blank lines, of which the last one tells whether they are missing values.
     let mut with_blanks = Missing::default();
-    let (mut clock, clock_at) = (Clock::default(), dialect.clock_at());
+    let (mut clock, clock_at) = (Stopwatch::default(), dialect.clock_at());
     for line in dialect.rows(text) {
         if line.is_blank() {
             blank_since.get_or_insert(line.number);
@@ -214,12 +214,12 @@ fn fault(line: &Line, at: usize, found: &str, expected: &str) -> Error {
 }
 
 /// What is read, for values and complaints.
-struct Reader<'a> {
+struct FieldParser<'a> {
     text: &'a str,
     dialect: &'a Dialect,
 }
 
-impl Reader<'_> {
+impl FieldParser<'_> {
     fn value(&self, field: &str) -> Option<Complex64> {
         let (field, decimal) = (field.as_bytes(), self.dialect.decimal);
         if self.dialect.complex { complex(field, decimal) } else { Some(self.dialect.number(field)?.into()) }

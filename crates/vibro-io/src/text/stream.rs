@@ -1,6 +1,6 @@
 //! Columns of a long text, read again block by block: what was looked at once need not be held.
 
-use super::fast::{Blocks, Shape, parsed};
+use super::fast::{Blocks, RowShape, parsed};
 use crate::Source;
 use std::path::PathBuf;
 use vibro_record::{Error, Meta, Place, Result, Stream, units};
@@ -8,7 +8,7 @@ use vibro_record::{Error, Meta, Place, Result, Stream, units};
 /// Columns of a text that are read again, block by block, with the factor of each to SI.
 pub(crate) struct Columns {
     path: PathBuf,
-    shape: Shape,
+    shape: RowShape,
     blocks: Blocks,
     /// The columns that are handed out.
     handed: Vec<(usize, f64)>,
@@ -21,7 +21,7 @@ impl Columns {
     ///
     /// # Errors
     /// If it cannot be opened.
-    pub fn open(source: &Source, shape: Shape, end: u64, handed: Vec<(usize, f64)>) -> Result<Columns> {
+    pub fn open(source: &Source, shape: RowShape, end: u64, handed: Vec<(usize, f64)>) -> Result<Columns> {
         let blocks = Blocks::of(source, &shape, end)?;
         let values = vec![Vec::new(); shape.columns];
         Ok(Columns { path: source.path().to_owned(), shape, blocks, handed, values })

@@ -16,7 +16,7 @@ use super::dialect::Dialect;
 use super::headings::{headings, is_title, is_types, names_in};
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::names::Name;
-use super::preamble::{BESIDE, Preamble, beside, beside_rows, said};
+use super::preamble::{BESIDE, Preamble, beside, beside_rows, key_and_value};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
 use vibro_record::units::Unit;
@@ -229,7 +229,7 @@ fn fit(
     }
     let last = spoken.get(used.end.max(1) - 1)?.number;
     let used: Vec<u64> = spoken.get(used)?.iter().map(|line| line.number).collect();
-    let header = above.iter().filter(|l| !used.contains(&l.number)).map(|l| said(l, separator));
+    let header = above.iter().filter(|l| !used.contains(&l.number)).map(|l| key_and_value(l, separator));
     let dialect = Dialect {
         format: Format::Csv,
         separator,

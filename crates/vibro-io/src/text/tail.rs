@@ -123,7 +123,7 @@ impl Digits {
 mod tests {
     use super::*;
 
-    fn said(text: &str) -> bool {
+    fn is_cut_off(text: &str) -> bool {
         cut_off(text.as_bytes(), Separator::Char(b','), b'.').is_some()
     }
 
@@ -138,7 +138,7 @@ mod tests {
             ("0.4,1", true),
             ("0.4,1.5\n", false),
         ] {
-            assert_eq!(said(&format!("{above}{last}")), short, "{last:?}");
+            assert_eq!(is_cut_off(&format!("{above}{last}")), short, "{last:?}");
         }
         assert!(cut_off(b"a;b\n1;1,25\n2;1,35\n3;1,45\n4;1,5", Separator::Char(b';'), b',').is_some());
     }
@@ -150,13 +150,13 @@ mod tests {
             // A first line of every length moves the start of the tail through all bytes of a row.
             for phase in 0..=15 {
                 let text = format!("{}{end}{rows}1.234", "x".repeat(phase));
-                assert!(said(&text), "phase {phase}, {end:?}");
+                assert!(is_cut_off(&text), "phase {phase}, {end:?}");
                 let source = Source::memory("x.txt", text.as_bytes()).unwrap();
                 assert!(
                     cut_off(&of(&source).unwrap(), Separator::Blank, b'.').is_some(),
                     "phase {phase}, {end:?}"
                 );
-                assert!(!said(&format!("{text}567E-03")), "phase {phase}, {end:?}");
+                assert!(!is_cut_off(&format!("{text}567E-03")), "phase {phase}, {end:?}");
             }
         }
     }
@@ -172,7 +172,7 @@ mod tests {
             "1.5\nx\n1.5\n1.5\n1",
             "1.25,2\n1.35,3\n1.45,4\n1.5,5",
         ] {
-            assert!(!said(text), "{text:?}");
+            assert!(!is_cut_off(text), "{text:?}");
         }
     }
 

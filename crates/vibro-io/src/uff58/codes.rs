@@ -5,7 +5,7 @@ use vibro_record::{AxisKind, Scaling};
 
 /// What a record of a function type is, where it stands over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum FunctionType {
     /// Response over force; nothing to say of one that is real.
     Ratio,
     /// A spectrum of this scaling.
@@ -19,11 +19,11 @@ pub enum Kind {
 }
 
 use AxisKind::{Frequency, Time};
-use Kind::{Amplitude, Other, Ratio, Scaled, Squared};
+use FunctionType::{Amplitude, Other, Ratio, Scaled, Squared};
 
 /// Function types of record 6 in their order, from 0: name, abscissa where only one makes sense, kind over
 /// frequency.
-const FUNCTIONS: &[(&str, Option<AxisKind>, Kind)] = &[
+const FUNCTIONS: &[(&str, Option<AxisKind>, FunctionType)] = &[
     ("general function", None, Other),
     ("time response", Some(Time), Other),
     ("auto spectrum", Some(Frequency), Squared),
@@ -56,7 +56,7 @@ const FUNCTIONS: &[(&str, Option<AxisKind>, Kind)] = &[
 ];
 
 /// Name, abscissa and kind of a function type.
-pub fn function(code: i64) -> (String, Option<AxisKind>, Kind) {
+pub fn function(code: i64) -> (String, Option<AxisKind>, FunctionType) {
     match usize::try_from(code).ok().and_then(|i| FUNCTIONS.get(i)) {
         Some((name, axis, kind)) => ((*name).to_owned(), axis.clone(), *kind),
         None => (format!("function of type {code}"), None, Other),

@@ -24,9 +24,9 @@ pub struct Heading {
     /// Function type, record 6.
     pub function: i64,
     /// Where the response was measured.
-    pub response: Point,
+    pub response: DegreeOfFreedom,
     /// Where the excitation or reference was.
-    pub reference: Point,
+    pub reference: DegreeOfFreedom,
     /// Storage of the values, record 7.
     pub layout: Layout,
     /// Number of values, or of abscissa and value together.
@@ -36,18 +36,18 @@ pub struct Heading {
     /// Abscissa increment of even spacing.
     pub step: f64,
     /// Abscissa, record 8.
-    pub abscissa: Axis,
+    pub abscissa: AxisCharacteristics,
     /// Ordinate or its numerator, record 9.
-    pub ordinate: Axis,
+    pub ordinate: AxisCharacteristics,
     /// Denominator of the ordinate, record 10.
-    pub denominator: Axis,
+    pub denominator: AxisCharacteristics,
     /// Place of record 7, for complaints about what it declares.
     pub place: Place,
 }
 
 /// A degree of freedom: entity, node, direction.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Point {
+pub struct DegreeOfFreedom {
     /// Name of the component; empty where unused.
     pub entity: String,
     /// Node number; 0 where unused.
@@ -56,7 +56,7 @@ pub struct Point {
     pub direction: i64,
 }
 
-impl Point {
+impl DegreeOfFreedom {
     /// `PWL Mic 1+X`: entity, node and direction, as far as they are given and the entity does not hold the
     /// rest.
     pub fn name(&self) -> String {
@@ -75,7 +75,7 @@ impl Point {
 
 /// Characteristics of an axis.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Axis {
+pub struct AxisCharacteristics {
     /// Specific data type.
     pub data_type: i64,
     /// Label; empty where it is `NONE`.
@@ -84,7 +84,7 @@ pub struct Axis {
     pub unit: String,
 }
 
-impl Axis {
+impl AxisCharacteristics {
     /// `speed [rpm]`: label, or else the name of the data type, and unit.
     pub fn described(&self) -> String {
         let data_type = codes::data_type(self.data_type, false).map_or("", |t| t.0);
@@ -157,11 +157,11 @@ fn real(field: &str) -> Option<f64> {
 }
 
 /// Record 6, format `2(I5,I10),2(1X,A10,I10,I4)`: function type, response and reference point.
-fn dof(text: &str) -> Result<(i64, Point, Point)> {
+fn dof(text: &str) -> Result<(i64, DegreeOfFreedom, DegreeOfFreedom)> {
     let [function, _, _, _, _, response, node, direction, _, reference, of, along] =
         cut(text, [5, 10, 5, 10, 1, 10, 10, 4, 1, 10, 10, 4]);
     let point = |entity: &str, node: &str, direction: &str| {
-        Some(Point { entity: given(entity), node: whole(node)?, direction: whole(direction)? })
+        Some(DegreeOfFreedom { entity: given(entity), node: whole(node)?, direction: whole(direction)? })
     };
     let function = whole(&function).filter(|f| (0..100).contains(f));
     let points = || Some((point(&response, &node, &direction)?, point(&reference, &of, &along)?));
@@ -206,7 +206,7 @@ fn form(text: &str) -> Result<(Layout, usize, f64, f64)> {
 }
 
 /// Records 8 to 11, format `I10,3I5,2(1X,A20)`.
-fn axis(text: &str) -> Axis {
+fn axis(text: &str) -> AxisCharacteristics {
     let text = text.trim_end();
     let [data_type, _, _, _, before, label, between, unit] = cut(text, [10, 5, 5, 5, 1, 20, 1, usize::MAX]);
     // Some writers count the bytes of UTF-8, some its characters: the column between the two fields tells
@@ -218,7 +218,11 @@ fn axis(text: &str) -> Axis {
     } else {
         (text.chars().skip(25).collect(), String::new())
     };
-    Axis { data_type: whole(&data_type).unwrap_or(0), label: given(&label), unit: given(&unit) }
+    AxisCharacteristics {
+        data_type: whole(&data_type).unwrap_or(0),
+        label: given(&label),
+        unit: given(&unit),
+    }
 }
 
 #[cfg(test)]
@@ -244,8 +248,8 @@ mod tests {
         let h = heading(&header(RECORD6, RECORD7, RECORD9)).unwrap().unwrap();
         assert_eq!(h.id, ["Run -1", "", "18-Apr-16 13:49:58", "", "-1 of 3"]);
         assert_eq!(h.function, 4);
-        assert_eq!(h.response, Point { entity: "PWL Mic".into(), node: 7, direction: -3 });
-        assert_eq!(h.reference, Point { entity: String::new(), node: 22, direction: 1 });
+        assert_eq!(h.response, DegreeOfFreedom { entity: "PWL Mic".into(), node: 7, direction: -3 });
+        assert_eq!(h.reference, DegreeOfFreedom { entity: String::new(), node: 22, direction: 1 });
         assert_eq!(h.layout, Layout { complex: true, double: false, even: true });
         assert_eq!((h.n, h.start, h.step), (801, 0.0, 0.25));
         assert_eq!((h.ordinate.data_type, h.ordinate.unit.as_str()), (12, "m/s2"));

@@ -1,7 +1,7 @@
 //! The unit of the values, from unit texts, data types and the file's unit system.
 
-use super::codes::{self, Kind};
-use super::heading::{Axis, Heading};
+use super::codes::{self, FunctionType};
+use super::heading::{AxisCharacteristics, Heading};
 use crate::number;
 use crate::uff::stream::Stream;
 use vibro_record::units::{Dimension, Quantity, Unit};
@@ -10,16 +10,16 @@ use vibro_record::{Finding, Scaling};
 /// Data set 164: length, force and temperature of the file that make one in SI; `None` where the file does
 /// not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct System(Option<[f64; 3]>);
+pub struct UnitSystem(Option<[f64; 3]>);
 
-impl System {
+impl UnitSystem {
     /// Reads two lines of data set 164. `None` where the second does not hold three positive factors, format
     /// `3D25.17`.
-    pub fn read(stream: &mut Stream) -> Option<System> {
+    pub fn read(stream: &mut Stream) -> Option<UnitSystem> {
         stream.line_within()?;
         let line = stream.line_within()?;
         let factors = line.chunks(25).map_while(number::parse).filter(|f| *f > 0.0 && f.is_finite());
-        Some(System(Some(*factors.collect::<Vec<f64>>().first_chunk()?)))
+        Some(UnitSystem(Some(*factors.collect::<Vec<f64>>().first_chunk()?)))
     }
 
     /// SI units in one unit of the file, for a quantity of this dimension. Mass is force times time squared
@@ -37,7 +37,7 @@ const MANGLED: [(&str, &str); 3] = [("²", "┬▓ Â² ≤ ▓"), ("³", "┬�
 
 /// Numerator or denominator of an ordinate.
 #[derive(Debug, Clone)]
-struct Part {
+struct FractionTerm {
     /// Whether a text says its unit.
     text: bool,
     /// Name and dimension of its data type.
@@ -47,19 +47,24 @@ struct Part {
     factor: f64,
 }
 
-impl Part {
-    fn of(axis: &Axis, direction: i64, system: &System, findings: &mut Vec<Finding>) -> Part {
+impl FractionTerm {
+    fn of(
+        axis: &AxisCharacteristics,
+        direction: i64,
+        system: &UnitSystem,
+        findings: &mut Vec<Finding>,
+    ) -> FractionTerm {
         let data_type = codes::data_type(axis.data_type, direction.abs() > 3);
         if axis.unit.is_empty() {
             let dimension = data_type.map_or(Dimension::NONE, |(_, dimension)| dimension);
             let factor = system.factor(dimension);
-            return Part { text: false, data_type, dimension: Some(dimension), factor };
+            return FractionTerm { text: false, data_type, dimension: Some(dimension), factor };
         }
         let unit = Unit::parse(&axis.unit).or_else(|| mend(&axis.unit, findings)).unwrap_or_else(|| {
             findings.push(Finding::caution("unit-unknown").name("unit", axis.unit.as_str()));
             Unit::opaque(&axis.unit)
         });
-        Part { text: true, data_type, dimension: unit.dimension(), factor: unit.factor() }
+        FractionTerm { text: true, data_type, dimension: unit.dimension(), factor: unit.factor() }
     }
 
     /// Whether neither text nor data type says what it is.
@@ -79,22 +84,23 @@ fn mend(text: &str, findings: &mut Vec<Finding>) -> Option<Unit> {
 
 /// SI unit of the values of a data set, or the file's own where it is not understood; the factor to it; the
 /// unit as the file has it, empty where it has none; and what is to be said of it.
-pub fn unit(heading: &Heading, system: &System) -> (Unit, f64, String, Vec<Finding>) {
+pub fn unit(heading: &Heading, system: &UnitSystem) -> (Unit, f64, String, Vec<Finding>) {
     let mut findings = Vec::new();
-    let above = Part::of(&heading.ordinate, heading.response.direction, system, &mut findings);
-    let mut below = Part::of(&heading.denominator, heading.reference.direction, system, &mut findings);
+    let above = FractionTerm::of(&heading.ordinate, heading.response.direction, system, &mut findings);
+    let mut below =
+        FractionTerm::of(&heading.denominator, heading.reference.direction, system, &mut findings);
     let (numerator, denominator) = (&heading.ordinate.unit, &heading.denominator.unit);
     let mut written = numerator.clone();
     if is_whole(&above, &below) {
-        below = Part { text: false, data_type: None, dimension: Some(Dimension::NONE), factor: 1.0 };
+        below = FractionTerm { text: false, data_type: None, dimension: Some(Dimension::NONE), factor: 1.0 };
     } else if !denominator.is_empty() {
         written = format!("({numerator})/({denominator})");
     }
     let (unit, factor) = match plain(heading, &above, &below) {
         Ok((dimension, power, seconds)) => {
-            let typed = |part: &Part| !part.text && part.dimension != Some(Dimension::NONE);
+            let typed = |part: &FractionTerm| !part.text && part.dimension != Some(Dimension::NONE);
             if system.0.is_none() && (typed(&above) || typed(&below)) {
-                let name = |part: &Part| part.data_type.map_or("a number", |(name, _)| name);
+                let name = |part: &FractionTerm| part.data_type.map_or("a number", |(name, _)| name);
                 let types = match below.data_type {
                     Some((below, _)) => format!("{} over {below}", name(&above)),
                     None => name(&above).to_owned(),
@@ -124,7 +130,7 @@ fn spelled(dimension: Dimension, factor: f64, written: &str) -> Unit {
 }
 
 /// Whether the text of the numerator is the unit of the whole ratio already.
-fn is_whole(above: &Part, below: &Part) -> bool {
+fn is_whole(above: &FractionTerm, below: &FractionTerm) -> bool {
     let (true, Some(written), Some(denominator)) = (above.text, above.dimension, below.dimension) else {
         return false;
     };
@@ -136,9 +142,13 @@ fn is_whole(above: &Part, below: &Part) -> bool {
 
 /// Dimension of the ordinate, the power to which it stands in the lines of a spectrum of this function type,
 /// and the power of seconds beside it. Without an answer the values stay as they are, for the reason given.
-fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8, i8), Option<Finding>> {
+fn plain(
+    heading: &Heading,
+    above: &FractionTerm,
+    below: &FractionTerm,
+) -> Result<(Dimension, i8, i8), Option<Finding>> {
     let (name, _, kind) = codes::function(heading.function);
-    if kind == Kind::Scaled(Scaling::Coherence) && !above.text {
+    if kind == FunctionType::Scaled(Scaling::Coherence) && !above.text {
         return Ok((Dimension::NONE, 1, 0));
     }
     if above.unsaid() && below.unsaid() {
@@ -147,9 +157,9 @@ fn plain(heading: &Heading, above: &Part, below: &Part) -> Result<(Dimension, i8
     let (Some(numerator), Some(denominator)) = (above.dimension, below.dimension) else { return Err(None) };
     let dimension = numerator.times(denominator.inverse());
     let (power, seconds) = match kind {
-        Kind::Squared => (2, 0),
-        Kind::Scaled(Scaling::Psd) => (2, 1),
-        Kind::Scaled(Scaling::Energy) => (2, 2),
+        FunctionType::Squared => (2, 0),
+        FunctionType::Scaled(Scaling::Psd) => (2, 1),
+        FunctionType::Scaled(Scaling::Energy) => (2, 2),
         _ => return Ok((dimension, 1, 0)),
     };
     let signal = above.data_type.is_some_and(|(_, d)| d != Dimension::NONE && numerator == d);
@@ -194,8 +204,8 @@ fn label_against_unit(heading: &Heading, unit: &Unit, written: &str) -> Option<F
 mod tests {
     use super::*;
 
-    fn system(text: &str) -> Option<System> {
-        System::read(&mut Stream::new(text.as_bytes()))
+    fn system(text: &str) -> Option<UnitSystem> {
+        UnitSystem::read(&mut Stream::new(text.as_bytes()))
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! What record a data set 58 becomes: axis, kind, scaling, unit, and the findings about each.
 
-use super::codes::{self, Kind};
+use super::codes::{self, FunctionType};
 use super::heading::Heading;
-use super::ordinate::{self, System};
+use super::ordinate::{self, UnitSystem};
 use super::values::Layout;
 use crate::assemble::{self, Abscissa, Spectral, domain, to_si};
 use crate::{Options, missing};
@@ -18,7 +18,7 @@ pub fn build(
     heading: &Heading,
     numbers: Vec<f64>,
     more: Vec<Finding>,
-    system: &System,
+    system: &UnitSystem,
     options: &Options,
     file: &str,
 ) -> Result<Record> {
@@ -31,7 +31,7 @@ pub fn build(
     meta.declared_n = Some(heading.n);
     meta.step("read", &[("file", &file), ("format", &"uff"), ("case", &heading.layout.case())]);
     let mut said = stated(&heading.id[4]);
-    let coherence = codes::function(heading.function).2 == Kind::Scaled(Scaling::Coherence)
+    let coherence = codes::function(heading.function).2 == FunctionType::Scaled(Scaling::Coherence)
         || said.scaling == Some(Scaling::Coherence);
     let factor = unit(heading, system, options, coherence, &mut meta);
     let (kind, abscissa_factor) = abscissa(heading, options, &mut meta);
@@ -103,15 +103,15 @@ fn function(heading: &Heading, axis: &AxisKind, said: &mut Spectral, meta: &mut 
             meta.found(Finding::caution("function-as-trace").name("function", name));
         }
     } else if said.scaling.is_none() {
-        said.frf = kind == Kind::Ratio && heading.layout.complex;
+        said.frf = kind == FunctionType::Ratio && heading.layout.complex;
         said.scaling = match kind {
-            Kind::Scaled(scaling) => Some(scaling),
+            FunctionType::Scaled(scaling) => Some(scaling),
             _ => (!said.frf).then_some(Scaling::Unknown),
         };
         let doubt = match kind {
-            Kind::Ratio if !said.frf => Some("function-real-only"),
-            Kind::Squared => Some("scaling-unsaid-squared"),
-            Kind::Other => Some("function-as-spectrum"),
+            FunctionType::Ratio if !said.frf => Some("function-real-only"),
+            FunctionType::Squared => Some("scaling-unsaid-squared"),
+            FunctionType::Other => Some("function-as-spectrum"),
             _ => None,
         };
         said.doubt = doubt.map(|code| Finding::caution(code).name("function", name));
@@ -182,7 +182,7 @@ fn untyped(heading: &Heading, options: &Options, meta: &mut Meta) -> AxisKind {
 }
 
 /// Settles unit and quantity; gives the factor to SI.
-fn unit(heading: &Heading, system: &System, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
+fn unit(heading: &Heading, system: &UnitSystem, options: &Options, coherence: bool, meta: &mut Meta) -> f64 {
     let (unit, factor, written, findings) = ordinate::unit(heading, system);
     // A coherence has none, whatever that of the function beside it is.
     if let Some(said) = options.unit.as_ref().filter(|_| !coherence) {

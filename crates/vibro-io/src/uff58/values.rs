@@ -1,7 +1,7 @@
 //! Record 12 of data set 58: values in fixed columns, between blanks, or in binary.
 
 use super::heading::Heading;
-use crate::binary::Kind;
+use crate::binary::NumberType;
 use crate::uff::stream::{Stream, closes, is_delimiter};
 use crate::{missing, number};
 use vibro_record::{Error, Finding, Result};
@@ -237,7 +237,7 @@ fn decode(bytes: &[u8], layout: Layout, big_endian: bool, wide: bool) -> Vec<f64
         |b: &[u8; 4]| f64::from(if big_endian { f32::from_be_bytes(*b) } else { f32::from_le_bytes(*b) });
     let double = |b: &[u8; 8]| if big_endian { f64::from_be_bytes(*b) } else { f64::from_le_bytes(*b) };
     if !layout.double || layout.even || wide {
-        let (kind, mut numbers) = (if layout.double { Kind::F64 } else { Kind::F32 }, Vec::new());
+        let (kind, mut numbers) = (if layout.double { NumberType::F64 } else { NumberType::F32 }, Vec::new());
         kind.take(bytes, 0, kind.size() as usize, big_endian, &mut numbers);
         return numbers;
     }

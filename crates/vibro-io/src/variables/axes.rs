@@ -4,7 +4,7 @@ use super::Array;
 use super::names::Meaning::{Increment, Rate, Start};
 use super::names::Trust::{Likely, Offered, Sure, Vague};
 use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
-use crate::assemble::{Judged, drift, epoch, from_values, kind_of, short};
+use crate::assemble::{JudgedAxis, drift, epoch, from_values, kind_of, short};
 use crate::held::Held;
 use crate::number;
 use crate::options::{Options, POSSIBLE};
@@ -197,7 +197,7 @@ impl<'a> Axes<'a> {
             // Seconds since 1970 have no room for the digits of their steps.
             let first = if (vector[0] * factor).abs() >= FAR { vector[0] } else { from };
             let vector = vector.iter().map(|v| (v - first) * factor).collect();
-            let Judged { mut axis, clock, found } =
+            let JudgedAxis { mut axis, clock, found } =
                 from_values(kind, vector, drift, &label, options.resample.is_some());
             match &mut axis.grid {
                 Grid::Even { start, .. } => *start += (first - from) * factor,

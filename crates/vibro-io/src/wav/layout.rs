@@ -6,7 +6,7 @@
 use super::scales::Scales;
 use crate::Source;
 use crate::assemble::fewer;
-use crate::binary::Kind;
+use crate::binary::NumberType;
 use crate::source::ReadSeek;
 use crate::text::encoding;
 use std::io::{Read, SeekFrom};
@@ -29,8 +29,8 @@ const CUT: &str = "the recording may have been cut off before its first sample";
 
 /// What the chunks say.
 #[derive(Debug)]
-pub struct Layout {
-    pub sample: Kind,
+pub struct WavHeader {
+    pub sample: NumberType,
     pub channels: usize,
     pub rate: f64,
     pub data_at: u64,
@@ -42,7 +42,7 @@ pub struct Layout {
 }
 
 /// Goes from chunk to chunk.
-pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
+pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
     let fault =
         |at, found: &str, expected: &str| Error::input(Place::byte(source.path(), at), found, expected);
     // At most `most` bytes from `at` on: fewer where the file ends.
@@ -130,7 +130,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<Layout> {
     if rate == 0.0 {
         return Err(fault(format_at + 4, "a sampling rate of 0 Hz", "a sampling rate"));
     }
-    Ok(Layout { sample, channels, rate, data_at, frames, declared_frames, scales, notes, findings })
+    Ok(WavHeader { sample, channels, rate, data_at, frames, declared_frames, scales, notes, findings })
 }
 
 /// Name and size of a chunk; `None` where no chunk begins.
@@ -145,7 +145,7 @@ fn field<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
 
 /// Kind of sample, channels, sampling rate and bits of a `fmt ` chunk, or what was found and what is
 /// expected.
-fn kind(format: &[u8]) -> std::result::Result<(Kind, usize, f64, usize), (String, &'static str)> {
+fn kind(format: &[u8]) -> std::result::Result<(NumberType, usize, f64, usize), (String, &'static str)> {
     let word = |at| field(format, at).map(u16::from_le_bytes);
     let (Some(mut tag), Some(channels), Some(rate), Some(frame), Some(mut bits)) =
         (word(0), word(2), field(format, 4).map(u32::from_le_bytes), word(12), word(14))
@@ -159,12 +159,12 @@ fn kind(format: &[u8]) -> std::result::Result<(Kind, usize, f64, usize), (String
     }
     let bytes = usize::from(frame.checked_div(channels).unwrap_or(0));
     let sample = match (tag, bytes) {
-        (1, 1) => Some(Kind::U8),
-        (1, 2) => Some(Kind::I16),
-        (1, 3) => Some(Kind::I24),
-        (1, 4) => Some(Kind::I32),
-        (3, 4) => Some(Kind::F32),
-        (3, 8) => Some(Kind::F64),
+        (1, 1) => Some(NumberType::U8),
+        (1, 2) => Some(NumberType::I16),
+        (1, 3) => Some(NumberType::I24),
+        (1, 4) => Some(NumberType::I32),
+        (3, 4) => Some(NumberType::F32),
+        (3, 8) => Some(NumberType::F64),
         _ => None,
     };
     let whole = bytes * usize::from(channels) == usize::from(frame) && usize::from(bits) <= 8 * bytes;

@@ -89,7 +89,7 @@ const REST: usize = 4;
 
 /// Sines that were fitted together to some lines.
 #[derive(Debug, Clone)]
-pub struct Group {
+pub struct SineGroup {
     /// The lines.
     pub lines: Range<usize>,
     /// The sines, in the order of their starts.
@@ -98,7 +98,7 @@ pub struct Group {
     widening: f64,
 }
 
-impl Group {
+impl SineGroup {
     /// Fits sines to `lines` of a spectrum of `n` samples, from their periods and decays.
     ///
     /// # Errors
@@ -108,7 +108,7 @@ impl Group {
         lines: Range<usize>,
         n: usize,
         starts: &[(f64, f64)],
-    ) -> Result<Group> {
+    ) -> Result<SineGroup> {
         let start = start(spectrum, &lines, n, starts)?;
         let mut scale = Vec::new();
         for (at, (_, decay)) in starts.iter().enumerate() {
@@ -141,7 +141,7 @@ impl Group {
         let part = |odd: usize| fit.residuals.iter().skip(odd).step_by(2).copied().collect::<Vec<f64>>();
         let white = Whiteness::of(&[&part(0), &part(1)]);
         let widening = student(fit.degrees_of_freedom()).unwrap_or(f64::NAN) * white.inflation;
-        Ok(Group { lines, sines, fit, widening })
+        Ok(SineGroup { lines, sines, fit, widening })
     }
 
     /// Standard uncertainty of what depends on the parameters of sine `m` with this gradient.
@@ -222,11 +222,11 @@ mod tests {
             amplitude: Complex64::from_polar(a, a),
         });
         let spectrum: Vec<Complex64> = (0..100).map(|k| truth.iter().map(|s| s.line(k, n)).sum()).collect();
-        let group = Group::fit(&spectrum, 30..52, n, &[(40.0, 2.0), (41.5, 2.0)]).unwrap();
+        let group = SineGroup::fit(&spectrum, 30..52, n, &[(40.0, 2.0), (41.5, 2.0)]).unwrap();
         for (found, truth) in group.sines.iter().zip(&truth) {
             // The Jacobian is one of central differences, and steps end below 1e-8 of a line.
             assert!((found.periods - truth.periods).abs() < 1e-6 && (found.decay - truth.decay).abs() < 1e-5);
         }
-        assert!(Group::fit(&spectrum, 38..42, n, &[(40.0, 2.0), (41.5, 2.0)]).is_err());
+        assert!(SineGroup::fit(&spectrum, 38..42, n, &[(40.0, 2.0), (41.5, 2.0)]).is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! The sines of a part of a record, the strongest first (Li & Stoica 1996, RELAX).
 
-use super::damped::{Damped, Group, OWN, lines};
+use super::damped::{Damped, OWN, SineGroup, lines};
 use super::result::DecayOptions;
 use super::usable::levels;
 use crate::mean::average;
@@ -37,7 +37,7 @@ pub struct Sines {
     pub rate: f64,
     /// Lines at which modes are asked for; sines elsewhere are fitted, so that they do not pass for these.
     band: Range<usize>,
-    pub groups: Vec<Group>,
+    pub groups: Vec<SineGroup>,
     /// Lines that stand out and are no mode beside those that are known.
     pub odd: Vec<usize>,
 }
@@ -91,7 +91,7 @@ impl Sines {
             let rest = self.rest(spectrum, Some(at));
             let old = &self.groups[at];
             let starts: Vec<(f64, f64)> = old.sines.iter().map(|s| (s.periods, s.decay)).collect();
-            if let Ok(better) = Group::fit(&rest, range(&old.sines, rest.len()), self.n, &starts) {
+            if let Ok(better) = SineGroup::fit(&rest, range(&old.sines, rest.len()), self.n, &starts) {
                 self.groups[at] = better;
             }
         }
@@ -102,7 +102,7 @@ impl Sines {
     }
 
     /// The sines within the band.
-    pub fn asked(&self) -> impl Iterator<Item = (&Group, usize)> {
+    pub fn asked(&self) -> impl Iterator<Item = (&SineGroup, usize)> {
         let all = self.groups.iter().flat_map(|group| (0..group.sines.len()).map(move |m| (group, m)));
         // A mode whose largest line is in the band lies within a line of it.
         let within =
@@ -115,8 +115,8 @@ impl Sines {
     }
 
     /// The sine that moves most over the whole part; what does not decay counts as if it did.
-    pub fn strongest(&self) -> Option<(&Group, usize)> {
-        let size = |(group, m): &(&Group, usize)| {
+    pub fn strongest(&self) -> Option<(&SineGroup, usize)> {
+        let size = |(group, m): &(&SineGroup, usize)| {
             let sine = &group.sines[*m];
             sine.amplitude.norm() / if decays(group, *m) { sine.decay.max(1.0) } else { ENOUGH }
         };
@@ -173,18 +173,18 @@ impl Sines {
         let wide = (top..rest.len() - 1).take_while(half).count() + (1..top).rev().take_while(half).count();
         let decay = std::f64::consts::PI * wide as f64;
         let new = Damped { periods: top as f64, decay, amplitude: Complex64::ZERO };
-        let near = |group: &Group| {
+        let near = |group: &SineGroup| {
             group.sines.iter().any(|s| (s.periods - new.periods).abs() < 0.5 * (s.reach() + new.reach()))
         };
-        let (near, others): (Vec<Group>, Vec<Group>) = self.groups.drain(..).partition(near);
+        let (near, others): (Vec<SineGroup>, Vec<SineGroup>) = self.groups.drain(..).partition(near);
         self.groups = others;
         let old: Vec<Damped> = near.iter().flat_map(|group| group.sines.iter().copied()).collect();
         let rest = self.rest(spectrum, None);
         let fit = |sines: &[Damped], lines: Range<usize>| {
             let starts: Vec<(f64, f64)> = sines.iter().map(|s| (s.periods, s.decay)).collect();
-            Group::fit(&rest, lines, self.n, &starts)
+            SineGroup::fit(&rest, lines, self.n, &starts)
         };
-        let mut best: Option<Group> = None;
+        let mut best: Option<SineGroup> = None;
         for decay in [0.3 * decay, decay, 0.2] {
             let sines: Vec<Damped> = old.iter().copied().chain([Damped { decay, ..new }]).collect();
             let Ok(group) = fit(&sines, range(&sines, rest.len())) else { continue };
@@ -208,7 +208,7 @@ impl Sines {
             let inside = group.lines.contains(&(added.periods.max(0.0) as usize));
             let without = if old.is_empty() { None } else { fit(&old, group.lines.clone()).ok() };
             let (left, free) = (group.fit.sum_of_squares(), group.fit.degrees_of_freedom());
-            let gained = |less: Group| (less.fit.sum_of_squares() - left) / OWN as f64;
+            let gained = |less: SineGroup| (less.fit.sum_of_squares() - left) / OWN as f64;
             let worth = without.is_none_or(|less| gained(less) > WORTH * left / free as f64);
             inside && worth && group.sines[..old.len()].iter().all(alone)
         });
@@ -249,6 +249,6 @@ fn range(sines: &[Damped], all: usize) -> Range<usize> {
 }
 
 /// Whether a sine surely decays.
-pub fn decays(group: &Group, m: usize) -> bool {
+pub fn decays(group: &SineGroup, m: usize) -> bool {
     group.sines[m].decay > SURE * group.std(m, [0.0, 1.0, 0.0, 0.0])
 }

@@ -58,13 +58,13 @@ pub struct Bandwidth {
 
 /// Count, mean and sum of squared deviations (B. Welford, Technometrics 4 (1962) 419).
 #[derive(Debug, Clone, Copy, Default)]
-struct Running {
+struct RunningMoments {
     n: usize,
     mean: f64,
     squares: f64,
 }
 
-impl Running {
+impl RunningMoments {
     fn push(&mut self, value: f64) {
         self.n += 1;
         let step = value - self.mean;
@@ -83,7 +83,7 @@ impl Running {
 pub(super) struct Cycles {
     /// Samples a second.
     rate: f64,
-    points: Vec<Running>,
+    points: Vec<RunningMoments>,
     row: Vec<f64>,
     /// Largest speed, acceleration and jerk of each turn, in samples.
     tops: [Vec<f64>; 3],
@@ -99,7 +99,7 @@ pub(super) struct Cycles {
 impl Cycles {
     /// Turns that are averaged at `points` phases, the first at the edge that begins the turn.
     pub fn new(rate: f64, points: usize) -> Cycles {
-        Cycles { rate, points: vec![Running::default(); points], ..Cycles::default() }
+        Cycles { rate, points: vec![RunningMoments::default(); points], ..Cycles::default() }
     }
 
     /// Averages a turn. Phases beside a sample that was not measured are left out.
@@ -165,11 +165,11 @@ impl Cycles {
     /// What was averaged; NaN where there is no value.
     pub fn phases(&self) -> Phases {
         let n = self.points.len() as f64;
-        let mean = |p: &Running| if p.n == 0 { f64::NAN } else { p.mean };
+        let mean = |p: &RunningMoments| if p.n == 0 { f64::NAN } else { p.mean };
         Phases {
             phase: (0..self.points.len()).map(|k| k as f64 / n).collect(),
             mean: self.points.iter().map(mean).collect(),
-            std: self.points.iter().map(Running::std).collect(),
+            std: self.points.iter().map(RunningMoments::std).collect(),
         }
     }
 
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn as_two_passes_have_it() {
         let values = [1e6 + 1.0, 1e6 + 2.0, 1e6 + 4.0];
-        let mut running = Running::default();
+        let mut running = RunningMoments::default();
         for v in values {
             running.push(v);
         }

@@ -22,7 +22,7 @@ const HIGHEST: f64 = 0.25;
 /// From where the angle of the beam is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum From {
+pub enum AngleOrigin {
     /// From the normal to the motion: 90° is a beam along the motion.
     Normal,
     /// From the axis of the motion: 0° is a beam along the motion.
@@ -32,9 +32,9 @@ pub enum From {
 /// A beam that sees v cos α of a velocity v, α the angle between beam and motion.
 ///
 /// ```
-/// use vibro_measure::drill::{Beam, From};
-/// assert!((Beam::new(30.0, From::Normal)?.factor - 2.0).abs() < 1e-12);
-/// assert!((Beam::new(30.0, From::Axis)?.factor - 1.1547).abs() < 1e-4);
+/// use vibro_measure::drill::{AngleOrigin, Beam};
+/// assert!((Beam::new(30.0, AngleOrigin::Normal)?.factor - 2.0).abs() < 1e-12);
+/// assert!((Beam::new(30.0, AngleOrigin::Axis)?.factor - 1.1547).abs() < 1e-4);
 /// # Ok::<(), vibro_record::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -51,12 +51,12 @@ impl Beam {
     /// # Errors
     /// If the angle is not between 0° and 90°, or the beam stands square to the motion and sees nothing of
     /// it.
-    pub fn new(degrees: f64, from: From) -> Result<Beam> {
+    pub fn new(degrees: f64, from: AngleOrigin) -> Result<Beam> {
         if !(0.0..=90.0).contains(&degrees) {
             let found = format!("a beam angle of {degrees}°");
             return Err(Error::usage(found, "0° to 90°").setting("beam_angle"));
         }
-        let alpha = if from == From::Axis { degrees } else { 90.0 - degrees }.to_radians();
+        let alpha = if from == AngleOrigin::Axis { degrees } else { 90.0 - degrees }.to_radians();
         if alpha.cos() < SQUARE {
             let why = format!("a beam at {degrees}° is square to the motion: it sees no velocity");
             let hint = "check whether the angle counts from the normal or from the axis of the motion";
@@ -282,21 +282,23 @@ mod tests {
     #[test]
     fn both_spellings_of_one_beam_agree() {
         for degrees in [0.0, 12.5, 45.0, 80.0] {
-            let (a, b) =
-                (Beam::new(degrees, From::Axis).unwrap(), Beam::new(90.0 - degrees, From::Normal).unwrap());
+            let (a, b) = (
+                Beam::new(degrees, AngleOrigin::Axis).unwrap(),
+                Beam::new(90.0 - degrees, AngleOrigin::Normal).unwrap(),
+            );
             // One rounding in the angle, amplified by tan 80° = 6.
             assert!((a.factor / b.factor - 1.0).abs() < 1e-14);
         }
         // 3 % a degree where the factor is 2.
-        assert!((Beam::new(30.0, From::Normal).unwrap().per_degree - 0.0302).abs() < 1e-4);
+        assert!((Beam::new(30.0, AngleOrigin::Normal).unwrap().per_degree - 0.0302).abs() < 1e-4);
     }
 
     #[test]
     fn a_square_beam_is_refused_and_an_impossible_angle_is_wrong_usage() {
-        assert_eq!(Beam::new(90.0, From::Axis).unwrap_err().exit_code(), 1);
-        assert_eq!(Beam::new(0.0, From::Normal).unwrap_err().exit_code(), 1);
+        assert_eq!(Beam::new(90.0, AngleOrigin::Axis).unwrap_err().exit_code(), 1);
+        assert_eq!(Beam::new(0.0, AngleOrigin::Normal).unwrap_err().exit_code(), 1);
         for bad in [-1.0, 91.0, f64::NAN] {
-            assert_eq!(Beam::new(bad, From::Axis).unwrap_err().exit_code(), 2);
+            assert_eq!(Beam::new(bad, AngleOrigin::Axis).unwrap_err().exit_code(), 2);
         }
     }
 }

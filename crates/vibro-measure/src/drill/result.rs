@@ -1,7 +1,8 @@
 //! What a drill's record gave, and what a person should know of it.
 
 use super::{
-    Bandwidth, Beam, Corner, DrillOptions, FaultCount, Group, Impact, NoiseFloor, Phases, Survey, TurnsFrom,
+    Bandwidth, Beam, ChannelStatistics, Corner, DrillOptions, FaultCount, Group, Impact, NoiseFloor, Phases,
+    TurnsFrom,
 };
 use crate::Estimate;
 use crate::exposure::Exposure;
@@ -127,7 +128,7 @@ pub(super) fn findings(
     d: &Drill,
     options: &DrillOptions,
     sharp: bool,
-    velocity: &Survey,
+    velocity: &ChannelStatistics,
     still: bool,
 ) -> Vec<Finding> {
     let (r, f, bandwidth, pulses) = (&d.reference, &d.faults, &d.bandwidth, options.pulses_per_turn);

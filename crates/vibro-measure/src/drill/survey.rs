@@ -65,7 +65,7 @@ const SPIKE_RANGE: f64 = 0.02;
 const RAIL: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+enum FaultKind {
     Dropout,
     Spike,
     OverRange,
@@ -79,7 +79,11 @@ enum Kind {
 /// while these agree, or a burst of 8 to 48 that jump from each to the next between calm ends, which an
 /// impact in it may part; *over-range* are two or more samples at the largest or smallest value, entered or
 /// left by a step. Neither a turning point of a coarsely digitised signal nor an impact is a fault.
-pub(super) fn repair(values: &mut [f64], survey: &Survey, longest: usize) -> (Vec<State>, FaultCount) {
+pub(super) fn repair(
+    values: &mut [f64],
+    survey: &ChannelStatistics,
+    longest: usize,
+) -> (Vec<State>, FaultCount) {
     let height =
         (SPIKE_NOISE * noise(values).max(survey.quantum)).max(SPIKE_RANGE * (survey.high - survey.low));
     let faults = Velocity { raw: values, survey, height }.faults();
@@ -87,13 +91,13 @@ pub(super) fn repair(values: &mut [f64], survey: &Survey, longest: usize) -> (Ve
     let mut count = FaultCount::default();
     for (kind, range) in faults {
         let n = range.len();
-        if kind == Kind::OverRange {
+        if kind == FaultKind::OverRange {
             states[range].fill(State::Clipped);
             count.clipped += n;
             continue;
         }
-        count.dropouts += usize::from(kind == Kind::Dropout);
-        count.spikes += usize::from(kind == Kind::Spike);
+        count.dropouts += usize::from(kind == FaultKind::Dropout);
+        count.spikes += usize::from(kind == FaultKind::Spike);
         let before = range.start.checked_sub(1).map(|i| values[i]).filter(|v| v.is_finite());
         let after = values.get(range.end).copied().filter(|v| v.is_finite());
         let known = before.or(after).is_some() && n <= longest;
@@ -110,14 +114,14 @@ pub(super) fn repair(values: &mut [f64], survey: &Survey, longest: usize) -> (Ve
 /// A velocity as it was measured.
 struct Velocity<'a> {
     raw: &'a [f64],
-    survey: &'a Survey,
+    survey: &'a ChannelStatistics,
     /// Least height of a spike.
     height: f64,
 }
 
 impl Velocity<'_> {
-    fn faults(&self) -> Vec<(Kind, Range<usize>)> {
-        let mut all: Vec<(Kind, Range<usize>)> = Vec::new();
+    fn faults(&self) -> Vec<(FaultKind, Range<usize>)> {
+        let mut all: Vec<(FaultKind, Range<usize>)> = Vec::new();
         let mut at = 0;
         while at < self.raw.len() {
             if let Some((kind, end)) = self.fault(at) {
@@ -131,7 +135,7 @@ impl Velocity<'_> {
     }
 
     /// The fault that begins at sample `i`, and the sample behind it.
-    fn fault(&self, i: usize) -> Option<(Kind, usize)> {
+    fn fault(&self, i: usize) -> Option<(FaultKind, usize)> {
         let v = self.raw[i];
         let before = i.checked_sub(1).map(|k| self.raw[k]);
         if before == Some(v) {
@@ -141,19 +145,19 @@ impl Velocity<'_> {
         let same = |x: &&f64| **x == v || !(x.is_finite() || v.is_finite());
         let end = i + self.raw[i..].iter().take_while(same).count();
         if !v.is_finite() {
-            Some((Kind::Dropout, end))
+            Some((FaultKind::Dropout, end))
         } else if end - i > 1 {
             self.flat(i, end).map(|kind| (kind, end))
         } else if (v - before?).abs() < 0.7 * self.height {
             None
         } else {
-            self.spike(i).map(|end| (Kind::Spike, end))
+            self.spike(i).map(|end| (FaultKind::Spike, end))
         }
     }
 
     /// What a stretch of equal values is.
-    fn flat(&self, i: usize, end: usize) -> Option<Kind> {
-        let Survey { low, high, median, quantum, longest_by_chance } = *self.survey;
+    fn flat(&self, i: usize, end: usize) -> Option<FaultKind> {
+        let ChannelStatistics { low, high, median, quantum, longest_by_chance } = *self.survey;
         let v = self.raw[i];
         let before = &self.raw[i.saturating_sub(AROUND)..i];
         let after = &self.raw[end..(end + AROUND).min(self.raw.len())];
@@ -163,11 +167,11 @@ impl Velocity<'_> {
         }
         if v == low || v == high {
             let reach = (median - low).max(high - median);
-            return ((v - median).abs() > RAIL * reach).then_some(Kind::OverRange);
+            return ((v - median).abs() > RAIL * reach).then_some(FaultKind::OverRange);
         }
         let pairs = before.windows(2).chain(after.windows(2));
         let (equal, all) = pairs.fold((0, 0), |(e, n), p| (e + usize::from(p[0] == p[1]), n + 1));
-        (end - i >= longest_by_chance && 2 * equal <= all).then_some(Kind::Dropout)
+        (end - i >= longest_by_chance && 2 * equal <= all).then_some(FaultKind::Dropout)
     }
 
     /// The sample behind those that stand off the line between their neighbours, while the signal there is
@@ -217,7 +221,7 @@ const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// Extremes and resolution of a channel.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Survey {
+pub(super) struct ChannelStatistics {
     /// Lowest value.
     pub low: f64,
     /// Highest value.
@@ -232,9 +236,9 @@ pub(super) struct Survey {
     pub longest_by_chance: usize,
 }
 
-impl Survey {
+impl ChannelStatistics {
     /// Of all values; missing ones are NaN.
-    pub fn of(values: &[f64]) -> Survey {
+    pub fn of(values: &[f64]) -> ChannelStatistics {
         let (low, high) = range(values);
         let steps = || values.windows(2).map(|w| (w[1] - w[0]).abs());
         let quantum = steps().filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
@@ -243,7 +247,7 @@ impl Survey {
         // One more than was seen: none among a few thousand does not mean never.
         let p = ((equal + 1.0) / (n + 1.0)).min(0.999);
         let needed = ((1e-3 / n).ln() / p.ln()).ceil() + 1.0;
-        Survey {
+        ChannelStatistics {
             low,
             high,
             median: median(values),
@@ -345,7 +349,7 @@ mod tests {
 
     fn repaired(raw: &[f64]) -> (Vec<f64>, Vec<State>, FaultCount) {
         let mut values = raw.to_vec();
-        let (states, count) = repair(&mut values, &Survey::of(raw), 500);
+        let (states, count) = repair(&mut values, &ChannelStatistics::of(raw), 500);
         (values, states, count)
     }
 
@@ -466,7 +470,7 @@ mod surveys {
             }
             values.extend([0.25, 40.0, f64::NAN]);
             assert_eq!(levels(&values), Some((0.25, 4.75)), "{turns}");
-            let survey = Survey::of(&values);
+            let survey = ChannelStatistics::of(&values);
             assert_eq!((survey.low, survey.high), (0.25, 40.0));
         }
         assert_eq!(levels(&[1.0; 100]), None);
@@ -481,7 +485,7 @@ mod surveys {
                 (v / 0.001).round() * 0.001
             })
             .collect();
-        let survey = Survey::of(&block);
+        let survey = ChannelStatistics::of(&block);
         // A median of 8000 absolute values or more scatters by 1.17/√8000 = 1.3 %; four times that.
         assert!((noise(&block) / 0.05 - 1.0).abs() < 0.052, "{}", noise(&block));
         assert!((survey.quantum - 0.001).abs() < 1e-9);

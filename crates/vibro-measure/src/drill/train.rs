@@ -25,7 +25,7 @@ const UNEVEN: f64 = 0.2;
 const PAUSE: f64 = 4.0;
 
 /// The impacts that tell the turns, in samples.
-pub(super) struct Train {
+pub(super) struct TurnImpacts {
     pub at: Vec<f64>,
     /// Root mean square of the standard uncertainties of their instants.
     pub std: f64,
@@ -33,13 +33,13 @@ pub(super) struct Train {
     pub others: usize,
 }
 
-impl Train {
+impl TurnImpacts {
     /// Of all impacts of a record sampled `rate` times a second, those of the stronger direction that follow
     /// each other by their period.
     ///
     /// # Errors
     /// If there are too few, or they have no common period.
-    pub fn of(impacts: &[Impact], rate: f64) -> Result<Train> {
+    pub fn of(impacts: &[Impact], rate: f64) -> Result<TurnImpacts> {
         let refused = |why: String| {
             let hint =
                 "name the channel of a crank pulse; or check the velocity channel and the longest contact";
@@ -63,7 +63,7 @@ impl Train {
             return refused(format!("{} impacts have no common period: there are no turns", own.len()));
         }
         let squares: f64 = chosen.iter().map(|k| (own[*k].time_std * rate).powi(2)).sum();
-        Ok(Train {
+        Ok(TurnImpacts {
             at: chosen.iter().map(|k| events[*k].0).collect(),
             std: (squares / chosen.len() as f64).sqrt(),
             others: own.len() - chosen.len(),
@@ -143,7 +143,7 @@ mod tests {
     use vibro_math::Noise;
 
     /// Impacts from (instant, jump) at one sample a second.
-    fn train(mut of: Vec<(f64, f64)>) -> Result<Train> {
+    fn train(mut of: Vec<(f64, f64)>) -> Result<TurnImpacts> {
         of.sort_by(|a, b| a.0.total_cmp(&b.0));
         let impact = |(time, after): (f64, f64)| Impact {
             cycle: 0,
@@ -158,7 +158,7 @@ mod tests {
             after_std: 0.0,
             clipped: false,
         };
-        Train::of(&of.into_iter().map(impact).collect::<Vec<_>>(), 1.0)
+        TurnImpacts::of(&of.into_iter().map(impact).collect::<Vec<_>>(), 1.0)
     }
 
     /// Impacts −7 ± 0.3 of 60 turns, the first 1000 long, the last 6 % more, ± 1 %.

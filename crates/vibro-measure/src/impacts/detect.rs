@@ -2,7 +2,7 @@
 
 use super::background::{Background, background, bursts};
 use super::bands::within;
-use super::onset::Shape;
+use super::onset::PulseShape;
 use super::onset::{Onsets, onsets};
 use super::rises::{largest, rises};
 use super::{Hum, hum};
@@ -254,9 +254,9 @@ fn banded(trace: &Trace, options: &ImpactsOptions, rate: f64) -> Result<Vec<f64>
 }
 
 /// The shape of a recorded pulse, for a trace of this sampling rate in Hz.
-fn recorded(pulse: &Trace, rate: f64) -> Result<Shape> {
+fn recorded(pulse: &Trace, rate: f64) -> Result<PulseShape> {
     let own = pulse.sampling_rate().map_err(|error| error.setting("shape_rate"))?;
-    Shape::recorded(&pulse.values, rate / own).ok_or_else(|| {
+    PulseShape::recorded(&pulse.values, rate / own).ok_or_else(|| {
         let name = &pulse.meta.name;
         Error::refused(format!("{name:?} is no shape of a pulse: its samples have no rising flank"))
             .hint("cut the record to one pulse with its level before it, without missing values")

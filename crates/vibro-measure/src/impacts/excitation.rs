@@ -1,6 +1,6 @@
 //! Impacts against their excitation: phases, the fraction that they keep, or the beat by which they miss it.
 
-use super::interval::Counted;
+use super::interval::CountedImpacts;
 use super::interval::interval;
 use super::{Impacts, ImpactsOptions};
 use crate::Estimate;
@@ -38,7 +38,7 @@ pub struct Phase {
 /// As [`Reference::new`].
 pub fn compare(
     answer: &mut Impacts,
-    counted: &Counted,
+    counted: &CountedImpacts,
     (start, rate): (f64, f64),
     options: &ImpactsOptions,
 ) -> Result<()> {

@@ -170,7 +170,7 @@ fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
 }
 
 /// Which impacts count, and their indices in a series without missed ones.
-pub struct Counted {
+pub struct CountedImpacts {
     /// Impacts that count, by their place among all.
     pub kept: Vec<usize>,
     /// Their indices; those of missed impacts are left out.
@@ -192,14 +192,14 @@ const ACCIDENTS: f64 = 0.4;
 ///
 /// An interval below half of the median ends with an impact too many, one beyond one and a half lacks
 /// impacts. Intervals that scatter as far as that say nothing of either: all count as they are.
-pub fn count(times: &[f64], steps: &[f64], complete: bool) -> Counted {
+pub fn count(times: &[f64], steps: &[f64], complete: bool) -> CountedImpacts {
     let typical = median(steps);
     let off: Vec<f64> = steps.iter().map(|d| (d - typical).abs()).collect();
     let scatter = OUTSIDE * median(&off) / 0.674_5;
     let odd = |d: f64| (d - typical).abs() > scatter.max(0.5 * typical);
     let accidents = steps.iter().filter(|d| odd(**d)).count() as f64 <= ACCIDENTS * steps.len() as f64;
     let judged = !complete && accidents && scatter <= 0.5 * typical;
-    let mut counted = Counted { kept: vec![0], index: vec![0], missed: 0, doubled: 0 };
+    let mut counted = CountedImpacts { kept: vec![0], index: vec![0], missed: 0, doubled: 0 };
     let (mut last, mut at) = (0, 0);
     for i in 1..times.len() {
         let step = times[i] - times[last];

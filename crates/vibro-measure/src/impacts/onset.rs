@@ -47,7 +47,7 @@ pub struct Onsets {
 /// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`: from eight like
 /// pulses on each is matched to their average, or all to the shape that is known; otherwise each rising flank
 /// is interpolated at half its height.
-pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option<&Shape>) -> Onsets {
+pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option<&PulseShape>) -> Onsets {
     let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, sigma)).collect();
     let whole: Vec<&Lobe> = lobes.iter().filter(|l| l.onset.time.is_finite()).collect();
     let sharp = 2 * whole.iter().filter(|l| l.sharp).count() > whole.len();
@@ -168,7 +168,7 @@ pub fn averaged(values: &[f64], onsets: &[Onset], span: &Range<f64>) -> Option<V
             .iter()
             .flat_map(|(t, h)| samples(values.len(), *t, span).map(move |i| (i as f64 - t, values[i] / h)))
             .collect();
-        let shape = Shape::through(&points, span, knots)?;
+        let shape = PulseShape::through(&points, span, knots)?;
         matched = at.iter().map(|(t, h)| shape.matched(values, *t, *h)).collect::<Vec<_>>();
         // The origin of the shape drifts with each round and is reset.
         let shifts = matched.iter().zip(onsets).filter_map(|(m, o)| Some(m.as_ref()?.time - o.time));
@@ -198,16 +198,16 @@ fn samples(n: usize, time: f64, span: &Range<f64>) -> Range<usize> {
 /// A pulse of unit height over time in samples: a uniform cubic B-spline (C. de Boor, *A Practical Guide to
 /// Splines*, 1978, ch. IX).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shape {
+pub struct PulseShape {
     start: f64,
     step: f64,
     coefficients: DVector<f64>,
 }
 
-impl Shape {
+impl PulseShape {
     /// Least squares through points (x, y) with so many `knots` in `span`; a slight penalty on curvature
     /// decides where there are no points. `None` where the points decide nothing.
-    pub fn through(points: &[(f64, f64)], span: &Range<f64>, knots: usize) -> Option<Shape> {
+    pub fn through(points: &[(f64, f64)], span: &Range<f64>, knots: usize) -> Option<PulseShape> {
         let (start, step, n) = (span.start, (span.end - span.start) / knots as f64, knots + 3);
         let (mut normal, mut right) = (DMatrix::zeros(n, n), DVector::zeros(n));
         for (x, y) in points {
@@ -225,13 +225,13 @@ impl Shape {
             let mut part = normal.view_mut((first, first), (3, 3));
             part += &penalty;
         }
-        Some(Shape { start, step, coefficients: normal.cholesky()?.solve(&right) })
+        Some(PulseShape { start, step, coefficients: normal.cholesky()?.solve(&right) })
     }
 
     /// The shape of a recorded pulse whose samples lie `spacing` samples of the trace apart, scaled to unit
     /// height. Its first sample is its level; its origin is where the first flank passes half its height.
     /// `None` where there is no such flank.
-    pub fn recorded(values: &[f64], spacing: f64) -> Option<Shape> {
+    pub fn recorded(values: &[f64], spacing: f64) -> Option<PulseShape> {
         let level = *values.first()?;
         let higher =
             |highest: f64, v: &f64| if (v - level).abs() > highest.abs() { v - level } else { highest };
@@ -242,7 +242,7 @@ impl Shape {
         let points: Vec<(f64, f64)> =
             unit.iter().enumerate().map(|(i, v)| ((i as f64 - origin) * spacing, *v)).collect();
         let span = points.first()?.0..points.last()?.0;
-        Shape::through(&points, &span, (unit.len() - 1).clamp(4, RECORDED))
+        PulseShape::through(&points, &span, (unit.len() - 1).clamp(4, RECORDED))
     }
 
     /// Value and slope at `x`; beyond its ends it goes on straight, since a break there would keep a match
@@ -333,7 +333,7 @@ mod shapes {
     fn a_clean_pulse_of_known_shape_is_found_where_it_is() {
         let points: Vec<(f64, f64)> =
             (0..=96).map(|i| -6.0 + 0.125 * f64::from(i)).map(|x| (x, gauss(x))).collect();
-        let shape = Shape::through(&points, &(-6.0..6.0), 48).unwrap();
+        let shape = PulseShape::through(&points, &(-6.0..6.0), 48).unwrap();
         let values: Vec<f64> = (0..40).map(|i| 0.7 * gauss(f64::from(i) - 17.37)).collect();
         let found = shape.matched(&values, 16.9, 1.0).unwrap();
         // Cubic splines err by (h⁴/384) |s⁗| = 0.25⁴/384 · 3/1.2⁴ = 1.5e-5 of the height; slopes are about

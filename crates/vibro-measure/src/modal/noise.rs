@@ -17,7 +17,7 @@ use vibro_signal::window::line_shape;
 
 /// Noise of the lines, up to a common factor.
 #[derive(Debug, Clone)]
-pub(super) struct Noise {
+pub(super) struct LineNoise {
     /// Standard deviation of each line.
     pub each: Vec<f64>,
     /// Cholesky factor of the covariance of all components (real and imaginary part of each line in turn),
@@ -32,10 +32,10 @@ struct Banded {
     rows: Vec<f64>,
 }
 
-impl Noise {
+impl LineNoise {
     /// Independent lines.
-    pub fn independent(each: Vec<f64>) -> Noise {
-        Noise { each, factor: None }
+    pub fn independent(each: Vec<f64>) -> LineNoise {
+        LineNoise { each, factor: None }
     }
 
     /// Makes residuals of the lines, first the real parts and then the imaginary parts, white.
@@ -103,7 +103,7 @@ const LEAST: f64 = 0.02;
 
 /// Noise of H1 over segments under a window. The function without leakage is `h` on a grid, with lines at the
 /// steps `at` that have variances `total`. `None` where the covariance has no inverse.
-pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: &[f64]) -> Option<Noise> {
+pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: &[f64]) -> Option<LineNoise> {
     // The window's transform on the grid, real where time runs from its middle.
     let offset = |k: usize| (k as f64 - MARGIN as f64) / STEPS as f64;
     let kernel: Vec<f64> = (0..=2 * MARGIN).map(|k| line_shape(window, offset(k))).collect();
@@ -157,7 +157,7 @@ pub(super) fn of_segments(window: Window, h: &[Complex64], at: &[usize], total: 
     };
     let each = (0..at.len()).map(|i| (leakage[i] + own[i] * own[i]).sqrt()).collect();
     let factor = Banded::factor(2 * at.len(), 2 * lags + 1, covariance)?;
-    Some(Noise { each, factor: Some(factor) })
+    Some(LineNoise { each, factor: Some(factor) })
 }
 
 /// Variance of the noise of the response at each line, which is smooth: what `total` has beyond the leakage,

@@ -1,7 +1,7 @@
 //! Modes and residual terms fitted to a part of a frequency response function in the complex plane.
 
 use super::leakage::Leakage;
-use super::noise::{MARGIN, Noise, STEPS, of_segments, smoothed};
+use super::noise::{LineNoise, MARGIN, STEPS, of_segments, smoothed};
 use super::selection::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
@@ -47,7 +47,7 @@ struct Scaled<'a> {
 }
 
 /// How much of the lines modes `starts` leave at the least, unweighted: to choose among first guesses.
-pub(super) fn left_by(
+pub(super) fn residual_sum(
     measured: &Measured,
     part: std::ops::Range<usize>,
     starts: &[(f64, f64)],
@@ -188,7 +188,7 @@ impl Scaled<'_> {
 
     /// The minimum, nearly: frequency and damping of the modes alone, with all else by linear least squares
     /// for each (Golub & Pereyra 1973).
-    fn nearer(&self, start: &[f64], noise: &Noise) -> Result<Vec<f64>> {
+    fn nearer(&self, start: &[f64], noise: &LineNoise) -> Result<Vec<f64>> {
         if self.magnitude_only {
             return Ok(self.fit(start, noise)?.parameters);
         }
@@ -213,7 +213,7 @@ impl Scaled<'_> {
     }
 
     /// What the model leaves, as white as the noise is known.
-    fn white(&self, p: &[f64], noise: &Noise, out: &mut [f64]) {
+    fn white(&self, p: &[f64], noise: &LineNoise, out: &mut [f64]) {
         let n = self.x.len();
         for i in 0..n {
             let left = self.left(p, i);
@@ -225,7 +225,7 @@ impl Scaled<'_> {
         noise.whiten(out);
     }
 
-    fn fit(&self, start: &[f64], noise: &Noise) -> Result<Fit> {
+    fn fit(&self, start: &[f64], noise: &LineNoise) -> Result<Fit> {
         let free = self.free();
         let expand = |q: &[f64]| {
             let mut p = start.to_vec();
@@ -246,7 +246,7 @@ impl Scaled<'_> {
 
     /// The noise of segments under a window, by the response of the model and the variance of each line;
     /// `None` for magnitudes, or lines that are not evenly spaced.
-    fn of_segments(&self, window: Window, spacing: f64, p: &[f64], total: &[f64]) -> Option<Noise> {
+    fn of_segments(&self, window: Window, spacing: f64, p: &[f64], total: &[f64]) -> Option<LineNoise> {
         let step = spacing / self.unit / STEPS as f64;
         let at = |x: &f64| MARGIN + STEPS * ((x - self.x[0]) / step / STEPS as f64).round() as usize;
         let at: Vec<usize> = self.x.iter().map(at).collect();
@@ -296,7 +296,7 @@ pub(super) fn rational(
         return Err(Error::refused(why).hint("take a wider band").setting("band"));
     }
     let width = (f[f.len() - 1] - f[0]) / (f.len() - 1) as f64;
-    let equal = Noise::independent(vec![1.0; lines]);
+    let equal = LineNoise::independent(vec![1.0; lines]);
     let refuse = || Error::refused("no first guess of the modes fits the lines");
     let start = if measured.magnitude_only {
         scaled.guess()
@@ -308,10 +308,10 @@ pub(super) fn rational(
     let rivals = match (&measured.std, &measured.coherence) {
         (Some(std), _) => {
             let weight = std[part].iter().map(|s| s / scaled.height).collect();
-            vec![(Noise::independent(weight), "noise as stated")]
+            vec![(LineNoise::independent(weight), "noise as stated")]
         }
         (None, None) => {
-            let relative = Noise::independent((0..lines).map(|i| height(i).max(1e-2)).collect());
+            let relative = LineNoise::independent((0..lines).map(|i| height(i).max(1e-2)).collect());
             vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
         }
         (None, Some(coherence)) => {
@@ -330,12 +330,14 @@ pub(super) fn rational(
                 let share = smoothed(&share);
                 let relative =
                     share.iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-                [level, relative].map(|each| (Noise::independent(each), "noise by the coherence")).to_vec()
+                [level, relative]
+                    .map(|each| (LineNoise::independent(each), "noise by the coherence"))
+                    .to_vec()
             }
         }
     };
     // Minus twice the logarithm of the likelihood.
-    let unlikely = |p: &[f64], noise: &Noise| {
+    let unlikely = |p: &[f64], noise: &LineNoise| {
         let mut left = vec![0.0; scaled.rows()];
         scaled.white(p, noise, &mut left);
         let n = left.len() as f64;
@@ -396,7 +398,7 @@ impl Scaled<'_> {
         p
     }
 
-    fn result(&self, fit: &Fit, noise: &'static str, weight: &Noise) -> Rational {
+    fn result(&self, fit: &Fit, noise: &'static str, weight: &LineNoise) -> Rational {
         let n = self.x.len();
         let whiteness = Whiteness::of(&fit.residuals.chunks(n).collect::<Vec<_>>());
         let free = self.free();

@@ -2,7 +2,7 @@
 
 use super::classical::{circle, half_power};
 use super::rational::Rational;
-use super::selection::Group;
+use super::selection::PeakGroup;
 use super::{ByMethod, Measured, ModalOptions, Mode, Pole};
 use crate::Estimate;
 use num_complex::Complex64;
@@ -22,7 +22,7 @@ const EXPLAINED: f64 = 0.1;
 pub(super) struct Candidate<'a> {
     pub measured: &'a Measured,
     pub options: &'a ModalOptions,
-    pub group: &'a Group,
+    pub group: &'a PeakGroup,
     pub fit: &'a Rational,
     /// Its place in the fit.
     pub m: usize,

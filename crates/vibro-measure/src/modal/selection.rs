@@ -1,6 +1,6 @@
 //! Which lines belong to which peak, which peaks are modes, and on which lines they are fitted.
 
-use super::rational::{Rational, left_by, rational};
+use super::rational::{Rational, rational, residual_sum};
 use super::{Measured, Pole};
 use crate::peaks::local_maxima;
 use crate::residuals::NO_SUPPORT;
@@ -20,8 +20,8 @@ fn starts(lines: &Measured, peaks: &[Peak]) -> Vec<(f64, f64)> {
 /// Finds out whether the highest peak shows the leakage of segments under a Hann window, which analysers take
 /// if nothing else is said, or none at all, as under a periodic excitation; `false` where its lines do not
 /// tell.
-pub(super) fn averaging(lines: &mut Measured, groups: &[Group]) -> bool {
-    let highest = |group: &Group| group.peaks.iter().map(|p| p.rise).fold(0.0, f64::max);
+pub(super) fn averaging(lines: &mut Measured, groups: &[PeakGroup]) -> bool {
+    let highest = |group: &PeakGroup| group.peaks.iter().map(|p| p.rise).fold(0.0, f64::max);
     let Some(group) = groups.iter().max_by(|a, b| highest(a).total_cmp(&highest(b))) else { return false };
     let aicc = |window| {
         let lines = Measured { window, ..lines.clone() };
@@ -38,7 +38,11 @@ pub(super) fn averaging(lines: &mut Measured, groups: &[Group]) -> bool {
 ///
 /// The highest peaks are fitted all at once: with a strong one left out the others explain its lines. Those
 /// that are not known, or not needed beside the others, are dropped.
-pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<Peak>) -> Result<Rational> {
+pub(super) fn chosen(
+    lines: &Measured,
+    group: &mut PeakGroup,
+    unsupported: &mut Vec<Peak>,
+) -> Result<Rational> {
     let mut highest = group.peaks.clone();
     highest.sort_by(|a, b| b.rise.total_cmp(&a.rise));
     unsupported.extend(highest.split_off(highest.len().min(TOGETHER)));
@@ -60,7 +64,12 @@ pub(super) fn chosen(lines: &Measured, group: &mut Group, unsupported: &mut Vec<
 
 /// Drops the modes that are not known, the lowest peak first, then those that the lines do not need beside
 /// the others.
-fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &mut Vec<Peak>) -> Rational {
+fn pruned(
+    lines: &Measured,
+    group: &mut PeakGroup,
+    mut fit: Rational,
+    unsupported: &mut Vec<Peak>,
+) -> Rational {
     while group.peaks.len() > 1 {
         let sound = fit.sound(lines, &group.peaks);
         let unknown = (0..sound.len()).filter(|at| !sound[*at]);
@@ -93,10 +102,10 @@ fn pruned(lines: &Measured, group: &mut Group, mut fit: Rational, unsupported: &
 pub(super) fn together(
     lines: &Measured,
     part: Range<usize>,
-    fits: &mut Vec<(Group, Rational)>,
+    fits: &mut Vec<(PeakGroup, Rational)>,
     unsupported: &mut Vec<Peak>,
 ) {
-    let sound = |(group, fit): &(Group, Rational)| {
+    let sound = |(group, fit): &(PeakGroup, Rational)| {
         let modes = group.peaks.clone().into_iter().zip(fit.modes.clone());
         let sound = fit.sound(lines, &group.peaks).into_iter();
         modes.zip(sound).filter(|(_, sound)| *sound).map(|(mode, _)| mode).collect::<Vec<_>>()
@@ -111,7 +120,7 @@ pub(super) fn together(
     if fit.whiteness.rejected() && explained {
         return;
     }
-    let mut all = Group { peaks, lines: part, ahead: None };
+    let mut all = PeakGroup { peaks, lines: part, ahead: None };
     let fit = pruned(lines, &mut all, fit, unsupported);
     *fits = vec![(all, fit)];
 }
@@ -121,7 +130,7 @@ const BESIDE: usize = 8;
 
 /// Makes the band of a fit whose residuals are not white narrower, as long as they are not: what else is in a
 /// band matters the less the narrower it is. Keeps the wide band where that does not help.
-fn narrowed(lines: &Measured, group: &mut Group, wide: Rational) -> Rational {
+fn narrowed(lines: &Measured, group: &mut PeakGroup, wide: Rational) -> Rational {
     let (first, last) = (group.peaks[0].at, group.peaks[group.peaks.len() - 1].at);
     let starts = starts(lines, &group.peaks);
     let (mut below, mut above) = (first - group.lines.start, group.lines.end - last - 1);
@@ -160,7 +169,7 @@ const TRIED: usize = 3;
 
 /// The best fit of a group with one more mode than `fit`, whether it shows a peak or not; `others` are
 /// subtracted first.
-fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) -> Option<Rational> {
+fn one_more(lines: &Measured, group: &PeakGroup, fit: &Rational, others: &[Pole]) -> Option<Rational> {
     let starts: Vec<(f64, f64)> = fit.modes.iter().map(|m| (m.frequency, m.zeta)).collect();
     let guess = |(m, bandwidths): (usize, f64)| {
         let (frequency, zeta) = starts[m];
@@ -171,7 +180,7 @@ fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) ->
             starts[m].0 = frequency * (1.0 - bandwidths * zeta);
         }
         starts.push((at, zeta));
-        let left = left_by(lines, group.lines.clone(), &starts, others)?;
+        let left = residual_sum(lines, group.lines.clone(), &starts, others)?;
         Some((left, starts))
     };
     let places = (0..starts.len()).flat_map(|m| BESIDE_A_MODE.map(|bandwidths| (m, bandwidths)));
@@ -191,7 +200,7 @@ fn one_more(lines: &Measured, group: &Group, fit: &Rational, others: &[Pole]) ->
 /// stand.
 pub(super) fn complete(
     lines: &Measured,
-    group: &mut Group,
+    group: &mut PeakGroup,
     fit: &mut Rational,
     others: &[Pole],
 ) -> Vec<bool> {
@@ -269,7 +278,7 @@ pub(super) struct Peak {
 
 /// Peaks that are fitted together, and the lines to which they are.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Group {
+pub(super) struct PeakGroup {
     pub peaks: Vec<Peak>,
     pub lines: Range<usize>,
     /// How much lower Akaike's criterion is with one more mode, and its frequency, where that is not known
@@ -301,7 +310,7 @@ const BANDWIDTHS: f64 = 6.0;
 
 /// The peaks, those too near each other in one group, each with the lines around it; only those of `band`
 /// where there is one.
-pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<Group>> {
+pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Vec<PeakGroup>> {
     let f = &measured.frequency;
     let magnitude: Vec<f64> = measured.values.iter().map(|v| v.norm()).collect();
     let mut peaks: Vec<Peak> = local_maxima(&magnitude, PROMINENCE)
@@ -351,7 +360,7 @@ pub(super) fn groups(measured: &Measured, band: Option<(f64, f64)>) -> Result<Ve
         let below = i.checked_sub(1).map_or(0, |before| usize::midpoint(spans[before].1, spans[i].0));
         let above = spans.get(i + 1).map_or(f.len(), |after| usize::midpoint(after.0, spans[i].1) + 1);
         let lines = low.max(below).max(within.start)..high.min(above).min(within.end);
-        Group { peaks, lines, ahead: None }
+        PeakGroup { peaks, lines, ahead: None }
     };
     Ok(groups.into_iter().enumerate().map(group).collect())
 }

@@ -23,7 +23,7 @@ pub(super) struct Samples<'a> {
 
 /// A model at its best, its parameters onset, baseline, velocity of approach, and those of its shape: ξ and
 /// f, duration, duration and α or R, or duration, α, and both exponents.
-pub(super) struct Fitted {
+pub(super) struct FittedPulse {
     pub model: ContactModel,
     pub fit: Fit,
     pub whiteness: Whiteness,
@@ -34,7 +34,7 @@ pub(super) struct Fitted {
     /// First sample inside the contact, where the model begins with a jump.
     first: Option<usize>,
     /// Other exponents of the loss at which the sum of squares is least, too.
-    pub also: Vec<Fitted>,
+    pub also: Vec<FittedPulse>,
 }
 
 /// Exponents of the loss that are nearer are those of one minimum.
@@ -95,7 +95,7 @@ impl Samples<'_> {
 
     /// The best fit of a model, from a coarse search over onset and shape. What free exponents may be counts
     /// as much as a sample each.
-    pub fn fit(&self, model: ContactModel) -> Result<Fitted> {
+    pub fn fit(&self, model: ContactModel) -> Result<FittedPulse> {
         let (starts, noise) = (self.starts(model)?, self.noise());
         let corner = self.filter.map(|f| f.corner);
         let mut from: Vec<(Vec<f64>, Option<usize>)> = Vec::new();
@@ -127,7 +127,7 @@ impl Samples<'_> {
         // Noise may take the onset beyond the two samples: what the sum of squares would be with the onset
         // held between them, to first order. Farther beyond than noise takes it, or half a sample, or
         // by half of the whole pulse, the model follows a rise that it has not.
-        let held = |fit: &Fitted| {
+        let held = |fit: &FittedPulse| {
             let (onset, std) = (fit.fit.parameters[0], fit.fit.std(0));
             let beyond =
                 fit.first.map_or(0.0, |k| (self.times[k - 1] - onset).max(onset - self.times[k]).max(0.0));
@@ -136,7 +136,7 @@ impl Samples<'_> {
             (outside, fit.fit.sum_of_squares() * (1.0 + (beyond / std).powi(2) / free))
         };
         let fits = from.into_iter().filter_map(|(start, first)| self.from(model, noise, &start, first));
-        let mut fits: Vec<((bool, f64), Fitted)> = fits.map(|fit| (held(&fit), fit)).collect();
+        let mut fits: Vec<((bool, f64), FittedPulse)> = fits.map(|fit| (held(&fit), fit)).collect();
         fits.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let mut fits = fits.into_iter().map(|((outside, _), fit)| self.judged(fit, outside));
         let Some(mut best) = fits.next() else {
@@ -155,7 +155,7 @@ impl Samples<'_> {
 
     /// A fit with the whiteness of what it leaves and the factor of its uncertainties, if its onset is not
     /// `outside` of where it may be.
-    fn judged(&self, mut fitted: Fitted, outside: bool) -> Fitted {
+    fn judged(&self, mut fitted: FittedPulse, outside: bool) -> FittedPulse {
         fitted.whiteness = Whiteness::of(&[&fitted.fit.residuals]);
         if !(outside || fitted.whiteness.rejected() && self.more_left_at_onset(&fitted.fit)) {
             // At least nine samples leave four degrees of freedom.
@@ -176,7 +176,7 @@ impl Samples<'_> {
 
     /// Whether more is left within the contact than before it, by more than chance: then the contact follows
     /// another law, or something else moved.
-    pub fn unexplained(&self, fitted: &Fitted) -> bool {
+    pub fn unexplained(&self, fitted: &FittedPulse) -> bool {
         let fit = &fitted.fit;
         let (onset, end) = (fit.parameters[0], fitted.end() + self.delay());
         let of = |part: &dyn Fn(f64) -> bool| {
@@ -206,7 +206,13 @@ impl Samples<'_> {
     }
 
     /// `None` where the fit does not converge.
-    fn from(&self, model: ContactModel, noise: f64, start: &[f64], first: Option<usize>) -> Option<Fitted> {
+    fn from(
+        &self,
+        model: ContactModel,
+        noise: f64,
+        start: &[f64],
+        first: Option<usize>,
+    ) -> Option<FittedPulse> {
         let scale: Vec<f64> = start.iter().map(|p| p.abs().max(0.1)).collect();
         let (n, likely) = (self.times.len(), if model == ContactModel::PowerLaw { &LIKELY[..] } else { &[] });
         let residuals = |p: &[f64], out: &mut [f64]| match self.model(model, p, &self.times, first) {
@@ -220,7 +226,14 @@ impl Samples<'_> {
         let mut fit = least_squares(residuals, n + likely.len(), start, &scale).ok()?;
         fit.residuals.truncate(n);
         let whiteness = Whiteness { p_value: None, inflation: 1.0 };
-        fit.converged.then_some(Fitted { model, fit, whiteness, widening: None, first, also: Vec::new() })
+        fit.converged.then_some(FittedPulse {
+            model,
+            fit,
+            whiteness,
+            widening: None,
+            first,
+            also: Vec::new(),
+        })
     }
 
     /// A contact of spring and damper nearer to the pulse, from a finer grid around a guess, on all samples.
@@ -309,7 +322,7 @@ impl Samples<'_> {
     }
 }
 
-impl Fitted {
+impl FittedPulse {
     fn loss_exponent(&self) -> f64 {
         self.fit.parameters.get(6).copied().unwrap_or(f64::NAN)
     }

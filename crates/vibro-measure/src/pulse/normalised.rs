@@ -1,6 +1,6 @@
 //! Where in a record the pulse is; the record in units of its pulse, and the way back.
 
-use super::fit::{Fitted, Samples};
+use super::fit::{FittedPulse, Samples};
 use super::result::{PulseCurve, PulseFit, PulsePicture, propagated};
 use super::ringing::Ringing;
 use super::{ContactModel, KelvinVoigt, LowPass};
@@ -144,8 +144,8 @@ impl<'a> Normalised<'a> {
     }
 
     /// A fit in SI units; without uncertainties unless the instrument is `known`.
-    pub fn report(&self, fitted: &Fitted, mass: Option<f64>, known: bool) -> PulseFit {
-        let Fitted { model, fit, whiteness, widening, .. } = fitted;
+    pub fn report(&self, fitted: &FittedPulse, mass: Option<f64>, known: bool) -> PulseFit {
+        let FittedPulse { model, fit, whiteness, widening, .. } = fitted;
         let n = fit.residuals.len();
         let widened = widening.filter(|_| known).unwrap_or(f64::NAN);
         let estimate = |value: f64, std: f64, unit| {
@@ -205,9 +205,9 @@ impl<'a> Normalised<'a> {
     }
 
     /// What a figure needs.
-    pub fn picture(&self, samples: &Samples<'_>, fits: &[Fitted]) -> PulsePicture {
+    pub fn picture(&self, samples: &Samples<'_>, fits: &[FittedPulse]) -> PulsePicture {
         let from = self.index(-1.5);
-        let end = fits.iter().map(Fitted::end).fold(1.0, f64::max);
+        let end = fits.iter().map(FittedPulse::end).fold(1.0, f64::max);
         let to = self.index(end + 1.5);
         let fitted = |i: usize| samples.places.binary_search(&i).is_ok();
         let shown = |i: usize| (self.trace.axis.at(i), self.trace.values[i], fitted(i));
@@ -216,7 +216,7 @@ impl<'a> Normalised<'a> {
         let si = |times: &[f64], values: &[f64]| {
             times.iter().zip(values).map(|(t, v)| (self.seconds(*t), v * self.height)).collect()
         };
-        let curve = |fit: &Fitted| {
+        let curve = |fit: &FittedPulse| {
             let points = si(&times, &fit.at(samples, &times)?);
             Some(PulseCurve { model: fit.model, points, residuals: si(&samples.times, &fit.fit.residuals) })
         };

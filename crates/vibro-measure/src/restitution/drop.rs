@@ -2,7 +2,7 @@
 //! before.
 
 use super::fit::FlightNoise;
-use super::{Train, Way, above_zero, not_negative, repeated, together};
+use super::{MethodAnswer, Train, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::mean::{average, scatter};
 use vibro_math::Noise;
@@ -103,7 +103,11 @@ impl Drop {
     /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Every drop shares the height, and each has its own
     /// timing: neither stands in for the other. The timing of one is no better than the `noise` that the
     /// flights of trains show: one flight is that of one bounce.
-    pub(super) fn answer(&self, noise: Option<FlightNoise>, findings: &mut Vec<Finding>) -> Result<Way> {
+    pub(super) fn answer(
+        &self,
+        noise: Option<FlightNoise>,
+        findings: &mut Vec<Finding>,
+    ) -> Result<MethodAnswer> {
         self.check()?;
         let n = self.intervals.len();
         let shown = noise.map(|noise| noise.of(average(&self.intervals)));
@@ -128,7 +132,7 @@ impl Drop {
         let restitution = Estimate::new(value, std, "1", n, format!("(Δt/2)√(g/2h) of {of}"));
         // A ratio of flights does not depend on the clock; one flight against a height does.
         let restitution = restitution.by_clock(self.clock);
-        Ok(Way { method: "drop", restitution })
+        Ok(MethodAnswer { method: "drop", restitution })
     }
 
     /// Standard deviation of R over drawings of as many drops with replacement; `None` for fewer than five.

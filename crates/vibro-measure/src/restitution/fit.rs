@@ -58,7 +58,7 @@ const STEP: f64 = 0.15;
 
 /// What trains of one R tell together.
 #[derive(Clone, Copy)]
-pub(super) struct Fit {
+pub(super) struct TrainFit {
     pub(super) log_r: f64,
     /// Standard uncertainty of ln R, which three degrees of freedom show.
     pub(super) std: Option<f64>,
@@ -66,7 +66,7 @@ pub(super) struct Fit {
     pub(super) noise: Option<FlightNoise>,
 }
 
-impl Fit {
+impl TrainFit {
     /// Sum over `trains` of the squared difference of their own ln R from the common one, over the variance
     /// that the `noise` of flights gives it: χ² with one degree of freedom less than trains, where all have
     /// one R.
@@ -82,7 +82,7 @@ impl Fit {
 pub(super) type Timed = (Vec<Flight>, Option<f64>);
 
 /// ln R of trains and the noise of their flights; `None` without a ratio.
-pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<Fit> {
+pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {
     let onset_std = together(trains.iter().map(|(_, std)| *std)).filter(|std| *std > 0.0);
     let part = |std: Option<f64>| onset_std.map_or(1.0, |all| std.unwrap_or(all) / all);
     let parts: Vec<f64> = trains.iter().map(|(_, std)| part(*std)).collect();
@@ -102,7 +102,7 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<Fit> {
         let onset = stated.unwrap_or(0.0);
         let noise =
             scatter_alone.filter(|_| free > 0).map(|node| FlightNoise { scatter: scatter(node), onset });
-        return Some(Fit { log_r, std: None, noise });
+        return Some(TrainFit { log_r, std: None, noise });
     }
     let least = n / onsets_alone.information / WIDE;
     let noisiest = sigma2 * ratios.timing.diagonal().max();
@@ -126,7 +126,7 @@ pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<Fit> {
     let (log_r, variance) = mean(&|node| (node.log_r, node.variance));
     let [scatter, onset] = [0, 1].map(|k| mean(&|node| (node.noise[k], 0.0)).0);
     let std = Some(variance.sqrt()).filter(|s| s.is_finite());
-    Some(Fit { log_r, std, noise: std.map(|_| FlightNoise { scatter, onset }) })
+    Some(TrainFit { log_r, std, noise: std.map(|_| FlightNoise { scatter, onset }) })
 }
 
 /// A fit for one s² and σ².

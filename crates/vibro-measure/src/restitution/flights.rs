@@ -1,7 +1,7 @@
 //! R from the flights of trains of bounces: outliers are left out, flights that grow are refused.
 
-use super::fit::{Fit, Flight, FlightNoise, fit};
-use super::{Train, Way, above_zero, not_negative, repeated, together};
+use super::fit::{Flight, FlightNoise, TrainFit, fit};
+use super::{MethodAnswer, Train, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use vibro_record::{Error, Finding, Result};
 
@@ -35,7 +35,7 @@ pub(super) fn answer(
     trains: &[Train],
     fall: bool,
     findings: &mut Vec<Finding>,
-) -> Result<(Option<Way>, Option<FlightNoise>)> {
+) -> Result<(Option<MethodAnswer>, Option<FlightNoise>)> {
     let (mut all, mut fits) = (Vec::new(), Vec::new());
     for (train, t) in trains.iter().enumerate().map(|(i, t)| (i + 1, t)) {
         not_negative("an uncertainty of the time of an impact", t.onset_std)?;
@@ -79,7 +79,7 @@ pub(super) fn answer(
         return Ok((None, None));
     }
     let own = FlightNoise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
-    let alike = |joint: &Fit| {
+    let alike = |joint: &TrainFit| {
         let noise = own.or(joint.noise).filter(|_| fits.len() > 1);
         noise.is_none_or(|noise| joint.misfit(&all, noise) <= DIFFER[fits.len() - 2])
     };
@@ -98,7 +98,7 @@ pub(super) fn answer(
     findings.extend(std.is_none().then_some(few));
     let method = format!("log-linear fit of {n} flight times");
     let restitution = Estimate::new(value, std.map(|s| value * s), "1", n, method);
-    Ok((Some(Way { method: "flight times", restitution }), noise))
+    Ok((Some(MethodAnswer { method: "flight times", restitution }), noise))
 }
 
 /// Growth beyond this many standard deviations of the onset noise is none of it.

@@ -52,7 +52,7 @@ const ODDS: f64 = 20.0;
 
 /// The record of a fall.
 #[derive(Debug, Clone, Copy)]
-pub struct Heard {
+pub struct FallRecord {
     /// Noise limit of the sounds.
     pub reach: f64,
     /// Median height, of which a threshold is a part.
@@ -77,7 +77,7 @@ pub struct Plausible {
 }
 
 /// The most plausible train of two impacts or more; `None` of fewer than two sounds.
-pub fn plausible(sounds: &[Sound], heard: Heard) -> Option<Plausible> {
+pub fn plausible(sounds: &[Sound], heard: FallRecord) -> Option<Plausible> {
     let mut order: Vec<usize> = (0..sounds.len()).collect();
     order.sort_by(|a, b| sounds[*b].height.total_cmp(&sounds[*a].height));
     order.truncate(MOST);
@@ -119,7 +119,7 @@ fn shrinks(sounds: &[Sound], train: &[usize]) -> f64 {
 
 /// The best train; foreign sounds are at first all that are no echoes of louder ones, then those that no
 /// impact of the train explains.
-fn best(sounds: &[Sound], heard: Heard) -> Option<Best> {
+fn best(sounds: &[Sound], heard: FallRecord) -> Option<BestTrain> {
     let length = heard.ends.1 - heard.ends.0;
     let of = |count: usize| Pairs::new(sounds, heard, (count as f64 + UNHEARD) / length).best();
     let first = of(alone(sounds))?;
@@ -143,7 +143,7 @@ fn added(a: f64, b: f64) -> f64 {
 
 /// A train with its ln R, the first two impacts of one that is as plausible, and how many sounds are its
 /// echoes.
-struct Best {
+struct BestTrain {
     train: Vec<usize>,
     log_r: f64,
     rival: Option<(usize, usize)>,
@@ -153,7 +153,7 @@ struct Best {
 /// What every pair of sounds is, whatever R is.
 struct Pairs<'a> {
     sounds: &'a [Sound],
-    heard: Heard,
+    heard: FallRecord,
     /// Logarithm of the rate of foreign sounds in 1/s over that of heights.
     foreign: f64,
     /// What an echo explains.
@@ -162,7 +162,7 @@ struct Pairs<'a> {
 }
 
 impl Pairs<'_> {
-    fn new(sounds: &[Sound], heard: Heard, rate: f64) -> Pairs<'_> {
+    fn new(sounds: &[Sound], heard: FallRecord, rate: f64) -> Pairs<'_> {
         let highest = sounds.iter().fold(heard.reach, |h, s| h.max(s.height));
         let heights = (highest / heard.reach).ln().max(1.0);
         Pairs {
@@ -175,7 +175,7 @@ impl Pairs<'_> {
     }
 
     /// The train with the most evidence; `None` of fewer than two sounds.
-    fn best(&self) -> Option<Best> {
+    fn best(&self) -> Option<BestTrain> {
         let n = self.sounds.len();
         // Of each pair the evidence, and its best score with that ln R.
         let mut told = vec![(f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0); n * n];
@@ -199,7 +199,7 @@ impl Pairs<'_> {
         let train = self.follow(most / n, most % n, &self.behind(log_r).1);
         let ends = train.iter().skip(1).copied().chain([n]);
         let echoes = train.iter().zip(ends).map(|(j, k)| self.shadowed(*j, k)).sum();
-        Some(Best { train, log_r, rival: rival.map(|at| (at / n, at % n)), echoes })
+        Some(BestTrain { train, log_r, rival: rival.map(|at| (at / n, at % n)), echoes })
     }
 
     /// Sounds between two impacts that are echoes or ringing of the first.
@@ -306,7 +306,7 @@ mod tests {
             sounds.push(Sound { time, height: 0.9 + 0.01 * f64::from(k % 3) });
             time += 7.7e-3 * 0.998f64.powi(k);
         }
-        let heard = Heard { reach: 0.01, median: 0.9, ends: (0.0, 4.0), full: None };
+        let heard = FallRecord { reach: 0.01, median: 0.9, ends: (0.0, 4.0), full: None };
         let voice = sounds[3..].to_vec();
         // Its pulses hold trains, and each of them has a rival.
         let refused = |train: Plausible| train.even || train.rival.is_some() || train.impacts.len() == 2;
@@ -324,7 +324,7 @@ mod tests {
             let time = sounds[sounds.len() - 1].time + 9e-3 * 0.96f64.powi(k);
             sounds.push(Sound { time, height: 0.96f64.powi(k + 1) });
         }
-        let heard = Heard { reach: 0.01, median: 0.7, ends: (0.0, 3.0), full: None };
+        let heard = FallRecord { reach: 0.01, median: 0.7, ends: (0.0, 3.0), full: None };
         let of_ball = |train: &Plausible| {
             let flights: Vec<f64> =
                 train.impacts.windows(2).map(|w| sounds[w[1]].time - sounds[w[0]].time).collect();

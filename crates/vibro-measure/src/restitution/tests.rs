@@ -421,7 +421,7 @@ fn force(r: f64, contact: f64, hum: f64, seed: u64) -> Trace {
     Trace { meta, axis, values }
 }
 
-fn heard(trace: &Trace) -> Train {
+fn train_in(trace: &Trace) -> Train {
     let how = crate::impacts::ImpactsOptions { threshold: Some(Train::THRESHOLD), ..Default::default() };
     Train::of(trace, &how, None).unwrap().0
 }
@@ -429,7 +429,7 @@ fn heard(trace: &Trace) -> Train {
 #[test]
 fn a_contact_that_the_force_shows_is_taken_off() {
     for (seed, contact) in [(1, 0.5e-3), (2, 2e-3), (3, 5e-3)] {
-        let train = heard(&force(0.75, contact, 0.0, seed));
+        let train = train_in(&force(0.75, contact, 0.0, seed));
         let seen = train.contact.clone().unwrap();
         assert!((seen.value - contact).abs() < 2.0 * seen.std.unwrap(), "{seen:?} for {contact}");
         let found = of(&Measured { trains: vec![train.clone()], ..Measured::default() });
@@ -471,7 +471,7 @@ fn the_bias_by_contact_is_that_of_the_fit() {
 
 #[test]
 fn bounces_below_hum_are_found_above_it() {
-    let train = heard(&force(0.81, 0.4e-3, 8.0, 5));
+    let train = train_in(&force(0.81, 0.4e-3, 8.0, 5));
     assert!(train.intervals.len() >= 3, "{train:?}");
     let found = of(&Measured { trains: vec![train], ..Measured::default() });
     let (value, std) = (found.restitution.value, found.restitution.std);

@@ -1,6 +1,6 @@
 //! A train of bounces as it is heard: which of the sounds of a record are the bounces of one falling body.
 
-use super::plausible::{Heard, Plausible, SHADOW, plausible};
+use super::plausible::{FallRecord, Plausible, SHADOW, plausible};
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
 use std::cell::Cell;
@@ -37,7 +37,7 @@ impl Train {
         let heard = Cell::new(usize::MAX);
         let choose = |sounds: &[Sound], reach: f64, median: f64| {
             heard.set(sounds.len());
-            choose(sounds, Heard { reach, median, ends, full })
+            choose(sounds, FallRecord { reach, median, ends, full })
         };
         let mut found = detect_among(trace, options, Some(&choose));
         // Below the impacts may lie hum or slow levels that hide them.
@@ -80,7 +80,7 @@ fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Opt
 }
 
 /// The impacts among sounds, and what the others are.
-fn choose(sounds: &[Sound], heard: Heard) -> Result<(Vec<usize>, Vec<Finding>)> {
+fn choose(sounds: &[Sound], heard: FallRecord) -> Result<(Vec<usize>, Vec<Finding>)> {
     let n = sounds.len();
     let Some(train) = plausible(sounds, heard) else {
         let impacts = counted(n, "impact");
@@ -146,7 +146,7 @@ pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
 /// The lowest threshold in hundredths from which on one train of three impacts or more is left, all of them
 /// impacts of the most plausible `train` of all sounds: what is found only without the quieter ones may be an
 /// echo.
-fn cure(sounds: &[Sound], heard: Heard, train: &Plausible) -> Option<f64> {
+fn cure(sounds: &[Sound], heard: FallRecord, train: &Plausible) -> Option<f64> {
     let thresholds = (1..100).rev().map(|hundredths| 0.01 * f64::from(hundredths));
     let above = |threshold: f64| {
         let high = sounds.iter().copied().filter(|s| s.height > threshold * heard.median);
@@ -171,7 +171,7 @@ fn cure(sounds: &[Sound], heard: Heard, train: &Plausible) -> Option<f64> {
 }
 
 /// What to try where sounds alone do not tell which are the bounces.
-fn alone(refused: Error, sounds: &[Sound], heard: Heard) -> Error {
+fn alone(refused: Error, sounds: &[Sound], heard: FallRecord) -> Error {
     let first = (1..sounds.len().min(CLAPS)).find(|first| are_told(&sounds[*first..], heard));
     if let Some(first) = first {
         let from = f64::midpoint(sounds[first - 1].time, sounds[first].time);
@@ -190,7 +190,7 @@ fn alone(refused: Error, sounds: &[Sound], heard: Heard) -> Error {
 
 /// Whether one train of three impacts or more is told among sounds, or of two where the height is known,
 /// which holds their flight to be that of a bounce.
-fn are_told(sounds: &[Sound], heard: Heard) -> bool {
+fn are_told(sounds: &[Sound], heard: FallRecord) -> bool {
     let enough = if heard.full.is_some() { 2 } else { 3 };
     plausible(sounds, heard)
         .is_some_and(|train| !train.even && train.rival.is_none() && train.impacts.len() >= enough)
@@ -205,7 +205,7 @@ const SAME: f64 = 0.05;
 
 /// A pause in s behind each impact, a half more than the `delay` of what follows it, that leaves one train of
 /// three impacts or more, or of two behind a fall from a known height.
-fn pause(sounds: &[Sound], heard: Heard, delay: f64) -> Option<f64> {
+fn pause(sounds: &[Sound], heard: FallRecord, delay: f64) -> Option<f64> {
     let pause = (150.0 * delay).ceil() / 100.0;
     let mut kept: Vec<Sound> = Vec::new();
     for sound in sounds {

@@ -1,7 +1,7 @@
 //! Restitution from velocities before and after: R = (v₂⁺ − v₁⁺)/(v₁⁻ − v₂⁻), with the momentum balance where
 //! masses are known.
 
-use super::{Way, above_zero, not_negative};
+use super::{MethodAnswer, above_zero, not_negative};
 use crate::Estimate;
 use vibro_record::{Error, Result};
 
@@ -22,7 +22,7 @@ pub struct Velocities {
 
 impl Velocities {
     /// Answers by each method that the velocities allow. Momentum that is not conserved makes them disagree.
-    pub(super) fn answers(&self) -> Result<Vec<Way>> {
+    pub(super) fn answers(&self) -> Result<Vec<MethodAnswer>> {
         let (v1, v2) = self.before;
         not_negative("an uncertainty of the velocities", self.std)?;
         let all = [Some(v1), Some(v2), self.after1, self.after2];
@@ -66,7 +66,7 @@ impl Velocities {
                 return Err(Error::refused(why).hint(hint));
             }
             let restitution = Estimate::new(r, std, "1", all.iter().flatten().count(), how);
-            ways.push(Way { method, restitution });
+            ways.push(MethodAnswer { method, restitution });
         }
         if ways.is_empty() {
             let expected = "both velocities after the impact, or masses";

@@ -40,7 +40,7 @@ pub struct SpectralResult {
     pub averages: usize,
     /// What a function has beside its magnitude.
     #[serde(flatten)]
-    pub response: Option<Response>,
+    pub response: Option<FrfDetails>,
     /// Sines fitted to the whole record, the strongest first; empty where none were asked for.
     pub tones: Vec<Tone>,
     /// Probability that noise alone shows a peak or a tone; null for functions.
@@ -66,7 +66,7 @@ pub enum Lines {
 
 /// What a frequency response function has beside its magnitude.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Response {
+pub struct FrfDetails {
     /// `h1`, `h2` or `hv`.
     pub estimator: &'static str,
     /// Degrees.
@@ -86,7 +86,7 @@ impl SpectralResult {
         fmin: f64,
         mut findings: Vec<Finding>,
     ) -> SpectralResult {
-        let response = |found: &Transfer| Response {
+        let response = |found: &Transfer| FrfDetails {
             estimator: options.estimator.map_or("", Estimator::name),
             phase: found.frf.values.iter().map(|v| v.arg().to_degrees()).collect(),
             phase_std: found.phase_std.iter().map(|v| v.to_degrees()).collect(),

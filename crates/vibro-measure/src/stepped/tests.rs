@@ -53,7 +53,7 @@ fn the_force_is_that_of_the_steady_part() {
     for trace in [&mut still.force, &mut still.response] {
         trace.values.iter_mut().enumerate().for_each(|(i, v)| *v *= 0.5 + 0.5 * rising(i));
     }
-    let point = &taken(&[still]).points[0];
+    let point = &response_of(&[still]).points[0];
     // The mean of the force, 0.2 N, rises with it; noise of 3e-4 N over 6000 samples is below 1e-5 N.
     assert!((point.force.unwrap() - 3.0).abs() < 1e-3, "{:?}", point.force);
     assert!(point.force_std.unwrap() < 1e-3, "{:?}", point.force_std);
@@ -75,7 +75,7 @@ fn read(steps: &[StepTraces]) -> Vec<(PathBuf, Result<StepTraces>)> {
     steps.iter().map(|step| (step.path.clone(), Ok(step.clone()))).collect()
 }
 
-fn taken(steps: &[StepTraces]) -> Response {
+fn response_of(steps: &[StepTraces]) -> Response {
     stepped(named(), read(steps), &ResponseOptions::default()).unwrap().1
 }
 
@@ -88,7 +88,7 @@ fn counted(draws: u64) -> ([usize; 3], usize, f64) {
         let frequency = noise.between(15.0, 60.0);
         let (seconds, transient) = (noise.between(0.6, 8.0), noise.between(0.0, 3.0));
         let level = 10f64.powf(noise.between(-3.0, -1.0));
-        let found = taken(&[step(frequency, seconds, transient, (level, &mut noise))]);
+        let found = response_of(&[step(frequency, seconds, transient, (level, &mut noise))]);
         let point = &found.points[0];
         let truth = receptance(frequency);
         let (Some(phase), Some(ratio)) = (&point.phase, point.receptance) else { panic!("{point:?}") };
@@ -126,14 +126,14 @@ fn amplitude_phase_and_receptance_are_covered() {
 fn a_transient_is_left_out_and_what_has_not_settled_is_doubted() {
     let mut noise = Noise::new(1);
     // τ = 1/(ζω) = 0.27 s: after 4 s it is 3e-7 of what it was.
-    let found = taken(&[step(25.0, 8.0, 5.0, (1e-3, &mut noise))]);
+    let found = response_of(&[step(25.0, 8.0, 5.0, (1e-3, &mut noise))]);
     let point = &found.points[0];
     let error = (point.amplitude.value / (3.0 * receptance(25.0).norm()) - 1.0).abs();
     assert!(error < 2e-3 && point.amplitude.std.is_some(), "{error}");
     // Steps as short as the transient: their scatter holds it, or it is named.
     let mut doubted = 0;
     for tenths in 4..16 {
-        let found = taken(&[step(29.0, 0.1 * f64::from(tenths), 3.0, (1e-4, &mut noise))]);
+        let found = response_of(&[step(29.0, 0.1 * f64::from(tenths), 3.0, (1e-4, &mut noise))]);
         let point = &found.points[0];
         let error = (point.amplitude.value - 3.0 * receptance(29.0).norm()).abs();
         if let Some(std) = point.amplitude.std {
@@ -153,7 +153,7 @@ fn clipping_takes_the_uncertainty_away() {
     let mut step = step(25.0, 4.0, 0.0, (1e-3, &mut noise));
     let top = step.response.values.iter().copied().fold(0.0, f64::max);
     step.response.values.iter_mut().for_each(|v| *v = v.min(0.8 * top));
-    let found = taken(&[step]);
+    let found = response_of(&[step]);
     assert!(found.points[0].amplitude.std.is_none() && found.points[0].receptance.unwrap().std.is_none());
     assert!(found.points[0].force_std.is_some());
     assert!(found.findings.iter().any(|f| f.code == "step-clipped"), "{:?}", found.findings);

@@ -1,6 +1,6 @@
 //! What events change: the stage of a contact, the velocities, the spring of mass 1.
 
-use super::compliant::{Compliant, Mark, Stage};
+use super::compliant::{Compliant, ContactStage, Mark};
 use crate::State;
 use crate::forcing::Tick;
 use crate::impact::Impact;
@@ -20,19 +20,19 @@ impl Compliant {
             }
             // Without a damper the force ends where the surfaces are back at their rest.
             Mark::ForceEnds if self.indentation() > 0.0 && self.modes.contact_force.weights[1] != 0.0 => {
-                self.stage = Stage::Released;
+                self.stage = ContactStage::Released;
                 Event::Part
             }
             Mark::ForceReturns => {
-                self.stage = Stage::Touching;
+                self.stage = ContactStage::Touching;
                 Event::Touch
             }
             Mark::ForceEnds | Mark::Separates => {
-                self.stage = Stage::Apart;
+                self.stage = ContactStage::Apart;
                 Event::Impact(self.impact)
             }
             Mark::LetsGo => {
-                self.stage = Stage::Apart;
+                self.stage = ContactStage::Apart;
                 self.slack = self.rounding();
                 Event::Release
             }
@@ -52,7 +52,7 @@ impl Compliant {
     }
 
     pub(super) fn touch(&mut self) {
-        self.stage = Stage::Touching;
+        self.stage = ContactStage::Touching;
         self.impact = self.met();
         self.within.begin(self.impact.approach_velocity.abs());
     }
@@ -82,7 +82,7 @@ impl Compliant {
         }
         let common = self.rig.common_speed(s);
         (self.state.v1, self.state.v2) = (common, common);
-        self.stage = Stage::Together;
+        self.stage = ContactStage::Together;
         let end = Still(self.state);
         visit(Piece { start: self.time, duration: 0.0, path: &end, event: Event::Stick });
     }
@@ -105,13 +105,13 @@ impl Compliant {
     pub(super) fn find_stage(&mut self) {
         let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
         match self.stage {
-            Stage::Touching if pulls && !self.integrates() => self.stage = Stage::Released,
-            Stage::Released if !pulls => self.stage = Stage::Touching,
-            Stage::Together => {
+            ContactStage::Touching if pulls && !self.integrates() => self.stage = ContactStage::Released,
+            ContactStage::Released if !pulls => self.stage = ContactStage::Touching,
+            ContactStage::Together => {
                 let force = self.drive.force(0.0);
                 let pressed = self.modes.pressing(self.spring_acts).value(&self.state, force) > 0.0;
                 if !pressed || self.state.approach() != 0.0 {
-                    self.stage = Stage::Apart;
+                    self.stage = ContactStage::Apart;
                 }
             }
             _ => {}

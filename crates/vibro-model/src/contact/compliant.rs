@@ -8,8 +8,8 @@ use crate::forcing::Forcing;
 use crate::forcing::Tick;
 use crate::impact::Impact;
 use crate::law::Law;
-use crate::least::{Least, number};
-use crate::linear::{Course, Linear, Quantity};
+use crate::least::{NumberRange, number};
+use crate::linear::{Linear, Quantity, QuantityCourse};
 use crate::motion::{Event, Motion, Path, Piece};
 use crate::{Buffer, Excitation, Rig, State, scales};
 use vibro_record::{Error, Result};
@@ -21,7 +21,7 @@ const MOST_AT_ONCE: u32 = 1000;
 
 /// Where a contact is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stage {
+pub(super) enum ContactStage {
     /// Apart.
     Apart,
     /// Pushing each other.
@@ -65,7 +65,7 @@ pub struct Compliant {
     pub(super) within: Within,
     pub(super) time: f64,
     pub(super) state: State,
-    pub(super) stage: Stage,
+    pub(super) stage: ContactStage,
     pub(super) spring_acts: bool,
     /// The contact under way, with the impulse so far.
     pub(super) impact: Impact,
@@ -119,7 +119,7 @@ impl Compliant {
                 "rebounds at once or a Kelvin–Voigt contact: the other laws are for masses on their springs";
             return Err(Error::usage("a loose mass with a contact law that is not linear", expected));
         }
-        number("buffer gap", buffer.gap, "m", Least::Zero)?;
+        number("buffer gap", buffer.gap, "m", NumberRange::Zero)?;
         Compliant::start(rig, excitation, law, Some(buffer), state, phase)
     }
 
@@ -143,7 +143,7 @@ impl Compliant {
             drive: Forcing::new(excitation, phase)?,
             time: 0.0,
             state,
-            stage: Stage::Apart,
+            stage: ContactStage::Apart,
             spring_acts: buffer.is_none() || modes.compression.value(&state, 0.0) > 0.0,
             impact: Impact::default(),
             slack: 0.0,
@@ -175,9 +175,9 @@ impl Compliant {
 
     fn mode(&self) -> &Linear {
         let by_spring = match self.stage {
-            Stage::Apart | Stage::Released => &self.modes.apart,
-            Stage::Touching => &self.modes.pushing,
-            Stage::Together => &self.modes.together,
+            ContactStage::Apart | ContactStage::Released => &self.modes.apart,
+            ContactStage::Touching => &self.modes.pushing,
+            ContactStage::Together => &self.modes.together,
         };
         &by_spring[usize::from(self.spring_acts)]
     }
@@ -187,7 +187,7 @@ impl Compliant {
         let remaining = until - self.time;
         let due = self.drive.next(remaining, until);
         let near = remaining.min(due.0);
-        if self.stage == Stage::Touching && self.integrates() {
+        if self.stage == ContactStage::Touching && self.integrates() {
             if near <= 0.0 {
                 return Ok(self.pass(&Still(self.state), 0.0, None, due, until, visit));
             }
@@ -205,7 +205,7 @@ impl Compliant {
         let taylor = mode.fly(&self.state, &force, span);
         let mut first: Option<(f64, Mark)> = None;
         let read = |quantity: &Quantity| taylor.read(quantity, &force);
-        let mut watch = |course: &Course, mark: Mark| {
+        let mut watch = |course: &QuantityCourse, mark: Mark| {
             if let Some(t) = course.first_fall()
                 && first.is_none_or(|(earlier, _)| t < earlier)
             {
@@ -214,17 +214,17 @@ impl Compliant {
         };
         let modes = &self.modes;
         match self.stage {
-            Stage::Apart => {
+            ContactStage::Apart => {
                 let mut gap = modes.indentation.times(-1.0);
                 gap.offset += self.slack;
                 watch(&read(&gap), Mark::Meets);
             }
-            Stage::Touching => watch(&read(&modes.contact_force), Mark::ForceEnds),
-            Stage::Released => {
+            ContactStage::Touching => watch(&read(&modes.contact_force), Mark::ForceEnds),
+            ContactStage::Released => {
                 watch(&read(&modes.indentation), Mark::Separates);
                 watch(&read(&modes.contact_force.times(-1.0)), Mark::ForceReturns);
             }
-            Stage::Together => watch(&read(&modes.pressing(self.spring_acts)), Mark::LetsGo),
+            ContactStage::Together => watch(&read(&modes.pressing(self.spring_acts)), Mark::LetsGo),
         }
         if self.loose && self.spring_acts {
             watch(&read(&modes.compression), Mark::SpringFree);
@@ -232,7 +232,7 @@ impl Compliant {
             watch(&read(&modes.compression.times(-1.0)), Mark::SpringActs);
         }
         let duration = first.map_or(span, |(t, _)| t);
-        if self.stage == Stage::Touching {
+        if self.stage == ContactStage::Touching {
             self.impact.impulse += read(&self.modes.contact_force).integral(duration);
         }
         Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), due, until, visit))
@@ -260,7 +260,7 @@ impl Compliant {
             _ => Event::Reached,
         };
         visit(Piece { start, duration, path, event });
-        if self.stage == Stage::Apart && matches!(event, Event::Impact(_)) {
+        if self.stage == ContactStage::Apart && matches!(event, Event::Impact(_)) {
             self.come_to_rest(visit);
         }
         whole && event == Event::Reached
@@ -311,7 +311,7 @@ impl Motion for Compliant {
             if self.piece(until, visit)? {
                 return Ok(());
             }
-            work += if self.stage == Stage::Touching && self.integrates() { 10.0 } else { 1.0 };
+            work += if self.stage == ContactStage::Touching && self.integrates() { 10.0 } else { 1.0 };
             at_once = if self.time == last { at_once + 1 } else { 0 };
             last = self.time;
         }

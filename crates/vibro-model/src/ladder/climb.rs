@@ -1,10 +1,10 @@
 //! From rung to rung: what each answers, how far that moves at the rungs above, and which one is good enough.
 
-use super::motions::{Motions, On};
+use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Change};
-use super::reading::End;
+use super::reading::Settling;
 use super::rung::{Model, Need, Needed, Rung};
-use super::stage::{Stage, is_curved, keys};
+use super::stage::{DrivenScene, is_curved, keys};
 use super::{Choice, Sensitivity};
 use crate::Law;
 use crate::law::conversion;
@@ -19,14 +19,14 @@ const DECADES: i32 = 7;
 
 /// All rungs of a scene.
 pub struct Climb<'a> {
-    stage: Stage<'a>,
+    stage: DrivenScene<'a>,
     /// `None` for a mass that is loose on its spring, of which no motion is known before.
     motions: Option<Motions>,
     rungs: Vec<Rung>,
 }
 
 impl<'a> Climb<'a> {
-    pub fn new(stage: Stage<'a>) -> Result<Climb<'a>> {
+    pub fn new(stage: DrivenScene<'a>) -> Result<Climb<'a>> {
         if stage.scene.buffer.is_some() {
             let stiffness = keys(stage.scene).stiffness.filter(|_| !is_curved(stage.scene));
             let rung = |model| match model {
@@ -112,7 +112,7 @@ impl<'a> Climb<'a> {
     /// or a curved contact is stated and nothing strikes.
     fn is_lawless(&self) -> bool {
         self.motions.as_ref().is_some_and(|Motions { reading, .. }| match keys(self.stage.scene).stiffness {
-            None => reading.end == End::Pressed,
+            None => reading.end == Settling::Pressed,
             Some(_) => is_curved(self.stage.scene) && reading.speed == 0.0,
         })
     }
@@ -132,7 +132,7 @@ impl<'a> Climb<'a> {
         if let Some(motions) = &self.motions {
             (choice.motions, choice.followed) = (motions.known.clone(), motions.followed);
         }
-        if self.motions.as_ref().is_some_and(|m| m.on == On::Open) {
+        if self.motions.as_ref().is_some_and(|m| m.on == CurrentMotion::Open) {
             choice.needs.push(Need::History);
             return choice;
         }

@@ -1,12 +1,12 @@
 //! What a choice found that a person should know, beside the reasons of its rungs.
 
 use super::motions::MOST_CYCLES;
-use super::{Change, Choice, Followed, Known, Need, Question};
+use super::{Change, Choice, Followed, KnownMotion, Need, Question};
 use vibro_record::Finding;
 
 /// What is to be known of a choice.
 pub fn findings(choice: &Choice, question: &Question) -> Vec<Finding> {
-    let names = |of: &dyn Fn(&Known) -> bool| {
+    let names = |of: &dyn Fn(&KnownMotion) -> bool| {
         choice.motions.iter().filter(|m| of(m)).map(|m| m.pattern.to_string()).collect::<Vec<_>>().join(", ")
     };
     if choice.needs.contains(&Need::History) {

@@ -1,10 +1,10 @@
 //! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
 
 use super::question::{APART, Answer, Question};
-use super::reading::{End, Reader, Reading};
+use super::reading::{MotionReader, Reading, Settling};
 use super::rung::Model;
-use super::stage::{Stage, timed};
-use super::starts::{Followed, Way, several, starts};
+use super::stage::{DrivenScene, timed};
+use super::starts::{Approach, Followed, several, starts};
 use crate::regime::Strike;
 use crate::{Motion, Orbit, Orbits, Regime, Simulation, State, orbits_of};
 use serde::Serialize;
@@ -20,7 +20,7 @@ const BESIDE: f64 = 0.02;
 
 /// A motion that the rig can be in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Known {
+pub struct KnownMotion {
     /// Its pattern; in JSON `no impact`, impacts/cycles, `chatter` or `irregular`.
     #[serde(serialize_with = "as_text")]
     pub pattern: Regime,
@@ -43,11 +43,11 @@ fn as_text<S: serde::Serializer>(pattern: &Regime, serializer: S) -> std::result
     serializer.collect_str(pattern)
 }
 
-impl Known {
+impl KnownMotion {
     /// A motion that was followed, and lasts.
-    fn followed(reading: &Reading, model: Model, rare: bool) -> Known {
+    fn followed(reading: &Reading, model: Model, rare: bool) -> KnownMotion {
         let Answer { value, spread, .. } = reading.answer;
-        Known { pattern: reading.regime, model, answer: value, spread, stable: true, rare }
+        KnownMotion { pattern: reading.regime, model, answer: value, spread, stable: true, rare }
     }
 
     /// Whether it may be the motion that was read: both without impacts, or their answers no farther apart
@@ -61,7 +61,7 @@ impl Known {
 
 /// The motion that the rig is in.
 #[derive(Debug, Clone, PartialEq)]
-pub enum On {
+pub enum CurrentMotion {
     Free,
     Orbit(Box<Orbit>),
     /// None of those known in closed form.
@@ -80,12 +80,12 @@ pub struct Motions {
     /// In closed form with one impact in 2 to [`MOST_CYCLES`] cycles: those whose masses do not pass through
     /// each other.
     longer: Vec<Orbit>,
-    pub known: Vec<Known>,
-    pub on: On,
+    pub known: Vec<KnownMotion>,
+    pub on: CurrentMotion,
     /// How far mass 1 alone stays clear of mass 2, in m; `None` without a closed form.
     pub clearance: Option<f64>,
     /// The way the rig came there, where that is known.
-    pub way: Option<Way>,
+    pub way: Option<Approach>,
     /// States that other motions were looked for from; `None` where none was looked for.
     pub followed: Option<Followed>,
     /// The motion followed with impacts at once, from rest or the way it came.
@@ -99,27 +99,27 @@ pub struct Motions {
 impl Motions {
     /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other
     /// states.
-    pub fn new(stage: &Stage<'_>) -> Result<Motions> {
+    pub fn new(stage: &DrivenScene<'_>) -> Result<Motions> {
         let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
         let (closed, closed_cost) = timed(|| orbits_of(rig, excitation, 1));
         let clearance = closed.as_ref().ok().map(|found| rig.gap - found.no_impact.largest);
         let longer = (2..=MOST_CYCLES).filter_map(|cycles| orbits_of(rig, excitation, cycles).ok());
         let longer = longer.flat_map(|found| found.orbits).filter(|o| o.validity.admissible).collect();
-        let way = question.history.map(|direction| Way::new(rig, excitation, direction)).transpose()?;
+        let way = question.history.map(|direction| Approach::new(rig, excitation, direction)).transpose()?;
         let mut end = match &way {
             Some(way) => way.rigid()?,
             None => Simulation::new(rig, excitation)?,
         };
-        let reader = Reader { clearance, ..Reader::new(rig, excitation.frequency(), question) };
+        let reader = MotionReader { clearance, ..MotionReader::new(rig, excitation.frequency(), question) };
         let (reading, cost) = timed(|| reader.read(&mut end));
-        let (reading, on, known, followed) = (reading?, On::Other, Vec::new(), None);
+        let (reading, on, known, followed) = (reading?, CurrentMotion::Other, Vec::new(), None);
         let mut motions =
             Motions { closed, closed_cost, longer, known, on, clearance, way, followed, reading, cost, end };
         motions.list(question, reader.fine());
         if motions.way.is_none() {
             motions.seek(stage, &reader);
             if common(&motions.known) > 1 || motions.closed.as_ref().is_ok_and(several) {
-                motions.on = On::Open;
+                motions.on = CurrentMotion::Open;
             }
         }
         Ok(motions)
@@ -127,7 +127,7 @@ impl Motions {
 
     /// Looks for a second motion from other states: near orbits that have lost their stability, and those of
     /// [`starts`].
-    fn seek(&mut self, stage: &Stage<'_>, reader: &Reader) {
+    fn seek(&mut self, stage: &DrivenScene<'_>, reader: &MotionReader) {
         let (rig, excitation) = (&stage.scene.rig, stage.excitation);
         let orbits = self.closed.iter().flat_map(|found| &found.orbits).chain(&self.longer);
         let lost = orbits.filter(|o| o.validity.admissible && o.validity.stable == Some(false));
@@ -150,12 +150,12 @@ impl Motions {
     /// Whether a contact that gives way leads from `rest` to another motion than the one that its `answer` is
     /// read from.
     pub fn differs(&mut self, answer: &Answer, rest: &Reading, model: Model, question: &Question) {
-        if rest.end == End::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
+        if rest.end == Settling::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;
         }
-        self.on = On::Open;
-        let found = Known::followed(rest, model, false);
-        let same = |known: &&mut Known| known.pattern == found.pattern && known.may_be(rest, question);
+        self.on = CurrentMotion::Open;
+        let found = KnownMotion::followed(rest, model, false);
+        let same = |known: &&mut KnownMotion| known.pattern == found.pattern && known.may_be(rest, question);
         match self.known.iter_mut().find(same) {
             // From rest it is come to, if not with impacts at once.
             Some(known) => known.rare = false,
@@ -166,11 +166,11 @@ impl Motions {
     /// Adds a motion with impacts at once, where that is not on its way and answers differently from those
     /// known.
     fn add(&mut self, reading: &Reading, question: &Question) {
-        let settled = |reading: &Reading| reading.end != End::Under;
+        let settled = |reading: &Reading| reading.end != Settling::Under;
         let own = settled(&self.reading) && self.reading.answer.agrees(&reading.answer, question, APART);
         if settled(reading) && !own && !self.known.iter().any(|known| known.may_be(reading, question)) {
             let rare = matches!(reading.regime, Regime::Periodic { impacts, cycles } if impacts < cycles);
-            self.known.push(Known::followed(reading, Model::Restitution, rare));
+            self.known.push(KnownMotion::followed(reading, Model::Restitution, rare));
         }
     }
 
@@ -194,20 +194,22 @@ impl Motions {
 
     /// Lists the motions known, and which of them was followed.
     fn list(&mut self, question: &Question, fine: f64) {
-        let own = self.own(fine).filter(|_| self.reading.end == End::Settled);
+        let own = self.own(fine).filter(|_| self.reading.end == Settling::Settled);
         let on = match own {
-            _ if self.reading.end == End::Settled && self.reading.regime == Regime::NoImpact => On::Free,
-            Some(orbit) if orbit.cycles == 1 => On::Orbit(Box::new(orbit.clone())),
-            _ => On::Other,
+            _ if self.reading.end == Settling::Settled && self.reading.regime == Regime::NoImpact => {
+                CurrentMotion::Free
+            }
+            Some(orbit) if orbit.cycles == 1 => CurrentMotion::Orbit(Box::new(orbit.clone())),
+            _ => CurrentMotion::Other,
         };
         let mut known = Vec::new();
         let found = self.closed.as_ref().ok();
         if let Some(free) = found.map(|found| &found.no_impact).filter(|free| free.possible) {
             let answer = question.observable.of_no_impact(free);
             let (pattern, model, spread) = (Regime::NoImpact, Model::Linear, [0.0; 2]);
-            known.push(Known { pattern, model, answer, spread, stable: true, rare: false });
+            known.push(KnownMotion { pattern, model, answer, spread, stable: true, rare: false });
         }
-        let known_as = |orbit: &Orbit| Known {
+        let known_as = |orbit: &Orbit| KnownMotion {
             pattern: Regime::Periodic { impacts: 1, cycles: orbit.cycles },
             model: Model::ClosedForm,
             answer: question.observable.of_orbit(orbit),
@@ -216,8 +218,8 @@ impl Motions {
             rare: orbit.cycles > 1 && own.is_none_or(|own| own != orbit),
         };
         known.extend(self.stable().chain(self.longer.iter().filter(|o| o.validity.real())).map(known_as));
-        if on == On::Other && self.reading.end != End::Under && own.is_none() {
-            known.push(Known::followed(&self.reading, Model::Restitution, false));
+        if on == CurrentMotion::Other && self.reading.end != Settling::Under && own.is_none() {
+            known.push(KnownMotion::followed(&self.reading, Model::Restitution, false));
         }
         // Where nothing else is known with impacts, orbits that have lost their stability tell of others
         // round them.
@@ -236,7 +238,7 @@ impl Motions {
     /// The orbit to speak of: the one the rig is in, else the first that can be and stay, else the first that
     /// exists.
     pub fn orbit(&self) -> std::result::Result<Option<&Orbit>, &Error> {
-        if let On::Orbit(orbit) = &self.on {
+        if let CurrentMotion::Orbit(orbit) = &self.on {
             return Ok(Some(orbit));
         }
         let existing = self.closed.as_ref()?.orbits.iter().find(|o| o.validity.exists);
@@ -245,7 +247,7 @@ impl Motions {
 }
 
 /// Motions between which only the history decides.
-fn common(known: &[Known]) -> usize {
+fn common(known: &[KnownMotion]) -> usize {
     known.iter().filter(|m| !m.rare).count()
 }
 

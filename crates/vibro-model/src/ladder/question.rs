@@ -2,7 +2,7 @@
 
 use super::Model;
 use crate::Observable;
-use crate::least::{Least, number};
+use crate::least::{NumberRange, number};
 use serde::Serialize;
 use vibro_record::{Direction, Error, Result};
 
@@ -49,8 +49,8 @@ impl Question {
             let error = Error::usage(format!("a tolerance of {}", self.tolerance), expected);
             return Err(error.hint("2 % is 0.02"));
         }
-        number("the noise floor", self.noise, self.observable.unit(), Least::Zero)?;
-        number("the uncertainty of the gap", self.gap_std, "m", Least::Zero)
+        number("the noise floor", self.noise, self.observable.unit(), NumberRange::Zero)?;
+        number("the uncertainty of the gap", self.gap_std, "m", NumberRange::Zero)
     }
 }
 

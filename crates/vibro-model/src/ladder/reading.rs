@@ -45,7 +45,7 @@ pub struct Reading {
     pub regime: Regime,
     /// The last impact of the pattern.
     pub strike: Option<Strike>,
-    pub end: End,
+    pub end: Settling,
     /// Cycles followed.
     pub cycles: u32,
     /// Mean over the cycles with impacts of the fastest one's approach speed in m/s, in the last block; 0
@@ -55,7 +55,7 @@ pub struct Reading {
 
 /// What a motion that was followed came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+pub enum Settling {
     /// It repeats.
     Settled,
     /// The masses stay in contact, and the motion repeats.
@@ -68,7 +68,7 @@ pub enum End {
 
 /// How motions are read.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reader {
+pub struct MotionReader {
     pub observable: Observable,
     pub tolerance: f64,
     /// Cycles of a block.
@@ -89,9 +89,9 @@ struct Block {
     speed: f64,
 }
 
-impl Reader {
+impl MotionReader {
     /// For motions of `rig` at `frequency` (Hz).
-    pub fn new(rig: &Rig, frequency: f64, question: &Question) -> Reader {
+    pub fn new(rig: &Rig, frequency: f64, question: &Question) -> MotionReader {
         let decays = rig.oscillators().map(|o| o.decay()).into_iter().filter(|b| *b > 0.0);
         let slowest = decays.fold(f64::INFINITY, f64::min);
         let wanted = (DECAY / slowest * frequency / f64::from(BLOCK)).ceil().clamp(1.0, MULTIPLE);
@@ -100,7 +100,7 @@ impl Reader {
             rig.natural_frequencies().into_iter().filter(|f| f.is_finite()).fold(0.0, f64::max) / frequency;
         let blocks = (SWINGS / (swings * f64::from(block))).clamp(BLOCKS.0 as f64, BLOCKS.1 as f64) as usize;
         let Question { observable, tolerance, .. } = *question;
-        Reader { observable, tolerance, block, blocks, clearance: None }
+        MotionReader { observable, tolerance, block, blocks, clearance: None }
     }
 
     /// The part of the tolerance to which motions settle.
@@ -132,14 +132,16 @@ impl Reader {
             if settled || blocks.len() >= most {
                 let half: Vec<[f64; 2]> = blocks[blocks.len() / 2..].iter().map(|b| b.value).collect();
                 let end = match pattern.regime {
-                    _ if settled && pressed => End::Pressed,
-                    _ if settled => End::Settled,
-                    Regime::Irregular | Regime::Chatter { cycles: None } if !drifts(&half) => End::Steady,
-                    _ => End::Under,
+                    _ if settled && pressed => Settling::Pressed,
+                    _ if settled => Settling::Settled,
+                    Regime::Irregular | Regime::Chatter { cycles: None } if !drifts(&half) => {
+                        Settling::Steady
+                    }
+                    _ => Settling::Under,
                 };
                 let exact = whole.last().filter(|_| settled).map(|value| Answer::exact(*value));
                 return Ok(Reading {
-                    answer: exact.unwrap_or_else(|| mean(&half, end == End::Steady)),
+                    answer: exact.unwrap_or_else(|| mean(&half, end == Settling::Steady)),
                     regime: pattern.regime,
                     strike: pattern.strikes.last().copied(),
                     end,

@@ -1,7 +1,7 @@
 //! A rung of the ladder and what was found of it.
 
 use super::question::{Answer, Change};
-use super::reading::{End, Reading};
+use super::reading::{Reading, Settling};
 use super::stage::keys;
 use crate::Scene;
 use serde::Serialize;
@@ -215,9 +215,9 @@ impl Rung {
         let Answer { value, spread, .. } = reading.answer;
         let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
         let how = match reading.end {
-            End::Settled | End::Pressed => Finding::note("settled"),
-            End::Under => Finding::caution("not-settled"),
-            End::Steady => Finding::note("mean-of-cycles").number("error", part(0).max(part(1))),
+            Settling::Settled | Settling::Pressed => Finding::note("settled"),
+            Settling::Under => Finding::caution("not-settled"),
+            Settling::Steady => Finding::note("mean-of-cycles").number("error", part(0).max(part(1))),
         };
         reasons.push(how.count("cycles", reading.cycles as usize));
         Rung::answering(reading.answer, cost, true, reasons)

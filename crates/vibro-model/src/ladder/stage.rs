@@ -1,8 +1,8 @@
 //! What each rung answers at one excitation of a scene, and whether its own checks pass.
 
-use super::motions::{Motions, On};
+use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Question};
-use super::reading::{BRIEF, End, Reader, Reading};
+use super::reading::{BRIEF, MotionReader, Reading, Settling};
 use super::rung::{Found, Model, Rung};
 use crate::law::conversion;
 use crate::{
@@ -25,7 +25,7 @@ pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 
 /// A scene at one excitation.
 #[derive(Debug, Clone, Copy)]
-pub struct Stage<'a> {
+pub struct DrivenScene<'a> {
     pub scene: &'a Scene,
     pub excitation: &'a Excitation,
     pub question: &'a Question,
@@ -75,17 +75,17 @@ fn as_long(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
 fn into(motions: &Motions) -> Finding {
     let reading = &motions.reading;
     let found = match reading.end {
-        End::Under => Finding::caution("rest-not-settled"),
+        Settling::Under => Finding::caution("rest-not-settled"),
         _ => Finding::note("rest-leads-to"),
     };
     let motion = match (reading.end, reading.regime) {
-        (End::Pressed, _) => "lasting contact".to_owned(),
+        (Settling::Pressed, _) => "lasting contact".to_owned(),
         (_, regime) => regime.to_string(),
     };
     found.name("motion", motion).count("cycles", reading.cycles as usize)
 }
 
-impl Stage<'_> {
+impl DrivenScene<'_> {
     fn rig(&self) -> &Rig {
         &self.scene.rig
     }
@@ -125,9 +125,11 @@ impl Stage<'_> {
                 let unsure = Finding::note("clearance-not-sure").number("clearance", clear);
                 (false, vec![unsure.number("std", std)])
             }
-            On::Open => (true, vec![met()]),
-            On::Free => (true, vec![met(), into(motions)]),
-            On::Orbit(_) | On::Other => (false, vec![met(), Finding::note("other-motion"), into(motions)]),
+            CurrentMotion::Open => (true, vec![met()]),
+            CurrentMotion::Free => (true, vec![met(), into(motions)]),
+            CurrentMotion::Orbit(_) | CurrentMotion::Other => {
+                (false, vec![met(), Finding::note("other-motion"), into(motions)])
+            }
         };
         Ok(Rung::answering(Answer::exact(value), cost, valid, reasons))
     }
@@ -149,11 +151,13 @@ impl Stage<'_> {
             Finding::note("orbit-real").number("radius", radius).number("distance", v.grazing_distance)
         }];
         match motions.on {
-            On::Orbit(_) if real => reasons.push(into(motions)),
-            On::Free | On::Other if real => reasons.extend([Finding::note("other-motion"), into(motions)]),
+            CurrentMotion::Orbit(_) if real => reasons.push(into(motions)),
+            CurrentMotion::Free | CurrentMotion::Other if real => {
+                reasons.extend([Finding::note("other-motion"), into(motions)]);
+            }
             _ => {}
         }
-        let valid = real && matches!(motions.on, On::Orbit(_) | On::Open);
+        let valid = real && matches!(motions.on, CurrentMotion::Orbit(_) | CurrentMotion::Open);
         let answer = Answer::exact(self.question.observable.of_orbit(orbit));
         Ok(Rung::answering(answer, motions.closed_cost, valid, reasons))
     }
@@ -226,7 +230,7 @@ impl Stage<'_> {
         let rest = Simulation::at_rest(self.rig());
         let rest = Compliant::new(self.rig(), self.excitation, law, rest, 0.0)?;
         let (rest, _) = self.follow(motions, rest)?;
-        if rest.end == End::Under {
+        if rest.end == Settling::Under {
             found.reasons.push(Finding::caution("rest-unclear").count("cycles", rest.cycles as usize));
         }
         motions.differs(&reading.answer, &rest, model, self.question);
@@ -241,7 +245,7 @@ impl Stage<'_> {
     }
 
     fn follow(&self, motions: &Motions, mut start: Compliant) -> Result<(Reading, f64)> {
-        let mut reader = Reader { clearance: motions.clearance, ..self.reader() };
+        let mut reader = MotionReader { clearance: motions.clearance, ..self.reader() };
         if start.integrates() {
             reader.blocks = reader.blocks.min(BRIEF);
         }
@@ -249,8 +253,8 @@ impl Stage<'_> {
         Ok((reading?, cost))
     }
 
-    fn reader(&self) -> Reader {
-        Reader::new(self.rig(), self.excitation.frequency(), self.question)
+    fn reader(&self) -> MotionReader {
+        MotionReader::new(self.rig(), self.excitation.frequency(), self.question)
     }
 
     /// A mass 1 loose on its spring, from rest; with the contact's spring and damper where they are known.

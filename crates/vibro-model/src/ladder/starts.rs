@@ -21,7 +21,7 @@ const SIZES: (f64, f64) = (1.0, 6.0);
 /// The way to an excitation after its frequency rose or fell to it: from where only one motion is known, in
 /// steps of 1 %.
 #[derive(Debug)]
-pub struct Way {
+pub struct Approach {
     rig: Rig,
     first: Excitation,
     /// State at the beginning, at phase 0: of the motion without impacts where there is one, else at rest.
@@ -30,10 +30,10 @@ pub struct Way {
     then: Vec<f64>,
 }
 
-impl Way {
+impl Approach {
     /// # Errors
     /// If a parameter is impossible, or an undamped mass is driven at resonance.
-    pub fn new(rig: &Rig, excitation: &Excitation, direction: Direction) -> Result<Way> {
+    pub fn new(rig: &Rig, excitation: &Excitation, direction: Direction) -> Result<Approach> {
         let sign = if direction == Direction::Up { -1 } else { 1 };
         let at = |n: i32| excitation.at_frequency(excitation.frequency() * STEP.powi(sign * n));
         // A pulse that is longer than a cycle ends the way.
@@ -41,7 +41,7 @@ impl Way {
         let one = |n: &i32| !orbits_of(rig, &at(*n), 1).is_ok_and(|found| several(&found));
         let first = (STEPS.0..end).find(one).unwrap_or(end);
         let then = (0..first).rev().map(|n| at(n).frequency()).collect();
-        Ok(Way { rig: *rig, first: at(first), state: outset(rig, &at(first))?, then })
+        Ok(Approach { rig: *rig, first: at(first), state: outset(rig, &at(first))?, then })
     }
 
     /// The motion at its end, with impacts at once.

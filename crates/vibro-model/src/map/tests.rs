@@ -5,8 +5,8 @@ fn plan(n: usize) -> Plan {
     Plan {
         rig: Rig::thesis(),
         excitation: Sine { force: 0.5, frequency: 11.0 }.into(),
-        x: Axis { key: Parameter::Frequency, low: 4.0, high: 14.0, n },
-        y: Axis { key: Parameter::Restitution, low: 0.3, high: 0.95, n },
+        x: MapAxis { key: Parameter::Frequency, low: 4.0, high: 14.0, n },
+        y: MapAxis { key: Parameter::Restitution, low: 0.3, high: 0.95, n },
         cycles: 200,
     }
 }
@@ -59,10 +59,10 @@ fn impossible_maps_are_refused() {
     for text in
         ["gap", "gap:1:2", "gap:2:1:5", "gap:0:1:1", "mass:0:1:5", "gap:0:inf:5", "gap:0:1:5:6", "gap:0:x:5"]
     {
-        assert!(text.parse::<Axis>().is_err(), "{text}");
+        assert!(text.parse::<MapAxis>().is_err(), "{text}");
     }
     let good = plan(4);
-    let axis = |text: &str| text.parse::<Axis>().unwrap();
+    let axis = |text: &str| text.parse::<MapAxis>().unwrap();
     for (plan, word) in [
         (Plan { y: axis("frequency:1:2:3"), ..good.clone() }, "both axes"),
         (Plan { x: axis("frequency:0:2:3"), ..good.clone() }, "frequency is 0"),

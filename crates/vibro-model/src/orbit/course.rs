@@ -42,12 +42,12 @@ impl Course {
     }
 
     /// How far both masses move, and every smallest gap inside the period, the impact left out.
-    pub fn survey(&self) -> Survey {
+    pub fn survey(&self) -> Excursion {
         // What lies nearer to the impact than this is the impact itself (without rebound the gap starts at
         // zero rate).
         let margin = 1e-9 * self.period;
         let inside = |t: f64| t > margin && t < self.period - margin;
-        let mut survey = Survey { ranges: [(f64::INFINITY, f64::NEG_INFINITY); 2], closest: None };
+        let mut survey = Excursion { ranges: [(f64::INFINITY, f64::NEG_INFINITY); 2], closest: None };
         let (mut before, mut start) = (None::<f64>, 0.0);
         for (duration, stretch) in &self.stretches {
             let duration = *duration;
@@ -76,14 +76,14 @@ impl Course {
 
 /// What a course reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Survey {
+pub struct Excursion {
     /// Smallest and largest x₁ and x₂ in m.
     pub ranges: [(f64, f64); 2],
     /// Smallest gap in m away from the impact; `None` where the masses part and return without one.
     pub closest: Option<f64>,
 }
 
-impl Survey {
+impl Excursion {
     fn reach(&mut self, mass: usize, x: f64) {
         let (low, high) = &mut self.ranges[mass];
         (*low, *high) = (low.min(x), high.max(x));

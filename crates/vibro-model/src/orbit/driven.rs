@@ -7,7 +7,7 @@ use vibro_record::Result;
 /// The steady motion, piece by piece free: during the pulse about f/k₁, after it about 0. An impulse is a
 /// pulse of no width.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Response {
+pub struct PulseResponse {
     pub oscillator: Oscillator,
     /// Cycle of the excitation in s.
     pub cycle: f64,
@@ -33,15 +33,15 @@ pub struct Piece {
     pub free: (f64, f64),
 }
 
-impl Response {
+impl PulseResponse {
     /// Steady motion under an impulse (N s) once a cycle: F times the periodic Green's function.
     ///
     /// # Errors
     /// As [`Green::new`].
-    pub fn impulse(m: f64, oscillator: Oscillator, cycle: f64, impulse: f64) -> Result<Response> {
+    pub fn impulse(m: f64, oscillator: Oscillator, cycle: f64, impulse: f64) -> Result<PulseResponse> {
         let green = Green::new(m, oscillator, cycle)?;
         let off = (impulse * green.start, impulse * green.slope_after);
-        Ok(Response { oscillator, cycle, width: 0.0, rest: 0.0, on: (0.0, 0.0), off })
+        Ok(PulseResponse { oscillator, cycle, width: 0.0, rest: 0.0, on: (0.0, 0.0), off })
     }
 
     /// Steady motion under a force (N) that acts for `width` seconds of each cycle.
@@ -50,7 +50,13 @@ impl Response {
     ///
     /// # Errors
     /// As [`Green::new`].
-    pub fn pulse(m: f64, oscillator: Oscillator, cycle: f64, force: f64, width: f64) -> Result<Response> {
+    pub fn pulse(
+        m: f64,
+        oscillator: Oscillator,
+        cycle: f64,
+        force: f64,
+        width: f64,
+    ) -> Result<PulseResponse> {
         let unit = Green::new(m, oscillator, cycle)?;
         let (c, s) = oscillator.kernels(width);
         // (I − Φ)⁻¹ of (0, S(w)) is that of the Green's function, of (∫S, 0) its companion.
@@ -64,7 +70,7 @@ impl Response {
         );
         let rest = force / (m * omega2);
         let before = oscillator.free(off.0, off.1, cycle - width);
-        Ok(Response { oscillator, cycle, width, rest, on: (before.0 - rest, before.1), off })
+        Ok(PulseResponse { oscillator, cycle, width, rest, on: (before.0 - rest, before.1), off })
     }
 
     /// The piece at the time `at` after the beginning of the pulse, 0 ≤ `at` ≤ cycle, and the time within it.

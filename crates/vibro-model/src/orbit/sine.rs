@@ -2,7 +2,7 @@
 
 use super::conditions::{Conditions, Root};
 use super::{Course, Orbit, driven};
-use crate::least::{Least, number};
+use crate::least::{NumberRange, number};
 use crate::scales::check_values;
 use crate::waves::Waves;
 use crate::{Excitation, Flight, Rig, Sine, Steady};
@@ -97,7 +97,7 @@ pub fn orbits(conditions: &Conditions, steady: &Steady, sine: &Sine) -> Vec<Orbi
 /// The orbit of the larger root as a spectrum shows it, without its verdicts: for fits, which ask for it a
 /// million times.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct ShownOrbit {
     /// Impulse J in N s.
     pub impulse: f64,
     /// Amplitudes of x₁ and x₂ in m at the excitation frequency.
@@ -113,7 +113,7 @@ pub struct Shown {
 ///
 /// # Errors
 /// As [`super::orbits`].
-pub fn shown(rig: &Rig, sine: &Sine) -> Result<Shown> {
+pub fn shown(rig: &Rig, sine: &Sine) -> Result<ShownOrbit> {
     let steady = Steady::new(rig, sine)?;
     driven(sine.force)?;
     let conditions = Conditions::new(rig, sine.frequency, 1, 0.0)?;
@@ -125,7 +125,7 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<Shown> {
     // cos φ and sin φ times A; beyond the fold their squares do not add up to A².
     let forced = Complex64::new(rig.gap + impulse * conditions.c, -impulse * conditions.p / omega);
     let forced = forced * (steady.amplitude() / forced.norm());
-    Ok(Shown {
+    Ok(ShownOrbit {
         impulse,
         amplitude: [(forced - train * l1).norm(), (train * l2).norm()],
         exists: quadratic.has_roots() && impulse > 0.0,
@@ -141,7 +141,7 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<Shown> {
 /// # Errors
 /// If a parameter is impossible, or the frequency is a whole part of a natural frequency.
 pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
-    number("frequency", frequency, "Hz", Least::AboveZero)?;
+    number("frequency", frequency, "Hz", NumberRange::AboveZero)?;
     check_values(rig, [frequency])?;
     let lossless = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..*rig };
     let conditions = Conditions::new(&lossless, frequency, 1, 0.0)?;

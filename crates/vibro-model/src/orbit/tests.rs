@@ -191,7 +191,7 @@ fn pulses_are_impulses_summed() {
         let green = crate::Green::new(0.125, oscillator, cycle).unwrap();
         for width in [1e-6, 1e-3, 0.02, 0.16] {
             let (force, omega) = (0.3, f64::sqrt(135.0 / 0.125));
-            let response = Response::pulse(0.125, oscillator, cycle, force, width).unwrap();
+            let response = PulseResponse::pulse(0.125, oscillator, cycle, force, width).unwrap();
             for at in [width, width + 1e-3, 0.5 * (width + cycle), cycle * (1.0 - 1e-12)] {
                 let (mut x, mut v) = (0.0, 0.0);
                 for part in 0..8 {

@@ -1,7 +1,7 @@
 //! Orbits under impulses or pulses: every root of the timing.
 
 use super::conditions::{Conditions, Root};
-use super::driven::{Piece, Response};
+use super::driven::{Piece, PulseResponse};
 use super::{Course, Orbit};
 use crate::waves::Waves;
 use crate::{Excitation, Flight};
@@ -14,7 +14,7 @@ use vibro_math::root::bracketed;
 /// Both conditions together, y(τ) = Δ + JC and ẏ(τ) = JP, ask for G(τ) = P(y − Δ) − Cẏ = 0. In each piece Py
 /// − Cẏ is a free motion of mass 1 itself, so its stationary points are known in closed form, and between two
 /// of them lies one root at most.
-pub fn orbits(conditions: &Conditions, response: &Response, excitation: &Excitation) -> Vec<Orbit> {
+pub fn orbits(conditions: &Conditions, response: &PulseResponse, excitation: &Excitation) -> Vec<Orbit> {
     let mut orbits = Vec::new();
     let Conditions { c, p, rig, .. } = *conditions;
     if c == 0.0 && p == 0.0 {
@@ -43,7 +43,7 @@ pub fn orbits(conditions: &Conditions, response: &Response, excitation: &Excitat
 
 /// The steady motion less that of the impacts, from an impact that follows the beginning of the pulse by
 /// `delay` (s).
-fn course(conditions: &Conditions, response: &Response, impulse: f64, delay: f64) -> Course {
+fn course(conditions: &Conditions, response: &PulseResponse, impulse: f64, delay: f64) -> Course {
     let (period, gap) = (conditions.period(), conditions.rig.gap);
     let oscillators = conditions.rig.oscillators();
     let mut stretches = Vec::new();
@@ -65,7 +65,7 @@ fn course(conditions: &Conditions, response: &Response, impulse: f64, delay: f64
 }
 
 /// Visits every root τ of G with G's slope there.
-fn each_root(conditions: &Conditions, response: &Response, mut visit: impl FnMut(f64, f64)) {
+fn each_root(conditions: &Conditions, response: &PulseResponse, mut visit: impl FnMut(f64, f64)) {
     let Conditions { c, p, rig, .. } = *conditions;
     let oscillator = &response.oscillator;
     for piece in response.pieces() {

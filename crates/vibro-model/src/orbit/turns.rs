@@ -64,7 +64,7 @@ impl Flight {
                 let limit =
                     if signal == Signal::Gap { left.limit[0] + left.limit[1] } else { signal.of(left.limit) };
                 let ends = [&left, &right].map(|r| (signal.of(r.rate), signal.of(r.slope)));
-                let part = Part { signal, start: right_t - step, width: step, limit, duration };
+                let part = Subinterval { signal, start: right_t - step, width: step, limit, duration };
                 self.turns_between(&part, ends, &mut visit);
             }
             left = right;
@@ -89,11 +89,11 @@ impl Flight {
     /// Turns of a signal within a part, between whose ends it has these rates and slopes.
     fn turns_between(
         &self,
-        part: &Part,
+        part: &Subinterval,
         [left, right]: [(f64, f64); 2],
         visit: &mut impl FnMut(Signal, f64, f64, f64),
     ) {
-        let Part { signal, start, width, limit, duration } = *part;
+        let Subinterval { signal, start, width, limit, duration } = *part;
         let change = left.0 * right.0 <= 0.0;
         if !change {
             // The chord bounds the rate from below but for M width²/8.
@@ -128,15 +128,15 @@ impl Flight {
         }
         let half = width / 2.0;
         let [_, rate, slope] = self.signal(signal, start + half);
-        self.turns_between(&Part { width: half, ..*part }, [left, (rate, slope)], visit);
-        let second = Part { start: start + half, width: half, ..*part };
+        self.turns_between(&Subinterval { width: half, ..*part }, [left, (rate, slope)], visit);
+        let second = Subinterval { start: start + half, width: half, ..*part };
         self.turns_between(&second, [(rate, slope), right], visit);
     }
 }
 
 /// A part of a stretch of `duration`, in which a signal's rate has a curvature of `limit` at most.
 #[derive(Clone, Copy)]
-struct Part {
+struct Subinterval {
     signal: Signal,
     start: f64,
     width: f64,

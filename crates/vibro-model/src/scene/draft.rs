@@ -2,7 +2,7 @@
 
 use super::{Buffer, ContactKeys, Scene};
 use crate::excitation::{Excitation, Part};
-use crate::least::{Least, number};
+use crate::least::{NumberRange, number};
 use crate::{Parameter, Rig};
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
@@ -23,7 +23,7 @@ const KINDS: [(&str, &[&str]); 4] = [
 #[derive(Deserialize)]
 #[expect(dead_code, reason = "of the excitation, what is read is that each key is known and of its kind")]
 struct Sections {
-    excitation: Option<Driven>,
+    excitation: Option<ExcitationKeys>,
     contact: Option<ContactKeys>,
     buffer: Option<Buffer>,
 }
@@ -32,7 +32,7 @@ struct Sections {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 #[expect(dead_code, reason = "what is read is that each is known and of its kind")]
-struct Driven {
+struct ExcitationKeys {
     kind: Option<String>,
     force: Option<f64>,
     impulse: Option<f64>,
@@ -163,10 +163,10 @@ impl Draft {
         }
         let contact = keys.contact.unwrap_or_default();
         for (key, value, unit, least) in [
-            ("contact.stiffness", contact.stiffness, "N/m", Least::AboveZero),
-            ("contact.damping", contact.damping, "N s/m", Least::Zero),
-            ("contact.exponent", contact.exponent, "", Least::AboveZero),
-            ("buffer.gap", keys.buffer.map(|b| b.gap), "m", Least::Zero),
+            ("contact.stiffness", contact.stiffness, "N/m", NumberRange::AboveZero),
+            ("contact.damping", contact.damping, "N s/m", NumberRange::Zero),
+            ("contact.exponent", contact.exponent, "", NumberRange::AboveZero),
+            ("buffer.gap", keys.buffer.map(|b| b.gap), "m", NumberRange::Zero),
         ] {
             let checked = value.map_or(Ok(()), |value| number(key, value, unit, least));
             checked.map_err(|error| self.at(key, error))?;

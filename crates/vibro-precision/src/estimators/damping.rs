@@ -1,8 +1,8 @@
 //! Damping ratio from a frequency response function.
 
-use super::trial::{Answer, Case, Kind, Method, measured, questions};
+use super::trial::{Case, Ensemble, EstimationMethod, EstimatorAnswer, measured, questions};
 use super::{bounds, rivals, scene};
-use crate::{Question, Scene};
+use crate::{BenchmarkScene, BorderQuestion};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
@@ -14,20 +14,20 @@ use vibro_record::{Error, Result};
 const OWN: f64 = 100.0;
 const ZETA: f64 = 0.0018;
 
-const METHODS: [Method<Measured>; 4] = [
-    Method::Rival("half power, lines", |m| rivals::half_power(&m.frequency, &m.values, false)),
-    Method::Rival("half power, between", |m| rivals::half_power(&m.frequency, &m.values, true)),
-    Method::Rival("circle", |m| rivals::circle(&m.frequency, &m.values)),
-    Method::Own("rational fit", rational),
+const METHODS: [EstimationMethod<Measured>; 4] = [
+    EstimationMethod::Rival("half power, lines", |m| rivals::half_power(&m.frequency, &m.values, false)),
+    EstimationMethod::Rival("half power, between", |m| rivals::half_power(&m.frequency, &m.values, true)),
+    EstimationMethod::Rival("circle", |m| rivals::circle(&m.frequency, &m.values)),
+    EstimationMethod::Own("rational fit", rational),
 ];
 
 /// The strongest mode's ζ, as `vibro modal` gives it.
-fn rational(measured: &Measured) -> Result<Answer> {
+fn rational(measured: &Measured) -> Result<EstimatorAnswer> {
     let found = modal(measured, &ModalOptions::default())?;
     let height = |m: &&Mode| m.modal_constant.value.abs() / m.zeta.value;
     let strongest = found.modes.iter().max_by(|a, b| height(a).total_cmp(&height(b)));
     let mode = strongest.ok_or_else(|| Error::refused("no mode"))?;
-    Ok(Answer::found(&mode.zeta, &found.findings))
+    Ok(EstimatorAnswer::found(&mode.zeta, &found.findings))
 }
 
 /// The ζ of the first mode of a receptance on lines `step` Hz apart from `from` Hz to `to` Hz, in noise of
@@ -83,9 +83,9 @@ fn bound(in_bandwidth: f64, part: f64) -> f64 {
 }
 
 /// The scene of damping.
-pub fn scenes(quick: bool) -> Vec<Scene> {
+pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     let settings = [1.16, 2.0, 4.0, 8.0, 16.0]
-        .map(|n| Kind::new(format!("{n} lines in the bandwidth"), 20_000, lines(n, 0.01)));
+        .map(|n| Ensemble::new(format!("{n} lines in the bandwidth"), 20_000, lines(n, 0.01)));
     let texts = [
         "damping",
         "The damping ratio of a mode at 100 Hz whose bandwidth of 0.36 Hz holds 1.16 lines (0.31 Hz apart) to 16 lines, in noise of 1 % of the peak; the bound is that of 16 lines.",
@@ -96,18 +96,19 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
 }
 
 /// What methods for damping do at their borders.
-pub(crate) fn borders(quick: bool) -> Vec<Question> {
+pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     // Modes on lines of 0.5 Hz up to 300 Hz, of which the first is asked for, changed after they were made.
     let changed = |name: &str, modes: Vec<Pole>, change: fn(&mut Measured)| {
-        Kind::new(name, 21_000, move |noise: &mut Noise| case(&modes, (1.0, 300.0, 0.5), 0.01, noise))
+        Ensemble::new(name, 21_000, move |noise: &mut Noise| case(&modes, (1.0, 300.0, 0.5), 0.01, noise))
             .changed(change)
     };
     let plain = |name: &str, modes: &[Pole]| changed(name, modes.to_vec(), |_| ());
     let one = |name, change| changed(name, vec![mode(100.0, 0.01)], change);
     let narrow = [0.01, 0.1, 0.3, 0.5, 1.0]
-        .map(|n| Kind::new(format!("bandwidth of {n} lines"), 22_000, lines(n, 0.01)));
-    let noise = [0.1, 0.3, 1.0]
-        .map(|part| Kind::new(format!("noise of {} % of the peak", 100.0 * part), 23_000, lines(4.0, part)));
+        .map(|n| Ensemble::new(format!("bandwidth of {n} lines"), 22_000, lines(n, 0.01)));
+    let noise = [0.1, 0.3, 1.0].map(|part| {
+        Ensemble::new(format!("noise of {} % of the peak", 100.0 * part), 23_000, lines(4.0, part))
+    });
     let heavy = [0.1, 0.3, 0.5, 0.7, 0.9, 1.5].map(|z| plain(&format!("ζ = {z}"), &[mode(100.0, z)]));
     let zero = Pole { constant: Complex64::new(1.5, 0.0), ..mode(107.0, 0.02) };
     let faults = [

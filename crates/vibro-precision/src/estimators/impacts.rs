@@ -1,8 +1,10 @@
 //! Impacts of a contact trace: how often, and when.
 
-use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
+use super::trial::{
+    Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, measured, questions, trace,
+};
 use super::{bounds, rivals, scene};
-use crate::{Question, Scene};
+use crate::{BenchmarkScene, BorderQuestion};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::impacts::{ImpactsOptions, impacts};
@@ -23,7 +25,7 @@ const LONG: f64 = 120.0;
 
 /// How a train of impacts is made.
 #[derive(Clone, Default)]
-struct Train {
+struct SyntheticTrain {
     /// Number of impacts, and those that are missing.
     count: usize,
     missing: Vec<usize>,
@@ -37,13 +39,13 @@ struct Train {
 }
 
 /// An even train of 60 impacts in noise of 1 %.
-fn plain() -> Train {
-    Train { count: 60, noise: 0.01, first: 1.0, ..Train::default() }
+fn plain() -> SyntheticTrain {
+    SyntheticTrain { count: 60, noise: 0.01, first: 1.0, ..SyntheticTrain::default() }
 }
 
-impl Train {
+impl SyntheticTrain {
     /// The trace, the samples at which impacts stand, and the interval in samples.
-    fn made(&self, noise: &mut Noise) -> (Trace, Vec<f64>, f64) {
+    fn synthesised(&self, noise: &mut Noise) -> (Trace, Vec<f64>, f64) {
         let interval = noise.between(240.0, 290.0);
         let start = noise.between(200.0, 300.0);
         let n = (start + interval * self.count as f64) as usize;
@@ -65,7 +67,7 @@ impl Train {
 
     fn rate(self) -> impl Fn(&mut Noise) -> Case<Trace> {
         move |noise| {
-            let (data, _, interval) = self.made(noise);
+            let (data, _, interval) = self.synthesised(noise);
             let truth = RATE / interval;
             Case { data, truth, unit: truth, tolerance: 0.01 * truth }
         }
@@ -78,12 +80,12 @@ fn onset_bound(noise: f64) -> f64 {
     bounds(&[0.37, 1.0], &[1e-4, 1e-4], noise, model)[0]
 }
 
-const RATES: [Method<Trace>; 3] = [
-    Method::Rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
-    Method::Rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
-    Method::Own("onset fit", |t| {
+const RATES: [EstimationMethod<Trace>; 3] = [
+    EstimationMethod::Rival("timeav", |t| contact_times(t).map_or(f64::NAN, |f| f.frequency)),
+    EstimationMethod::Rival("threshold", |t| RATE * rivals::mean_rate(&rivals::threshold(&t.values))),
+    EstimationMethod::Own("onset fit", |t| {
         let found = impacts(t, &ImpactsOptions::default())?;
-        Ok(Answer::found(&found.frequency, &found.findings))
+        Ok(EstimatorAnswer::found(&found.frequency, &found.findings))
     }),
 ];
 
@@ -95,33 +97,34 @@ fn middle(times: &[f64]) -> f64 {
     if times.len() == COUNT { times[COUNT / 2] - times[COUNT / 2 - 1] } else { f64::NAN }
 }
 
-const TIMES: [Method<Trace>; 3] = [
-    Method::Rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
-    Method::Rival("threshold, between", |t| {
+const TIMES: [EstimationMethod<Trace>; 3] = [
+    EstimationMethod::Rival("threshold, sample", |t| middle(&rivals::threshold(&t.values)) / RATE),
+    EstimationMethod::Rival("threshold, between", |t| {
         middle(&rivals::passages(&t.values, rivals::half(&t.values))) / RATE
     }),
-    Method::Own("fit of the average", |t| {
+    EstimationMethod::Own("fit of the average", |t| {
         let found = impacts(t, &ImpactsOptions::default())?;
         let std = found.onset_std.map(|s| s * f64::sqrt(2.0));
-        Ok(Answer { value: middle(&found.times), std, doubt: None })
+        Ok(EstimatorAnswer { value: middle(&found.times), std, doubt: None })
     }),
 ];
 
 /// The scenes of impacts.
-pub fn scenes(quick: bool) -> Vec<Scene> {
+pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     let settings = [
         ("even", plain()),
-        ("2 of 60 missing", Train { missing: vec![20, 41], ..plain() }),
-        ("ringing of 60 %", Train { ringing: 0.6, ..plain() }),
-        ("first 5 times the rest", Train { first: 5.0, ..plain() }),
-        ("heights vary", Train { heights: 0.4, ..plain() }),
-        ("noise of 10 %", Train { noise: 0.1, ..plain() }),
+        ("2 of 60 missing", SyntheticTrain { missing: vec![20, 41], ..plain() }),
+        ("ringing of 60 %", SyntheticTrain { ringing: 0.6, ..plain() }),
+        ("first 5 times the rest", SyntheticTrain { first: 5.0, ..plain() }),
+        ("heights vary", SyntheticTrain { heights: 0.4, ..plain() }),
+        ("noise of 10 %", SyntheticTrain { noise: 0.1, ..plain() }),
     ]
-    .map(|(name, train)| Kind::new(name, 30_000, train.rate()));
+    .map(|(name, train)| Ensemble::new(name, 30_000, train.rate()));
     let noises = [0.1, 0.03, 0.01, 0.003, 0.001].map(|sigma| {
         let bound = f64::sqrt(2.0) * onset_bound(sigma) / RATE;
-        Kind::new(format!("noise of {} %", 100.0 * sigma), 31_000, move |noise: &mut Noise| {
-            let (data, at, _) = Train { count: COUNT, noise: sigma, jitter: 0.01, ..plain() }.made(noise);
+        Ensemble::new(format!("noise of {} %", 100.0 * sigma), 31_000, move |noise: &mut Noise| {
+            let (data, at, _) =
+                SyntheticTrain { count: COUNT, noise: sigma, jitter: 0.01, ..plain() }.synthesised(noise);
             Case { data, truth: middle(&at) / RATE, unit: bound, tolerance: 1.0 / RATE }
         })
     });
@@ -153,28 +156,30 @@ fn scattered(count: usize) -> Vec<usize> {
 }
 
 /// What methods for impacts do at their borders.
-pub(crate) fn borders(quick: bool) -> Vec<Question> {
-    let kind = |name: &str, train: Train| Kind::new(name, 32_000, train.rate());
+pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
+    let kind = |name: &str, train: SyntheticTrain| Ensemble::new(name, 32_000, train.rate());
     let ringing = [0.3, 0.6, 0.9]
-        .map(|r| kind(&format!("ringing of {} %", 100.0 * r), Train { ringing: r, ..plain() }));
+        .map(|r| kind(&format!("ringing of {} %", 100.0 * r), SyntheticTrain { ringing: r, ..plain() }));
     let counts = [
-        kind("2 of 60 missing", Train { missing: vec![20, 41], ..plain() }),
-        kind("20 of 60 missing", Train { missing: scattered(20), ..plain() }),
-        kind("40 of 60 missing", Train { missing: scattered(40), ..plain() }),
-        kind("two impacts", Train { count: 2, ..plain() }),
-        kind("one impact", Train { count: 1, ..plain() }),
-        kind("no impact", Train { count: 0, ..plain() }),
+        kind("2 of 60 missing", SyntheticTrain { missing: vec![20, 41], ..plain() }),
+        kind("20 of 60 missing", SyntheticTrain { missing: scattered(20), ..plain() }),
+        kind("40 of 60 missing", SyntheticTrain { missing: scattered(40), ..plain() }),
+        kind("two impacts", SyntheticTrain { count: 2, ..plain() }),
+        kind("one impact", SyntheticTrain { count: 1, ..plain() }),
+        kind("no impact", SyntheticTrain { count: 0, ..plain() }),
     ];
     let heights = [
-        kind("first 5 times the rest", Train { first: 5.0, ..plain() }),
-        kind("first 50 times the rest", Train { first: 50.0, ..plain() }),
-        kind("heights vary by 1 : 3", Train { heights: 0.4, ..plain() }),
-        kind("heights vary by 1 : 20", Train { heights: 1.0, ..plain() }),
+        kind("first 5 times the rest", SyntheticTrain { first: 5.0, ..plain() }),
+        kind("first 50 times the rest", SyntheticTrain { first: 50.0, ..plain() }),
+        kind("heights vary by 1 : 3", SyntheticTrain { heights: 0.4, ..plain() }),
+        kind("heights vary by 1 : 20", SyntheticTrain { heights: 1.0, ..plain() }),
     ];
-    let noise = [0.1, 0.3, 1.0, 3.0]
-        .map(|n| kind(&format!("noise of {} % of the height", 100.0 * n), Train { noise: n, ..plain() }));
-    let uneven = [0.02, 0.1, 0.3]
-        .map(|jitter| kind(&format!("onsets scatter by {} %", 100.0 * jitter), Train { jitter, ..plain() }));
+    let noise = [0.1, 0.3, 1.0, 3.0].map(|n| {
+        kind(&format!("noise of {} % of the height", 100.0 * n), SyntheticTrain { noise: n, ..plain() })
+    });
+    let uneven = [0.02, 0.1, 0.3].map(|jitter| {
+        kind(&format!("onsets scatter by {} %", 100.0 * jitter), SyntheticTrain { jitter, ..plain() })
+    });
     let changes: [Change<Trace>; 8] = [
         ("three spikes in front", |t| [20, 50, 110].into_iter().for_each(|i| t.values[i] = 0.9)),
         ("pulses point downwards", |t| each(t, |_, v| -v)),
@@ -188,7 +193,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("one sample missing", |t| t.values[300] = f64::NAN),
         ("all equal", |t| t.values.fill(0.25)),
     ];
-    let faults = changes.map(|(name, change)| Kind::new(name, 32_000, plain().rate()).changed(change));
+    let faults = changes.map(|(name, change)| Ensemble::new(name, 32_000, plain().rate()).changed(change));
     let mut all = questions("impact rate: ringing", &RATES, ringing, quick);
     all.extend(questions("impact rate: missing", &RATES, counts, quick));
     all.extend(questions("impact rate: heights", &RATES, heights, quick));
@@ -217,7 +222,7 @@ mod tests {
 
     fn in_noise(cases: u64) {
         for sigma in [0.1, 0.12, 0.15, 0.2] {
-            let make = Train { noise: sigma, ..plain() }.rate();
+            let make = SyntheticTrain { noise: sigma, ..plain() }.rate();
             let (mut right, mut withheld, mut refused) = (0, 0, 0);
             for seed in 30_000..30_000 + cases {
                 let case = make(&mut Noise::new(seed));

@@ -1,8 +1,8 @@
 //! Displacement from a velocity.
 
-use super::trial::{Answer, Case, Kind, Method, measured, questions, trace};
+use super::trial::{Case, Ensemble, EstimationMethod, EstimatorAnswer, measured, questions, trace};
 use super::{one_point, rivals, scene};
-use crate::{Question, Scene};
+use crate::{BenchmarkScene, BorderQuestion};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::response::{ResponseOptions, response};
@@ -22,20 +22,20 @@ struct Vibration {
     frequency: f64,
 }
 
-const METHODS: [Method<Vibration>; 6] = [
-    Method::Rival("division, largest line", |v| divided(v).into_iter().skip(1).fold(0.0, f64::max)),
-    Method::Rival("division, line at f", |v| {
+const METHODS: [EstimationMethod<Vibration>; 6] = [
+    EstimationMethod::Rival("division, largest line", |v| divided(v).into_iter().skip(1).fold(0.0, f64::max)),
+    EstimationMethod::Rival("division, line at f", |v| {
         divided(v)[(v.frequency / rivals::spacing(&v.velocity)).round() as usize]
     }),
-    Method::Rival("sum, half the swing", |v| rivals::half_swing(&rivals::sums(&v.velocity))),
-    Method::Rival("sum, detrended", |v| {
+    EstimationMethod::Rival("sum, half the swing", |v| rivals::half_swing(&rivals::sums(&v.velocity))),
+    EstimationMethod::Rival("sum, detrended", |v| {
         let mean = rivals::mean(&v.velocity.values);
         let values = v.velocity.values.iter().map(|x| x - mean).collect();
         let moved = rivals::detrended(&rivals::sums(&Trace { values, ..v.velocity.clone() }));
         (2.0 * rivals::mean(&moved.iter().map(|x| x * x).collect::<Vec<_>>())).sqrt()
     }),
-    Method::Own("lines, cut-off", with_cut_off),
-    Method::Own("in time, high-pass", filtered),
+    EstimationMethod::Own("lines, cut-off", with_cut_off),
+    EstimationMethod::Own("in time, high-pass", filtered),
 ];
 
 /// The lines, each divided by its angular frequency as an analyser does.
@@ -46,7 +46,7 @@ fn divided(v: &Vibration) -> Vec<f64> {
 }
 
 /// `vibro response` of one point whose excitation frequency is known.
-fn with_cut_off(v: &Vibration) -> Result<Answer> {
+fn with_cut_off(v: &Vibration) -> Result<EstimatorAnswer> {
     let lines = spectrum::plain(&v.velocity, Window::Hann, Scaling::Peak, false)?;
     let sweep = one_point(lines, None, Some(v.frequency));
     let found = response(&sweep, &ResponseOptions::default())?;
@@ -54,12 +54,12 @@ fn with_cut_off(v: &Vibration) -> Result<Answer> {
     if let Some(limit) = point.upper_limit {
         return Err(Error::refused(format!("the amplitude does not stand out; it is below {limit:.3e} m")));
     }
-    Ok(Answer::found(&point.amplitude, &found.findings))
+    Ok(EstimatorAnswer::found(&point.amplitude, &found.findings))
 }
 
 /// `vibro convert --integrate 1 --fmin f/2 --excitation f`, then the sine of what lies between the edges,
 /// over the gain of filter and trapezoid.
-fn filtered(v: &Vibration) -> Result<Answer> {
+fn filtered(v: &Vibration) -> Result<EstimatorAnswer> {
     let f = v.frequency;
     let how = InTime { times: 1, corner: 0.5 * f, order: 4, period: Some(1.0 / f) };
     let found = in_time(&v.velocity, &how)?;
@@ -75,14 +75,15 @@ fn filtered(v: &Vibration) -> Result<Answer> {
     }
     let sine = sine(&trace("laser", "m", 1.0 / RATE, inner.to_vec()), Some(f))?;
     let gain = how.gain(f, RATE)?;
-    let Answer { value, std, doubt } = Answer::found(&sine.tones[0].amplitude, &sine.findings);
-    Ok(Answer { value: value / gain, std: std.map(|s| s / gain), doubt })
+    let EstimatorAnswer { value, std, doubt } =
+        EstimatorAnswer::found(&sine.tones[0].amplitude, &sine.findings);
+    Ok(EstimatorAnswer { value: value / gain, std: std.map(|s| s / gain), doubt })
 }
 
 /// A vibration between two frequencies in Hz, in noise so many decibels below it; on the velocity, in its
 /// amplitudes, a level and a slope over the whole record.
 #[derive(Clone, Copy)]
-struct Made {
+struct SyntheticVibration {
     n: usize,
     band: (f64, f64),
     level: f64,
@@ -90,12 +91,13 @@ struct Made {
     decibel: f64,
 }
 
-const CLEAN: Made = Made { n: N, band: (15.0, 25.0), level: 0.0, drift: 0.0, decibel: 40.0 };
+const CLEAN: SyntheticVibration =
+    SyntheticVibration { n: N, band: (15.0, 25.0), level: 0.0, drift: 0.0, decibel: 40.0 };
 
-impl Made {
-    fn kind(self, name: impl Into<String>, seed: u64) -> Kind<Vibration> {
-        Kind::new(name, seed, move |noise: &mut Noise| {
-            let Made { n, band, level, drift, decibel } = self;
+impl SyntheticVibration {
+    fn kind(self, name: impl Into<String>, seed: u64) -> Ensemble<Vibration> {
+        Ensemble::new(name, seed, move |noise: &mut Noise| {
+            let SyntheticVibration { n, band, level, drift, decibel } = self;
             let (frequency, phase) = (noise.between(band.0, band.1), noise.between(0.0, TAU));
             let size = AMPLITUDE * TAU * frequency;
             let sigma = size * (0.5 / 10f64.powf(decibel / 10.0)).sqrt();
@@ -111,13 +113,13 @@ impl Made {
 }
 
 /// The scene of integration.
-pub fn scenes(quick: bool) -> Vec<Scene> {
+pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     let settings = [
         ("noise alone", CLEAN),
-        ("level of a tenth", Made { level: 0.1, ..CLEAN }),
-        ("level of 10", Made { level: 10.0, ..CLEAN }),
-        ("drift of 1", Made { drift: 1.0, ..CLEAN }),
-        ("both", Made { level: 10.0, drift: 1.0, ..CLEAN }),
+        ("level of a tenth", SyntheticVibration { level: 0.1, ..CLEAN }),
+        ("level of 10", SyntheticVibration { level: 10.0, ..CLEAN }),
+        ("drift of 1", SyntheticVibration { drift: 1.0, ..CLEAN }),
+        ("both", SyntheticVibration { level: 10.0, drift: 1.0, ..CLEAN }),
     ]
     .map(|(name, made)| made.kind(name, 40_000));
     let texts = [
@@ -132,24 +134,24 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
 }
 
 /// What methods of integration do at their borders.
-pub(crate) fn borders(quick: bool) -> Vec<Question> {
-    let kind = |(name, made): (&str, Made)| made.kind(name, 41_000);
+pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
+    let kind = |(name, made): (&str, SyntheticVibration)| made.kind(name, 41_000);
     let level = [
-        ("level of 1000 amplitudes", Made { level: 1e3, ..CLEAN }),
-        ("drift of 10 amplitudes", Made { drift: 10.0, ..CLEAN }),
-        ("drift of 1000 amplitudes", Made { drift: 1e3, ..CLEAN }),
-        ("level and drift of 100 amplitudes", Made { level: 100.0, drift: 100.0, ..CLEAN }),
+        ("level of 1000 amplitudes", SyntheticVibration { level: 1e3, ..CLEAN }),
+        ("drift of 10 amplitudes", SyntheticVibration { drift: 10.0, ..CLEAN }),
+        ("drift of 1000 amplitudes", SyntheticVibration { drift: 1e3, ..CLEAN }),
+        ("level and drift of 100 amplitudes", SyntheticVibration { level: 100.0, drift: 100.0, ..CLEAN }),
     ];
     let noise = [20.0, 0.0, -20.0, -40.0]
-        .map(|decibel| Made { decibel, ..CLEAN }.kind(format!("{decibel} dB"), 41_000));
+        .map(|decibel| SyntheticVibration { decibel, ..CLEAN }.kind(format!("{decibel} dB"), 41_000));
     let band = [
-        ("half a period", Made { band: (0.2, 0.3), ..CLEAN }),
-        ("1.5 periods", Made { band: (0.7, 0.8), ..CLEAN }),
-        ("3 periods", Made { band: (1.4, 1.6), ..CLEAN }),
-        ("8 periods", Made { band: (3.8, 4.2), ..CLEAN }),
-        ("a tenth of the rate", Made { band: (200.0, 210.0), ..CLEAN }),
-        ("0.45 of the rate", Made { band: (920.0, 925.0), ..CLEAN }),
-        ("64 samples", Made { n: 64, band: (100.0, 120.0), ..CLEAN }),
+        ("half a period", SyntheticVibration { band: (0.2, 0.3), ..CLEAN }),
+        ("1.5 periods", SyntheticVibration { band: (0.7, 0.8), ..CLEAN }),
+        ("3 periods", SyntheticVibration { band: (1.4, 1.6), ..CLEAN }),
+        ("8 periods", SyntheticVibration { band: (3.8, 4.2), ..CLEAN }),
+        ("a tenth of the rate", SyntheticVibration { band: (200.0, 210.0), ..CLEAN }),
+        ("0.45 of the rate", SyntheticVibration { band: (920.0, 925.0), ..CLEAN }),
+        ("64 samples", SyntheticVibration { n: 64, band: (100.0, 120.0), ..CLEAN }),
     ];
     let mut all = questions("displacement: level and drift", &METHODS, level.map(kind), quick);
     all.extend(questions("displacement: noise", &METHODS, noise, quick));

@@ -1,8 +1,10 @@
 //! Damping ratio of a contact from the pulse of its force.
 
-use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
+use super::trial::{
+    Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, measured, questions, trace,
+};
 use super::{bounds, rivals, scene};
-use crate::{Question, Scene};
+use crate::{BenchmarkScene, BorderQuestion};
 use std::f64::consts::{PI, TAU};
 use vibro_math::Noise;
 use vibro_measure::pulse::{Instrument, KelvinVoigt, PulseOptions, pulse, two_times};
@@ -19,26 +21,27 @@ struct Pulse {
     times: [f64; 3],
 }
 
-const BY_HAND: Method<Pulse> =
-    Method::Rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
+const BY_HAND: EstimationMethod<Pulse> =
+    EstimationMethod::Rival("two instants", |p| closed_form(rivals::instants(&p.trace.values)));
 
-const WHOLE: Method<Pulse> = Method::Own("whole pulse", |p| {
+const WHOLE: EstimationMethod<Pulse> = EstimationMethod::Own("whole pulse", |p| {
     let found = pulse(&p.trace, &PulseOptions { instrument: p.instrument.clone(), mass: None })?;
-    Ok(Answer::found(&found.xi, &found.findings))
+    Ok(EstimatorAnswer::found(&found.xi, &found.findings))
 });
 
 /// ξ from two times that come with an uncertainty, as `vibro pulse --peak --end` gives it.
-const TWO_TIMES: Method<Pulse> = Method::Own("two times", |p| {
+const TWO_TIMES: EstimationMethod<Pulse> = EstimationMethod::Own("two times", |p| {
     let [peak, end, std] = p.times;
     let found = two_times(peak, end, Some(std), None)?;
-    Ok(Answer::found(&found.xi, &found.findings))
+    Ok(EstimatorAnswer::found(&found.xi, &found.findings))
 });
 
 /// The same from a spreadsheet, which asks for no domain.
-const FORMULA: Method<Pulse> = Method::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
+const FORMULA: EstimationMethod<Pulse> =
+    EstimationMethod::Rival("formula of ρ", |p| closed_form(p.times[0] / p.times[1]));
 
-const METHODS: [Method<Pulse>; 2] = [BY_HAND, WHOLE];
-const FOUR: [Method<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
+const METHODS: [EstimationMethod<Pulse>; 2] = [BY_HAND, WHOLE];
+const FOUR: [EstimationMethod<Pulse>; 4] = [FORMULA, BY_HAND, TWO_TIMES, WHOLE];
 
 /// ξ from ρ = time to peak / duration, for any ρ.
 fn closed_form(rho: f64) -> f64 {
@@ -107,9 +110,9 @@ fn bound(xi: f64, samples: f64, part: f64) -> f64 {
 }
 
 /// The scene of pulses.
-pub fn scenes(quick: bool) -> Vec<Scene> {
+pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     let settings = [8.0, 16.0, 32.0, 64.0, 128.0]
-        .map(|n| Kind::new(format!("{n} samples in the pulse"), 50_000, pulses(0.2, n, 0.01)));
+        .map(|n| Ensemble::new(format!("{n} samples in the pulse"), 50_000, pulses(0.2, n, 0.01)));
     let texts = [
         "pulse",
         "The damping ratio ξ of a contact from its pulse of deceleration, 8 to 128 samples long, in noise of 1 % of its height; the bound is that of 128 samples.",
@@ -124,19 +127,19 @@ fn height(p: &Pulse) -> f64 {
 }
 
 /// What methods for pulses do at their borders.
-pub(crate) fn borders(quick: bool) -> Vec<Question> {
+pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let damped = |xi: f64| {
         let rho = KelvinVoigt::new(xi, FREQUENCY).and_then(|k| Some(k.time_to_peak()? / k.duration()));
         let rho = rho.map_or("no peak".to_owned(), |r| format!("ρ = {r:.3}"));
-        Kind::new(format!("ξ = {xi}, {rho}"), 52_000, pulses(xi, 40.0, 0.01))
+        Ensemble::new(format!("ξ = {xi}, {rho}"), 52_000, pulses(xi, 40.0, 0.01))
     };
     let light = [0.0, 0.003, 0.02].map(damped);
     let heavy = [0.4, 0.45, 0.49, 0.6].map(damped);
     let noise = [0.1, 0.3, 1.0, 3.0].map(|part| {
-        Kind::new(format!("noise of {} % of the height", 100.0 * part), 53_000, pulses(0.2, 40.0, part))
+        Ensemble::new(format!("noise of {} % of the height", 100.0 * part), 53_000, pulses(0.2, 40.0, part))
     });
     let few = [2.0, 4.0, 6.0, 8.0]
-        .map(|n| Kind::new(format!("{n} samples in the pulse"), 54_000, pulses(0.2, n, 0.01)));
+        .map(|n| Ensemble::new(format!("{n} samples in the pulse"), 54_000, pulses(0.2, n, 0.01)));
     let changes: [Change<Pulse>; 10] = [
         ("clipped at 80 % of the height", |p| {
             let high = height(p);
@@ -171,7 +174,7 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("all equal", |p| p.trace.values.fill(1.0)),
     ];
     let faults =
-        changes.map(|(name, change)| Kind::new(name, 51_000, pulses(0.2, 40.0, 0.01)).changed(change));
+        changes.map(|(name, change)| Ensemble::new(name, 51_000, pulses(0.2, 40.0, 0.01)).changed(change));
     let mut all = questions("contact ξ: ρ → 1/2", &FOUR, light, quick);
     all.extend(questions("contact ξ: ρ → 0", &FOUR, heavy, quick));
     all.extend(questions("contact ξ: noise", &METHODS, noise, quick));

@@ -1,8 +1,10 @@
 //! Frequency and amplitude of sines in noise.
 
-use super::trial::{Answer, Case, Change, Kind, Method, each, measured, questions, trace};
+use super::trial::{
+    Case, Change, Ensemble, EstimationMethod, EstimatorAnswer, each, measured, questions, trace,
+};
 use super::{bounds, one_point, rivals, scene};
-use crate::{Measured, Question, Scene};
+use crate::{BenchmarkScene, BorderQuestion, MeasuredMethod};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_measure::excitation::{Excitation, excitations};
@@ -36,12 +38,12 @@ fn bound(n: usize, decibel: f64) -> f64 {
 
 /// Three lines under a Hann window, as in `vibro excitation`. They say no word: where they have no
 /// uncertainty, they are held to what is allowed to all.
-fn three_lines(trace: &Trace, read: fn(&Excitation) -> (f64, Option<f64>)) -> Result<Answer> {
+fn three_lines(trace: &Trace, read: fn(&Excitation) -> (f64, Option<f64>)) -> Result<EstimatorAnswer> {
     let response = spectrum::plain(trace, Window::Hann, Scaling::Peak, false)?;
     let force = response.values.magnitudes();
     let found = excitations(&one_point(response, Some(force), None), 0.0)?;
     let (value, std) = found.first().map(read).ok_or_else(|| Error::refused("no point"))?;
-    Ok(Answer { value, std, doubt: None })
+    Ok(EstimatorAnswer { value, std, doubt: None })
 }
 
 /// Frequency of a line that may lie between lines.
@@ -49,26 +51,30 @@ fn hertz(trace: &Trace, window: Window, place: fn(&[f64]) -> f64) -> f64 {
     place(&rivals::lines(trace, window)) * rivals::spacing(trace)
 }
 
-const FREQUENCY: [Method<Trace>; 5] = [
-    Method::Rival("zero crossings", |t| {
+const FREQUENCY: [EstimationMethod<Trace>; 5] = [
+    EstimationMethod::Rival("zero crossings", |t| {
         RATE * rivals::mean_rate(&rivals::passages(&t.values, rivals::mean(&t.values)))
     }),
-    Method::Rival("largest line", |t| hertz(t, Window::Rectangular, |l| rivals::largest(l) as f64)),
-    Method::Rival("parabola", |t| hertz(t, Window::Hann, |l| rivals::parabola(l, rivals::largest(l)))),
-    Method::Own("three lines, Hann", |t| three_lines(t, |e| (e.frequency, e.std))),
-    Method::Own("least squares", |t| {
-        sine(t, None).map(|s| Answer::found(&s.tones[0].frequency, &s.findings))
+    EstimationMethod::Rival("largest line", |t| hertz(t, Window::Rectangular, |l| rivals::largest(l) as f64)),
+    EstimationMethod::Rival("parabola", |t| {
+        hertz(t, Window::Hann, |l| rivals::parabola(l, rivals::largest(l)))
+    }),
+    EstimationMethod::Own("three lines, Hann", |t| three_lines(t, |e| (e.frequency, e.std))),
+    EstimationMethod::Own("least squares", |t| {
+        sine(t, None).map(|s| EstimatorAnswer::found(&s.tones[0].frequency, &s.findings))
     }),
 ];
 
-const AMPLITUDE: [Method<Trace>; 6] = [
-    Method::Rival("half the swing", |t| rivals::half_swing(&t.values)),
-    Method::Rival("line, no window", |t| highest(t, Window::Rectangular)),
-    Method::Rival("line, Hann", |t| highest(t, Window::Hann)),
-    Method::Rival("line, flat top", |t| highest(t, Window::FlatTop)),
-    Method::Own("three lines, Hann", |t| three_lines(t, |e| (e.force.unwrap_or(f64::NAN), e.force_std))),
-    Method::Own("least squares", |t| {
-        sine(t, None).map(|s| Answer::found(&s.tones[0].amplitude, &s.findings))
+const AMPLITUDE: [EstimationMethod<Trace>; 6] = [
+    EstimationMethod::Rival("half the swing", |t| rivals::half_swing(&t.values)),
+    EstimationMethod::Rival("line, no window", |t| highest(t, Window::Rectangular)),
+    EstimationMethod::Rival("line, Hann", |t| highest(t, Window::Hann)),
+    EstimationMethod::Rival("line, flat top", |t| highest(t, Window::FlatTop)),
+    EstimationMethod::Own("three lines, Hann", |t| {
+        three_lines(t, |e| (e.force.unwrap_or(f64::NAN), e.force_std))
+    }),
+    EstimationMethod::Own("least squares", |t| {
+        sine(t, None).map(|s| EstimatorAnswer::found(&s.tones[0].amplitude, &s.findings))
     }),
 ];
 
@@ -77,18 +83,18 @@ fn highest(trace: &Trace, window: Window) -> f64 {
 }
 
 /// The weaker of two sines.
-const WEAKER: [Method<Trace>; 3] = [
-    Method::Rival("second line", |t| {
+const WEAKER: [EstimationMethod<Trace>; 3] = [
+    EstimationMethod::Rival("second line", |t| {
         hertz(t, Window::Rectangular, |l| rivals::second(l).map_or(f64::NAN, |k| k as f64))
     }),
-    Method::Rival("parabola, Hann", |t| {
+    EstimationMethod::Rival("parabola, Hann", |t| {
         hertz(t, Window::Hann, |l| rivals::second(l).map_or(f64::NAN, |k| rivals::parabola(l, k)))
     }),
-    Method::Own("least squares", |t| {
+    EstimationMethod::Own("least squares", |t| {
         let found = tones(t, 2)?;
         let tone =
             found.tones.get(1).ok_or_else(|| Error::refused("no second tone stands out of the noise"))?;
-        Ok(Answer::found(&tone.frequency, &found.findings))
+        Ok(EstimatorAnswer::found(&tone.frequency, &found.findings))
     }),
 ];
 
@@ -123,20 +129,20 @@ fn pair(apart: f64) -> impl Fn(&mut Noise) -> Case<Trace> {
 }
 
 /// Every scene of sines, measured.
-pub fn scenes(quick: bool) -> Vec<Scene> {
+pub fn scenes(quick: bool) -> Vec<BenchmarkScene> {
     let noise = [0.0, 20.0, 40.0, 60.0, 80.0]
-        .map(|db| Kind::new(format!("{db} dB"), 1_000, anywhere(N, db, bound(N, db))));
+        .map(|db| Ensemble::new(format!("{db} dB"), 1_000, anywhere(N, db, bound(N, db))));
     let length = [64, 256, 1024, 4096, 16_384]
-        .map(|n| Kind::new(format!("{n} samples"), 2_000, anywhere(n, 40.0, n as f64 / RATE)));
+        .map(|n| Ensemble::new(format!("{n} samples"), 2_000, anywhere(n, 40.0, n as f64 / RATE)));
     let offsets = [0.0, 0.25, 0.5].map(|part| {
-        Kind::new(format!("{part} lines off"), 3_000, move |noise: &mut Noise| {
+        Ensemble::new(format!("{part} lines off"), 3_000, move |noise: &mut Noise| {
             let place = noise.between(20.0, 490.0).round() + part;
             let sine = (place, 1.0, noise.between(0.0, TAU));
             Case { data: record(N, &[sine], 0.0, 60.0, noise), truth: 1.0, unit: 1.0, tolerance: 0.05 }
         })
     });
     let pairs = [0.7, 1.0, 1.5, 2.0, 4.0, 16.0]
-        .map(|apart| Kind::new(format!("{apart} lines apart"), 4_000, pair(apart)));
+        .map(|apart| Ensemble::new(format!("{apart} lines apart"), 4_000, pair(apart)));
     let in_noise = [
         "sine-noise",
         "The frequency of one sine between two lines of a record of 1024 samples, from a signal as strong as the noise (0 dB) to one of 80 dB.",
@@ -159,7 +165,7 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
     ];
     let (longest, amplitude) = (bound(16_384, 40.0) * RATE / 16_384.0, sigma(60.0) * (2.0 / N as f64).sqrt());
     // All are known by what was written into the record.
-    let scene = |[name, says, error_of]: [&str; 3], bound: f64, methods: Vec<Measured>| {
+    let scene = |[name, says, error_of]: [&str; 3], bound: f64, methods: Vec<MeasuredMethod>| {
         scene([name, says, error_of, "the sine that was written into the record"], bound, methods)
     };
     vec![
@@ -171,17 +177,17 @@ pub fn scenes(quick: bool) -> Vec<Scene> {
 }
 
 /// A sine of amplitude 1 at this place in lines, on a level, 40 dB.
-fn at(name: impl Into<String>, n: usize, place: f64, level: f64) -> Kind<Trace> {
-    Kind::new(name, 10_000, move |noise: &mut Noise| {
+fn at(name: impl Into<String>, n: usize, place: f64, level: f64) -> Ensemble<Trace> {
+    Ensemble::new(name, 10_000, move |noise: &mut Noise| {
         let phase = noise.between(0.0, TAU);
         at_line(record(n, &[(place, 1.0, phase)], level, 40.0, noise), place, 1.0)
     })
 }
 
 /// What methods for sines do at their borders.
-pub(crate) fn borders(quick: bool) -> Vec<Question> {
+pub(crate) fn borders(quick: bool) -> Vec<BorderQuestion> {
     let noise =
-        [0.0, -10.0, -20.0, -30.0].map(|db| Kind::new(format!("{db} dB"), 12_000, anywhere(N, db, 1.0)));
+        [0.0, -10.0, -20.0, -30.0].map(|db| Ensemble::new(format!("{db} dB"), 12_000, anywhere(N, db, 1.0)));
     let short = [0.5, 0.9, 1.2, 1.6, 2.5].map(|p| at(format!("{p} periods"), 256, p, 0.0));
     let ends = [
         at("1.7 lines from half the rate", N, 510.3, 0.0),
@@ -197,13 +203,13 @@ pub(crate) fn borders(quick: bool) -> Vec<Question> {
         ("all zero", |t| t.values.fill(0.0)),
     ];
     let changed =
-        changes.map(|(name, change)| Kind::new(name, 11_000, anywhere(N, 40.0, 1.0)).changed(change));
+        changes.map(|(name, change)| Ensemble::new(name, 11_000, anywhere(N, 40.0, 1.0)).changed(change));
     let faults = std::iter::once(at("level 1000 times the amplitude", N, 40.3, 1e3)).chain(changed);
-    let beside =
-        [0.3, 0.7, 1.0, 2.0, 4.0].map(|apart| Kind::new(format!("{apart} lines apart"), 13_000, pair(apart)));
+    let beside = [0.3, 0.7, 1.0, 2.0, 4.0]
+        .map(|apart| Ensemble::new(format!("{apart} lines apart"), 13_000, pair(apart)));
     // Of two sines the single-sine methods are asked for the stronger.
     let stronger = [0.5, 1.0, 2.0, 4.0].map(|apart| {
-        Kind::new(format!("{apart} lines apart"), 14_000, move |noise: &mut Noise| {
+        Ensemble::new(format!("{apart} lines apart"), 14_000, move |noise: &mut Noise| {
             let case = pair(apart)(noise);
             Case { truth: case.truth - apart * rivals::spacing(&case.data), ..case }
         })

@@ -1,6 +1,6 @@
 //! Methods tried on random records of which the truth is known.
 
-use crate::{Found, Measured, Outcome, Question, timed};
+use crate::{BorderQuestion, Found, MeasuredMethod, Outcome, timed};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use vibro_record::units::Unit;
 use vibro_record::{Axis, Finding, Meta, Result, Severity, Trace, median};
 
 /// What a method says.
-pub struct Answer {
+pub struct EstimatorAnswer {
     /// The value.
     pub value: f64,
     /// Its standard uncertainty, where the method states one.
@@ -19,36 +19,36 @@ pub struct Answer {
     pub doubt: Option<Cow<'static, str>>,
 }
 
-impl Answer {
+impl EstimatorAnswer {
     /// An estimate with its findings.
-    pub fn found(estimate: &Estimate, findings: &[Finding]) -> Answer {
+    pub fn found(estimate: &Estimate, findings: &[Finding]) -> EstimatorAnswer {
         let doubt = findings.iter().find(|f| f.severity == Severity::Doubt).map(|f| f.code.clone());
-        Answer { value: estimate.value, std: estimate.std, doubt }
+        EstimatorAnswer { value: estimate.value, std: estimate.std, doubt }
     }
 }
 
 /// A way to get a number from a record, by its name in charts.
-pub enum Method<D: 'static> {
+pub enum EstimationMethod<D: 'static> {
     /// One of this library's.
-    Own(&'static str, fn(&D) -> Result<Answer>),
+    Own(&'static str, fn(&D) -> Result<EstimatorAnswer>),
     /// What is written by hand: a number without a word, not a number where it finds none.
     Rival(&'static str, fn(&D) -> f64),
 }
 
-impl<D> Method<D> {
+impl<D> EstimationMethod<D> {
     /// Its name, and whether it is one of this library's.
     fn name(&self) -> (&'static str, bool) {
         match *self {
-            Method::Own(name, _) => (name, true),
-            Method::Rival(name, _) => (name, false),
+            EstimationMethod::Own(name, _) => (name, true),
+            EstimationMethod::Rival(name, _) => (name, false),
         }
     }
 
     /// The answer to a record, or why there is none.
-    fn answer(&self, record: &D) -> std::result::Result<Answer, String> {
+    fn answer(&self, record: &D) -> std::result::Result<EstimatorAnswer, String> {
         let answer = match self {
-            Method::Own(_, way) => way(record).map_err(|error| Found::from(error).why)?,
-            Method::Rival(_, way) => Answer { value: way(record), std: None, doubt: None },
+            EstimationMethod::Own(_, way) => way(record).map_err(|error| Found::from(error).why)?,
+            EstimationMethod::Rival(_, way) => EstimatorAnswer { value: way(record), std: None, doubt: None },
         };
         if answer.value.is_finite() { Ok(answer) } else { Err("it gives no number".to_owned()) }
     }
@@ -72,7 +72,7 @@ pub type Change<D> = (&'static str, fn(&mut D));
 type Make<D> = dyn Fn(&mut Noise) -> Case<D> + Send + Sync;
 
 /// Random records of one kind.
-pub struct Kind<D> {
+pub struct Ensemble<D> {
     /// Its name: the setting of a scene, or the scene at a border.
     name: String,
     /// Seed of its first record; the next have the next.
@@ -80,20 +80,20 @@ pub struct Kind<D> {
     make: Box<Make<D>>,
 }
 
-impl<D: 'static> Kind<D> {
+impl<D: 'static> Ensemble<D> {
     /// Records of this name.
     pub fn new(
         name: impl Into<String>,
         seed: u64,
         make: impl Fn(&mut Noise) -> Case<D> + Send + Sync + 'static,
-    ) -> Kind<D> {
-        Kind { name: name.into(), seed, make: Box::new(make) }
+    ) -> Ensemble<D> {
+        Ensemble { name: name.into(), seed, make: Box::new(make) }
     }
 
     /// The same, each record changed after it was made.
-    pub fn changed(self, change: impl Fn(&mut D) + Send + Sync + 'static) -> Kind<D> {
-        let Kind { name, seed, make } = self;
-        Kind::new(name, seed, move |noise| {
+    pub fn changed(self, change: impl Fn(&mut D) + Send + Sync + 'static) -> Ensemble<D> {
+        let Ensemble { name, seed, make } = self;
+        Ensemble::new(name, seed, move |noise| {
             let mut case = make(noise);
             change(&mut case.data);
             case
@@ -126,9 +126,13 @@ const APART: usize = 1_000_000;
 
 /// Every method with every setting: the error is the root mean square over the answers, so that it compares
 /// with a standard deviation. A method that answers to fewer than half of the records has failed.
-pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: bool) -> Vec<Measured> {
+pub fn measured<D: 'static>(
+    methods: &[EstimationMethod<D>],
+    settings: &[Ensemble<D>],
+    quick: bool,
+) -> Vec<MeasuredMethod> {
     let (records, clocked) = (RECORDS[usize::from(quick)], TIMED[usize::from(quick)]);
-    let one = |method: &Method<D>, place: usize, setting: &Kind<D>| {
+    let one = |method: &EstimationMethod<D>, place: usize, setting: &Ensemble<D>| {
         let case = |number: usize| setting.case(place * APART + number);
         let error = |number: usize| {
             let Case { data, truth, unit, .. } = case(number);
@@ -143,7 +147,10 @@ pub fn measured<D: 'static>(methods: &[Method<D>], settings: &[Kind<D>], quick: 
         let why = refusal.map(|why: String| format!("{} of {records} records refused: {why}", records - n));
         let rms = (squares.iter().sum::<f64>() / n as f64).sqrt();
         let answer = if 2 * n < records { Err(String::new()) } else { Ok(rms) };
-        Measured { why, ..Measured::new(method.name(), setting.name.clone(), median(&times), answer) }
+        MeasuredMethod {
+            why,
+            ..MeasuredMethod::new(method.name(), setting.name.clone(), median(&times), answer)
+        }
     };
     methods.iter().flat_map(|m| settings.iter().enumerate().map(move |(place, s)| one(m, place, s))).collect()
 }
@@ -161,14 +168,14 @@ const FAR: f64 = 5.2;
 /// What each method does with each kind of record at a border, to be asked.
 pub fn questions<D: Send + 'static>(
     border: &'static str,
-    methods: &'static [Method<D>],
-    kinds: impl IntoIterator<Item = Kind<D>>,
+    methods: &'static [EstimationMethod<D>],
+    kinds: impl IntoIterator<Item = Ensemble<D>>,
     quick: bool,
-) -> Vec<Question> {
-    let question = |method: &'static Method<D>, kind: Arc<Kind<D>>| {
+) -> Vec<BorderQuestion> {
+    let question = |method: &'static EstimationMethod<D>, kind: Arc<Ensemble<D>>| {
         let ((method_name, ours), scene) = (method.name(), kind.name.clone());
         let answer = Box::new(move || judged(method, &kind, quick));
-        Question { method: method_name, ours, border, scene, answer }
+        BorderQuestion { method: method_name, ours, border, scene, answer }
     };
     let kinds = kinds.into_iter().map(Arc::new);
     kinds.flat_map(|k| methods.iter().map(move |m| question(m, Arc::clone(&k)))).collect()
@@ -177,7 +184,7 @@ pub fn questions<D: Send + 'static>(
 /// How far off an answer is in parts of what is right, or why it claims to be none. One that states its
 /// uncertainty is held to it, whatever is found beside: what is doubted has none. One without is held to what
 /// is allowed, and so is the uncertainty itself.
-fn off(answer: &Answer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
+fn off(answer: &EstimatorAnswer, truth: f64, tolerance: f64) -> std::result::Result<f64, String> {
     let off = (answer.value - truth).abs();
     match (answer.std, &answer.doubt) {
         (None, Some(doubt)) => Err(format!("no uncertainty: {doubt}")),
@@ -189,7 +196,7 @@ fn off(answer: &Answer, truth: f64, tolerance: f64) -> std::result::Result<f64, 
     }
 }
 
-fn judged<D: 'static>(method: &Method<D>, kind: &Kind<D>, quick: bool) -> Found {
+fn judged<D: 'static>(method: &EstimationMethod<D>, kind: &Ensemble<D>, quick: bool) -> Found {
     let trials = TRIALS[usize::from(quick)];
     // How far off each answer is, and whether it states an uncertainty.
     let one = |number: usize| {
@@ -242,7 +249,7 @@ mod tests {
     #[test]
     fn an_answer_is_held_to_its_uncertainty_whatever_is_found_beside() {
         let of = |value, std, doubt: Option<&'static str>| {
-            off(&Answer { value, std, doubt: doubt.map(Into::into) }, 10.0, 1.0)
+            off(&EstimatorAnswer { value, std, doubt: doubt.map(Into::into) }, 10.0, 1.0)
         };
         let near = |found: std::result::Result<f64, String>, off: f64| (found.unwrap() - off).abs() < 1e-9;
         assert!(near(of(10.3, Some(0.1), None), 1.0));

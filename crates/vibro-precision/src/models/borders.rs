@@ -5,7 +5,7 @@ use super::rivals::{self as by, Method};
 use super::scenes::{at, grazing_task, task_c};
 use super::task::{Log, Task};
 use super::truth::{motion, settled};
-use crate::{FailureMap, Family, Found, Outcome, Question};
+use crate::{BorderQuestion, FailureMap, Family, Found, Outcome};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use vibro_model::{Rig, Sine, Steady};
@@ -188,7 +188,7 @@ pub fn failures(quick: bool) -> Result<FailureMap> {
         let own = Arc::new((border, truths));
         for (method, setting, can) in METHODS {
             let (border, own) = (&own.0, Arc::clone(&own));
-            questions.push(Question {
+            questions.push(BorderQuestion {
                 method: method.name,
                 ours: method.ours,
                 border: border.name,

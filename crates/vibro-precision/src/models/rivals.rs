@@ -15,9 +15,9 @@ use diffsol::{
     followed,
 };
 use stages::through;
-pub use stages::{Course, Locate, events};
-pub use stepper::Kind;
-use stepper::Kind::{Dop853, Rk4, Rk45};
+pub use stages::{Locate, Trajectory, events};
+pub use stepper::IntegratorKind;
+use stepper::IntegratorKind::{Dop853, Rk4, Rk45};
 #[cfg(test)]
 pub use stepper::Stepper;
 use stepper::{classical, euler, marched, moreau};
@@ -107,15 +107,15 @@ pub const TSIT45_TOUCH: Method = Method { follow: |t, r| followed(t, Some(t.spri
 pub const BDF_TOUCH: Method =
     Method::other("diffsol BDF, sign test", |t, r| followed(t, Some(t.spring()), Bdf(r)));
 
-fn ends(task: &Task, kind: Kind) -> Result<Log, Found> {
+fn ends(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     events(task, None, kind, Locate::Ends)
 }
 
-fn dense(task: &Task, kind: Kind) -> Result<Log, Found> {
+fn dense(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     events(task, None, kind, Locate::Dense)
 }
 
-fn touch(task: &Task, kind: Kind) -> Result<Log, Found> {
+fn touch(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     events(task, Some(task.spring()), kind, Locate::Dense)
 }
 

@@ -2,10 +2,10 @@
 
 mod chaos;
 
-use super::rivals::{self as by, Kind, Locate, Method, events};
+use super::rivals::{self as by, IntegratorKind, Locate, Method, events};
 use super::task::{Log, Task};
 use super::{ours, truth};
-use crate::{Family, Found, Measured, Scene, timed};
+use crate::{BenchmarkScene, Family, Found, MeasuredMethod, timed};
 use std::f64::consts::TAU;
 use vibro_model::{Compliance, Rig, Sine, Steady};
 use vibro_record::{Error, Result, median};
@@ -19,7 +19,7 @@ type Run = (Method, &'static [f64]);
 
 /// A scene before it is measured.
 struct Setup {
-    scene: Scene,
+    scene: BenchmarkScene,
     /// Motions that are followed one after another; the time of one answer is the mean.
     tasks: Vec<Task>,
     methods: Vec<Run>,
@@ -31,7 +31,7 @@ const REPEATS: [usize; 2] = [15, 3];
 
 impl Setup {
     /// Runs, times and judges every method; `quick` with the first half of its settings.
-    fn measured(self, quick: bool) -> Scene {
+    fn measured(self, quick: bool) -> BenchmarkScene {
         let one = |method: &Method, setting: f64| {
             let follow = || self.tasks.iter().map(|task| (method.follow)(task, setting)).collect();
             let (log, time) = timed(REPEATS[usize::from(quick)], quick, follow);
@@ -39,17 +39,17 @@ impl Setup {
             let log: std::result::Result<Vec<_>, Found> = log;
             let answer = log.map_err(fault).and_then(|log| (self.judge)(&log));
             let (name, setting) = ((method.name, method.ours), method.words(setting));
-            let measured = Measured::new(name, setting, time / self.tasks.len() as f64, answer);
-            Measured { other_program: method.other_program, ..measured }
+            let measured = MeasuredMethod::new(name, setting, time / self.tasks.len() as f64, answer);
+            MeasuredMethod { other_program: method.other_program, ..measured }
         };
         let of = |settings: &[f64]| if quick { settings.len().div_ceil(2) } else { settings.len() };
         let methods = self.methods.iter().flat_map(|(m, all)| all[..of(all)].iter().map(|s| one(m, *s)));
-        Scene { methods: methods.collect(), ..self.scene }
+        BenchmarkScene { methods: methods.collect(), ..self.scene }
     }
 }
 
 /// Every scene of the models, each method measured; `quick` takes fewer settings, repeats and scenes.
-pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<Scene>> {
+pub fn scenes(quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Vec<BenchmarkScene>> {
     let mut found = Vec::new();
     let mut add = |setup: Setup| {
         progress(&setup.scene.name);
@@ -149,7 +149,7 @@ fn scene_b(seconds: f64) -> Result<Setup> {
         &[(by::STIFF_SPRING, &[1e5, 1e6, 1e8])],
     ]
     .concat();
-    let scene = Scene::new(Family::Models, texts);
+    let scene = BenchmarkScene::new(Family::Models, texts);
     Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
@@ -214,7 +214,7 @@ fn grazing(depth: f64) -> Result<Setup> {
         "the forced motion A cos ω(t − tₚ) meets the gap A − d at tₚ − 2 asin(√(d/2A))/ω".to_owned(),
     ];
     let methods = [&[(by::FLIGHTS, ONE)], &LOOPS[..], &[(by::RK4_ENDS, &[100.0, 1e3, 1e4])], EVENTS].concat();
-    Ok(Setup { scene: Scene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) })
+    Ok(Setup { scene: BenchmarkScene::new(Family::Models, texts), tasks, methods, judge: Box::new(judge) })
 }
 
 /// End of the first chatter of scene C, release, and end of the second chatter in s, by arithmetic with 40
@@ -258,7 +258,7 @@ fn scene_c() -> Setup {
         (by::RK45_RESTLESS, &[1e-6]),
         (by::RK4_ENDS, &[100.0, 1e3]),
     ];
-    let (scene, methods) = (Scene::new(Family::Models, texts), [&first, EVENTS].concat());
+    let (scene, methods) = (BenchmarkScene::new(Family::Models, texts), [&first, EVENTS].concat());
     Setup { scene, tasks: vec![task_c()], methods, judge: Box::new(judge) }
 }
 
@@ -311,7 +311,7 @@ fn soft(stiffness: f64, cycles: f64) -> Result<Setup> {
         #[cfg(feature = "diffsol")]
         (by::BDF_TOUCH, &[1e-4, 1e-6, 1e-9, 1e-12]),
     ];
-    let scene = Scene::new(Family::Models, texts);
+    let scene = BenchmarkScene::new(Family::Models, texts);
     Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 
@@ -325,7 +325,7 @@ const BEGUN: f64 = 5.0;
 fn slow_sweep() -> Result<Setup> {
     let task = Task { rate: RATE, ..Task::sine(Rig::thesis(), 0.5, FROM, (TO - FROM) / RATE) };
     let largest = |log: &Log| log.impacts.iter().filter(|i| i.0 > BEGUN).map(|i| i.1).fold(0.0, f64::max);
-    let truth = largest(&events(&task, None, Kind::Dop853(1e-13), Locate::Dense)?);
+    let truth = largest(&events(&task, None, IntegratorKind::Dop853(1e-13), Locate::Dense)?);
     let apart = (largest(&ours::swept(&task, 1e-7)?) / truth - 1.0).abs();
     let judge = move |log: &[Log]| -> Verdict {
         let speed = largest(&log[0]);
@@ -348,7 +348,7 @@ fn slow_sweep() -> Result<Setup> {
         &[(by::RK45_ENDS, &[1e-3, 1e-6, 1e-9, 1e-12]), (by::DOP853_DENSE, &[1e-6, 1e-9, 1e-12])],
     ]
     .concat();
-    let scene = Scene::new(Family::Models, texts);
+    let scene = BenchmarkScene::new(Family::Models, texts);
     Ok(Setup { scene, tasks: vec![task], methods, judge: Box::new(judge) })
 }
 

@@ -1,14 +1,14 @@
 //! The truth, by nothing that this library's models use: integration of order 8 to 1e-13 from event to event,
 //! and Newton's method.
 
-use super::rivals::{Course, Kind, Locate, events};
+use super::rivals::{IntegratorKind, Locate, Trajectory, events};
 use super::task::{Log, Spring, Task};
 use crate::Found;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::{PI, TAU};
 
 /// The integration.
-const KIND: Kind = Kind::Dop853(1e-13);
+const KIND: IntegratorKind = IntegratorKind::Dop853(1e-13);
 /// Length in m by which displacements are scaled, so that all unknowns are of order 1.
 const LENGTH: f64 = 1e-3;
 /// Rounds of Newton's method.
@@ -52,7 +52,7 @@ impl Repeats {
 }
 
 /// The next impact of a motion: its time in s and the state before.
-fn meeting(course: &mut Course<'_>) -> Result<Option<(f64, [f64; 4])>, Found> {
+fn meeting(course: &mut Trajectory<'_>) -> Result<Option<(f64, [f64; 4])>, Found> {
     while let Some((which, t, y)) = course.next()? {
         let met = course.apart().then_some((t, y));
         course.meet(which, t, y);
@@ -75,7 +75,7 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
     let missed = |u: &Vector4<f64>| -> Option<Vector4<f64>> {
         let Repeats { before: y, phase } = of(u);
         let task = Task { phase, start: y, until: 1.5 * period, rests: true, ..*task };
-        let mut course = Course::new(&task, contact, KIND, Locate::Summed);
+        let mut course = Trajectory::new(&task, contact, KIND, Locate::Summed);
         course.meet(0, 0.0, y);
         let mut met = meeting(&mut course).ok()??;
         // At R = 0 rounding makes them meet at once again.
@@ -115,7 +115,7 @@ pub fn repeats(task: &Task, contact: Option<Spring>, period: f64, guess: &Repeat
 /// The motion with one impact a cycle on which a task settles within so many `cycles`, if it does.
 pub fn settled(task: &Task, contact: Option<Spring>, cycles: f64) -> Result<Option<Repeats>, Found> {
     let long = Task { until: cycles * task.cycle(), most: u64::MAX, rests: true, ..*task };
-    let mut course = Course::new(&long, contact, KIND, Locate::Summed);
+    let mut course = Trajectory::new(&long, contact, KIND, Locate::Summed);
     let mut impacts = Vec::new();
     while let Some((time, before)) = meeting(&mut course)? {
         impacts.push((time, Repeats { before, phase: TAU * task.frequency * time + task.phase }));

@@ -100,18 +100,18 @@ pub fn parse(text: &str) -> Option<Parsed> {
         return Some((Dimension::NONE, 1.0));
     }
     let whole = spelled(text);
-    let mut reader = Reader { rest: whole.as_deref().unwrap_or(text), brackets: 0 };
+    let mut reader = UnitParser { rest: whole.as_deref().unwrap_or(text), brackets: 0 };
     let unit = reader.product()?;
     (reader.rest.is_empty() && unit.1.is_finite() && unit.1 > 0.0).then_some(unit)
 }
 
 /// What has not been read yet, and how many brackets have.
-struct Reader<'a> {
+struct UnitParser<'a> {
     rest: &'a str,
     brackets: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> UnitParser<'a> {
     /// Takes characters as long as they fit.
     fn take(&mut self, fits: impl Fn(char) -> bool) -> &'a str {
         let (taken, rest) = self.rest.split_at(self.rest.find(|c| !fits(c)).unwrap_or(self.rest.len()));

@@ -8,18 +8,18 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Stroke};
 
 /// How a motion is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Look {
+enum MotionLook {
     Real,
     Unstable,
     Impossible,
 }
 
-fn look(v: &Validity) -> Option<Look> {
+fn look(v: &Validity) -> Option<MotionLook> {
     match (v.exists, v.admissible, v.stable) {
         (false, ..) => None,
-        (_, false, _) => Some(Look::Impossible),
-        (.., Some(false)) => Some(Look::Unstable),
-        _ => Some(Look::Real),
+        (_, false, _) => Some(MotionLook::Impossible),
+        (.., Some(false)) => Some(MotionLook::Unstable),
+        _ => Some(MotionLook::Real),
     }
 }
 
@@ -58,7 +58,7 @@ pub fn branches(title: &str, response: &Response) -> Figure {
 }
 
 fn panel(response: &Response, mass: usize) -> Plot {
-    let seen = |o: &&Orbit| look(&o.validity).is_some_and(|l| l != Look::Impossible);
+    let seen = |o: &&Orbit| look(&o.validity).is_some_and(|l| l != MotionLook::Impossible);
     let orbits = response.points.iter().flat_map(|p| p.orbits.iter().filter(seen));
     let free = response.points.iter().filter_map(|p| p.no_impact.filter(|n| n.possible && mass == 0));
     let heights = orbits.map(|o| o.peak_to_peak[mass] / 2.0).chain(free.map(|n| n.amplitude));

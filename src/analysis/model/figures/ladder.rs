@@ -9,23 +9,23 @@ use ndarray::Array2;
 
 /// What became of a rung.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Fate {
+enum RungFate {
     NotValid,
     Moves,
     Enough,
     Chosen,
 }
 
-impl Fate {
-    const ALL: [Fate; 4] = [Fate::Chosen, Fate::Enough, Fate::Moves, Fate::NotValid];
+impl RungFate {
+    const ALL: [RungFate; 4] = [RungFate::Chosen, RungFate::Enough, RungFate::Moves, RungFate::NotValid];
     const NAMES: [&'static str; 4] = ["chosen", "adequate", "answer changes too much", "not valid"];
 
-    fn of(choice: &Choice, rung: &Rung) -> Fate {
+    fn of(choice: &Choice, rung: &Rung) -> RungFate {
         match rung {
-            _ if choice.chosen == Some(rung.model) => Fate::Chosen,
-            r if !r.valid => Fate::NotValid,
-            r if r.sufficient => Fate::Enough,
-            _ => Fate::Moves,
+            _ if choice.chosen == Some(rung.model) => RungFate::Chosen,
+            r if !r.valid => RungFate::NotValid,
+            r if r.sufficient => RungFate::Enough,
+            _ => RungFate::Moves,
         }
     }
 }
@@ -43,15 +43,15 @@ pub fn ladder(survey: &Survey, question: &Question) -> Result<Figure> {
     let y: Vec<f64> = (1..=rows).map(|n| n as f64).collect();
     let fates = Array2::from_shape_fn((rows, x.len()), |(row, column)| {
         let choice = &all[column];
-        let fate = Fate::of(choice, &choice.rungs[row]);
-        Fate::ALL.iter().position(|f| *f == fate).map_or(f64::NAN, |k| k as f64)
+        let fate = RungFate::of(choice, &choice.rungs[row]);
+        RungFate::ALL.iter().position(|f| *f == fate).map_or(f64::NAN, |k| k as f64)
     });
     let frequency = || AxisSpec::frequency().limits(x[0], x[x.len() - 1]);
     let names: Vec<String> = (1..=rows).zip(Model::ALL).map(|(i, m)| format!("{i} {}", m.name())).collect();
     let names = names.join(", ");
     let map = Plot::new(frequency(), AxisSpec::new("Model", ""))
         .title(format!("models: {names}"))
-        .heatmap(Heatmap::classes(&x, &y, &fates, &Fate::NAMES)?)
+        .heatmap(Heatmap::classes(&x, &y, &fates, &RungFate::NAMES)?)
         .legend(Legend::Above);
     let observable = question.observable;
     let panels: &[(&str, &str)] = match observable {

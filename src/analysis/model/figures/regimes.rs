@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::model::Regime;
-use crate::model::map::{Axis, Cell, Plan};
+use crate::model::map::{Cell, MapAxis, Plan};
 use crate::report::layout::{capital, lettered};
 use crate::report::{AxisSpec, Figure, Heatmap, Legend, Plot};
 use ndarray::Array2;
@@ -31,7 +31,7 @@ pub fn regimes(plan: &Plan, rows: &[Vec<Cell>]) -> Result<Figure> {
     let names: Vec<&str> = names.iter().map(String::as_str).chain(others).collect();
     let regime = cells(&|c| c.regime.map_or(f64::NAN, |r| class(&own, r) as f64));
     let radius = cells(&|c| c.spectral_radius.unwrap_or(f64::NAN));
-    let axis = |axis: &Axis| {
+    let axis = |axis: &MapAxis| {
         let (name, unit) = (axis.key.name(), axis.key.unit());
         // A letter with a number is a symbol.
         AxisSpec::new(if name.len() == 2 { name.to_owned() } else { capital(name) }, unit)

@@ -1,7 +1,7 @@
 //! Measured responses over the predicted branches.
 
 use super::response::{MARKS, log_limits, rank, series, shown};
-use crate::compare::{Kind, Motion, Overlay, Pair, Prediction, Verdict};
+use crate::compare::{Motion, MotionKind, Overlay, Pair, Prediction, Verdict};
 use crate::measure::response::Response;
 use crate::model::ladder::Model;
 use crate::report::layout::{lettered, line, points};
@@ -96,13 +96,13 @@ fn is_within(y: &[f64], limits: Option<(f64, f64)>) -> bool {
 
 /// Amplitude of the excited mass without impacts.
 fn free(motions: &[Motion]) -> f64 {
-    motions.iter().find(|m| m.kind == Kind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[0])
+    motions.iter().find(|m| m.kind == MotionKind::Free && m.is_seen()).map_or(f64::NAN, |m| m.amplitude[0])
 }
 
 /// Amplitudes of the impacting motion of this rank where this is its verdict, and NaN elsewhere. Parts that
 /// cannot be seen reach one point into those that can, so that no gap opens between them.
 fn branch(curve: &Prediction, mass: u8, rank: usize, verdict: Verdict) -> Vec<f64> {
-    let motion = |i: usize| curve.motions[i].iter().filter(|m| m.kind == Kind::Impacting).nth(rank);
+    let motion = |i: usize| curve.motions[i].iter().filter(|m| m.kind == MotionKind::Impacting).nth(rank);
     let is = |i: usize| i < curve.motions.len() && motion(i).is_some_and(|m| m.verdict == verdict);
     let beside = |i: usize| verdict != Verdict::Seen && (is(i + 1) || i > 0 && is(i - 1));
     (0..curve.frequency.len())

@@ -18,7 +18,7 @@ const RANGE: f64 = 90.0;
 /// If the matrix and its axes do not fit.
 pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
-    let Shown { low, high, left_out } = shown(matrix, fmax, SEEN)?;
+    let ShownRange { low, high, left_out } = shown(matrix, fmax, SEEN)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
         .frequencies(low, high);
     Ok(Figure::double(format!("Waterfall, {}", matrix.name)).height(120.0).panel(scene).caption(left_out))
@@ -33,7 +33,7 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     order.sort_by(|a, b| matrix.excitation[*a].total_cmp(&matrix.excitation[*b]));
     // A map has one row a position: of repeated excitations the first stays.
     order.dedup_by(|a, b| matrix.excitation[*a] <= matrix.excitation[*b]);
-    let Shown { low, high, left_out } = shown(matrix, fmax, SEEN_IN_COLOUR)?;
+    let ShownRange { low, high, left_out } = shown(matrix, fmax, SEEN_IN_COLOUR)?;
     let columns: Vec<usize> =
         (0..matrix.frequency.len()).filter(|k| (low..=high).contains(&matrix.frequency[*k])).collect();
     let x: Vec<f64> = columns.iter().map(|k| matrix.frequency[*k]).collect();
@@ -55,14 +55,14 @@ pub fn map(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
 }
 
 /// The range in Hz that a picture shows, and what it leaves out.
-struct Shown {
+struct ShownRange {
     low: f64,
     high: f64,
     left_out: String,
 }
 
 /// Up to `fmax`, or to the last line of which a spectrum has this part of the largest.
-fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<Shown> {
+fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<ShownRange> {
     let last = matrix.frequency.last().copied().unwrap_or(1.0);
     let high = fmax.unwrap_or_else(|| highest(matrix, part)).min(last);
     if high <= matrix.fmin {
@@ -81,7 +81,7 @@ fn shown(matrix: &Matrix, fmax: Option<f64>, part: f64) -> Result<Shown> {
     if fmax.is_none() && high < last {
         words.push(format!("Lines above {high:.0} Hz are below {} % of the largest.", 100.0 * part));
     }
-    Ok(Shown { low: matrix.fmin, high, left_out: words.join(" ") })
+    Ok(ShownRange { low: matrix.fmin, high, left_out: words.join(" ") })
 }
 
 /// Lines beyond which none reaches this part of the largest are not shown, where no other end is asked for.

@@ -21,7 +21,7 @@ fn finding<'a>(fit: &'a Fit, code: &str) -> Option<&'a Finding> {
     fit.findings.iter().find(|f| f.code == code)
 }
 
-fn of(fit: &Fit, parameter: Parameter) -> &Fitted {
+fn of(fit: &Fit, parameter: Parameter) -> &FittedParameter {
     fit.parameters.iter().find(|p| p.parameter == parameter).unwrap()
 }
 

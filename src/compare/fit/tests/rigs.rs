@@ -63,7 +63,7 @@ fn other_patterns(draws: std::ops::Range<u64>, rigs: usize) {
             let points = settled.least.problem.rows().0;
             println!("{points} points, {} far, {away:.1?} standard deviations", settled.far);
             let is_right = away.iter().all(|a| *a < 4.0);
-            assert!(is_right || !Answer::new(settled, None).unwrap().doubts().is_empty());
+            assert!(is_right || !AssessedFit::new(settled, None).unwrap().doubts().is_empty());
             right += usize::from(is_right);
         }
         assert!(right as u64 * 4 >= 3 * (draws.end - draws.start), "{right} of {draws:?}");

@@ -7,7 +7,7 @@ use super::*;
 fn answer(data: &Data, setting: &Setting, start: &Setting, names: &[&str]) -> (f64, Vec<f64>) {
     let (settled, _) = identify(&Problem::new(data, start, unknowns(names, start)), STARTS).unwrap();
     let found = (settled.least.reduced, away(&settled, setting));
-    assert_eq!(Answer::new(settled, None).unwrap().doubts(), []);
+    assert_eq!(AssessedFit::new(settled, None).unwrap().doubts(), []);
     found
 }
 
@@ -38,8 +38,8 @@ fn a_lone_point_does_not_hide_behind_the_calibration() {
     let (clean, kinds) = truth(&setting, PACE);
     println!("seeds 23 and 523");
     let mut data = miscalibrated(noisy(&clean, &kinds, &setting, 23), 1e-2, 23);
-    let lone =
-        (0..data.steps.len()).find(|i| kinds[*i] == Some(Kind::Impacting) && data.steps[*i].frequency > 6.5);
+    let lone = (0..data.steps.len())
+        .find(|i| kinds[*i] == Some(MotionKind::Impacting) && data.steps[*i].frequency > 6.5);
     let seen = data.steps[lone.unwrap()].readings[1].as_mut().unwrap();
     assert!(0.027 * seen.amplitude > 9.0 * seen.std);
     seen.amplitude *= 1.027;
@@ -59,7 +59,7 @@ fn a_prior_that_contradicts_the_points_is_named() {
                 .unwrap();
         let unknowns = Unknown::all(&entry, &setting).unwrap();
         let (settled, _) = identify(&Problem::new(&data, &setting, unknowns), 2).unwrap();
-        let doubts = Answer::new(settled, None).unwrap().doubts();
+        let doubts = AssessedFit::new(settled, None).unwrap().doubts();
         println!("{doubts:?}");
         let contradicted = doubts.iter().find(|d| d.code == "prior-contradicted");
         assert_eq!(contradicted.and_then(|d| d.subject.as_deref()), expected);

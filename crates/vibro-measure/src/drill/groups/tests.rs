@@ -1,9 +1,9 @@
 use super::*;
-use crate::drill::{Beam, Edge, From};
+use crate::drill::{AngleOrigin, Beam, Edge};
 use vibro_math::Noise;
 
 fn options(masses: Option<(f64, f64)>) -> DrillOptions {
-    let mut options = DrillOptions::new(1.0, Beam::new(0.0, From::Axis).unwrap(), 1, Edge::Rising);
+    let mut options = DrillOptions::new(1.0, Beam::new(0.0, AngleOrigin::Axis).unwrap(), 1, Edge::Rising);
     (options.mass, options.struck_mass) = (masses.map(|m| m.0), masses.map(|m| m.1));
     options
 }

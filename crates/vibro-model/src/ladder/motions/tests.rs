@@ -1,4 +1,4 @@
-use super::{Answer, Followed, Motions, On, Reader, Stage};
+use super::{Answer, CurrentMotion, DrivenScene, Followed, MotionReader, Motions};
 use crate::ladder::tests::fastest;
 use crate::ladder::{Choice, Model, Need, Question, choose};
 use crate::{Compliant, ContactKeys, Excitation, Motion, Observable, Rig, Scene, Simulation, Sine, State};
@@ -228,17 +228,17 @@ fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
     let scene = Scene { rig: Rig { restitution: 0.7, ..Rig::thesis() }, ..Scene::thesis() };
     let excitation = Excitation::Sine(Sine { force: 0.3, frequency: 13.5986 });
     let question = Question::new(Observable::ImpactSpeed);
-    let stage = Stage { scene: &scene, excitation: &excitation, question: &question };
+    let stage = DrivenScene { scene: &scene, excitation: &excitation, question: &question };
     let mut motions = Motions::new(&stage).unwrap();
     let rare = |motions: &Motions| motions.known.iter().map(|m| m.rare).collect::<Vec<_>>();
-    assert_eq!((rare(&motions), &motions.on), (vec![false, true], &On::Free));
+    assert_eq!((rare(&motions), &motions.on), (vec![false, true], &CurrentMotion::Free));
     // What would be read of a contact that comes to it.
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     let mut motion = Simulation::from_state(&scene.rig, &excitation, state, 0.0).unwrap();
-    let from_rest = Reader::new(&scene.rig, 13.5986, &question).read(&mut motion).unwrap();
+    let from_rest = MotionReader::new(&scene.rig, 13.5986, &question).read(&mut motion).unwrap();
     assert_eq!(from_rest.regime, motions.known[1].pattern);
     motions.differs(&Answer::exact([0.0; 2]), &from_rest, Model::KelvinVoigt, &question);
-    assert_eq!((rare(&motions), &motions.on), (vec![false, false], &On::Open));
+    assert_eq!((rare(&motions), &motions.on), (vec![false, false], &CurrentMotion::Open));
 }
 
 #[test]

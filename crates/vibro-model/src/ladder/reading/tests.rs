@@ -1,4 +1,4 @@
-use super::{BRIEF, End, Reader, drifts, mean};
+use super::{BRIEF, MotionReader, Settling, drifts, mean};
 use crate::Motion;
 use crate::ladder::Question;
 use crate::ladder::question::APART;
@@ -110,12 +110,13 @@ fn a_slow_growth_towards_the_gap_is_not_the_end() {
     assert!((touched / closed - 1.0).abs() < 0.01 && touched * sine.frequency > 1800.0, "{touched} {closed}");
     let question = Question::new(Observable::ImpactSpeed);
     let clearance = Some(rig.gap - found.largest);
-    let reader = Reader { clearance, ..Reader::new(&rig, sine.frequency, &question) };
+    let reader = MotionReader { clearance, ..MotionReader::new(&rig, sine.frequency, &question) };
     let mut motion = Simulation::new(&rig, &sine).unwrap();
     let reading = reader.read(&mut motion).unwrap();
     assert!(f64::from(reading.cycles) > touched * sine.frequency && reading.speed > 0.0, "{reading:?}");
     // The state alone tells it too: without the clearance it goes on just as long.
-    let blind = Reader::new(&rig, sine.frequency, &question).read(&mut Simulation::new(&rig, &sine).unwrap());
+    let blind =
+        MotionReader::new(&rig, sine.frequency, &question).read(&mut Simulation::new(&rig, &sine).unwrap());
     assert!(f64::from(blind.unwrap().cycles) > touched * sine.frequency);
 }
 
@@ -127,14 +128,14 @@ fn a_motion_that_ends_a_thousandth_beyond_the_gap_does_not_settle_without_impact
     let read = |part: f64| {
         let sine = Sine { force: part * rig.gap / unit, frequency: 9.0 };
         let clearance = Some(rig.gap * (1.0 - part));
-        let reader = Reader { clearance, ..Reader::new(&rig, 9.0, &question) };
+        let reader = MotionReader { clearance, ..MotionReader::new(&rig, 9.0, &question) };
         reader.read(&mut Simulation::new(&rig, &sine).unwrap()).unwrap()
     };
     let over = read(1.001);
-    assert!(over.speed > 0.0 || over.end == End::Under, "{over:?}");
+    assert!(over.speed > 0.0 || over.end == Settling::Under, "{over:?}");
     // Clear of the gap it does, in the time in which e^{−bt} falls to the part asked for.
     let under = read(0.5);
-    assert!(under.end == End::Settled && under.speed == 0.0, "{under:?}");
+    assert!(under.end == Settling::Settled && under.speed == 0.0, "{under:?}");
 }
 
 #[test]
@@ -144,8 +145,8 @@ fn a_pattern_that_no_block_holds_whole_is_read_whole() {
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     let start = Simulation::from_state(&rig, &sine, state, 0.0).unwrap();
     let question = Question { tolerance: 1e-3, ..Question::new(Observable::ImpactSpeed) };
-    let reading = Reader::new(&rig, sine.frequency, &question).read(&mut start.clone()).unwrap();
-    assert_eq!((reading.end, reading.regime.to_string().as_str()), (End::Settled, "4/8"));
+    let reading = MotionReader::new(&rig, sine.frequency, &question).read(&mut start.clone()).unwrap();
+    assert_eq!((reading.end, reading.regime.to_string().as_str()), (Settling::Settled, "4/8"));
     let mut motion = start;
     motion.run(4000.0 / sine.frequency, |_| {}).unwrap();
     let mut speeds = Vec::new();
@@ -167,9 +168,9 @@ fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
     let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
     motion.run(6000.0 / frequency, |_| {}).unwrap();
     let question = Question::new(Observable::ImpactSpeed);
-    let reader = Reader::new(&rig, frequency, &question);
-    let reading = Reader { blocks: reader.blocks.min(BRIEF), ..reader }.read(&mut motion).unwrap();
-    assert_eq!((reading.end, reading.regime.to_string().as_str()), (End::Settled, "9/13"));
+    let reader = MotionReader::new(&rig, frequency, &question);
+    let reading = MotionReader { blocks: reader.blocks.min(BRIEF), ..reader }.read(&mut motion).unwrap();
+    assert_eq!((reading.end, reading.regime.to_string().as_str()), (Settling::Settled, "9/13"));
     let speeds = fastest(&mut motion, 13);
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     // Settled to a fiftieth of the tolerance.

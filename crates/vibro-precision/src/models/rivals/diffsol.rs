@@ -4,8 +4,8 @@
 //! It compares the signs of the root function at the ends of its steps.
 
 use super::super::task::{Log, Spring, Task};
-use super::stages::{Course, Guard, Locate, Stage, System};
-use super::stepper::{FLOOR, Kind, first_step};
+use super::stages::{Guard, Locate, Stage, System, Trajectory};
+use super::stepper::{FLOOR, IntegratorKind, first_step};
 use crate::{Found, Outcome};
 use ::diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason,
@@ -35,7 +35,7 @@ impl From<DiffsolError> for Found {
 /// Follows the motion with impacts at once, or with a contact.
 pub fn followed(task: &Task, spring: Option<Spring>, how: Diffsol) -> Result<Log, Found> {
     let (Diffsol::Tsit45(relative) | Diffsol::Bdf(relative)) = how;
-    let course = Course::new(task, spring, Kind::Rk45(relative), Locate::Ends);
+    let course = Trajectory::new(task, spring, IntegratorKind::Rk45(relative), Locate::Ends);
     let (system, stage, first) = (course.system, Cell::new(course.stage), course.y);
     let now = |t: f64, y: &[f64]| system.rate(stage.get(), t, &four(y));
     let mut problem = OdeBuilder::<NalgebraMat<f64>>::new()
@@ -69,7 +69,7 @@ fn falls(system: &System<'_>, stage: Stage, t: f64, y: &[f64; 4]) -> [f64; 2] {
 
 /// Steps a solver to the end.
 fn run<'a, E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a>(
-    mut now: Course<'_>,
+    mut now: Trajectory<'_>,
     mut solver: impl OdeSolverMethod<'a, E>,
     stage: &Cell<Stage>,
 ) -> Result<Log, Found> {

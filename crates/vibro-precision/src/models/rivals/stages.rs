@@ -2,7 +2,7 @@
 //! begins anew behind it.
 
 use super::super::task::{Log, Spring, Task};
-use super::stepper::{Kind, Stepper, rk4};
+use super::stepper::{IntegratorKind, Stepper, rk4};
 use crate::Found;
 
 /// Where the masses are.
@@ -83,9 +83,9 @@ pub enum Locate {
 }
 
 /// How far a motion has been followed.
-pub struct Course<'a> {
+pub struct Trajectory<'a> {
     pub(super) system: System<'a>,
-    kind: Kind,
+    kind: IntegratorKind,
     locate: Locate,
     /// Approach speed in m/s below which masses that press each other stay together.
     sticks: f64,
@@ -97,11 +97,16 @@ pub struct Course<'a> {
     pub(super) stage: Stage,
 }
 
-impl<'a> Course<'a> {
+impl<'a> Trajectory<'a> {
     /// The start of a task, with impacts at once or with a contact. Its rule for rest is the speed at which a
     /// bounce is as high as the integrator's error, 1 mm times its relative tolerance.
-    pub fn new(task: &'a Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Course<'a> {
-        Course {
+    pub fn new(
+        task: &'a Task,
+        spring: Option<Spring>,
+        kind: IntegratorKind,
+        locate: Locate,
+    ) -> Trajectory<'a> {
+        Trajectory {
             system: System { task, spring },
             kind,
             locate,
@@ -205,8 +210,13 @@ impl<'a> Course<'a> {
 }
 
 /// Follows the motion with impacts at once, or with a contact.
-pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -> Result<Log, Found> {
-    let mut course = Course::new(task, spring, kind, locate);
+pub fn events(
+    task: &Task,
+    spring: Option<Spring>,
+    kind: IntegratorKind,
+    locate: Locate,
+) -> Result<Log, Found> {
+    let mut course = Trajectory::new(task, spring, kind, locate);
     while let Some((which, t, y)) = course.next()? {
         course.meet(which, t, y);
     }
@@ -218,7 +228,7 @@ pub fn events(task: &Task, spring: Option<Spring>, kind: Kind, locate: Locate) -
 
 /// Integrates straight through contacts of a spring that never pulls, step sizes left to the error control;
 /// touches are read off afterwards.
-pub fn through(task: &Task, kind: Kind) -> Result<Log, Found> {
+pub fn through(task: &Task, kind: IntegratorKind) -> Result<Log, Found> {
     let spring = task.spring();
     let force = |y: &[f64; 4]| if task.gap(y) < 0.0 { spring.bound(task, y).max(0.0) } else { 0.0 };
     let f = |t: f64, y: &[f64; 4]| task.pushed(t, y, force(y));

@@ -19,7 +19,7 @@ pub(super) fn first_step(task: &Task, t: f64, y: &[f64; 4]) -> f64 {
 
 /// An integrator and its setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum IntegratorKind {
     /// Runge and Kutta's four stages, so many steps a cycle of the excitation.
     Rk4(f64),
     /// Dormand and Prince's order 5 with this relative tolerance.
@@ -28,12 +28,12 @@ pub enum Kind {
     Dop853(f64),
 }
 
-impl Kind {
+impl IntegratorKind {
     /// Its relative tolerance; of fixed steps, what a step of order 4 leaves.
     pub fn relative(self) -> f64 {
         match self {
-            Kind::Rk4(n) => (std::f64::consts::TAU / n).powi(4),
-            Kind::Rk45(r) | Kind::Dop853(r) => r,
+            IntegratorKind::Rk4(n) => (std::f64::consts::TAU / n).powi(4),
+            IntegratorKind::Rk45(r) | IntegratorKind::Dop853(r) => r,
         }
     }
 }
@@ -49,7 +49,7 @@ pub enum Stepper {
 }
 
 /// One step.
-pub struct Taken {
+pub struct SolverStep {
     /// Time of its start in s.
     pub start: f64,
     /// Its size in s.
@@ -63,7 +63,7 @@ pub struct Taken {
 impl Stepper {
     /// Starts at `t` with `y`; errors of the state count against [`FLOOR`] where it is smaller than that.
     pub fn new(
-        kind: Kind,
+        kind: IntegratorKind,
         task: &Task,
         f: impl Fn(f64, &[f64; 4]) -> [f64; 4],
         t: f64,
@@ -72,30 +72,30 @@ impl Stepper {
         let (first, tolerance) =
             (first_step(task, t, &y), Tolerance { relative: kind.relative(), floor: FLOOR });
         match kind {
-            Kind::Rk4(n) => Stepper::Fixed(t, y, task.cycle() / n),
-            Kind::Rk45(_) => Stepper::Five(Integrator::new(f, t, y, first, tolerance)),
-            Kind::Dop853(_) => Stepper::Eight(Integrator::new(f, t, y, first, tolerance)),
+            IntegratorKind::Rk4(n) => Stepper::Fixed(t, y, task.cycle() / n),
+            IntegratorKind::Rk45(_) => Stepper::Five(Integrator::new(f, t, y, first, tolerance)),
+            IntegratorKind::Dop853(_) => Stepper::Eight(Integrator::new(f, t, y, first, tolerance)),
         }
     }
 
     /// One step, at most to `until`.
-    pub fn step(&mut self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], until: f64) -> Result<Taken, Found> {
+    pub fn step(&mut self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], until: f64) -> Result<SolverStep, Found> {
         let step = match self {
             Stepper::Fixed(t, y, h) => {
                 let (start, from, duration) = (*t, *y, h.min(until - *t));
                 (*t, *y) =
                     (if duration < *h { until } else { start + duration }, rk4(&f, start, y, duration));
-                return Ok(Taken { start, duration, end: *y, from, dense: None });
+                return Ok(SolverStep { start, duration, end: *y, from, dense: None });
             }
             Stepper::Five(integrator) => integrator.step(f, until)?,
             Stepper::Eight(integrator) => integrator.step(f, until)?,
         };
         let Step { start, duration, end, .. } = step;
-        Ok(Taken { start, duration, end, from: end, dense: Some(step) })
+        Ok(SolverStep { start, duration, end, from: end, dense: Some(step) })
     }
 }
 
-impl Taken {
+impl SolverStep {
     /// State at `t` after its start.
     pub fn at(&self, f: impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64) -> [f64; 4] {
         self.dense.as_ref().map_or_else(|| rk4(&f, self.start, &self.from, t), |step| step.at(t))

@@ -1,9 +1,9 @@
 //! A window of irregular motion, of which only the statistics can be asked.
 
-use super::super::rivals::{self as by, Kind, Locate, events};
+use super::super::rivals::{self as by, IntegratorKind, Locate, events};
 use super::super::task::{Log, Task};
 use super::{ONE, Setup, Verdict};
-use crate::{Family, Scene};
+use crate::{BenchmarkScene, Family};
 use rayon::prelude::*;
 use vibro_model::Rig;
 use vibro_record::Result;
@@ -44,7 +44,7 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
 fn irregular_truth() -> Result<Vec<[f64; 2]>> {
     let one = |start: usize| {
         let task = irregular(-1e-4 * (start + 1) as f64, CYCLES);
-        Ok(statistics(&events(&task, None, Kind::Dop853(1e-12), Locate::Dense)?))
+        Ok(statistics(&events(&task, None, IntegratorKind::Dop853(1e-12), Locate::Dense)?))
     };
     (0..OTHERS).into_par_iter().map(one).collect()
 }
@@ -89,7 +89,7 @@ pub(super) fn scene() -> Result<Setup> {
         (by::DOP853_DENSE, &[1e-6, 1e-9]),
         (by::ROUGH_SPRING, &[1e6]),
     ];
-    let (scene, tasks) = (Scene::new(Family::Models, texts), vec![irregular(0.0, CYCLES)]);
+    let (scene, tasks) = (BenchmarkScene::new(Family::Models, texts), vec![irregular(0.0, CYCLES)]);
     Ok(Setup { scene, tasks, methods, judge: Box::new(judge) })
 }
 
