@@ -66,20 +66,16 @@ pub(super) struct TrainFit {
     pub(super) noise: Option<FlightNoise>,
 }
 
-impl TrainFit {
-    /// Sum over `trains` of the squared difference of their own ln R from the common one, over the variance
-    /// that the `noise` of flights gives it: χ² with one degree of freedom less than trains, where all have
-    /// one R.
-    pub(super) fn misfit(&self, trains: &[Timed], noise: FlightNoise) -> f64 {
-        let node = |(flights, _): &Timed| {
-            Ratios::new(&[flights], &[1.0], false).node(noise.scatter, noise.onset, false)
-        };
-        trains.iter().filter_map(node).map(|own| (own.log_r - self.log_r).powi(2) / own.variance).sum()
-    }
-}
-
 /// Flights of a train, and the standard uncertainty of its onsets in s where it is known.
 pub(super) type Timed = (Vec<Flight>, Option<f64>);
+
+/// Sum over `trains` of the squared difference of their own ln R from `log`, over the variance that the
+/// `noise` of flights gives it: χ² with one degree of freedom less than trains, where all have one R.
+pub(super) fn misfit(trains: &[Timed], log: f64, noise: FlightNoise) -> f64 {
+    let node =
+        |(flights, _): &Timed| Ratios::new(&[flights], &[1.0], false).node(noise.scatter, noise.onset, false);
+    trains.iter().filter_map(node).map(|own| (own.log_r - log).powi(2) / own.variance).sum()
+}
 
 /// ln R of trains and the noise of their flights; `None` without a ratio.
 pub(super) fn fit(trains: &[Timed], fall: bool) -> Option<TrainFit> {

@@ -1,8 +1,10 @@
 //! R from the flights of trains of bounces: outliers are left out, flights that grow are refused.
 
-use super::fit::{Flight, FlightNoise, TrainFit, fit};
+use super::fit::{Flight, FlightNoise, TrainFit, fit, misfit};
 use super::{MethodAnswer, Train, above_zero, not_negative, repeated, together};
 use crate::Estimate;
+use crate::residuals::chi_squared_at;
+use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Finding, Result};
 
 /// A flight this much longer than the first is no bounce of the same fall.
@@ -24,9 +26,10 @@ pub(super) fn longer(train: &Train) -> Option<usize> {
 /// Trains from which on their scatter shows all that is uncertain in each.
 const MANY: usize = 4;
 
-/// Quantiles 0.95 of χ² with one and two degrees of freedom: two or three trains that differ by more than the
-/// noise of their flights are not of one R.
-const DIFFER: [f64; MANY - 2] = [3.84, 5.99];
+/// Normal quantile 0.95: trains that differ by more than the noise of their flights are not fitted together.
+const DIFFER: f64 = 1.645;
+/// Normal quantile 0.999: that they differ is said.
+const SURELY: f64 = 3.090;
 
 /// R of trains of bounces, `None` where no train has two flights; and the noise of their flights, where it
 /// shows. Up to three trains that do not differ share R and noise, and where all begin with the same `fall`,
@@ -79,15 +82,17 @@ pub(super) fn answer(
         return Ok((None, None));
     }
     let own = FlightNoise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
-    let alike = |joint: &TrainFit| {
-        let noise = own.or(joint.noise).filter(|_| fits.len() > 1);
-        noise.is_none_or(|noise| joint.misfit(&all, noise) <= DIFFER[fits.len() - 2])
+    // Whether trains are too far from this ln R for one body, by the quantile that is this normal one.
+    let apart = |log: f64, noise: Option<FlightNoise>, normal: f64| {
+        let noise = noise.filter(|_| fits.len() > 1);
+        noise.is_some_and(|noise| misfit(&all, log, noise) > chi_squared_at(normal, fits.len() - 1))
     };
+    let alike = |joint: &TrainFit| !apart(joint.log_r, own.or(joint.noise), DIFFER);
     let joint = (all.len() < MANY).then(|| fit(&all, fall)).flatten().filter(alike);
+    let logs: Vec<f64> = fits.iter().map(|fit| fit.log_r).collect();
     let (log, std, noise) = if let Some(fit) = joint {
         (fit.log_r, fit.std, fit.noise)
     } else {
-        let logs: Vec<f64> = fits.iter().map(|fit| fit.log_r).collect();
         let stated = together(fits.iter().map(|fit| fit.std)).filter(|_| logs.len() < MANY);
         let (log, std) = repeated(&logs, stated);
         (log, std, own)
@@ -96,6 +101,12 @@ pub(super) fn answer(
     let value = log.exp();
     let few = Finding::caution("too-few-flights").count("n", n).count("trains", fits.len());
     findings.extend(std.is_none().then_some(few));
+    if apart(log, own, SURELY)
+        && let Some((low, high)) = Extremes::of(&logs).range()
+    {
+        let differ = Finding::caution("trains-differ").count("trains", fits.len());
+        findings.push(differ.number("low", low.exp()).number("high", high.exp()));
+    }
     let method = format!("log-linear fit of {n} flight times");
     let restitution = Estimate::new(value, std.map(|s| value * s), "1", n, method);
     Ok((Some(MethodAnswer { method: "flight times", restitution }), noise))

@@ -326,6 +326,27 @@ fn a_drop_is_no_surer_than_the_flights_behind_it_scatter() {
     assert!((one - 1.0).abs() < 1e-6 && (two - 1.0).abs() < 1e-6, "{one} {two}");
 }
 
+/// Three trains of R 0.6 and three of 0.8 are of two bodies; six of 0.6 whose flights scatter by 1 % of one.
+#[test]
+fn trains_of_two_bodies_are_said_to_differ() {
+    let mut noise = vibro_math::Noise::new(41);
+    let mut of_trains = |r: [f64; 6]| {
+        let mut train = |r: f64| {
+            let next = |flight: &f64| Some(flight * r * (0.01 * noise.normal()).exp());
+            let intervals = std::iter::successors(Some(0.4), next).take(6).collect();
+            Train { intervals, onset_std: Some(1e-6), ..Train::default() }
+        };
+        let trains = r.map(&mut train).to_vec();
+        of(&Measured { trains, contact_time: Some(0.0), ..Measured::default() })
+    };
+    let two = of_trains([0.6, 0.6, 0.6, 0.8, 0.8, 0.8]);
+    let found = finding(&two, "trains-differ").expect("said");
+    // 1 % a bounce over five ratios: 0.45 % of R.
+    let off = [("low", 0.6), ("high", 0.8)].map(|(end, r)| (found.get(end).unwrap() / r - 1.0).abs());
+    assert!(off.iter().all(|off| *off < 0.02), "{off:?}");
+    assert!(finding(&of_trains([0.6; 6]), "trains-differ").is_none());
+}
+
 #[test]
 fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
     let of_drops = |height_std: Option<f64>, interval_std: Option<f64>, intervals: &[f64]| {
