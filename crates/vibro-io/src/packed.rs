@@ -15,6 +15,8 @@ use std::cmp::Reverse;
 use std::path::{Path, PathBuf};
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Finding, Place, Result};
+#[cfg(feature = "zip")]
+use zip::result::ZipError;
 
 /// First bytes of a zip archive, as are the newer workbooks of Excel and those of `OpenDocument`.
 const ZIP: &[u8] = b"PK\x03\x04";
@@ -186,30 +188,47 @@ fn parts(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Option<V
 /// What is said of an archive or a workbook that cannot be read.
 #[cfg(feature = "zip")]
 fn damaged(source: &Source, why: impl std::fmt::Display) -> Error {
-    let why = why.to_string();
-    let (found, hint) = if why.contains("Password") || why.contains("password") {
-        ("it is protected by a password".to_owned(), "unpack it, or save it without the password")
-    } else if why.contains("EOCD") {
-        ("its end is missing: it is no whole archive".to_owned(), "copy or download it again")
-    } else {
-        let hint = "unpack it with the program that wrote it, and export CSV";
-        (format!("it cannot be unpacked: {why}"), hint)
-    };
-    Error::input(Place::file(source.path()), found, "a whole file").hint(hint)
+    let hint = "unpack it with the program that wrote it, and export CSV";
+    Error::input(Place::file(source.path()), format!("it cannot be unpacked: {why}"), "a whole file")
+        .hint(hint)
+}
+
+/// What is said of one that a password protects.
+#[cfg(feature = "zip")]
+fn locked(source: &Source) -> Error {
+    let error =
+        Error::input(Place::file(source.path()), "it is protected by a password", "a file without one");
+    error.hint("unpack it, or save it without the password")
+}
+
+/// What is said of a zip archive.
+#[cfg(feature = "zip")]
+fn unreadable(source: &Source, why: ZipError) -> Error {
+    match why {
+        ZipError::UnsupportedArchive(ZipError::PASSWORD_REQUIRED) => locked(source),
+        why => damaged(source, why),
+    }
 }
 
 /// The files of a zip archive, or the sheets of a workbook that is one.
 #[cfg(feature = "zip")]
 fn members(source: &Source, named: Option<&Path>, limit: Limit) -> Result<Vec<Member>> {
     use std::io::{BufReader, Read};
-    let mut archive =
-        zip::ZipArchive::new(BufReader::new(source.open()?)).map_err(|why| damaged(source, why))?;
+    let archive = zip::ZipArchive::new(BufReader::new(source.open()?));
+    let mut archive = archive.map_err(|why| match why {
+        // Its list of files is its end.
+        ZipError::InvalidArchive(_) => {
+            let found = "its end is missing: it is no whole archive";
+            Error::input(Place::file(source.path()), found, "a whole file").hint("copy or download it again")
+        }
+        why => unreadable(source, why),
+    })?;
     let has = |name: &str| archive.index_for_name(name).is_some();
     let book = [("xl/workbook.xml", Workbook::Xml), ("content.xml", Workbook::OpenDocument)];
     let book = book.into_iter().find(|(name, _)| has(name)).map(|(_, kind)| kind);
     let (mut parts, mut held) = (Vec::new(), 0.0);
     for i in 0..archive.len() {
-        let mut member = archive.by_index(i).map_err(|why| damaged(source, why))?;
+        let mut member = archive.by_index(i).map_err(|why| unreadable(source, why))?;
         let name = member.name().map_err(|why| damaged(source, why))?.into_owned();
         // Programs of Apple add files of their own.
         let own = name.split('/').any(|name| name.starts_with('.') || name == "__MACOSX");

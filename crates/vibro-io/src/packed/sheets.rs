@@ -1,9 +1,10 @@
 //! Sheets of workbooks as text: cells between tabs, numbers with all their digits, dates as clocks.
 
-use super::{Member, Workbook, damaged};
+use super::{Member, Workbook, damaged, locked};
 use crate::{Limit, Source, number};
 use calamine::{
-    Data, ExcelDateTime, ExcelDateTimeType, Ods, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError,
+    Data, ExcelDateTime, ExcelDateTimeType, Ods, OdsError, Reader, Sheet, SheetVisible, Xls, XlsError, Xlsx,
+    XlsxError,
 };
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write};
@@ -30,12 +31,18 @@ pub fn of(source: &Source, kind: Workbook, named: Option<&Path>, limit: Limit) -
     // The crate subtracts the ends of a sheet, and panics where the larger comes first.
     let read = AssertUnwindSafe(|| match kind {
         Workbook::Compound => {
-            let book = Xls::new(checked(source, limit)?);
-            ranges(book.map_err(|why| damaged(source, why))?, (source, named), limit)
+            let book = Xls::new(checked(source, limit)?).map_err(|why| match why {
+                XlsError::Password => locked(source),
+                why => damaged(source, why),
+            });
+            ranges(book?, (source, named), limit)
         }
         Workbook::OpenDocument => {
-            let book = Ods::new(BufReader::new(source.open()?));
-            ranges(book.map_err(|why| damaged(source, why))?, (source, named), limit)
+            let book = Ods::new(BufReader::new(source.open()?)).map_err(|why: OdsError| match why {
+                OdsError::Password => locked(source),
+                why => damaged(source, why),
+            });
+            ranges(book?, (source, named), limit)
         }
         Workbook::Xml => streamed((source, named), limit),
     });
@@ -48,7 +55,7 @@ fn checked(source: &Source, limit: Limit) -> Result<Cursor<Vec<u8>>> {
     let failed = |why| damaged(source, why);
     let mut file = cfb::CompoundFile::open(BufReader::new(source.open()?)).map_err(failed)?;
     if file.is_stream("/EncryptedPackage") {
-        return Err(damaged(source, "Password required"));
+        return Err(locked(source));
     }
     let name = ["/Workbook", "/Book"].into_iter().find(|name| file.is_stream(name));
     let Some(name) = name else { return Err(damaged(source, "it holds no sheets")) };
