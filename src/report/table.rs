@@ -3,6 +3,7 @@
 use super::column::{Formatted, power};
 use super::{Cell, Column};
 use crate::units::notation::labelled;
+use crate::write::csv::begins_formula;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use vibro_figure::escaped;
@@ -177,9 +178,7 @@ fn exact(value: f64) -> String {
 }
 
 fn quoted(text: &str) -> String {
-    // A spreadsheet takes what begins so for a formula.
-    let formula = text.len() > 1 && text.starts_with(['=', '+', '-', '@']);
-    let text = if formula { format!("'{text}") } else { text.to_owned() };
+    let text = if begins_formula(text) { format!("'{text}") } else { text.to_owned() };
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }
 
@@ -230,8 +229,9 @@ none           7.49            0.35                 –
         assert_eq!(lines[1], "grazing,5.5831,0.0123,0.004213,4.1e-5,56");
         assert_eq!(lines[2], "\"clapping, up\",10.59,0.1,,,107");
         assert_eq!(lines[3], "none,7.49,,3.5e-4,,".replace("3.5e-4", "0.00035"));
-        let formula = Table::new("").column("=1+1", "").row(["@x".into()]).row(["-".into()]).csv();
-        assert_eq!(formula, "'=1+1\n'@x\n-\n");
+        let formula =
+            Table::new("").column("=1+1", "").row(["@x".into()]).row(["-".into()]).row(["＝x".into()]).csv();
+        assert_eq!(formula, "'=1+1\n'@x\n-\n'＝x\n");
         let third = Table::new("").column("a", "m").row([(1.0f64 / 3.0).into()]).csv();
         assert_eq!(third.lines().nth(1).unwrap().parse::<f64>().unwrap(), 1.0 / 3.0);
     }

@@ -60,6 +60,14 @@ pub fn write(records: &[Record], separator: char, out: &mut impl Write) -> Resul
     out.write_all(text.as_bytes()).map_err(failed)
 }
 
+/// What a spreadsheet takes for the beginning of a formula, or of a command to another program.
+const FORMULA: [char; 9] = ['=', '+', '-', '@', '|', '＝', '＋', '－', '＠'];
+
+/// Whether a spreadsheet would take a text for a formula; a sign alone is none.
+pub fn begins_formula(text: &str) -> bool {
+    text.starts_with(FORMULA) && text.chars().nth(1).is_some()
+}
+
 /// Bytes that are written at once.
 const BLOCK: usize = 64 * 1024;
 
@@ -70,8 +78,7 @@ fn column(index: usize, record: &Record) -> (&Record, String, String) {
     if name.is_empty() {
         name = format!("record {}", index + 1);
     }
-    // A spreadsheet takes what begins so for a formula.
-    if name.starts_with(['=', '+', '-', '@']) {
+    if begins_formula(&name) {
         name.insert(0, '\'');
     }
     // Square brackets end where the unit ends.
