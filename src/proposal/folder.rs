@@ -4,7 +4,7 @@ use super::{KeyStatus, Table};
 use crate::analysis::{self, Progress, Recordings};
 use crate::campaign::{Campaign, Reading};
 use crate::error::{Error, Result};
-use crate::read::{Folder, Header, SweepList};
+use crate::read::{Folder, Header, MAGNITUDE, SweepList};
 use crate::record::{Fact, shown};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
@@ -208,7 +208,7 @@ impl FileSeries {
 
     /// The components of a channel that is the length of a vector: without a sign its tones are doubled.
     pub(super) fn components(&self, k: usize) -> Option<&str> {
-        let found = self.headers[k].findings.iter().find(|found| found.code == "magnitude")?;
+        let found = self.headers[k].findings.iter().find(|found| found.code == MAGNITUDE)?;
         match found.fact("components")? {
             Fact::Name(names) => Some(names),
             _ => None,

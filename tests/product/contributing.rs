@@ -1,22 +1,8 @@
 //! What CONTRIBUTING.md names is there: who follows it finds each file and each word of the code.
 
+use super::layers::files;
 use std::fs;
-use std::path::Path;
-
-/// Files of the project below `folder`, as paths from its root with a stroke in front.
-fn files(root: &Path, folder: &str, found: &mut Vec<String>) {
-    for entry in fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap()) {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let path = format!("{folder}/{name}");
-        if entry.file_type().unwrap().is_dir() {
-            if !["target", "node_modules", ".git", "pkg"].contains(&name.as_str()) {
-                files(root, &path[..], found);
-            }
-        } else {
-            found.push(path);
-        }
-    }
-}
+use std::path::{Path, PathBuf};
 
 /// Whether a text between backticks is a path, and not a command or a piece of text.
 fn is_path(name: &str) -> bool {
@@ -28,14 +14,15 @@ fn is_path(name: &str) -> bool {
 fn what_is_named_is_there() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(root.join("CONTRIBUTING.md")).unwrap();
-    let mut paths = Vec::new();
-    files(root, ".", &mut paths);
+    // From the root, with a stroke in front.
+    let shown = |path: PathBuf| format!("/{}", path.strip_prefix(root).unwrap().display());
+    let paths: Vec<String> = files(root).into_iter().map(shown).collect();
     let source = |path: &&String| {
         [".rs", ".toml", ".js", ".ci/run"].iter().any(|end| path.ends_with(end))
             && !path.ends_with("/contributing.rs")
     };
     let code: Vec<String> =
-        paths.iter().filter(source).map(|path| fs::read_to_string(root.join(path)).unwrap()).collect();
+        paths.iter().filter(source).map(|path| fs::read_to_string(root.join(&path[1..])).unwrap()).collect();
     let named: Vec<&str> = text.split('`').skip(1).step_by(2).filter(|name| !name.contains("NAME")).collect();
     let (mut missing, mut seen) = (Vec::new(), [0, 0]);
     for name in named {

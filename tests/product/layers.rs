@@ -6,16 +6,28 @@ use std::path::{Path, PathBuf};
 
 /// The flow, left to right.
 const FLOW: [&str; 6] = ["report", "campaign", "compare", "analysis", "proposal", "cli"];
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).expect("a folder of sources") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            found.push(path);
+
+/// All files below a folder that a person wrote.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let below = |entry: fs::DirEntry| {
+        let (path, name) = (entry.path(), entry.file_name());
+        match entry.file_type().expect("a type").is_dir() {
+            true if ["target", "node_modules", ".git", "pkg"].iter().any(|made| name == *made) => Vec::new(),
+            true => files(&path),
+            false => vec![path],
         }
-    }
+    };
+    fs::read_dir(folder).expect("a folder").flat_map(|entry| below(entry.expect("an entry"))).collect()
 }
+
+/// The sources of these folders of the project.
+fn sources(folders: &[&str]) -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let all = folders.iter().flat_map(|folder| files(&root.join(folder)));
+    all.filter(|path| path.extension().is_some_and(|e| e == "rs")).collect()
+}
+
+const ALL: [&str; 4] = ["src", "crates", "tests", "examples"];
 
 /// Top-level modules that a text of code names behind `crate::` with their line numbers, lists over several
 /// lines included. Comments do not count.
@@ -54,8 +66,7 @@ fn used(code: &str) -> Vec<(usize, String)> {
 #[test]
 fn no_arrow_runs_back() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut files = Vec::new();
-    sources(&src, &mut files);
+    let files = sources(&["src"]);
     assert!(files.len() > 30, "only {} files found: is this the right folder?", files.len());
     let mut wrong = Vec::new();
     for file in files {
@@ -95,11 +106,7 @@ fn the_test_sees_an_arrow() {
 /// Comments are read beside code, which `rustfmt.toml` holds to as many columns.
 #[test]
 fn comments_fit_the_width_of_code() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut files = Vec::new();
-    for folder in ["src", "crates", "tests", "examples"] {
-        sources(&root.join(folder), &mut files);
-    }
+    let files = sources(&ALL);
     let mut wide = Vec::new();
     for file in &files {
         let text = fs::read_to_string(file).unwrap();
@@ -114,11 +121,7 @@ fn comments_fit_the_width_of_code() {
 /// Each definition of a median would answer differently for none and for an even number.
 #[test]
 fn medians_and_quantiles_are_defined_once() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut files = Vec::new();
-    for folder in ["src", "crates", "tests", "examples"] {
-        sources(&root.join(folder), &mut files);
-    }
+    let mut files = sources(&ALL);
     files.retain(|file| {
         let text = fs::read_to_string(file).unwrap();
         let free = |line: &str| {
@@ -127,5 +130,5 @@ fn medians_and_quantiles_are_defined_once() {
         };
         text.lines().any(free)
     });
-    assert_eq!(files, [root.join("crates/vibro-record/src/order.rs")]);
+    assert_eq!(files, [Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/vibro-record/src/order.rs")]);
 }

@@ -140,13 +140,10 @@ pub fn from_values(
         let found = found.number("smallest", smallest).number("largest", largest);
         Some(found.count("long", long).count("n", n - 1))
     };
+    let between_gaps = if time && clock.is_none() { stretches(&values, resolution) } else { Vec::new() };
     // One stretch that holds all instants has no gap beside it, and none in it where it is calm.
-    let whole = || {
-        let all = stretches(&values, resolution);
-        let clock = all.first().filter(|stretch| stretch.samples == (0..n)).map(|stretch| stretch.clock);
-        clock.filter(|clock| clock.jitter <= CALM * clock.step)
-    };
-    let clock = clock.or_else(|| if time { whole() } else { None });
+    let whole = between_gaps.first().filter(|stretch| stretch.samples == (0..n)).map(|stretch| stretch.clock);
+    let clock = clock.or(whole.filter(|clock| clock.jitter <= CALM * clock.step));
     let kept = resampled && clock.is_some_and(|clock| clock.jitter > 0.0) && smallest > 0.0;
     if let Some(clock) = clock.filter(|_| !kept) {
         let found = clock.finding(what);
@@ -156,9 +153,9 @@ pub fn from_values(
     }
     // Several samples within one printed digit have one time.
     let rises = smallest > 0.0 || (smallest == 0.0 && !is_fine(resolution, mean));
-    let gaps = between_gaps(&values, resolution, if rises { "samples-lost" } else { "axis-backwards" });
+    let gaps = with_gaps(&between_gaps, if rises { "samples-lost" } else { "axis-backwards" });
     let code = if smallest > 0.0 { "axis-uneven" } else { "axis-backwards" };
-    let found = gaps.filter(|_| time).unwrap_or_else(|| Finding::caution(code));
+    let found = gaps.unwrap_or_else(|| Finding::caution(code));
     let found = if kept { None } else { said(found) };
     JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found }
 }
@@ -168,9 +165,8 @@ pub fn from_values(
 const CALM: f64 = 0.1;
 
 /// What is said, under this code, of times with even stretches between lost samples, pauses or restarts.
-fn between_gaps(instants: &[f64], resolution: f64, code: &'static str) -> Option<Finding> {
-    let all = stretches(instants, resolution);
-    let (number, longest) = Stretch::longest(&all)?;
+fn with_gaps(all: &[Stretch], code: &'static str) -> Option<Finding> {
+    let (number, longest) = Stretch::longest(all)?;
     let (rate, std) = longest.clock.rate();
     let found = Finding::caution(code).count("stretches", all.len()).count("longest", number);
     let found = found.number("duration", longest.duration()).number("start", longest.clock.start);

@@ -80,6 +80,7 @@ pub mod write;
 pub use folder::{Digest, Folder, Lock, Manifest, Occupant, Owner, Staged, Walk, listed, plain};
 pub use format::Format;
 pub use limit::Limit;
+pub use magnitude::MAGNITUDE;
 pub use reader::{Header, Reader, Recording};
 pub use steps::Steps;
 pub use sweep::SweepReader;

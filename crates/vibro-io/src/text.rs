@@ -8,6 +8,7 @@
 
 mod axis;
 mod clock;
+mod column;
 pub(crate) mod decoded;
 mod dialect;
 pub(crate) mod encoding;

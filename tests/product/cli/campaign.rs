@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use vibroimpact::math::Noise;
 
 /// Runs a campaign of this text in a folder; gives exit code and results.
 fn run(folder: &Path, campaign: &str) -> (i32, Value) {
@@ -21,13 +22,12 @@ fn run(folder: &Path, campaign: &str) -> (i32, Value) {
 
 /// Force (noise) and the velocity of an oscillator of 60 Hz and ζ = 0.02 that it drives, 1024 Hz.
 fn bench(folder: &Path) {
-    let (mut state, mut table) = (7u64, String::from("time [s],force [N],velocity [m/s]\n"));
+    let (mut noise, mut table) = (Noise::new(7), String::from("time [s],force [N],velocity [m/s]\n"));
     let (w, zeta, dt) = (TAU * 60.0, 0.02, 1.0 / 1024.0);
     // x' = v, v' = f − 2ζω v − ω² x with a force that is constant over sixteen steps of a sample.
     let (mut x, mut v) = (0.0, 0.0);
     for i in 0..30_000 {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let force = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+        let force = noise.between(-0.5, 0.5);
         let _ = writeln!(table, "{:.9},{force:.9},{v:.9e}", f64::from(i) * dt);
         for _ in 0..16 {
             v += dt / 16.0 * (force - 2.0 * zeta * w * v - w * w * x);

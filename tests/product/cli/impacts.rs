@@ -3,6 +3,7 @@
 use super::{complaint, json, vibro};
 use serde_json::Value;
 use std::fmt::Write as _;
+use vibroimpact::math::Noise;
 
 fn trace(case: &str) -> String {
     format!("{}/fixtures/reference/scripts/timeav_{case}/TRACE01.DAT", env!("CARGO_MANIFEST_DIR"))
@@ -125,11 +126,10 @@ fn impacts_are_matched_to_a_shape_that_is_known() {
     // Pulses of 0.3 ms standard deviation at odd times, 10 kHz; their shape at 50 kHz.
     let pulse = |t: f64| (-0.5 * (t / 3e-4).powi(2)).exp();
     let times: Vec<f64> = (0..12).map(|k| 0.05 + 0.100_037 * f64::from(k)).collect();
-    let mut state = 5u64;
+    let mut noise = Noise::new(5);
     let mut trace = String::from("time [s],contact [V]\n");
     for i in 0..12_500 {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let noise = 2e-3 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+        let noise = noise.between(-1e-3, 1e-3);
         let t = f64::from(i) * 1e-4;
         let value = 3.0 * times.iter().map(|at| pulse(t - at)).sum::<f64>() + 3.0 * noise;
         let _ = writeln!(trace, "{t:.4},{value:.6}");

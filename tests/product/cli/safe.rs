@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
+use vibroimpact::math::Noise;
 
 /// Commands that write into a folder, behind a recording of an example where they read one.
 const COMMANDS: [(&str, &[&str]); 19] = [
@@ -446,19 +447,20 @@ mod on_unix {
         let whole = Instant::now();
         assert!(run(1).wait().unwrap().success());
         let whole = whole.elapsed().as_micros() as u64;
-        let (mut state, mut during) = (1u64, 0);
+        let (mut noise, mut during) = (Noise::new(1), 0);
         for kill in 0..times {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let chance = state >> 33;
+            let part = noise.uniform();
             let (mut child, began) = (run((kill % 2) as usize), Instant::now());
             let mark = out.join("INCOMPLETE.txt");
             if kill / 2 % 2 == 0 {
                 while !mark.exists() && child.try_wait().unwrap().is_none() {}
-                let more = Duration::from_micros(chance % 2000);
+                let more = Duration::from_micros((2000.0 * part) as u64);
                 let at = Instant::now();
                 while at.elapsed() < more {}
             } else {
-                std::thread::sleep(Duration::from_micros(chance % whole).saturating_sub(began.elapsed()));
+                std::thread::sleep(
+                    Duration::from_micros((whole as f64 * part) as u64).saturating_sub(began.elapsed()),
+                );
             }
             let _ = child.kill();
             child.wait().unwrap();

@@ -5,14 +5,12 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use vibroimpact::math::Noise;
 
 /// Force (noise) and velocity (its copy two samples later, doubled) with a sine of 64 Hz; 1024 Hz.
 fn bench(folder: &Path) -> PathBuf {
-    let (mut state, mut force) = (1u64, Vec::new());
-    for _ in 0..20_000 {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        force.push((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
-    }
+    let mut noise = Noise::new(1);
+    let force: Vec<f64> = (0..20_000).map(|_| noise.between(-0.5, 0.5)).collect();
     let mut table = String::from("time [s],force [N],velocity [mm/s]\n");
     for i in 20..force.len() {
         let t = (i - 20) as f64 / 1024.0;

@@ -5,12 +5,10 @@
 //! 12:00:00.001   12:00:00:001   00:01.5   0.5 sec   and date, time and milliseconds in cells side by side
 //! ```
 
+use crate::assemble::DAY;
 use crate::number;
 use std::borrow::Cow;
 use std::ops::Range;
-
-/// Seconds of a day.
-const DAY: f64 = 86_400.0;
 
 const MONTHS: [&str; 12] =
     ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];

@@ -5,7 +5,7 @@ use super::lines::Separator;
 use super::unit_words::{
     COUNTERS, DAY, HOUR, amplitude, bare_unit, is_angular, is_decibel, is_unit_row, symbol,
 };
-use crate::assemble::{domain, kind_of};
+use crate::assemble::{self, domain, kind_of};
 use crate::number;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Error, Finding, Result};
@@ -115,7 +115,9 @@ impl Name {
             };
             return Ok((1.0, Some(assumed.name("unit", domain(kind).1))));
         };
-        if let Some((_, factor)) = [(HOUR, 3600.0), (DAY, 86_400.0)].iter().find(|(long, _)| text == long) {
+        if let Some((_, factor)) =
+            [(HOUR, 3600.0), (DAY, assemble::DAY)].iter().find(|(long, _)| text == long)
+        {
             return Ok((*factor, None));
         }
         let unit = Unit::parse(text).ok_or_else(|| {

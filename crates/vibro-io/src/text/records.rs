@@ -1,6 +1,7 @@
 //! Columns to records: abscissa, units, complex pairs.
 
 use super::axis::{PrintedAbscissa, choose};
+use super::column::{Column, repeats};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
@@ -8,7 +9,7 @@ use super::names::{ComplexPart, Name};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
-use crate::assemble::{self, JudgedAxis, NOMINAL, Spectral, domain, from_values, kind_of, short};
+use crate::assemble::{self, JudgedAxis, NOMINAL, Spectral, domain, from_values, short};
 use crate::held::Held;
 use crate::{Format, Options, level, number};
 use num_complex::Complex64;
@@ -16,9 +17,7 @@ use std::borrow::Cow;
 use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::units::notation::counted;
-use vibro_record::{
-    Axis, AxisKind, Clock, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window,
-};
+use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Record, Result, Scaling, Values, Window};
 
 /// Records of all columns but the abscissa; findings about the file as a whole are added.
 ///
@@ -137,21 +136,6 @@ pub fn build(
     Ok(built)
 }
 
-/// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
-const REPEATS: f64 = 0.05;
-
-/// How many of the first rows, of how many, repeat the one before in all of several columns, where these are
-/// alone, between rows that differ: a motion that rests, or coarse digits, repeat many in a row.
-fn repeats(table: &[Column]) -> Option<(usize, usize)> {
-    let measured = table.iter().filter(|column| !column.rises());
-    let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();
-    let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
-    let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
-    let all = (1..n).filter(|i| again(*i)).count();
-    let alone = (2..n - 1).filter(|i| again(*i) && !again(i - 1) && !again(i + 1)).count();
-    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some((all, n))
-}
-
 /// The record of a column, and how its values are read again.
 pub struct Built {
     pub record: Record,
@@ -161,76 +145,6 @@ pub struct Built {
     pub at: usize,
     /// Takes values as they are written to SI units.
     pub factor: f64,
-}
-
-struct Column {
-    /// Place in the row, counted from 1.
-    at: usize,
-    name: Name,
-    values: Held,
-    /// First row and distance of its rows, where it has a value in some only.
-    sparse: Option<(usize, usize)>,
-}
-
-impl Column {
-    /// Its values, of complex ones the real parts; none that were not held.
-    fn reals(&self) -> Cow<'_, [f64]> {
-        match &self.values {
-            Held::Values(Values::Complex(values)) => values.iter().map(|v| v.re).collect(),
-            held => held.reals().into(),
-        }
-    }
-
-    fn rises(&self) -> bool {
-        !matches!(self.values, Held::Ends(_)) && self.reals().windows(2).all(|w| w[1] > w[0])
-    }
-
-    /// Whether it rises as a clock or a counter does, and has no unit of anything else.
-    fn rises_evenly(&self) -> bool {
-        let unit = self.name.unit.as_deref();
-        let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
-        let values = Some(self.values.reals()).filter(|values| !other && values.len() > 10);
-        // Ends with the first step that is another: long records hold it soon.
-        let even = |(low, high): (f64, f64), step: f64| {
-            let (low, high) = (low.min(step), high.max(step));
-            (low > 0.0 && high <= 2.0 * low).then_some((low, high))
-        };
-        let steps =
-            |values: &[f64]| values.windows(2).map(|w| w[1] - w[0]).try_fold((f64::INFINITY, 0.0), even);
-        values.is_some_and(|values| {
-            steps(values)
-                .is_some_and(|(low, high)| high - low <= 1e-3 * high || Clock::of(values, 0.0).is_some())
-        })
-    }
-
-    /// Whether it is the seconds of a clock whose date stands in `axis`: the same instants, from another
-    /// start and in other units.
-    fn is_clock_of(&self, axis: &Column) -> bool {
-        let seconds = self.name.name == "time" && self.name.unit.as_deref() == Some("s");
-        let (own, other) = (self.reals(), axis.reals());
-        let time = seconds && axis.name.unit.is_none() && axis.name.axis(true) == Some(AxisKind::Time);
-        let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
-        let factor = (last - first) / (other[other.len() - 1] - other[0]);
-        let seconds = [1.0, 1e-3, 1e-6, 1e-9].iter().any(|unit| (factor / unit - 1.0).abs() < 1e-3);
-        // Nanoseconds since 1970 are whole in steps of 256.
-        let most = 1e-2 * (last - first) / own.len() as f64;
-        let off = |(v, t): (&f64, &f64)| ((v - first) - factor * (t - other[0])).abs();
-        time && seconds
-            && own.len() == other.len()
-            && own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
-    }
-
-    fn counts(&self) -> bool {
-        let values = self.reals();
-        let first = values.first().copied().unwrap_or(0.0);
-        self.name.counts()
-            && !matches!(self.values, Held::Ends(_))
-            && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
-    }
-
-    fn label(&self) -> String {
-        if self.name.name.is_empty() { format!("column {}", self.at) } else { self.name.name.clone() }
-    }
 }
 
 /// What all records share.

@@ -4,7 +4,7 @@ use super::Array;
 use super::names::Meaning::{Increment, Rate, Start};
 use super::names::Trust::{Likely, Offered, Sure, Vague};
 use super::names::{Dialect, Meaning, Scoped, Trust, UNIT, X_UNIT};
-use crate::assemble::{JudgedAxis, drift, epoch, from_values, kind_of, short};
+use crate::assemble::{DAY, JudgedAxis, drift, epoch, from_values, kind_of, short};
 use crate::held::Held;
 use crate::number;
 use crate::options::{Options, POSSIBLE};
@@ -47,7 +47,7 @@ fn kind(
             let (first, last) = (values[0], values[values.len() - 1]);
             let step = (last - first) / (values.len() - 1) as f64;
             let days = !dialect.attributes && DATENUM.contains(&first) && step < 1.0;
-            let days = days.then_some(("axis-unit-assumed", "d", 86_400.0));
+            let days = days.then_some(("axis-unit-assumed", "d", DAY));
             let dated = epoch(first).map(|(unit, factor)| ("axis-epoch", unit, factor)).or(days);
             if let Some((code, unit, factor)) = dated {
                 return Some((kind, [first, factor], Some(Finding::caution(code).name("unit", unit))));

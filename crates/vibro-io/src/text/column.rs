@@ -1,0 +1,94 @@
+//! One column of a text, and what its values tell of it.
+
+use super::names::Name;
+use crate::assemble::kind_of;
+use crate::held::{Held, rises};
+use std::borrow::Cow;
+use vibro_record::units::Unit;
+use vibro_record::{AxisKind, Clock, Values};
+
+/// A column of a text.
+pub struct Column {
+    /// Place in the row, counted from 1.
+    pub at: usize,
+    pub name: Name,
+    pub values: Held,
+    /// First row and distance of its rows, where it has a value in some only.
+    pub sparse: Option<(usize, usize)>,
+}
+
+impl Column {
+    /// Its values, of complex ones the real parts; none that were not held.
+    pub fn reals(&self) -> Cow<'_, [f64]> {
+        match &self.values {
+            Held::Values(Values::Complex(values)) => values.iter().map(|v| v.re).collect(),
+            held => held.reals().into(),
+        }
+    }
+
+    pub fn rises(&self) -> bool {
+        !matches!(self.values, Held::Ends(_)) && rises(&self.reals())
+    }
+
+    /// Whether it rises as a clock or a counter does, and has no unit of anything else.
+    pub fn rises_evenly(&self) -> bool {
+        let unit = self.name.unit.as_deref();
+        let other = unit.is_some_and(|unit| Unit::parse(unit).is_none_or(|unit| kind_of(&unit).is_none()));
+        let values = Some(self.values.reals()).filter(|values| !other && values.len() > 10);
+        // Ends with the first step that is another: long records hold it soon.
+        let even = |(low, high): (f64, f64), step: f64| {
+            let (low, high) = (low.min(step), high.max(step));
+            (low > 0.0 && high <= 2.0 * low).then_some((low, high))
+        };
+        let steps =
+            |values: &[f64]| values.windows(2).map(|w| w[1] - w[0]).try_fold((f64::INFINITY, 0.0), even);
+        values.is_some_and(|values| {
+            steps(values)
+                .is_some_and(|(low, high)| high - low <= 1e-3 * high || Clock::of(values, 0.0).is_some())
+        })
+    }
+
+    /// Whether it is the seconds of a clock whose date stands in `axis`: the same instants, from another
+    /// start and in other units.
+    pub fn is_clock_of(&self, axis: &Column) -> bool {
+        let seconds = self.name.name == "time" && self.name.unit.as_deref() == Some("s");
+        let (own, other) = (self.reals(), axis.reals());
+        let time = seconds && axis.name.unit.is_none() && axis.name.axis(true) == Some(AxisKind::Time);
+        let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
+        let factor = (last - first) / (other[other.len() - 1] - other[0]);
+        let seconds = [1.0, 1e-3, 1e-6, 1e-9].iter().any(|unit| (factor / unit - 1.0).abs() < 1e-3);
+        // Nanoseconds since 1970 are whole in steps of 256.
+        let most = 1e-2 * (last - first) / own.len() as f64;
+        let off = |(v, t): (&f64, &f64)| ((v - first) - factor * (t - other[0])).abs();
+        time && seconds
+            && own.len() == other.len()
+            && own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
+    }
+
+    pub fn counts(&self) -> bool {
+        let values = self.reals();
+        let first = values.first().copied().unwrap_or(0.0);
+        self.name.counts()
+            && !matches!(self.values, Held::Ends(_))
+            && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
+    }
+
+    pub fn label(&self) -> String {
+        if self.name.name.is_empty() { format!("column {}", self.at) } else { self.name.name.clone() }
+    }
+}
+
+/// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
+const REPEATS: f64 = 0.05;
+
+/// How many of the first rows, of how many, repeat the one before in all of several columns, where these are
+/// alone, between rows that differ: a motion that rests, or coarse digits, repeat many in a row.
+pub fn repeats(table: &[Column]) -> Option<(usize, usize)> {
+    let measured = table.iter().filter(|column| !column.rises());
+    let columns: Vec<&[f64]> = measured.map(|column| column.values.opening()).collect();
+    let n = columns.iter().map(|values| values.len()).min().filter(|n| columns.len() > 1 && *n > 100)?;
+    let again = |i: usize| columns.iter().all(|values| values[i] == values[i - 1]);
+    let all = (1..n).filter(|i| again(*i)).count();
+    let alone = (2..n - 1).filter(|i| again(*i) && !again(i - 1) && !again(i + 1)).count();
+    (all as f64 > REPEATS * n as f64 && 10 * alone > 9 * all && 2 * all < n).then_some((all, n))
+}
