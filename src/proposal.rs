@@ -50,6 +50,8 @@ pub struct Table {
     pub guess: bool,
     /// Its keys in order.
     pub rows: Vec<TableKey>,
+    /// Why its records give no answer yet, and what to try; empty where they do.
+    pub refused: String,
 }
 
 /// A key of a table.
@@ -93,7 +95,8 @@ impl KeyStatus {
 impl Table {
     /// A table without keys.
     fn new(section: &'static str, about: &'static str, files: &str) -> Table {
-        Table { section, about, files: files.to_owned(), guess: false, rows: Vec::new() }
+        let (files, refused) = (files.to_owned(), String::new());
+        Table { section, about, files, guess: false, rows: Vec::new(), refused }
     }
 
     /// The same, where what the files are is a guess.
@@ -200,7 +203,10 @@ impl Table {
                 KeyStatus::Missing(what) => writeln!(text, "{row:wide$}   # missing: {what}{}", said(one)),
             };
         }
-        let about = format!("# {}\n", shown(self.in_words()));
+        let mut about = format!("# {}\n", shown(self.in_words()));
+        if !self.refused.is_empty() {
+            let _ = writeln!(about, "# {}", shown(&self.refused));
+        }
         if !self.lacks() {
             return about + &text;
         }

@@ -117,7 +117,8 @@ pub(crate) fn unwritten(error: serde_json::Error) -> Error {
 /// The finding that a record gave no answer, under this code.
 pub fn left_out(code: &'static str, error: &Error) -> Finding {
     let found = Finding::caution(code).name("why", error.why().trim_end_matches('.'));
-    let keys: Vec<String> = error.settings().map(|key| Voice::Campaign.setting(key)).collect();
+    let found = error.code().into_iter().fold(found, |found, code| found.name("refusal", code));
+    let keys = error.settings_with(|key, value| Voice::Campaign.set(key, value));
     let keys = if keys.is_empty() { String::new() } else { format!(" ({})", keys.join(", ")) };
     if error.advice().is_empty() { found } else { found.name("hint", error.advice().to_owned() + &keys) }
 }

@@ -10,7 +10,7 @@ use super::{Analysis, AnalysisKind, Answer, KINDS, faults, files as files_of, pa
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;
-use crate::record::{Fact, Finding};
+use crate::record::Finding;
 use crate::report::Picture;
 use crate::report::files::Names;
 use crate::report::words::{About, Voice, put};
@@ -308,7 +308,8 @@ fn size(answer: &Answer) -> [usize; 4] {
     [answer.tables.len(), answer.figures.len(), answer.details.len(), answer.findings.len()]
 }
 
-/// Measures the records of a campaign without a report; where none answers, the reason.
+/// Measures the records of a campaign without a report; where none answers, the finding that says why, if one
+/// does.
 ///
 /// # Errors
 /// As [`run`].
@@ -316,7 +317,7 @@ pub fn answers(
     campaign: &Campaign,
     kept: &AnswerCache,
     progress: &dyn Progress,
-) -> Result<std::result::Result<Answer, String>> {
+) -> Result<std::result::Result<Answer, Option<Finding>>> {
     let mut job = Job::new(campaign, kept, progress);
     for kind in KINDS {
         (kind.run)(&mut job)?;
@@ -324,11 +325,8 @@ pub fn answers(
     if job.answers > 0 {
         return Ok(Ok(job.found));
     }
-    let why = job.found.findings.iter().find_map(|(_, finding)| match finding.fact("why") {
-        Some(Fact::Name(why)) => Some(why.clone()),
-        _ => None,
-    });
-    Ok(Err(why.unwrap_or_else(|| "no answer".to_owned())))
+    let mut findings = job.found.findings.into_iter().map(|(_, finding)| finding);
+    Ok(Err(findings.find(|finding| finding.fact("why").is_some())))
 }
 
 /// What a campaign gave.

@@ -128,6 +128,9 @@ pub fn tell(proposal: &Proposal) {
         series.push((table.section, table.name()));
         let filled = if table.lacks() { ", left out until it is filled in" } else { "" };
         complain::line(&format!("{} -> [[{}]]{filled}", table.in_words(), table.section));
+        if !table.refused.is_empty() {
+            complain::line(&format!("  {}", table.refused));
+        }
         for TableKey { key, value, known } in &table.rows {
             match known {
                 KeyStatus::Found | KeyStatus::Open(_) => {}

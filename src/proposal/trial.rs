@@ -3,11 +3,12 @@
 use super::alike::{CHANNELS, share};
 use super::folder::{FileSeries, short};
 use super::found::FoundTables;
-use super::{Proposal, Table};
+use super::{KeyStatus, Proposal, Table};
 use crate::analysis::{self, Answer, AnswerCache, Evidence};
 use crate::campaign::Reading;
+use crate::measure::restitution::Train;
 use crate::read::{Folder, Header};
-use crate::record::{Record, Severity};
+use crate::record::{Fact, Finding, Record, Severity};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
@@ -51,6 +52,28 @@ pub(super) const STEPS: usize = 5;
 /// work and 80 bytes each in memory.
 const VALUES: usize = 1 << 27;
 
+/// Why records give no answer.
+#[derive(Debug, Default)]
+struct Refusal {
+    /// In words.
+    why: String,
+    /// What to try; empty where nothing would help.
+    hint: String,
+    /// Whether the records are drops all the same: their bounces are not told from other sounds.
+    drops: bool,
+}
+
+impl From<Option<Finding>> for Refusal {
+    fn from(found: Option<Finding>) -> Refusal {
+        let said = |name: &str| match found.as_ref().and_then(|found| found.fact(name)) {
+            Some(Fact::Name(said)) => said.clone(),
+            _ => String::new(),
+        };
+        let why = Some(said("why")).filter(|why| !why.is_empty()).unwrap_or_else(|| "no answer".to_owned());
+        Refusal { why, hint: said("hint"), drops: said("refusal") == Train::UNTOLD }
+    }
+}
+
 /// The table of a channel of a series, under a name.
 type Kind = fn(&FileSeries, usize, &str) -> Table;
 
@@ -64,12 +87,12 @@ pub(super) struct Trial<'a> {
 
 impl Trial<'_> {
     /// The answers of the records of tables; else why there is none.
-    fn answers(&self, tables: &[Table]) -> Result<Answer, String> {
+    fn answers(&self, tables: &[Table]) -> Result<Answer, Refusal> {
         let path = self.folder.root().join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml(&[])).collect();
         let answered =
             analysis::parse(self.folder, &path, text).and_then(|c| analysis::answers(&c, self.kept, &()));
-        answered.map_err(|error| short(&error))?
+        answered.map_err(|error| Refusal { why: short(&error), ..Refusal::default() })?.map_err(Refusal::from)
     }
 
     /// The first of the tables that answers sensibly and without a doubt.
@@ -208,7 +231,9 @@ impl Trial<'_> {
         if self.answers(from_ref(&pulse)).is_ok_and(alone) {
             return FoundTables::table(pulse);
         }
-        if let Some(table) = self.first(&others).or_else(|| self.unexplained(&others)) {
+        let first = self.first(&others);
+        let untold = self.untold(series, k, name).filter(|_| !first.as_ref().is_some_and(|t| self.is_one(t)));
+        if let Some(table) = untold.or(first).or_else(|| self.unexplained(&others)) {
             return FoundTables::table(table);
         }
         let table = series.channel_table(k, name, "spectrum", "a time record");
@@ -216,11 +241,30 @@ impl Trial<'_> {
         self.answering(table.open("tones", "", what))
     }
 
+    /// Whether the records of a table are one motion: a decay that is most of them, or impacts that repeat.
+    /// Each bounce of a fall rings down, too, and bounces are impacts in a row.
+    fn is_one(&self, table: &Table) -> bool {
+        let one = |of: &Evidence| match of {
+            Evidence::Impacts { regular, .. } => *regular,
+            _ => true,
+        };
+        self.answers(from_ref(table)).is_ok_and(|heard| !is_brief(&heard) && heard.evidence.iter().all(one))
+    }
+
+    /// The table of a drop whose bounces are not told from other sounds yet, with what to try.
+    fn untold(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
+        let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|refusal| refusal.drops)?;
+        let hint = if refusal.hint.is_empty() { String::new() } else { format!("; try: {}", refusal.hint) };
+        let table = series.bounces(k, name).missing("height", "0.5", HEIGHT);
+        let rows = table.rows.into_iter().filter(|row| !matches!(row.known, KeyStatus::Open(_))).collect();
+        Some(Table { rows, refused: refusal.why + &hint, ..table })
+    }
+
     /// A table that answers; else why its file does not.
     fn answering(&self, table: Table) -> FoundTables {
         match self.answers(from_ref(&table)) {
             Ok(_) => FoundTables::table(table),
-            Err(why) => FoundTables::left(table.files, why),
+            Err(refusal) => FoundTables::left(table.files, refusal.why),
         }
     }
 
@@ -379,7 +423,7 @@ fn is_brief(heard: &Answer) -> bool {
 fn sensible(tables: &[Table], heard: &Answer) -> bool {
     let rebound = tables.iter().any(Table::lacks);
     match heard.evidence.first() {
-        Some(Evidence::Impacts { n, missed }) => *n >= 3 && 4 * missed <= *n,
+        Some(Evidence::Impacts { n, missed, .. }) => *n >= 3 && 4 * missed <= *n,
         Some(Evidence::Drops { restitution, one_interval_each, .. }) => {
             *restitution <= LOSSLESS && (!rebound || *one_interval_each)
         }

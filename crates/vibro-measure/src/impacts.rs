@@ -85,8 +85,8 @@ pub struct Impacts {
 }
 
 /// Finds the impacts of `trace`, their mean interval, and what they repeat. Where the whole record shows
-/// none, or loses most in its noise, and no option says how to look for them: in the envelope of the octave
-/// in which they ring.
+/// none, or loses most in its noise, and no option says how to look for them: in what rises at once, as the
+/// sound of an impact does, or in the envelope of the octave in which they ring.
 ///
 /// # Errors
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the
@@ -103,28 +103,42 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     if shown || !open {
         return whole;
     }
-    ringing(trace, options).map_or(whole, Ok)
+    // All that rises at once; a record that rings is refused before.
+    let all = |sounds: &[Sound], _: f64, _: f64| Ok(((0..sounds.len()).collect(), Vec::new()));
+    let sounding = detect_among(trace, options, Some(&all));
+    if sounding.is_err() && rings(trace) {
+        return whole;
+    }
+    let sounding = sounding.and_then(|detected| of_detected(trace, options, detected)).ok().filter(repeats);
+    sounding.or_else(|| ringing(trace, options)).map_or(whole, Ok)
+}
+
+/// Whether the record swings: an envelope shows no swings, and that of two modes that beat looks like
+/// impacts.
+fn rings(trace: &Trace) -> bool {
+    let level = average(&trace.values);
+    let values: Vec<f64> = trace.values.iter().map(|v| v - level).collect();
+    trace.sampling_rate().is_ok_and(|rate| Swings::of(&values, rate, &[], 0.0).is_some())
+}
+
+/// Whether impacts that were sought beside the common way are steady and beyond doubt.
+fn repeats(found: &Impacts) -> bool {
+    let steady = found.spread.is_some_and(|spread| spread < REGULAR * found.median_interval);
+    let sure = found.findings.iter().all(|f| f.severity < Severity::Doubt);
+    steady && sure && MISSING * found.missed < found.n
 }
 
 /// The impacts of the octave in which they repeat best.
 fn ringing(trace: &Trace, options: &ImpactsOptions) -> Option<Impacts> {
-    // An envelope shows no swings, and that of two modes that beat looks like impacts.
-    let (rate, level) = (trace.sampling_rate().ok()?, average(&trace.values));
-    let values: Vec<f64> = trace.values.iter().map(|v| v - level).collect();
-    if Swings::of(&values, rate, &[], 0.0).is_some() {
-        return None;
-    }
     let inside = |band: (f64, f64)| {
         if !bands::is_impulsive(trace, band) {
             return None;
         }
         let own = ImpactsOptions { band: Some(band), envelope: true, ..options.clone() };
         let mut found = impacts_so(trace, &own).ok()?;
-        let steady = found.spread.is_some_and(|spread| spread < REGULAR * found.median_interval);
-        let sure = found.findings.iter().all(|f| f.severity < Severity::Doubt);
-        let all = found.n > TELLING && MISSING * found.missed < found.n;
         found.findings.insert(0, chosen(band));
-        (steady && sure && all).then_some((found.frequency.std? / found.frequency.value, found))
+        let shown = found.n > TELLING && repeats(&found);
+        shown.then_some((found.frequency.std? / found.frequency.value, found))
     };
     let each = octaves(trace.sampling_rate().ok()?).filter_map(inside);
     each.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
@@ -135,8 +149,12 @@ const MISSING: usize = 4;
 
 /// As [`impacts`], with these options alone.
 fn impacts_so(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
-    let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution, .. } =
-        detect(trace, options)?;
+    of_detected(trace, options, detect(trace, options)?)
+}
+
+/// The mean interval of impacts that were detected, and what they repeat.
+fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> Result<Impacts> {
+    let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution, .. } = detected;
     let stated = options.complete || options.refractory.is_some();
     if let Some(echoes) = echoes(&times, &heights).filter(|_| !stated) {
         let n = echoes.places.len();

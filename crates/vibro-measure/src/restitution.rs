@@ -8,6 +8,7 @@ mod fit;
 mod flights;
 mod plausible;
 mod train;
+mod untold;
 mod velocities;
 
 pub use drop::{Drop, GRAVITY};

@@ -30,6 +30,8 @@ struct Inner {
     hint: String,
     /// Keys of the settings that help, each with a value that can be tried, where one is known.
     settings: Vec<(&'static str, String)>,
+    /// Code of a refusal that others than a person read.
+    code: Option<&'static str>,
 }
 
 /// The three ways in which a request fails.
@@ -81,8 +83,8 @@ impl Place {
 
 impl Error {
     fn new(kind: Failure, place: Place, found: String, expected: String) -> Self {
-        let (excerpt, hint, settings) = (String::new(), String::new(), Vec::new());
-        Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings }))
+        let (excerpt, hint, settings, code) = (String::new(), String::new(), Vec::new(), None);
+        Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings, code }))
     }
 
     /// Input at `place` is not what it should be.
@@ -98,6 +100,17 @@ impl Error {
     /// The data or the parameters do not allow an answer.
     pub fn refused(why: impl Into<String>) -> Self {
         Error::new(Failure::Refused, Place::default(), why.into(), String::new())
+    }
+
+    /// Gives a refusal a code, by which programs tell it from others.
+    pub fn coded(mut self, code: &'static str) -> Self {
+        self.0.code = Some(code);
+        self
+    }
+
+    /// The code of a refusal that has one.
+    pub fn code(&self) -> Option<&'static str> {
+        self.0.code
     }
 
     /// The system refused `action` on `path`.
@@ -137,13 +150,18 @@ impl Error {
         self.0.settings.iter().map(|known| known.0)
     }
 
+    /// The settings that it is about, as `typed` says of a key and a value.
+    pub fn settings_with(&self, typed: impl Fn(&str, &str) -> String) -> Vec<String> {
+        self.0.settings.iter().map(|(key, value)| typed(key, value)).collect()
+    }
+
     /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as
     /// `--low-pass`.
     pub fn text_with(&self, typed: impl Fn(&str, &str) -> String) -> String {
         let Inner { place, excerpt, hint, settings, .. } = &*self.0;
         let what = self.what(place);
         let values = settings.iter().any(|(_, value)| !value.is_empty());
-        let settings: Vec<String> = settings.iter().map(|(key, value)| typed(key, value)).collect();
+        let settings = self.settings_with(typed);
         let advice = if hint.is_empty() && values {
             format!("\n  try: {}", settings.join(" "))
         } else {

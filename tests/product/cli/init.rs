@@ -112,6 +112,24 @@ fn each_record_of_a_folder_gets_the_table_of_its_kind() {
     assert_eq!(decays(&later), 1 + decays(&run));
 }
 
+/// Two drops in one record: the bounces of one are not told from those of the other.
+#[test]
+fn drops_whose_bounces_are_not_told_yet_are_drops_with_what_to_try() {
+    let root = tempfile::tempdir().unwrap();
+    let bounces = [0.3, 0.72, 1.014, 1.22, 2.3, 2.72, 3.014, 3.22];
+    let ring = |t: f64| if t < 0.0 { 0.0 } else { (-t / 7e-3).exp() * (7200.0 * t).cos() };
+    let mut sound = |t: f64| {
+        let each = bounces.iter().enumerate().map(|(k, at)| 0.7f64.powi((k % 4) as i32) * ring(t - at));
+        each.sum()
+    };
+    write(&root.path().join("two.csv"), "sound [V]", 8000.0, 3.75, &mut sound);
+    let answer = json(&["init", text(root.path())]);
+    assert_eq!(answer["missing"][0]["key"], "height", "{answer}");
+    let written = fs::read_to_string(root.path().join("campaign.toml")).unwrap();
+    let (_, refused) = written.split_once("two trains of bounces").expect("why it is left out");
+    assert!(refused.contains("`span = [") && refused.contains("#[[drop]]"), "{written}");
+}
+
 #[test]
 fn a_folder_runs_without_a_campaign_and_nothing_is_written_beside_its_files() {
     let root = tempfile::tempdir().unwrap();

@@ -20,6 +20,9 @@ const ENOUGH: usize = 4;
 /// Intervals between impacts that scatter more than delays by this factor are another thing than these: an
 /// echo keeps its delay however a machine jitters.
 const APART: f64 = 4.0;
+/// Quieter bursts behind each within [`LONGEST`] from which on chance alone has one at any delay before more
+/// than [`FEW`] of the impacts: no delay tells an echo then.
+const CROWD: f64 = FEW * LONGEST / (2.0 * SAME);
 
 /// Bursts that repeat impacts.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +41,7 @@ pub struct Echoes {
 pub fn echoes(times: &[f64], heights: &[f64]) -> Option<Echoes> {
     let mut impact = vec![true; times.len()];
     let (mut longest, mut off) = (0.0, Vec::new());
-    let mut pairs = pairs(times, heights);
+    let mut pairs = pairs(times, heights)?;
     while let Some((delay, quieter)) = repeated(times, &impact, &pairs) {
         let members = pairs.iter().filter(|pair| quieter.contains(&pair.1));
         off.extend(members.map(|pair| pair.2 - delay).filter(|off| off.abs() <= SAME));
@@ -55,16 +58,20 @@ pub fn echoes(times: &[f64], heights: &[f64]) -> Option<Echoes> {
     (longest > 0.0).then(|| Echoes { places: of(false), delay: longest, sure })
 }
 
-/// Bursts, quieter ones that follow them within the longest delay, and the delays in s.
-fn pairs(times: &[f64], heights: &[f64]) -> Vec<(usize, usize, f64)> {
+/// Bursts, quieter ones that follow them within the longest delay, and the delays in s; `None` where these
+/// are a crowd.
+fn pairs(times: &[f64], heights: &[f64]) -> Option<Vec<(usize, usize, f64)>> {
     let mut all = Vec::new();
     for (second, time) in times.iter().enumerate() {
         let before = (0..second).rev().take_while(|first| time - times[*first] < LONGEST);
         let louder = before.filter(|first| heights[second] < QUIETER * heights[*first]);
         all.extend(louder.map(|first| (first, second, time - times[first])));
+        if all.len() as f64 > CROWD * times.len() as f64 {
+            return None;
+        }
     }
     all.sort_by(|a, b| a.2.total_cmp(&b.2));
-    all
+    Some(all)
 }
 
 /// A delay of many `pairs`, sorted by it, and the bursts that are quieter there, if most of the others that

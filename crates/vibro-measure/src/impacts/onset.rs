@@ -21,6 +21,9 @@ pub struct Onset {
 const SHARP: f64 = 0.1;
 /// Fewer impacts than this are not averaged.
 const ENOUGH: usize = 8;
+/// So many pulses tell whether all are like their average: the share of them that is has a standard deviation
+/// of 3 %.
+const TELLING: usize = 256;
 
 /// First lobe of a burst, as its flanks show it.
 struct Lobe {
@@ -80,16 +83,22 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     let expected = |l: &Lobe| Onset { time: l.peak as f64 - rise, ..l.onset };
     let flanks: Vec<Onset> =
         lobes.iter().map(|l| if l.onset.time.is_finite() { l.onset } else { expected(l) }).collect();
-    let matched = averaged(values, &flanks, &span)?;
+    let near = |(m, flank): (&Option<Matched>, &Onset)| m.filter(|m| (m.time - flank.time).abs() < width);
     // A pulse is alike where its residual is noise, or little beside its height.
     let residual =
         |m: &Matched| (m.variance.sqrt() / (2.0 * sigma)).min(m.variance.sqrt() / (0.1 * m.height));
-    let near = |(m, flank): (&Option<Matched>, &Onset)| m.filter(|m| (m.time - flank.time).abs() < width);
-    let own: Vec<Option<Matched>> = matched.iter().zip(&flanks).map(near).collect();
-    let residuals: Vec<f64> = own.iter().map(|m| m.as_ref().map_or(f64::INFINITY, residual)).collect();
-    if median(&residuals) > 1.0 {
-        return None;
+    let alike = |flanks: &[Onset]| {
+        let matched = averaged(values, flanks, &span)?;
+        let own: Vec<Option<Matched>> = matched.iter().zip(flanks).map(near).collect();
+        let residuals = own.iter().map(|m| m.as_ref().map_or(f64::MAX, residual));
+        (median(residuals) <= 1.0).then_some((matched, own))
+    };
+    // Where a few are unlike their average the many are not matched.
+    if flanks.len() > TELLING {
+        let few = (0..TELLING).map(|k| flanks[k * flanks.len() / TELLING]);
+        alike(&few.collect::<Vec<Onset>>())?;
     }
+    let (matched, own) = alike(&flanks)?;
     // The noise from the residuals of all pulses, but for a few outliers.
     let mut left: Vec<f64> = matched.iter().flatten().map(|m| m.variance).collect();
     let most = 4.0 * median(&left);

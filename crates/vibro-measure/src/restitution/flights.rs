@@ -3,6 +3,7 @@
 use super::fit::{Flight, FlightNoise, TrainFit, fit, misfit};
 use super::{MethodAnswer, Train, above_zero, not_negative, repeated, together};
 use crate::Estimate;
+use crate::mean::average;
 use crate::residuals::chi_squared_at;
 use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Finding, Result};
@@ -61,6 +62,10 @@ pub(super) fn answer(
                     .number("interval", bad.log.exp())
                     .number("expected", expected),
             );
+        }
+        if let Some([first, last]) = changing(&flights) {
+            let found = Finding::caution("restitution-changes").count("train", train);
+            findings.push(found.number("first", first).number("last", last));
         }
         // A train of one flight has no ratio.
         if flights.len() > 1 {
@@ -127,6 +132,29 @@ fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
 
 /// Quantile 0.9995 of Student's t from 2 degrees of freedom on: what lies beyond is an outlier.
 const OUTSIDE: [f64; 9] = [31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59];
+
+/// R of the first and the last bounce by the straight line through ln R of each, where it rises or falls
+/// beyond chance (Student's quantile 0.9995 of its slope). Noise of the onsets, which makes neighbours differ,
+/// makes the slope seem less sure than it is.
+fn changing(flights: &[Flight]) -> Option<[f64; 2]> {
+    let ratio = |pair: &[Flight]| {
+        let places = (pair[1].place - pair[0].place) as f64;
+        (0.5 * (pair[0].place + pair[1].place) as f64, (pair[1].log - pair[0].log) / places)
+    };
+    let points: Vec<(f64, f64)> = flights.windows(2).map(ratio).collect();
+    let free = points.len().checked_sub(2)?;
+    let quantile = OUTSIDE.get(free.min(OUTSIDE.len() + 1).checked_sub(2)?)?;
+    let mean = |of: fn(&(f64, f64)) -> f64| average(&points.iter().map(of).collect::<Vec<f64>>());
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|p| of(p.0 - x, p.1 - y)).sum::<f64>();
+    let sxx = sum(&|x, _| x * x);
+    let slope = sum(&|x, y| x * y) / sxx;
+    let std = (sum(&|x, y| (y - slope * x).powi(2)) / free as f64 / sxx).sqrt();
+    let line = |at: f64| (y + slope * (at - x)).exp();
+    let ends = [points.first()?.0, points.last()?.0].map(line);
+    // What does not show in the third digit is rounding of what was typed.
+    (slope.abs() > quantile * std && (ends[1] / ends[0]).ln().abs() > 1e-2).then_some(ends)
+}
 
 /// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm:
 /// by the straight line through the logarithms, where the variance of a logarithm goes as Δt to −`power`.

@@ -1,9 +1,10 @@
 //! A train of bounces as it is heard: which of the sounds of a record are the bounces of one falling body.
 
 use super::plausible::{FallRecord, Plausible, SHADOW, plausible};
+use super::untold::Untold;
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use vibro_record::units::notation::{counted, quantity};
 use vibro_record::{Error, Finding, Result, Trace};
 
@@ -24,6 +25,9 @@ impl Train {
     /// Lowest bounce as a part of the median one.
     pub const THRESHOLD: f64 = 0.02;
 
+    /// Code of a refusal: there are sounds of bounces, and they do not tell which are those of one body.
+    pub const UNTOLD: &str = "bounces-untold";
+
     /// The bounces of a falling body, with its impacts: the most plausible train among what is heard. `full`
     /// is the flight in s that would follow the fall if R were 1, where the height is known.
     ///
@@ -31,13 +35,27 @@ impl Train {
     /// As those of [`crate::impacts::impacts`]; also where no train of two impacts is more plausible than all
     /// others.
     pub fn of(trace: &Trace, options: &ImpactsOptions, full: Option<f64>) -> Result<(Train, Detected)> {
+        let untold = RefCell::new(None);
+        Train::among(trace, options, full, &untold).map_err(|refused| match untold.take() {
+            Some(sounds) => Untold::advise(&sounds, refused, (trace, options, full)),
+            None => refused,
+        })
+    }
+
+    /// As [`Train::of`], without advice; what does not tell which sounds are bounces is left in `untold`.
+    pub(super) fn among(
+        trace: &Trace,
+        options: &ImpactsOptions,
+        full: Option<f64>,
+        untold: &RefCell<Option<Untold>>,
+    ) -> Result<(Train, Detected)> {
         let (start, rate) = (trace.axis.start(), trace.sampling_rate()?);
         let ends = (start, start + trace.values.len() as f64 / rate);
         // A record that rings is refused before anything is chosen.
         let heard = Cell::new(usize::MAX);
         let choose = |sounds: &[Sound], reach: f64, median: f64| {
             heard.set(sounds.len());
-            choose(sounds, FallRecord { reach, median, ends, full })
+            choose(sounds, FallRecord { reach, median, ends, full }, untold)
         };
         let mut found = detect_among(trace, options, Some(&choose));
         // Below the impacts may lie hum or slow levels that hide them.
@@ -80,8 +98,16 @@ fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Opt
 }
 
 /// The impacts among sounds, and what the others are.
-fn choose(sounds: &[Sound], heard: FallRecord) -> Result<(Vec<usize>, Vec<Finding>)> {
+fn choose(
+    sounds: &[Sound],
+    heard: FallRecord,
+    untold: &RefCell<Option<Untold>>,
+) -> Result<(Vec<usize>, Vec<Finding>)> {
     let n = sounds.len();
+    let refused = |why: String, train: &Plausible| {
+        untold.replace(Some(Untold { sounds: sounds.to_vec(), heard, train: train.clone() }));
+        Err(Error::refused(why).coded(Train::UNTOLD))
+    };
     let Some(train) = plausible(sounds, heard) else {
         let impacts = counted(n, "impact");
         let why = format!("{impacts} found, a drop has two or more: each rises at once and decays");
@@ -93,10 +119,10 @@ fn choose(sounds: &[Sound], heard: FallRecord) -> Result<(Vec<usize>, Vec<Findin
         let why = format!("{n} sounds follow each other evenly: the flights of bounces shrink");
         // Who states a height has a fall, and a voice over it.
         if heard.full.is_some() {
-            return Err(alone(Error::refused(why), sounds, heard));
+            return refused(why, &train);
         }
-        let hint = "`vibro impacts` for a machine; for a drop among voices the height of its fall";
-        return Err(Error::refused(why).hint(hint).setting("height"));
+        let hint = "`vibro impacts` for a machine; for a drop among voices the part with the bounces, or the height of its fall";
+        return Err(Error::refused(why).hint(hint).setting("span").setting("height"));
     }
     if let Some((i, j)) = train.rival {
         let time = |i: usize| sounds[i].time;
@@ -106,30 +132,14 @@ fn choose(sounds: &[Sound], heard: FallRecord) -> Result<(Vec<usize>, Vec<Findin
         let why = format!(
             "{n} sounds, and two trains of bounces among them are as likely: first flight {first} from {begin} on, or {other} from {later} on"
         );
-        let refused = Error::refused(why);
-        let delay = if ((time(b) - time(a)) / (time(j) - time(i)) - 1.0).abs() < SAME {
-            (time(i) - time(a)).abs()
-        } else {
-            (time(b) - time(a)).min(time(j) - time(i))
-        };
-        if let Some(threshold) = cure(sounds, heard, &train) {
-            return Err(refused
-                .hint("a threshold that leaves one of them, if what is quieter is no bounce")
-                .set("threshold", format!("{threshold:.2}")));
-        }
-        if let Some(pause) = pause(sounds, heard, delay) {
-            return Err(refused
-                .hint("a pause that leaves one of them, if what follows an impact within it is its echo")
-                .set("refractory", format!("{pause:.2}")));
-        }
-        return Err(alone(refused, sounds, heard));
+        return refused(why, &train);
     }
     let before = train.impacts[0];
     let other = n - train.impacts.len() - before - train.echoes;
     if train.impacts.len() == 2 && before + other > 0 {
         let others = counted(before + other, "other sound");
         let why = format!("one flight beside {others}: no second flight shows that it is that of a bounce");
-        return Err(alone(Error::refused(why), sounds, heard));
+        return refused(why, &train);
     }
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));
     let echoes = of("echoes-ignored", train.echoes).map(|found| found.number("delay", SHADOW));
@@ -143,78 +153,5 @@ pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
     (3..9).map(shown).find(|[a, b]| a != b).unwrap_or_else(|| shown(3))
 }
 
-/// The lowest threshold in hundredths from which on one train of three impacts or more is left, all of them
-/// impacts of the most plausible `train` of all sounds: what is found only without the quieter ones may be an
-/// echo.
-fn cure(sounds: &[Sound], heard: FallRecord, train: &Plausible) -> Option<f64> {
-    let thresholds = (1..100).rev().map(|hundredths| 0.01 * f64::from(hundredths));
-    let above = |threshold: f64| {
-        let high = sounds.iter().copied().filter(|s| s.height > threshold * heard.median);
-        (threshold, high.collect::<Vec<Sound>>())
-    };
-    let cures = |high: &[Sound]| {
-        let known = |i: &usize| train.impacts.iter().any(|k| sounds[*k] == high[*i]);
-        plausible(high, heard).is_some_and(|left| {
-            !left.even && left.rival.is_none() && left.impacts.len() > 2 && left.impacts.iter().all(known)
-        })
-    };
-    let few = thresholds.map(above).take_while(|(_, high)| high.len() < sounds.len().min(FEW));
-    let mut lowest = None;
-    for (threshold, high) in few {
-        match (cures(&high), lowest) {
-            (true, _) => lowest = Some(threshold),
-            (false, Some(_)) => break,
-            (false, None) => {}
-        }
-    }
-    lowest
-}
-
-/// What to try where sounds alone do not tell which are the bounces.
-fn alone(refused: Error, sounds: &[Sound], heard: FallRecord) -> Error {
-    let first = (1..sounds.len().min(CLAPS)).find(|first| are_told(&sounds[*first..], heard));
-    if let Some(first) = first {
-        let from = f64::midpoint(sounds[first - 1].time, sounds[first].time);
-        return refused
-            .hint("the part behind what is heard first, if that is a hand or a clap")
-            .set("span", format!("[{from:.2}, {:.2}]", heard.ends.1));
-    }
-    let cut = "cut the record to the bounces, or record again in quiet";
-    match heard.full {
-        None => refused
-            .hint("state the height of the fall, which tells them apart; or ".to_owned() + cut)
-            .setting("height"),
-        Some(_) => refused.hint(cut),
-    }
-}
-
-/// Whether one train of three impacts or more is told among sounds, or of two where the height is known,
-/// which holds their flight to be that of a bounce.
-fn are_told(sounds: &[Sound], heard: FallRecord) -> bool {
-    let enough = if heard.full.is_some() { 2 } else { 3 };
-    plausible(sounds, heard)
-        .is_some_and(|train| !train.even && train.rival.is_none() && train.impacts.len() >= enough)
-}
-
-/// Sounds before a fall that a part of the record may leave out.
-const CLAPS: usize = 4;
-
-/// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in
-/// place of it.
-const SAME: f64 = 0.05;
-
-/// A pause in s behind each impact, a half more than the `delay` of what follows it, that leaves one train of
-/// three impacts or more, or of two behind a fall from a known height.
-fn pause(sounds: &[Sound], heard: FallRecord, delay: f64) -> Option<f64> {
-    let pause = (150.0 * delay).ceil() / 100.0;
-    let mut kept: Vec<Sound> = Vec::new();
-    for sound in sounds {
-        if kept.last().is_none_or(|last| sound.time >= last.time + pause) {
-            kept.push(*sound);
-        }
-    }
-    (kept.len() < sounds.len() && are_told(&kept, heard)).then_some(pause)
-}
-
-/// Sounds among which a threshold is sought: what is as quiet as so many others is no bounce that stands out.
+/// Sounds among which a train is sought above a corner: in a band of steady noise sounds have no end.
 const FEW: usize = 32;

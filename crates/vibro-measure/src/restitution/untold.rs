@@ -1,0 +1,131 @@
+//! What to try where sounds do not tell which of them are the bounces of one body: each advice is tried before
+//! it is given.
+
+use super::Train;
+use super::plausible::{FallRecord, Plausible, plausible};
+use crate::impacts::{ImpactsOptions, Sound};
+use std::cell::RefCell;
+use vibro_record::{Error, Trace};
+
+/// Sounds before a fall that a part of the record may leave out.
+const CLAPS: usize = 4;
+
+/// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in
+/// place of it.
+const SAME: f64 = 0.05;
+
+/// Sounds among which a threshold is sought: what is as quiet as so many others is no bounce that stands out.
+const FEW: usize = 32;
+
+/// What a record was read with: its trace, the options, and the flight in s that would follow the fall if R
+/// were 1.
+type Read<'a> = (&'a Trace, &'a ImpactsOptions, Option<f64>);
+
+/// Sounds of a fall that do not tell which are the bounces.
+pub(super) struct Untold {
+    pub sounds: Vec<Sound>,
+    pub heard: FallRecord,
+    /// The most plausible train of all.
+    pub train: Plausible,
+}
+
+impl Untold {
+    /// The refusal with the first advice that was tried and tells the bounces.
+    pub fn advise(&self, refused: Error, read: Read<'_>) -> Error {
+        if let Some(threshold) = self.threshold(read) {
+            return refused
+                .hint("a threshold that leaves one of them, if what is quieter is no bounce")
+                .set("threshold", format!("{threshold:.2}"));
+        }
+        if let Some(pause) = self.pause(read) {
+            return refused
+                .hint("a pause that leaves one of them, if what follows an impact within it is its echo")
+                .set("refractory", format!("{pause:.2}"));
+        }
+        if let Some((from, to)) = self.part(read) {
+            return refused
+                .hint("the part behind what is heard first, if that is a hand or a clap")
+                .set("span", format!("[{from:.2}, {to:.2}]"));
+        }
+        let cut = "cut the record to the bounces, or record again in quiet";
+        match self.heard.full {
+            None => refused
+                .hint("state the height of the fall, which tells them apart; or ".to_owned() + cut)
+                .setting("height"),
+            Some(_) => refused.hint(cut),
+        }
+    }
+
+    /// Whether the record, so read, tells its bounces: three impacts, or two where the height is known,
+    /// which holds their flight to be that of a bounce.
+    fn is_told(&self, (trace, options, full): Read<'_>) -> bool {
+        let train = Train::among(trace, options, full, &RefCell::new(None));
+        train.is_ok_and(|(train, _)| train.intervals.len() + 1 >= self.enough())
+    }
+
+    fn enough(&self) -> usize {
+        if self.heard.full.is_some() { 2 } else { 3 }
+    }
+
+    /// As [`Untold::is_told`], by a part of the sounds alone: it costs little.
+    fn may_tell(&self, sounds: &[Sound]) -> Option<Plausible> {
+        let told =
+            |train: &Plausible| !train.even && train.rival.is_none() && train.impacts.len() >= self.enough();
+        plausible(sounds, self.heard).filter(told)
+    }
+
+    /// The lowest threshold in hundredths from which on one train of three impacts or more is left, all of
+    /// them impacts of the most plausible train of all sounds: what is found only without the quieter ones
+    /// may be an echo.
+    fn threshold(&self, (trace, options, full): Read<'_>) -> Option<f64> {
+        self.train.rival?;
+        let known = |sound: &Sound| self.train.impacts.iter().any(|k| self.sounds[*k] == *sound);
+        let cures = |high: &[Sound]| {
+            self.may_tell(high)
+                .is_some_and(|left| left.impacts.len() > 2 && left.impacts.iter().all(|i| known(&high[*i])))
+        };
+        let mut lowest = None;
+        for threshold in (1..100).rev().map(|hundredths| 0.01 * f64::from(hundredths)) {
+            let least = threshold * self.heard.median;
+            let high: Vec<Sound> = self.sounds.iter().copied().filter(|s| s.height > least).collect();
+            if high.len() >= self.sounds.len().min(FEW) {
+                break;
+            }
+            match (cures(&high), lowest) {
+                (true, _) => lowest = Some(threshold),
+                (false, Some(_)) => break,
+                (false, None) => {}
+            }
+        }
+        let with = |threshold| ImpactsOptions { threshold: Some(threshold), ..options.clone() };
+        lowest.filter(|threshold| self.is_told((trace, &with(*threshold), full)))
+    }
+
+    /// A pause in s behind each impact, a half more than the delay of what follows it, that tells the
+    /// bounces.
+    fn pause(&self, (trace, options, full): Read<'_>) -> Option<f64> {
+        let (i, j) = self.train.rival?;
+        let (a, b) = (self.train.impacts[0], self.train.impacts[1]);
+        let time = |i: usize| self.sounds[i].time;
+        let (flight, other) = (time(b) - time(a), time(j) - time(i));
+        let delay =
+            if (flight / other - 1.0).abs() < SAME { (time(i) - time(a)).abs() } else { flight.min(other) };
+        let pause = (150.0 * delay).ceil() / 100.0;
+        let with = ImpactsOptions { refractory: Some(pause), ..options.clone() };
+        self.is_told((trace, &with, full)).then_some(pause)
+    }
+
+    /// The part of the record in s behind the first sounds that tells the bounces.
+    fn part(&self, (trace, options, full): Read<'_>) -> Option<(f64, f64)> {
+        let behind = |first: &usize| self.may_tell(&self.sounds[*first..]).is_some();
+        let first = (1..self.sounds.len().min(CLAPS)).find(behind)?;
+        // As it is typed.
+        let hundredths = |time: f64| (100.0 * time).round() / 100.0;
+        let between = f64::midpoint(self.sounds[first - 1].time, self.sounds[first].time);
+        let (from, to) = (hundredths(between), hundredths(self.heard.ends.1));
+        let cut = trace.axis.between(from, to);
+        let values = trace.values.get(cut.clone())?.to_vec();
+        let part = Trace { meta: trace.meta.clone(), axis: trace.axis.part(cut), values };
+        self.is_told((&part, options, full)).then_some((from, to))
+    }
+}
