@@ -5,7 +5,7 @@ use super::column::{Column, repeats};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
-use super::names::{ComplexPart, Name};
+use super::names::{ComplexPart, NATURAL, Name};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
@@ -34,7 +34,7 @@ pub fn build(
     let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
-    let made = RecordContext { text, tail, dialect, is_table, options, stated };
+    let mut made = RecordContext { text, tail, dialect, is_table, options, stated, naturals: false };
     let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let sparse = rows.sparse.into_iter().chain(std::iter::repeat(None));
@@ -54,8 +54,17 @@ pub fn build(
     }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
     // A column that only counts says nothing, unless there is no other.
-    let counts = is_table && table.len() > 1 && table[0].counts();
-    let first = if counts { table.remove(0).reals().first().copied() } else { None };
+    let counter = |at: usize, column: &Column| column.counts() && (at == 0 || !column.name.name.is_empty());
+    let counters: Vec<bool> = table.iter().enumerate().map(|(at, column)| counter(at, column)).collect();
+    let unit_of = |column: &Column| column.name.unit.as_deref() == Some(NATURAL);
+    made.naturals = table.iter().zip(&counters).any(|(column, counts)| *counts && unit_of(column));
+    let mut first = None;
+    if is_table && counters.contains(&false) {
+        let at = counters.iter().position(|counts| *counts);
+        first = at.and_then(|at| table[at].reals().first().copied());
+        let mut counts = counters.iter();
+        table.retain(|_| counts.next() == Some(&false));
+    }
     // Where every channel has the time beside it, once is enough.
     let again =
         |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
@@ -155,6 +164,8 @@ struct RecordContext<'a> {
     is_table: bool,
     options: &'a Options,
     stated: Stated,
+    /// Whether a column that counts has the unit N, of natural numbers.
+    naturals: bool,
 }
 
 impl RecordContext<'_> {
@@ -374,6 +385,7 @@ impl RecordContext<'_> {
     /// The record of one column.
     fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Built> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
+        let against = column.name.against_unit(self.naturals).filter(|_| self.options.unit.is_none());
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
@@ -403,7 +415,13 @@ impl RecordContext<'_> {
         let unit = unit.as_deref().or(self.stated.unit.as_deref()).map(amplitude);
         let level = || level::decibels(&meta).filter(|_| self.options.unit.is_none()).map(|_| "dB");
         let said = unit.map(|(unit, _)| unit).or(unknown.as_deref()).or_else(level);
-        let factor = self.options.adopt(&mut meta, said);
+        let factor = if let Some(word) = against {
+            let found = Finding::caution("unit-against-name").name("unit", said.unwrap_or_default());
+            meta.found(found.name("word", word));
+            1.0
+        } else {
+            self.options.adopt(&mut meta, said)
+        };
         values.scale(factor)?;
         let spectral = self.spectral(&meta.name, unit);
         let (record, ends) = values.record(meta, axis.clone(), spectral)?;
