@@ -121,8 +121,8 @@ pub fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
-/// `Sampling Freq(Hz) 100Hz`, `Sample rate 1200 Hz`: a key that ends with its unit in brackets, or is that of a
-/// rate, and a value that begins with a digit; else an empty key.
+/// `Sampling Freq(Hz) 100Hz`, `Sample rate 1200 Hz`: a key that ends with its unit in brackets, or is that of
+/// a rate, and a value that begins with a digit; else an empty key.
 fn behind_key(line: &str) -> (&str, &str) {
     let digit = |c: char| c.is_ascii_digit();
     let unit = line

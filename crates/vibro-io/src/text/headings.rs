@@ -100,8 +100,8 @@ pub fn is_types(line: &Line, separator: Separator) -> bool {
         && fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
 }
 
-/// What a line states that gives every column the same rate, perhaps behind one key for all: `1200 Hz`, `Sample rate
-/// 1200 Hz`, `Messrate` and `1200 1/s`; `None` of other lines.
+/// What a line states that gives every column the same rate, perhaps behind one key for all: `1200 Hz`,
+/// `Sample rate 1200 Hz`, `Messrate` and `1200 1/s`; `None` of other lines.
 pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
     let cells = fields(line.text, separator).ok()?;
     let cells: Vec<&str> =

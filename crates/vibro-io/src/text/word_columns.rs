@@ -1,5 +1,5 @@
-//! Columns of text beside columns of numbers: the name of a frame, a state, `7 / 12`, a date in a spelling that
-//! is no clock.
+//! Columns of text beside columns of numbers: the name of a frame, a state, `7 / 12`, a date in a spelling
+//! that is no clock.
 
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
@@ -14,8 +14,8 @@ use vibro_record::{Error, Finding, Result};
 /// Rows that tell which columns hold text.
 const ENOUGH: usize = 24;
 
-/// Rows for each word that comes back, at least, in a column that holds a state. Where words name the channel or
-/// the sensor of a row they come back more often; dates and numbers of frames never do.
+/// Rows for each word that comes back, at least, in a column that holds a state. Where words name the channel
+/// or the sensor of a row they come back more often; dates and numbers of frames never do.
 const STATE: usize = 10;
 
 /// What is left of a text without its columns of text.
@@ -23,8 +23,8 @@ pub struct LeftOut {
     pub source: Source,
     /// Names the columns, and what they hold.
     pub found: Finding,
-    /// Whether their text changes: rows of several channels may stand below each other, or it may be the time,
-    /// unless the times of what is left rise.
+    /// Whether their text changes: rows of several channels may stand below each other, or it may be the
+    /// time, unless the times of what is left rise.
     pub changes: bool,
 }
 
@@ -91,7 +91,7 @@ pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     };
     let listed: Vec<String> = held.iter().enumerate().filter_map(said).collect();
     let found = Finding::note("columns-of-words").name("columns", listed.join(", "));
-    let source = Source::memory(text.source.path(), kept.into_bytes())?;
+    let source = text.source.with_bytes(kept)?;
     Ok(Some(LeftOut { source, found, changes: held.iter().any(|held| held.changes > 0) }))
 }
 
@@ -125,15 +125,26 @@ impl Held {
     }
 }
 
-/// Adds a line without its cells of text.
+/// Adds a line with blanks in place of its cells of text and the marks behind them: all others stay in their
+/// columns.
 fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
-    let mark = if let Separator::Char(mark) = separator { char::from(mark) } else { ' ' };
-    for (i, (at, _)) in cells.iter().enumerate().filter(|(i, _)| !text[*i]) {
+    let begin = kept.len();
+    kept.push_str(&line.text[..cells[0].0]);
+    for (i, (at, _)) in cells.iter().enumerate() {
         let end = cells.get(i + 1).map_or(line.text.len(), |(next, _)| *next);
-        kept.push_str(line.text[*at..end].trim_end_matches([mark, ' ']));
-        kept.push(mark);
+        let cell = &line.text[*at..end];
+        if text[i] { kept.extend(cell.chars().map(|_| ' ')) } else { kept.push_str(cell) }
     }
-    kept.truncate(kept.len() - 1);
+    if text.last() == Some(&true) {
+        let ends = |c: char| c == ' ' || matches!(separator, Separator::Blank) && c == '\t';
+        let end = kept[begin..].trim_end_matches(ends).len();
+        kept.truncate(begin + end);
+        if let Separator::Char(mark) = separator
+            && kept.ends_with(char::from(mark))
+        {
+            kept.pop();
+        }
+    }
 }
 
 /// Separator, line of the first row, and which columns hold text in most of the rows at the end of the first
