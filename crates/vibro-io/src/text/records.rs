@@ -54,17 +54,7 @@ pub fn build(
     }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
     // A column that only counts says nothing, unless there is no other.
-    let counter = |at: usize, column: &Column| column.counts() && (at == 0 || !column.name.name.is_empty());
-    let counters: Vec<bool> = table.iter().enumerate().map(|(at, column)| counter(at, column)).collect();
-    let unit_of = |column: &Column| column.name.unit.as_deref() == Some(NATURAL);
-    made.naturals = table.iter().zip(&counters).any(|(column, counts)| *counts && unit_of(column));
-    let mut first = None;
-    if is_table && counters.contains(&false) {
-        let at = counters.iter().position(|counts| *counts);
-        first = at.and_then(|at| table[at].reals().first().copied());
-        let mut counts = counters.iter();
-        table.retain(|_| counts.next() == Some(&false));
-    }
+    let first = if is_table { made.without_counters(&mut table) } else { None };
     // Where every channel has the time beside it, once is enough.
     let again =
         |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
@@ -175,6 +165,20 @@ impl RecordContext<'_> {
         let headed = self.stated.rate.is_some() || self.stated.line_width.is_some();
         let counts = table.len() > 1 && table[0].values.len() > 2 && table[0].name.name.is_empty();
         !self.is_table && counts && table[0].counts() && (headed || beside())
+    }
+
+    /// Takes out the columns that only count, unless there are no others; gives the first value of the first.
+    fn without_counters(&mut self, table: &mut Vec<Column>) -> Option<f64> {
+        let counter =
+            |(at, column): (usize, &Column)| column.counts() && (at == 0 || !column.name.name.is_empty());
+        let counters: Vec<bool> = table.iter().enumerate().map(counter).collect();
+        let natural = |column: &Column| column.name.unit.as_deref() == Some(NATURAL);
+        self.naturals = table.iter().zip(&counters).any(|(column, counts)| *counts && natural(column));
+        let at = counters.iter().position(|counts| *counts).filter(|_| counters.contains(&false))?;
+        let first = table[at].reals().first().copied();
+        let mut counts = counters.iter();
+        table.retain(|_| counts.next() == Some(&false));
+        first
     }
 
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it

@@ -512,8 +512,9 @@ fn columns_of_one_word_are_left_out_and_said() {
         (|i| format!("{i}-2j"), false),
         (|i| format!("{i} mm/s"), false),
     ] {
-        let rows = |time: fn(u32) -> u32| -> String {
-            (0..40).map(|i| format!("{},{},{}\n", time(i), cell(i), (7 * i) % 5)).collect()
+        let rows = |time: fn(u32) -> u32| {
+            let row = |i| format!("{},{},{}\n", time(i), cell(i), (7 * i) % 5);
+            (0..40).map(row).collect::<String>()
         };
         let told = read_with(&Reader::new(), &("time [s],what,F [N]\n".to_owned() + &rows(|i| i)));
         assert_eq!(told.is_ok(), read, "{}: {told:?}", cell(25));
@@ -535,7 +536,8 @@ fn columns_of_one_word_are_left_out_and_said() {
 #[test]
 fn a_unit_is_none_where_the_name_says_so() {
     let of = |names: &str, row: &dyn Fn(u32) -> String| {
-        let rows: String = (0..20).map(|i| format!("0.{i:02},{}\n", row(i))).collect();
+        let line = |i| format!("0.{i:02},{}\n", row(i));
+        let rows: String = (0..20).map(line).collect();
         Reader::new().from_reader("x.csv", format!("time [s],{names}\n{rows}").as_bytes()).unwrap()
     };
     let told = |found: &Recording| -> Vec<String> {
