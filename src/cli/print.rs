@@ -51,13 +51,25 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     Ok(code)
 }
 
+/// Endings of files, which no folder for results has: what is read, is written, or comes from other programs.
+const FILES: &str = "csv tsv txt dat asc uff unv ufb wav npy mat h5 hdf5 tdms lvm zip xlsx xlsm xls ods \
+                     svg png jpg pdf html json toml md";
+
 /// A folder to write into, with figures in the style that was asked for, and what to type where something is
 /// in the way.
 ///
 /// # Errors
-/// As [`Output::new`].
+/// As [`Output::new`]; if the folder, which is not there yet, is named like a file.
 pub fn output(folder: Folder, owner: Owner, elsewhere: String) -> Result<Output> {
     let OutputSettings { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
+    let root = folder.root();
+    let ending = root.extension().map_or_else(String::new, |ending| ending.to_string_lossy().to_lowercase());
+    if FILES.split(' ').any(|known| known == ending) && !folder.exists(root) {
+        let plain = root.with_extension("");
+        let plain = if folder.exists(&plain) && !folder.is_folder(&plain) { unused(&plain) } else { plain };
+        let found = format!("a folder named like a file: {}", shown(root));
+        return Err(Error::usage(found, "a folder for results").hint(format!("--out {}", typed(&plain))));
+    }
     let mut output = Output::new(folder, owner)?.replace(replace);
     (output.medium, output.elsewhere) = (medium, elsewhere);
     Ok(output)

@@ -19,6 +19,8 @@ pub enum Format {
     Csv,
     /// Columns of numbers, with or without header lines.
     Ascii,
+    /// A sheet of a workbook, of either kind of columns.
+    Workbook,
 }
 
 impl Format {
@@ -33,6 +35,7 @@ impl Format {
             Format::Uff => "uff",
             Format::Csv => "csv",
             Format::Ascii => "ascii",
+            Format::Workbook => "workbook",
         }
     }
 }

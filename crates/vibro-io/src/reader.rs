@@ -263,7 +263,10 @@ impl Reader {
             magnitude::mark(&mut all);
             level::settle(span::cut(all.evened(&self.options)?, span)?, entry.format, &self.options)
         });
-        Ok((entry.format, contents.map_err(|e| no_list(source, e).in_file(source.path()))?))
+        let format = if source.is_sheet() { Format::Workbook } else { entry.format };
+        let placed =
+            |e| no_list(source, e).in_cell(|line, column| source.cell(line, column)).in_file(source.path());
+        Ok((format, contents.map_err(placed)?))
     }
 
     /// The format of a source.

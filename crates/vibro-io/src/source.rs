@@ -23,8 +23,8 @@ pub(crate) struct Source {
     len: u64,
     /// All bytes of a small file or a buffer, the first ones of a larger file.
     bytes: Vec<u8>,
-    /// Whether it is the sheet of a workbook as text.
-    sheet: bool,
+    /// First column, from 0, where it is the sheet of a workbook as text.
+    sheet: Option<u32>,
 }
 
 /// Something to read from and to seek in.
@@ -66,7 +66,7 @@ impl Source {
             .and_then(|file| file.take(HEAD as u64).read_to_end(&mut bytes))
             .map_err(|e| Error::io("read", path, e))?;
         let len = if bytes.len() < HEAD { bytes.len() as u64 } else { info.len() };
-        Source { path: path.to_owned(), len, bytes, sheet: false }.not_empty()
+        Source { path: path.to_owned(), len, bytes, sheet: None }.not_empty()
     }
 
     /// Bytes in memory; `name` stands for the path in messages.
@@ -75,18 +75,40 @@ impl Source {
     /// If there are none.
     pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Result<Source> {
         let bytes = bytes.into();
-        Source { path: name.into(), len: bytes.len() as u64, bytes, sheet: false }.not_empty()
+        Source { path: name.into(), len: bytes.len() as u64, bytes, sheet: None }.not_empty()
     }
 
-    /// The same, as the sheet of a workbook.
+    /// The same, as the sheet of a workbook whose cells begin in column `first` from 0.
     #[cfg(feature = "sheets")]
-    pub fn of_sheet(self) -> Source {
-        Source { sheet: true, ..self }
+    pub fn of_sheet(self, first: u32) -> Source {
+        Source { sheet: Some(first), ..self }
     }
 
     /// Whether it is the sheet of a workbook, which calls itself a table as CSV does.
     pub fn is_sheet(&self) -> bool {
-        self.sheet
+        self.sheet.is_some()
+    }
+
+    /// The name of the cell of a sheet, `B2`, in which a character stands; both counted from 1.
+    pub fn cell(&self, line: u64, column: u64) -> Option<String> {
+        let first = self.sheet?;
+        let text = str::from_utf8(self.in_memory()?).ok()?.lines().nth(line.checked_sub(1)? as usize)?;
+        let before = text.chars().take(column.saturating_sub(1) as usize);
+        let mut at = first as usize + before.filter(|c| *c == '\t').count() + 1;
+        let mut letters = Vec::new();
+        while at > 0 {
+            letters.push(char::from(b'A' + ((at - 1) % 26) as u8));
+            at = (at - 1) / 26;
+        }
+        Some(letters.iter().rev().collect::<String>() + &line.to_string())
+    }
+
+    /// Other bytes in place of its own.
+    ///
+    /// # Errors
+    /// As [`Source::memory`].
+    pub fn with_bytes(&self, bytes: impl Into<Vec<u8>>) -> Result<Source> {
+        Ok(Source { sheet: self.sheet, ..Source::memory(&self.path, bytes)? })
     }
 
     fn not_empty(self) -> Result<Source> {

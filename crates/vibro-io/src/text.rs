@@ -36,10 +36,12 @@ use decoded::{Text, with_text};
 use dialect::Dialect;
 use fast::RowShape;
 use header::Stated;
+use names::Name;
 use rows::Rows;
 pub(crate) use tables::{LONGER, rows as count_rows};
 pub(crate) use tail::Digits;
-use vibro_record::{Error, Finding, Record, Result, Trace, Values};
+use vibro_record::{AxisKind, Error, Finding, Record, Result, Trace, Values};
+use word_columns::LeftOut;
 
 /// Whether a text begins with a table under names.
 pub(crate) fn is_table(head: &[u8], source: &Source) -> bool {
@@ -62,7 +64,8 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
     with_text(source, options.limit, |text| match table::detect(text, options) {
         Some(dialect) => table::grouped(text, &dialect)
             .and_then(|()| read(text, &dialect, options, survey))
-            .or_else(|why| one_table(text, options, why)),
+            .or_else(|why| one_table(text, options, why))
+            .or_else(|why| without_words(text, options, why)),
         None => without_words(text, options, without_names()),
     })
 }
@@ -76,8 +79,14 @@ pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> 
 
 /// What is left without its columns of words; where it has none, the complaint `why` it cannot be read.
 fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
-    let Some(left) = word_columns::left_out(text)? else { return Err(why) };
-    without(left, options)
+    let Some(LeftOut { source, found, changes }) = word_columns::left_out(text)? else { return Err(why) };
+    let contents = without((source, found), options)?;
+    let backwards = |found: &Finding| found.code == "axis-backwards";
+    let timed = |(record, _): &(Record, _)| {
+        record.axis().kind == AxisKind::Time && !record.meta().findings.iter().any(backwards)
+    };
+    let rises = contents.records.iter().all(timed) && !contents.findings.iter().any(backwards);
+    if changes && !rises { Err(why) } else { Ok(contents) }
 }
 
 /// The longest of several tables; where none is, the complaint `why` they cannot be read as one.
@@ -213,7 +222,10 @@ fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> 
     // Columns without names may continue each other, which their values tell.
     let plain = dialect.names.is_none() && dialect.columns > 2;
     let all = !survey || complex || plain;
-    let abscissa = |i: usize| dialect.named_abscissa() == Some(i) || i == 0 && dialect.columns > 1;
+    // Whether a column counts, or repeats the times, is told by its values.
+    let told = |name: &Name| name.may_count() || name.seconds().is_some();
+    let told = |i: usize| dialect.names.as_ref().is_some_and(|names| told(&names[i]));
+    let abscissa = |i: usize| dialect.named_abscissa() == Some(i) || told(i) || i == 0 && dialect.columns > 1;
     (0..dialect.columns).map(|i| all || abscissa(i)).collect()
 }
 

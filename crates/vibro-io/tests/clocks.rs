@@ -361,6 +361,9 @@ fn rates_in_heads_are_used() {
         ("// Sample rate: 50.0Hz", 50.0),
         ("#DELTA: 0.0133", 1.0 / 0.0133),
         ("DELTA: 0.0133", 1.0 / 0.0133),
+        ("Sample rate 1200 Hz", 1200.0),
+        ("Abtastrate 1200 1/s", 1200.0),
+        ("Messrate,1200 Hz", 1200.0),
     ] {
         for (file, names) in [("a.csv", "A (V),B (V)\n"), ("a.txt", "")] {
             let text = format!("{head}\n{names}{rows}");

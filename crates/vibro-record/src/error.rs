@@ -56,6 +56,8 @@ pub struct Place {
     pub column: Option<u64>,
     /// Byte offset, counted from 0, for binary formats.
     pub byte: Option<u64>,
+    /// Cell of a workbook, `B2`, in place of line and column.
+    pub cell: Option<String>,
 }
 
 impl Place {
@@ -241,6 +243,16 @@ impl Error {
         self
     }
 
+    /// Names the cell of a workbook that `cell` gives for line and column, in their place.
+    pub fn in_cell(mut self, cell: impl FnOnce(u64, u64) -> Option<String>) -> Self {
+        if let Some(Place { line: Some(line), column: Some(column), cell: named, .. }) =
+            self.fault().map(|fault| &mut fault.place)
+        {
+            *named = cell(*line, *column);
+        }
+        self
+    }
+
     /// Names the file that named another one, which is said beside what was found.
     pub fn named_in(mut self, path: &Path) -> Self {
         if let Some(other) =
@@ -327,7 +339,11 @@ fn floor_char(text: &str, at: usize) -> usize {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let path = self.path.iter().map(shown);
-        let counts = [("line", self.line), ("column", self.column), ("byte", self.byte)];
+        let counts = match &self.cell {
+            Some(cell) => [("cell", Some(cell.clone())), ("", None), ("", None)],
+            None => [("line", self.line), ("column", self.column), ("byte", self.byte)]
+                .map(|(what, n)| (what, n.map(|n| n.to_string()))),
+        };
         let counts = counts.into_iter().filter_map(|(what, n)| Some(format!("{what} {}", n?)));
         f.write_str(&path.chain(counts).collect::<Vec<_>>().join(", "))
     }

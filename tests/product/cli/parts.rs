@@ -94,6 +94,26 @@ fn a_campaign_measures_parts_of_archives_and_workbooks() {
     holds_tones(&again["results"]["spectra"], &[31.0, 41.0, 57.0, 89.0]);
 }
 
+/// A folder for results that ends like a file is refused with a name that works, and is not made.
+#[test]
+fn results_go_to_no_folder_named_like_a_file() {
+    let root = tempfile::tempdir().unwrap();
+    folder(root.path());
+    let part = root.path().join("book.xlsx/Left hand");
+    for name in ["new.xlsx", "new.csv", "new.PNG"] {
+        let out = root.path().join(name);
+        let said = complaint(&["spectrum", text(&part), "--out", text(&out)], 2);
+        let plain = root.path().join("new");
+        assert!(said.contains(&format!("--out {}", text(&plain))) && !out.exists(), "{said}");
+    }
+    let plain = root.path().join("new");
+    assert!(vibro(&["spectrum", text(&part), "--out", text(&plain)]).status.success() && plain.is_dir());
+    // A folder that is there may have any name.
+    fs::rename(&plain, root.path().join("old.v2.csv")).unwrap();
+    let out = root.path().join("old.v2.csv");
+    assert!(vibro(&["spectrum", text(&part), "--out", text(&out)]).status.success());
+}
+
 #[test]
 fn a_part_that_is_not_there_is_said_with_those_that_are() {
     let root = tempfile::tempdir().unwrap();
@@ -168,6 +188,7 @@ fn info_says_of_what_it_is_a_part() {
         let said = vibro(&["info", text(&root.path().join(part))]).stdout;
         let said = String::from_utf8(said).unwrap();
         let file = part.split('/').next().unwrap();
-        assert!(said.contains(&format!("{part} (csv in {file})")), "{said}");
+        let format = if file.ends_with(".xlsx") { "workbook" } else { "csv" };
+        assert!(said.contains(&format!("{part} ({format} in {file})")), "{said}");
     }
 }

@@ -202,7 +202,7 @@ fn sheet(source: &Source, of: Sheet, mut cells: Vec<Cell>, limit: Limit) -> Resu
     }
     text.push('\n');
     let hidden = of.visible != SheetVisible::Visible;
-    let source = Source::memory(source.path().join(&of.name), text)?.of_sheet();
+    let source = Source::memory(source.path().join(&of.name), text)?.of_sheet(left);
     Ok(Some(Member { name: of.name, source, hidden }))
 }
 

@@ -270,6 +270,36 @@ mod sheets {
         assert!(traces(&kept)[0].values[1].is_nan());
     }
 
+    /// Complaints name the cell as a program of sheets does, wherever the table begins; beside a column of
+    /// text that is left out, too.
+    #[test]
+    fn a_cell_has_the_name_that_it_has_in_the_workbook() {
+        // ZZ is column 26 · 27 = 702.
+        for (left, name) in [(0, "D9"), (1, "E9"), (23, "AA9"), (24, "AB9"), (698, "ZZ9"), (699, "AAA9")] {
+            let bytes = workbook(|book| {
+                let sheet = book.add_worksheet();
+                for (c, name) in ["time [s]", "state", "a [g]", "F [N]"].iter().enumerate() {
+                    sheet.write_string(2, left + c as u16, *name).unwrap();
+                }
+                for row in 3..30u32 {
+                    sheet.write_number(row, left, f64::from(row)).unwrap();
+                    sheet.write_string(row, left + 1, "on").unwrap();
+                    sheet.write_number(row, left + 2, f64::from(row % 5)).unwrap();
+                    if row == 8 {
+                        sheet.write_string(row, left + 3, "1.5 N").unwrap();
+                    } else {
+                        sheet.write_number(row, left + 3, f64::from(row % 7)).unwrap();
+                    }
+                }
+            });
+            let read = Reader::new().from_reader("x.xlsx", bytes.as_slice());
+            let said = read.unwrap_err().to_string();
+            assert!(said.contains(&format!("cell {name}: found \"1.5 N\"")), "{said}");
+        }
+        let found = Reader::new().from_reader("x.xlsx", workbook(|book| fill(book, "A")).as_slice()).unwrap();
+        assert_eq!(found.format.name(), "workbook");
+    }
+
     #[test]
     fn days_of_a_sheet_without_a_format_are_seconds() {
         let days = |start: f64, rate: f64| {

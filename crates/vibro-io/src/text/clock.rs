@@ -83,7 +83,15 @@ impl Stopwatch {
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let iso =
         text.as_bytes().windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b'T' && w[2].is_ascii_digit());
-    text.split(move |c: char| c.is_whitespace() || (iso && c == 'T')).filter(|word| !word.is_empty())
+    let words =
+        text.split(move |c: char| c.is_whitespace() || (iso && c == 'T')).filter(|word| !word.is_empty());
+    words.enumerate().filter(|(at, word)| *at == 0 || !is_zone(word)).map(|(_, word)| word)
+}
+
+/// Whether a word behind a time is its zone: `+0100`, `-05:00`.
+fn is_zone(word: &str) -> bool {
+    let digits = word.strip_prefix(['+', '-']).map(|digits| digits.replace(':', ""));
+    digits.is_some_and(|digits| digits.len() == 4 && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
 /// Day, where there is one, and seconds of that day.
@@ -192,6 +200,7 @@ mod tests {
         for text in [
             "2020-01-24T13:00:01.5Z",
             "2020-01-24T13:00:01.500+01:00",
+            "2020-01-24 13:00:01.5 +0100",
             "2020/01/24 13:00:01 500",
             "24.01.2020 13:00:01,5",
             "24-Jan-2020 13:00:01.5",

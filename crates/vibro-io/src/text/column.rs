@@ -48,19 +48,20 @@ impl Column {
         })
     }
 
-    /// Whether it is the seconds of a clock whose date stands in `axis`: the same instants, from another
-    /// start and in other units.
+    /// Whether it holds the instants of `axis` from another start and in other units: `elapsed (s)` beside
+    /// milliseconds since 1970.
     pub fn is_clock_of(&self, axis: &Column) -> bool {
-        let seconds = self.name.name == "time" && self.name.unit.as_deref() == Some("s");
+        let time = axis.name.axis(true) == Some(AxisKind::Time);
+        let (Some(own_unit), true) = (self.name.seconds(), time) else { return false };
         let (own, other) = (self.reals(), axis.reals());
-        let time = seconds && axis.name.unit.is_none() && axis.name.axis(true) == Some(AxisKind::Time);
         let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
         let factor = (last - first) / (other[other.len() - 1] - other[0]);
-        let seconds = [1.0, 1e-3, 1e-6, 1e-9].iter().any(|unit| (factor / unit - 1.0).abs() < 1e-3);
+        let alike = |unit: f64| (factor * own_unit / unit - 1.0).abs() < 1e-3;
+        let units = axis.name.seconds().map_or(vec![1.0, 1e-3, 1e-6, 1e-9], |unit| vec![unit]);
         // Nanoseconds since 1970 are whole in steps of 256.
         let most = 1e-2 * (last - first) / own.len() as f64;
         let off = |(v, t): (&f64, &f64)| ((v - first) - factor * (t - other[0])).abs();
-        time && seconds
+        units.into_iter().any(alike)
             && own.len() == other.len()
             && own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
     }
@@ -68,7 +69,7 @@ impl Column {
     pub fn counts(&self) -> bool {
         let values = self.reals();
         let first = values.first().copied().unwrap_or(0.0);
-        self.name.counts()
+        self.name.may_count()
             && !matches!(self.values, Held::Ends(_))
             && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
     }

@@ -72,7 +72,7 @@ impl Stated {
                 let line = line.strip_prefix("//").map_or(line, str::trim_start);
                 let (key, value) = split(line);
                 stated.notes.push((key.to_owned(), value.to_owned()));
-                let (key, value) = if key.is_empty() { behind_unit(line) } else { (key, value) };
+                let (key, value) = if key.is_empty() { behind_key(line) } else { (key, value) };
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
                 let said = value.to_lowercase();
                 stated.complex |= said == "complex" || said.contains("real and imaginary");
@@ -121,13 +121,20 @@ pub fn split(line: &str) -> (&str, &str) {
     at.map_or(("", line.trim()), |at| (line[..at].trim(), line[at + 1..].trim()))
 }
 
-/// `Sampling Freq(Hz) 100Hz`: a key that ends with its unit in brackets, and a value that begins with a
-/// digit; else an empty key.
-fn behind_unit(line: &str) -> (&str, &str) {
-    let found = line.split_once(')').filter(|(key, value)| {
-        key.contains('(') && value.trim_start().starts_with(|c: char| c.is_ascii_digit())
-    });
-    found.map_or(("", line), |(key, value)| (key, value.trim()))
+/// `Sampling Freq(Hz) 100Hz`, `Sample rate 1200 Hz`: a key that ends with its unit in brackets, or is that of
+/// a rate, and a value that begins with a digit; else an empty key.
+fn behind_key(line: &str) -> (&str, &str) {
+    let digit = |c: char| c.is_ascii_digit();
+    let unit = line
+        .split_once(')')
+        .filter(|(key, value)| key.contains('(') && value.trim_start().starts_with(digit));
+    let rate = || {
+        let (key, value) = line.split_at(line.find(digit)?);
+        let key = key.trim_end_matches([' ', '\t', ',', ';']);
+        let lower = key.to_lowercase();
+        RATE.split('|').any(|known| known == lower).then_some((key, value))
+    };
+    unit.or_else(rate).map_or(("", line), |(key, value)| (key, value.trim()))
 }
 
 /// Takes what stands under a key that is understood, where it is a possible value.
@@ -199,7 +206,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         | "engineering unit" => {
             let unit = Some(value.trim_matches(['[', ']']).to_owned());
             // One for each of several channels belongs to none.
-            stated.unit = unit.filter(|v| !v.is_empty() && !v.contains(';') && !v.contains(" and "));
+            stated.unit = unit.filter(|v| !v.is_empty() && !v.contains([';', '\t']) && !v.contains(" and "));
         }
         "slope" | "scale factor" | "scaling factor" => {
             let other = |factor: &str| factor.parse::<f64>().is_ok_and(|factor| factor != 1.0);

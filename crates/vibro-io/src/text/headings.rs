@@ -1,5 +1,6 @@
 //! The lines above a table that name its columns, and those that do not.
 
+use super::header::Stated;
 use super::lines::{Fields, Line, Separator, fields};
 use super::names::Name;
 use super::preamble::{Preamble, UNIT, key};
@@ -97,6 +98,23 @@ pub fn is_types(line: &Line, separator: Separator) -> bool {
     };
     TYPES.iter().any(begins)
         && fields(line.text, separator).is_ok_and(|fields| fields.len() > 1 && fields.iter().all(known))
+}
+
+/// What a line states that gives every column the same rate, perhaps behind one key for all: `1200 Hz`,
+/// `Sample rate 1200 Hz`, `Messrate` and `1200 1/s`; `None` of other lines.
+pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
+    let cells = fields(line.text, separator).ok()?;
+    let cells: Vec<&str> =
+        cells.iter().map(|(_, cell)| cell.as_ref()).filter(|cell| !cell.is_empty()).collect();
+    let last = cells.last().filter(|last| cells.len() > 1 && last.contains(char::is_alphabetic))?;
+    let alike = cells.iter().rev().take_while(|cell| *cell == last).count();
+    let stated = match cells.len() - alike {
+        0 if number::prefix(last.as_bytes(), b'.').is_some() => format!("Sample rate: {last}"),
+        0 => (*last).to_owned(),
+        1 => format!("{}: {last}", cells[0].trim_end_matches(':')),
+        _ => return None,
+    };
+    Stated::of(std::iter::once(stated.as_str())).rate.map(|_| stated)
 }
 
 /// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.

@@ -175,6 +175,40 @@ impl Name {
         self.unit.as_ref().map_or(named, |unit| COUNTERS.contains(&unit.to_lowercase().as_str()))
     }
 
+    /// Whether the name may be one of a column that only counts, if its values do: `loggingSample(N)`, too.
+    pub fn may_count(&self) -> bool {
+        let plain = self.unit.as_deref().is_none_or(|unit| unit == NATURAL);
+        self.counts() || plain && COUNT_WORDS.contains(&self.last_word().as_str())
+    }
+
+    /// The unit in s, where it is one of time.
+    pub fn seconds(&self) -> Option<f64> {
+        let unit = Unit::parse(self.unit.as_deref()?)?;
+        (unit.quantity() == Quantity::Time).then_some(unit.factor())
+    }
+
+    /// What the name says that the values are, where its unit is none of that: a count in newtons, a
+    /// temperature in degrees of an angle. Where a counter has the unit N, as `naturals` says, N is newton
+    /// only behind a name that says force.
+    pub fn against_unit(&self, naturals: bool) -> Option<&'static str> {
+        let unit = self.unit.as_deref()?;
+        let quantity = Unit::parse(unit)?.quantity();
+        let force = || self.name.to_lowercase().contains(Quantity::Force.name());
+        let count = unit == NATURAL && (self.may_count() || naturals && !force());
+        let warm = self.name == "T" || TEMPERATURES.contains(&self.last_word().as_str());
+        if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
+    }
+
+    /// The last word of the name in lower case: `sample` of `loggingSample`, `loop_sample` and `Sample`.
+    fn last_word(&self) -> String {
+        let name = self.name.trim_end_matches(|c: char| !c.is_alphanumeric());
+        let begins = |(at, c): &(usize, char)| {
+            !c.is_alphanumeric() || c.is_uppercase() && name[..*at].ends_with(char::is_lowercase)
+        };
+        let begin = name.char_indices().rev().find(begins).map_or(0, |(at, _)| at);
+        name[begin..].trim_start_matches(|c: char| !c.is_alphanumeric()).to_lowercase()
+    }
+
     /// Whether the name is one of an abscissa and may be one of values, such as `x`.
     pub(crate) fn is_vague(&self) -> bool {
         ABSCISSAE.contains(&self.name.to_lowercase().as_str())
@@ -263,6 +297,16 @@ const WHOLE: [(&str, &str); 6] = [
 /// Names of a column that only counts, none among them.
 const COUNTS: &str =
     "|#|index|i|n|no|nr|number|record|row|scan|sample|samples|sample no|point|frame|store no";
+
+/// Words that end the name of a column that only counts, behind others.
+const COUNT_WORDS: [&str; 9] =
+    ["sample", "samples", "index", "count", "counter", "number", "record", "row", "frame"];
+
+/// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
+pub(super) const NATURAL: &str = "N";
+
+/// Words that end the name of a temperature, whose bare degrees are of an unknown scale and no angle.
+const TEMPERATURES: [&str; 4] = ["temperature", "temp", "temperatur", "température"];
 
 /// Words that begin the name of an acceleration, whose `G` is the one of gravity and no gauss.
 const ACCELERATIONS: [&str; 3] = ["acc", "beschl", "shock"];

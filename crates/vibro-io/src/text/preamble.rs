@@ -35,9 +35,23 @@ const SOURCE: &[&str] = &[
     "channeltitle",
     "ch",
     "*channel",
+    "channel",
+    "channel names",
+    "kanal",
+    "kanalname",
 ];
-pub const UNIT: &[&str] =
-    &["vertical units", "vert units", "vunit", "yunits", "y units", "unitname", "unit", "units", "*unit"];
+pub const UNIT: &[&str] = &[
+    "vertical units",
+    "vert units",
+    "vunit",
+    "yunits",
+    "y units",
+    "unitname",
+    "unit",
+    "units",
+    "*unit",
+    "einheit",
+];
 const AXIS_UNIT: &[&str] = &["horizontal units", "horz units", "hunit", "xunits", "x units"];
 
 /// A cell as a key.

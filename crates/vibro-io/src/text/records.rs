@@ -5,7 +5,7 @@ use super::column::{Column, repeats};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
-use super::names::{ComplexPart, Name};
+use super::names::{ComplexPart, NATURAL, Name};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
@@ -34,7 +34,7 @@ pub fn build(
     let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
     let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
     let is_table = dialect.format == Format::Csv;
-    let made = RecordContext { text, tail, dialect, is_table, options, stated };
+    let mut made = RecordContext { text, tail, dialect, is_table, options, stated, naturals: false };
     let mut of_axis = Vec::new();
     let names = dialect.names.clone().unwrap_or_else(|| vec![Name::default(); dialect.columns]);
     let sparse = rows.sparse.into_iter().chain(std::iter::repeat(None));
@@ -54,8 +54,7 @@ pub fn build(
     }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
     // A column that only counts says nothing, unless there is no other.
-    let counts = is_table && table.len() > 1 && table[0].counts();
-    let first = if counts { table.remove(0).reals().first().copied() } else { None };
+    let first = if is_table { made.without_counters(&mut table) } else { None };
     // Where every channel has the time beside it, once is enough.
     let again =
         |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
@@ -155,6 +154,8 @@ struct RecordContext<'a> {
     is_table: bool,
     options: &'a Options,
     stated: Stated,
+    /// Whether a column that counts has the unit N, of natural numbers.
+    naturals: bool,
 }
 
 impl RecordContext<'_> {
@@ -164,6 +165,20 @@ impl RecordContext<'_> {
         let headed = self.stated.rate.is_some() || self.stated.line_width.is_some();
         let counts = table.len() > 1 && table[0].values.len() > 2 && table[0].name.name.is_empty();
         !self.is_table && counts && table[0].counts() && (headed || beside())
+    }
+
+    /// Takes out the columns that only count, unless there are no others; gives the first value of the first.
+    fn without_counters(&mut self, table: &mut Vec<Column>) -> Option<f64> {
+        let counter =
+            |(at, column): (usize, &Column)| column.counts() && (at == 0 || !column.name.name.is_empty());
+        let counters: Vec<bool> = table.iter().enumerate().map(counter).collect();
+        let natural = |column: &Column| column.name.unit.as_deref() == Some(NATURAL);
+        self.naturals = table.iter().zip(&counters).any(|(column, counts)| *counts && natural(column));
+        let at = counters.iter().position(|counts| *counts).filter(|_| counters.contains(&false))?;
+        let first = table[at].reals().first().copied();
+        let mut counts = counters.iter();
+        table.retain(|_| counts.next() == Some(&false));
+        first
     }
 
     /// Which column is the abscissa. A column of times need not be it, for it may hold intervals: by name it
@@ -374,6 +389,7 @@ impl RecordContext<'_> {
     /// The record of one column.
     fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Built> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
+        let against = column.name.against_unit(self.naturals).filter(|_| self.options.unit.is_none());
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
@@ -403,7 +419,13 @@ impl RecordContext<'_> {
         let unit = unit.as_deref().or(self.stated.unit.as_deref()).map(amplitude);
         let level = || level::decibels(&meta).filter(|_| self.options.unit.is_none()).map(|_| "dB");
         let said = unit.map(|(unit, _)| unit).or(unknown.as_deref()).or_else(level);
-        let factor = self.options.adopt(&mut meta, said);
+        let factor = if let Some(word) = against {
+            let found = Finding::caution("unit-against-name").name("unit", said.unwrap_or_default());
+            meta.found(found.name("word", word));
+            1.0
+        } else {
+            self.options.adopt(&mut meta, said)
+        };
         values.scale(factor)?;
         let spectral = self.spectral(&meta.name, unit);
         let (record, ends) = values.record(meta, axis.clone(), spectral)?;

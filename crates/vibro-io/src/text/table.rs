@@ -13,7 +13,7 @@
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
 use super::dialect::Dialect;
-use super::headings::{headings, is_title, is_types, names_in};
+use super::headings::{headings, is_title, is_types, names_in, rate_of_columns};
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::names::Name;
 use super::preamble::{BESIDE, Preamble, beside, beside_rows, key_and_value};
@@ -178,7 +178,8 @@ fn fit(
         let cells = fields(line.text, separator).unwrap_or_default();
         skipped > 0 && cells.iter().skip(skipped).all(|(_, cell)| cell.is_empty())
     };
-    let spoken = above.iter().filter(|l| l.remark.is_none() && !is_types(l, separator) && !empty(l));
+    let names = |l: &&Line| l.remark.is_none() && !is_types(l, separator) && !empty(l);
+    let spoken = above.iter().filter(names).filter(|l| rate_of_columns(l, separator).is_none());
     let spoken: Vec<&Line> = spoken.rev().collect();
     let values = rows.first()?.get(skipped..)?;
     let width = values.iter().rposition(|(_, f)| !f.is_empty()).map_or(0, |last| last + 1);
@@ -229,7 +230,10 @@ fn fit(
     }
     let last = spoken.get(used.end.max(1) - 1)?.number;
     let used: Vec<u64> = spoken.get(used)?.iter().map(|line| line.number).collect();
-    let header = above.iter().filter(|l| !used.contains(&l.number)).map(|l| key_and_value(l, separator));
+    let header = above.iter().filter(|l| !used.contains(&l.number)).map(|l| {
+        let rate = rate_of_columns(l, separator).filter(|_| l.remark.is_none());
+        rate.unwrap_or_else(|| key_and_value(l, separator))
+    });
     let dialect = Dialect {
         format: Format::Csv,
         separator,

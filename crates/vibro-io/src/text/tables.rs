@@ -40,5 +40,5 @@ pub fn longest(text: &Text, line: u64) -> Result<Option<(Source, Finding)>> {
         return Ok(None);
     };
     let found = Finding::caution("table-left-out").count("n", left);
-    Ok(Some((Source::memory(text.source.path(), kept.into_bytes())?, found)))
+    Ok(Some((text.source.with_bytes(kept)?, found)))
 }

@@ -500,10 +500,64 @@ fn columns_of_one_word_are_left_out_and_said() {
             found.findings
         );
     }
+    // What changes may tell channels apart, or be the time: the times of all else must rise.
+    for (cell, read) in [
+        ((|i| format!("{} / 12", 7 + i / 20)) as fn(u32) -> String, true),
+        (|i| format!("2020-01-24 12-00-{i:02}_500"), true),
+        (|i| if i < 30 { String::new() } else { "gps".to_owned() }, true),
+        (|i| if i < 20 { "ax" } else { "ay" }.to_owned(), true),
+        (|i| if i % 2 == 0 { "ax" } else { "ay" }.to_owned(), false),
+        (|i| format!("{} / 2", i % 2 + 1), false),
+        (|i| if i == 39 { "5".to_owned() } else { "gps".to_owned() }, false),
+        (|i| format!("{i}-2j"), false),
+        (|i| format!("{i} mm/s"), false),
+    ] {
+        let rows = |time: fn(u32) -> u32| {
+            let row = |i| format!("{},{},{}\n", time(i), cell(i), (7 * i) % 5);
+            (0..40).map(row).collect::<String>()
+        };
+        let told = read_with(&Reader::new(), &("time [s],what,F [N]\n".to_owned() + &rows(|i| i)));
+        assert_eq!(told.is_ok(), read, "{}: {told:?}", cell(25));
+        let blocks = read_with(&Reader::new(), &("time [s],what,F [N]\n".to_owned() + &rows(|i| i % 20)));
+        let one_word = cell(30) == "gps";
+        assert!(blocks.is_err() || one_word && read, "{}: {blocks:?}", cell(25));
+        let untimed = "no,what,F [N]\n".to_owned() + &rows(|i| i);
+        let untimed = read_with(&Reader::new(), &untimed);
+        let left_out = untimed.is_ok_and(|found| has_finding(&found.findings, "columns-of-words", &[]));
+        assert_eq!(left_out, one_word && read, "{}", cell(25));
+    }
     // Rows of several channels below each other are not one channel.
     let long = "time,name,value\n0,ax,1\n0,ay,2\n1,ax,3\n1,ay,4\n";
     let why = read_with(&Reader::new(), long).unwrap_err().to_string();
     assert!(why.contains("line 3, column 3") && why.contains("\"ay\" below \"ax\""), "{why}");
+}
+
+/// A unit that the name contradicts is told and not applied; all others are.
+#[test]
+fn a_unit_is_none_where_the_name_says_so() {
+    let of = |names: &str, row: &dyn Fn(u32) -> String| {
+        let line = |i| format!("0.{i:02},{}\n", row(i));
+        let rows: String = (0..20).map(line).collect();
+        Reader::new().from_reader("x.csv", format!("time [s],{names}\n{rows}").as_bytes()).unwrap()
+    };
+    let told = |found: &Recording| -> Vec<String> {
+        let told = |r: &Record| has_finding(&r.meta().findings, "unit-against-name", &[]);
+        let name = |r: &Record| format!("{} [{}]", r.meta().name, r.meta().unit.symbol());
+        found.records.iter().map(|r| name(r) + if told(r) { " told" } else { "" }).collect()
+    };
+    let (counts, floor) = ("loggingSample(N)", "floors(N)");
+    let both = of(&format!("{counts},{floor},push force (N)"), &|i| format!("{},3,{}", i + 5, i % 7));
+    assert_eq!(told(&both), ["floors [] told", "push force [N]"]);
+    // With a sample lost it is no count of the rows.
+    let gap = of(counts, &|i| (i + i / 9).to_string());
+    assert_eq!(told(&gap), ["loggingSample [] told"]);
+    let newton = of("preload (N),F2 (N)", &|i| format!("{},3", i + 1));
+    assert_eq!(told(&newton), ["preload [N]", "F2 [N]"]);
+    let degrees = of("T(°),batteryTemperature (deg),heading (°),t_in (°),temp (mV)", &|i| {
+        format!("2{i},3{i},4,5,6")
+    });
+    let right = ["T [] told", "batteryTemperature [] told", "heading [rad]", "t_in [rad]", "temp [V]"];
+    assert_eq!(told(&degrees), right);
 }
 
 /// Two rates in one table: the slower channel has its own step.

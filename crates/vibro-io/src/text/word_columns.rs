@@ -1,95 +1,206 @@
-//! Columns of words beside columns of numbers: the name of a frame, the address of a sensor, a state.
+//! Columns of text beside columns of numbers: the name of a frame, a state, `7 / 12`, a date in a spelling
+//! that is no clock.
 
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
 use super::encoding;
-use super::lines::{Line, Lines, Separator, fields};
+use super::lines::{Fields, Line, Lines, Separator, fields};
+use super::numbers::complex;
 use crate::{Source, number};
+use std::collections::HashSet;
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use vibro_record::{Error, Finding, Result};
 
-/// Rows that tell which columns hold words.
+/// Rows that tell which columns hold text.
 const ENOUGH: usize = 24;
 
-/// The text without the columns that hold the same word in every row, and what is said of them; `None` where
-/// columns of words are not what keeps it from being read.
+/// Rows for each word that comes back, at least, in a column that holds a state. Where words name the channel
+/// or the sensor of a row they come back more often; dates and numbers of frames never do.
+const STATE: usize = 10;
+
+/// What is left of a text without its columns of text.
+pub struct LeftOut {
+    pub source: Source,
+    /// Names the columns, and what they hold.
+    pub found: Finding,
+    /// Whether their text changes: rows of several channels may stand below each other, or it may be the
+    /// time, unless the times of what is left rise.
+    pub changes: bool,
+}
+
+/// What the cells of a column of text hold.
+#[derive(Default)]
+struct Held {
+    first: String,
+    last: String,
+    /// The first change of a word, as a complaint.
+    mixed: Option<Error>,
+    /// Hashes of all words.
+    words: HashSet<u64>,
+    /// Words that differ from the one above, and those of them that stood further up.
+    changes: usize,
+    returns: usize,
+}
+
+/// The text without the columns that hold text and in no row a number; `None` where these are not
+/// what keeps it from being read.
 ///
 /// # Errors
-/// If the words of a column change: rows of several channels or sensors may stand below each other.
-pub fn left_out(text: &Text) -> Result<Option<(Source, Finding)>> {
+/// If the words of a column change often: rows of several channels or sensors may stand below each other.
+pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     let lines = |text| Lines::new(text, 0, 1, &["#", "%"]).filter(|line| !line.is_blank());
     let head: Vec<Line> = lines(&text.head).filter(|line| line.remark.is_none()).collect();
-    let Some((separator, first, words)) = columns(&head) else {
+    let Some((separator, first, columns)) = columns(&head) else {
         return Ok(None);
     };
     let bytes = text.source.all()?;
     let whole = encoding::decode(&bytes);
-    let (mut names, mut said) = (Vec::new(), vec![None; words.len()]);
-    let (mut kept, mut ended) = (String::with_capacity(whole.len()), 1);
+    let (mut names, mut held) = (Vec::new(), Vec::new());
+    held.resize_with(columns.len(), Held::default);
+    let (mut kept, mut ended, mut rows) = (String::with_capacity(whole.len()), 1, 0);
     for line in lines(&whole) {
         let cells = fields(line.text, separator).unwrap_or_default();
         // Line numbers stay those of the file.
         kept.extend((ended..line.number).map(|_| '\n'));
         ended = line.number;
-        if cells.len() != words.len() || line.remark.is_some() && line.number > first {
+        if cells.len() != columns.len() || line.remark.is_some() && line.number > first {
             kept += line.text;
             continue;
         }
         if line.number < first {
             names = cells.iter().map(|(_, name)| name.clone().into_owned()).collect();
         } else {
-            for (i, (at, cell)) in cells.iter().enumerate().filter(|(i, _)| words[*i]) {
-                let known: &mut Option<String> = &mut said[i];
-                let before = known.get_or_insert_with(|| cell.clone().into_owned());
-                if before != cell {
-                    let found = format!("{:?} below {:?}", shorten(cell), shorten(before));
-                    let place = in_line(line.number).column(line.column(*at));
-                    return Err(Error::input(place, found, "numbers, or one word in all rows of a column")
-                        .hint("write the rows of each word to a file of their own, or take out the column"));
+            rows += 1;
+            for (i, (at, cell)) in cells.iter().enumerate().filter(|(i, _)| columns[*i]) {
+                match Cell::of(cell) {
+                    Cell::Value => return Ok(None),
+                    Cell::Blank => {}
+                    Cell::Text | Cell::Neither => held[i].take(cell, &line, *at),
                 }
             }
         }
-        let mark = if let Separator::Char(mark) = separator { char::from(mark) } else { ' ' };
-        for (i, (at, _)) in cells.iter().enumerate().filter(|(i, _)| !words[*i]) {
-            let end = cells.get(i + 1).map_or(line.text.len(), |(next, _)| *next);
-            kept.push_str(line.text[*at..end].trim_end_matches([mark, ' ']));
-            kept.push(mark);
-        }
-        kept.truncate(kept.len() - 1);
+        without(&mut kept, &line, &cells, separator, &columns);
     }
     kept.push('\n');
-    let named = |(i, word): (usize, Option<String>)| {
+    if let Some(why) = held.iter_mut().find(|held| held.returns * STATE > rows).and_then(|h| h.mixed.take()) {
+        return Err(why);
+    }
+    let said = |(i, held): (usize, &Held)| {
         let name = names.get(i).filter(|name: &&String| !name.is_empty()).cloned();
-        word.filter(|word| word.contains(char::is_alphanumeric)).map(|word| {
-            format!("{} ({})", name.unwrap_or_else(|| format!("column {}", i + 1)), shorten(&word))
-        })
+        Some(format!("{} ({})", name.unwrap_or_else(|| format!("column {}", i + 1)), held.said()?))
     };
-    let listed: Vec<String> = said.into_iter().enumerate().filter_map(named).collect();
+    let listed: Vec<String> = held.iter().enumerate().filter_map(said).collect();
     let found = Finding::note("columns-of-words").name("columns", listed.join(", "));
-    Ok(Some((Source::memory(text.source.path(), kept.into_bytes())?, found)))
+    let source = text.source.with_bytes(kept)?;
+    Ok(Some(LeftOut { source, found, changes: held.iter().any(|held| held.changes > 0) }))
 }
 
-/// Separator, line of the first row, and which columns hold words, where all rows at the end of the first
-/// lines have as many cells, the same of them numbers.
+impl Held {
+    fn take(&mut self, cell: &str, line: &Line, at: usize) {
+        let new = self.words.insert(BuildHasherDefault::<DefaultHasher>::default().hash_one(cell));
+        if self.last == cell {
+            return;
+        }
+        if self.first.is_empty() {
+            cell.clone_into(&mut self.first);
+        } else {
+            self.changes += 1;
+            self.returns += usize::from(!new);
+            let last = &self.last;
+            self.mixed.get_or_insert_with(|| {
+                let found = format!("{:?} below {:?}", shorten(cell), shorten(last));
+                let place = in_line(line.number).column(line.column(at));
+                Error::input(place, found, "numbers, or one word in all rows of a column")
+                    .hint("write the rows of each word to a file of their own, or take out the column")
+            });
+        }
+        cell.clone_into(&mut self.last);
+    }
+
+    /// What is said of it; `None` of marks without a letter or digit.
+    fn said(&self) -> Option<String> {
+        let first = Some(shorten(&self.first)).filter(|first| first.contains(char::is_alphanumeric))?;
+        let to = if self.changes > 0 { format!(" … {}", shorten(&self.last)) } else { String::new() };
+        Some(format!("{first}{to}"))
+    }
+}
+
+/// Adds a line with blanks in place of its cells of text and the marks behind them: all others stay in their
+/// columns.
+fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
+    let begin = kept.len();
+    kept.push_str(&line.text[..cells[0].0]);
+    for (i, (at, _)) in cells.iter().enumerate() {
+        let end = cells.get(i + 1).map_or(line.text.len(), |(next, _)| *next);
+        let cell = &line.text[*at..end];
+        if text[i] { kept.extend(cell.chars().map(|_| ' ')) } else { kept.push_str(cell) }
+    }
+    if text.last() == Some(&true) {
+        let ends = |c: char| c == ' ' || matches!(separator, Separator::Blank) && c == '\t';
+        let end = kept[begin..].trim_end_matches(ends).len();
+        kept.truncate(begin + end);
+        if let Separator::Char(mark) = separator
+            && kept.ends_with(char::from(mark))
+        {
+            kept.pop();
+        }
+    }
+}
+
+/// Separator, line of the first row, and which columns hold text in most of the rows at the end of the first
+/// lines, but for blank cells; these rows have as many cells and values in all others.
 fn columns(lines: &[Line]) -> Option<(Separator, u64, Vec<bool>)> {
-    let cut = |line: &Line, separator| fields(line.text, separator).unwrap_or_default().len();
-    let marks = [b'\t', b';', b','].map(Separator::Char).into_iter().chain([Separator::Blank]);
-    let separator = marks.into_iter().find(|mark| lines.last().is_some_and(|last| cut(last, *mark) > 1))?;
-    let of = |line: &Line| -> Option<Vec<bool>> {
-        fields(line.text, separator).ok()?.iter().map(|(_, cell)| is_word(cell)).collect()
+    let of = |line: &Line, separator| -> Vec<Cell> {
+        fields(line.text, separator).unwrap_or_default().iter().map(|(_, cell)| Cell::of(cell)).collect()
     };
-    let words = of(lines.last()?)?;
-    let rows = lines.iter().rev().take_while(|line| of(line).as_ref() == Some(&words)).count();
+    let marks = [b'\t', b';', b','].map(Separator::Char).into_iter().chain([Separator::Blank]);
+    let last = lines.last()?;
+    let separator = marks.into_iter().find(|mark| of(last, *mark).len() > 1)?;
+    let n = of(last, separator).len();
+    let cells = lines.iter().rev().map(|line| of(line, separator)).take_while(|cells| cells.len() == n);
+    let cells: Vec<Vec<Cell>> = cells.collect();
+    let sample = &cells[..cells.len().min(ENOUGH)];
+    let text = |i: usize| {
+        let count = |of: Cell| sample.iter().filter(|row| row[i] == of).count();
+        2 * count(Cell::Text) > sample.len() - count(Cell::Blank)
+    };
+    let text: Vec<bool> = (0..n).map(text).collect();
+    // Above rows stand names, which are text in all columns.
+    let is_row = |row: &&Vec<Cell>| {
+        row.iter().zip(&text).all(|(cell, text)| *text || matches!(cell, Cell::Value | Cell::Blank))
+    };
+    let rows = cells.iter().take_while(is_row).count();
     let told = rows > 1 && rows >= ENOUGH.min(lines.len() / 2);
-    (told && words.contains(&true) && words.contains(&false))
-        .then(|| (separator, lines[lines.len() - rows].number, words))
+    (told && text.contains(&true) && text.contains(&false))
+        .then(|| (separator, lines[lines.len() - rows].number, text))
 }
 
-/// Whether a cell is a word, and no number, no time and not blank; `None` where it is neither, such as `1.5
-/// V`.
-fn is_word(cell: &str) -> Option<bool> {
-    let bytes = cell.as_bytes();
-    let value = number::either(bytes).is_some() || number::is_missing(bytes) || clock::is_clock(cell);
-    let inner = cell.trim_start_matches(['(', '[', '"']).as_bytes();
-    let begins = number::prefix(inner, b'.').is_some() && !cell.starts_with("0x");
-    if value { Some(false) } else { (!begins).then_some(true) }
+/// What a cell holds.
+#[derive(Clone, Copy, PartialEq)]
+enum Cell {
+    Text,
+    /// A number or a time.
+    Value,
+    Blank,
+    /// `1.5 V`, `(1-2j)`
+    Neither,
+}
+
+impl Cell {
+    fn of(cell: &str) -> Cell {
+        let bytes = cell.as_bytes();
+        if number::is_missing(bytes) || cell.is_empty() {
+            return Cell::Blank;
+        }
+        if number::either(bytes).is_some() || clock::is_clock(cell) {
+            return Cell::Value;
+        }
+        let inner = cell.trim_start_matches(['(', '[', '"']).as_bytes();
+        let begins = number::prefix(inner, b'.').is_some() && !cell.starts_with("0x");
+        // `7 / 12`, `2020-01-24 12-00-00_500`
+        let behind = cell.trim_start_matches(|c: char| c.is_ascii_digit());
+        let marked = behind.len() < cell.len() && behind.trim_start().starts_with(['/', '-', '_', ':']);
+        let whole = complex(bytes, b'.').or_else(|| complex(bytes, b',')).is_some();
+        if !begins || marked && !whole { Cell::Text } else { Cell::Neither }
+    }
 }

@@ -102,6 +102,34 @@ pub const ALL: &[Dialect] = &[
         outcome: read(&[ch("Kraft", "N", 0, 1.0, 5e-7), ch("Weg", "m", 1, 1.0, 5e-7)], X::Even(0.0), &[]),
     },
     Dialect {
+        of: "HBM catman, ASCII without times",
+        oddity: "a row of rates below names and units",
+        file: "Versuch_2.asc",
+        text: || {
+            let head = "HBM_CATMAN_DATAFILE_40\nKanal 1\tKanal 2\nKraft\tWeg\nN\tmm\n2000 1/s\t2000 1/s\n";
+            table(head, |i| comma(&format!("{}\t{}", fixed(value(0, i), 6), fixed(1e3 * value(1, i), 3))))
+        },
+        outcome: read(
+            &[ch("Kraft", "N", 0, 1.0, 5e-7), ch("Weg", "m", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &["rate-from-head"],
+        ),
+    },
+    Dialect {
+        of: "HBM catman, ASCII with keys",
+        oddity: "`Kanal`, `Einheit` and `Messrate` before their columns",
+        file: "Versuch_3.asc",
+        text: || {
+            let head = "Kanal\tKraft\tWeg\nEinheit\tN\tmm\nMessrate\t2000 Hz\t2000 Hz\n";
+            table(head, |i| comma(&format!("{}\t{}", fixed(value(0, i), 6), fixed(1e3 * value(1, i), 3))))
+        },
+        outcome: read(
+            &[ch("Kraft", "N", 0, 1.0, 5e-7), ch("Weg", "m", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &["rate-from-head"],
+        ),
+    },
+    Dialect {
         of: "imc FAMOS, ASCII",
         oddity: "units in brackets with blanks in them",
         file: "Kanal_001.asc",

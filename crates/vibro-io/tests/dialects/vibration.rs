@@ -82,6 +82,70 @@ pub const ALL: &[Dialect] = &[
         ),
     },
     Dialect {
+        of: "SensorLog",
+        oddity: "a zone behind the clock, `(N)` behind what counts, `(°)` behind a temperature",
+        file: "sensorlog.csv",
+        text: || {
+            let head = "loggingTime(txt),loggingSample(N),accelerometerTimestamp_sinceReboot(s),accelerometerAccelerationX(G),\
+                        motionYaw(rad),T(°),activity(txt),label(N)\n";
+            table(head, |i| {
+                let values = [value(0, i), value(1, i), value(2, i)].map(|value| fixed(value, 6)).join(",");
+                let (at, activity) = (clock(12, 0.0, i, 4), if i < 70 { "stationary" } else { "walking" });
+                format!(
+                    "2020-01-24 {at} +0100,{},{:.4},{values},{activity},0",
+                    i + 1,
+                    500.0 + 5e-4 * i as f64
+                )
+            })
+        },
+        outcome: read(
+            &[
+                ch("accelerometerAccelerationX", "m/s²", 0, 9.806_65, 5e-7),
+                ch("motionYaw", "rad", 1, 1.0, 5e-7),
+                ch("T", "", 2, 1.0, 5e-7),
+                ch("label", "", 0, 0.0, 1.0),
+            ],
+            X::Even(0.0),
+            &["axis-clock", "columns-of-words", "unit-against-name"],
+        ),
+    },
+    Dialect {
+        of: "AndroSensor",
+        oddity: "`7 / 12` satellites in range, times in ms beside dates that are no clock",
+        file: "Sensor_record.csv",
+        text: || {
+            let head = "ACCELEROMETER X (m/s²);GYROSCOPE Z (rad/s);Satellites in range;Time since start in ms ;\
+                        YYYY-MO-DD HH-MI-SS_SSS\n";
+            table(head, |i| {
+                let (a, b) = (fixed(value(0, i), 4), fixed(value(1, i), 4));
+                format!("{a};{b};{} / 12;{:.1};2020-01-24 12-00-00_{:03}", 7 + i / 90, 0.5 * i as f64, i / 2)
+            })
+        },
+        outcome: read(
+            &[ch("ACCELEROMETER X", "m/s²", 0, 1.0, 5e-5), ch("GYROSCOPE Z", "rad/s", 1, 1.0, 5e-5)],
+            X::Even(0.0),
+            &["columns-of-words"],
+        ),
+    },
+    Dialect {
+        of: "MetaWear",
+        oddity: "milliseconds since 1970, then the date with points in the time of day, then the time from the start",
+        file: "MetaWear.csv",
+        text: || {
+            let head = "epoc (ms),timestamp (-07:00),elapsed (s),x-axis (g),y-axis (g)\n";
+            table(head, |i| {
+                let (ms, date) = (0.5 * i as f64, clock(5, 0.0, i, 4).replace(':', "."));
+                let values = [value(0, i), value(1, i)].map(|value| fixed(value, 3)).join(",");
+                format!("{:.1},2020-01-24T{date},{:.4},{values}", 1_579_867_200_000.0 + ms, 1e-3 * ms)
+            })
+        },
+        outcome: read(
+            &[ch("x-axis", "m/s²", 0, 9.806_65, 5e-4), ch("y-axis", "m/s²", 1, 9.806_65, 5e-4)],
+            X::Even(0.0),
+            &["axis-clock", "columns-of-words"],
+        ),
+    },
+    Dialect {
         of: "x-IMU3",
         oddity: "whole microseconds of a clock that was on before",
         file: "Inertial.csv",
