@@ -119,7 +119,7 @@ pub fn left_out(code: &'static str, error: &Error) -> Finding {
     let found = Finding::caution(code).name("why", error.why().trim_end_matches('.'));
     let keys: Vec<String> = error.settings().map(|key| Voice::Campaign.setting(key)).collect();
     let keys = if keys.is_empty() { String::new() } else { format!(" ({})", keys.join(", ")) };
-    if error.advice().is_empty() { found } else { found.name("hint", error.advice().to_owned() + &keys) }
+    if error.advice().is_empty() { found } else { found.name("hint", error.advice() + &keys) }
 }
 
 #[cfg(test)]

@@ -74,7 +74,7 @@ impl super::CommandArgs for Demo {
 /// Writes the files of an example, all or none. One that is there with another content is left, and named.
 fn write(demo: &Example, folder: &Path) -> Result<()> {
     let mut outputs: BTreeMap<PathBuf, Output> = BTreeMap::new();
-    let elsewhere = format!("--out {}", print::typed(&print::unused(folder)));
+    let elsewhere = format!("--out {}", crate::record::typed(&print::unused(folder)));
     demo.make(&mut |name, bytes| {
         let path = folder.join(name);
         let parent = folder_of(&path);

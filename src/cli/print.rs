@@ -4,7 +4,7 @@ use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
-use crate::record::{is_unprintable, shown};
+use crate::record::{is_unprintable, shown, typed};
 use crate::report::Picture;
 use crate::report::files::Names;
 use crate::report::words::{Voice, graded, put};
@@ -168,12 +168,6 @@ pub fn text(text: &str) -> Result<()> {
 pub(crate) fn printable(text: &str) -> String {
     let breaks = |c: char| c == '\n' || c == '\t';
     text.chars().map(|c| if is_unprintable(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
-}
-
-/// A path as a shell takes it.
-pub fn typed(path: &Path) -> String {
-    let text = shown(path);
-    if text.contains(char::is_whitespace) { format!("\"{text}\"") } else { text }
 }
 
 /// Works with a bar on standard error, where that is a terminal and no JSON was asked for.
