@@ -154,7 +154,7 @@ impl Campaign {
         let (records, head): (DeTable<'_>, DeTable<'_>) =
             table.into_iter().partition(|(key, _)| of_records(key.get_ref()));
         let sections = records.len();
-        let head: Campaign = written.read(head, 0..0).map_err(complaint)?;
+        let head: Campaign = written.read(&head, 0..0).map_err(complaint)?;
         let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let (path, folder) = (path.to_owned(), within.at(parent));
         let campaign = Campaign { sections, path, folder, text, ..head };
@@ -173,7 +173,7 @@ impl Campaign {
     /// If it is no TOML.
     pub(crate) fn stated_without(&self, left_out: impl Fn(&str) -> bool) -> Result<String> {
         let written = locate::written(&self.text, &[]);
-        let mut all: toml::Table = written.read(self.table()?, 0..0)?;
+        let mut all: toml::Table = written.read(&self.table()?, 0..0)?;
         all.retain(|key, _| !left_out(key));
         Ok(format!("{all:?}"))
     }

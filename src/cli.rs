@@ -394,7 +394,7 @@ mod tests {
                 let words = typed.iter().cloned().chain(option).chain(["?".to_owned(), "?".to_owned()]);
                 let Err(error) = command().try_get_matches_from(words) else { continue };
                 if matches!(error.kind(), ErrorKind::ValueValidation | ErrorKind::InvalidValue) {
-                    let kind = error.source().is_some_and(|source| source.is::<Kind>());
+                    let kind = error.source().and_then(|source| source.downcast_ref::<Kind>()).is_some();
                     let named = error.get(ContextKind::ValidValue).is_some();
                     assert!(kind || named, "{typed:?} {arg}: {error}");
                     seen += 1;

@@ -117,10 +117,10 @@ impl Campaign {
         let (named, channel, reading) = (part(&NAMED), part(&Channel::KEYS), part(&Reading::KEYS));
         let text = locate::written(&self.text, &beside);
         let complaint = |e: Error| e.in_file(self.path());
-        let keys = text.read(rows, head.clone()).map_err(complaint)?;
-        let Named { name, file } = text.read(named, head.clone()).map_err(complaint)?;
-        let channel = text.read(channel, head.clone()).map_err(complaint)?;
-        let reading = text.read(reading, head.clone()).map_err(complaint)?;
+        let keys = text.read(&rows, head.clone()).map_err(complaint)?;
+        let Named { name, file } = text.read(&named, head.clone()).map_err(complaint)?;
+        let channel = text.read(&channel, head.clone()).map_err(complaint)?;
+        let reading = text.read(&reading, head.clone()).map_err(complaint)?;
         Ok((Entry { name, file, channel, reading, keys, number, head, places }, in_range))
     }
 

@@ -71,7 +71,7 @@ mod tests {
             ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),
         ] {
             let read = written(text, &[]);
-            let entry = read.parse().and_then(|table| read.read::<crate::campaign::FitEntry>(table, 0..0));
+            let entry = read.parse().and_then(|table| read.read::<crate::campaign::FitEntry>(&table, 0..0));
             let said = entry.unwrap_err().to_string();
             assert!(expected.iter().all(|part| said.contains(part)), "{text}: {said}");
         }

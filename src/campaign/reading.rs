@@ -158,7 +158,7 @@ mod tests {
         let keys = |found: Result<()>| -> Vec<String> { of(found.unwrap_err()) };
         let text = stated("x = 1");
         let table = || text.parse().unwrap();
-        assert_eq!(keys(text.read::<Reading>(table(), 0..0).map(drop)), Reading::KEYS);
-        assert_eq!(keys(text.read::<Channel>(table(), 0..0).map(drop)), Channel::KEYS);
+        assert_eq!(keys(text.read::<Reading>(&table(), 0..0).map(drop)), Reading::KEYS);
+        assert_eq!(keys(text.read::<Channel>(&table(), 0..0).map(drop)), Channel::KEYS);
     }
 }

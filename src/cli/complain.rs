@@ -92,7 +92,7 @@ impl Words {
         for word in words.iter().take(2) {
             let Some(part) = found.own.find_subcommand(word).cloned() else { break };
             found.own = part;
-            found.command += &format!(" {word}");
+            found.command = format!("{} {word}", found.command);
         }
         found
     }

@@ -78,7 +78,7 @@ pub fn unused(path: &Path) -> PathBuf {
 /// As [`Output::new`] and [`Output::expect`].
 pub fn results(folder: &Folder, out: Option<&Path>, names: Names) -> Result<Option<Output>> {
     let Some(out) = out else { return Ok(None) };
-    let output = output(folder.at(out), Owner::Results, format!("--out {}", typed(&unused(out))))?;
+    let output = output(folder.at(out), Owner::Results, format!("--out {}", typed(unused(out))))?;
     output.expect(|name| names.has(name))?;
     Ok(Some(output))
 }
@@ -102,7 +102,7 @@ impl File {
             let found = format!("the folder {} does not exist", shown(parent));
             return Err(Error::usage(found, "an existing folder").hint("make that folder first"));
         }
-        let file = File { output: output(folder.at(parent), owner, typed(&unused(path)))?, name };
+        let file = File { output: output(folder.at(parent), owner, typed(unused(path)))?, name };
         file.expect().map(|()| file)
     }
 

@@ -157,7 +157,7 @@ impl<'de> Node<'de> {
 type Rows<'de, I> = MapDeserializer<'de, I, Fault>;
 
 /// Keys and values in their order.
-fn rows_of<'de>(rows: DeTable<'de>) -> Rows<'de, impl Iterator<Item = (Node<'de>, Node<'de>)>> {
+fn rows_of(rows: DeTable<'_>) -> Rows<'_, impl Iterator<Item = (Node<'_>, Node<'_>)>> {
     let key =
         |key: Spanned<_>| Node { span: key.span(), value: DeValue::String(key.into_inner()), is_key: true };
     MapDeserializer::new(rows.into_iter().map(move |(name, value)| (key(name), Node::of(value))))
@@ -317,7 +317,7 @@ impl<'a> Written<'a> {
     /// # Errors
     /// With the line of an unknown or missing key or a value of the wrong kind, and what can be written in
     /// place of it: tried, so that the type takes it.
-    pub fn read<T: DeserializeOwned>(&self, table: DeTable<'a>, span: Range<usize>) -> Result<T, Error> {
+    pub fn read<T: DeserializeOwned>(&self, table: &DeTable<'a>, span: Range<usize>) -> Result<T, Error> {
         T::deserialize(Node::table(table.clone(), &span)).map_err(|fault| {
             let at = fault.span.clone().unwrap_or_default();
             let takes = |meant: &str| {
@@ -457,7 +457,9 @@ fn respelt(line: &str) -> Option<(String, String)> {
     let mut all = values(key, stated, None);
     if own != key || line[at..].starts_with(':') {
         let expected = "an equals sign behind a key of one word";
-        all.iter_mut().for_each(|(known, _)| expected.clone_into(known));
+        for (known, _) in &mut all {
+            expected.clone_into(known);
+        }
         all.insert(0, (expected.to_owned(), stated.to_owned()));
     }
     let lines = all.into_iter().map(|(expected, meant)| (expected, format!("{own} = {meant}")));

@@ -536,7 +536,6 @@ fn what_a_command_tells_to_type_works() {
     fs::write(folder.path().join("c.txt"), "1\n2\n1\n2\n").unwrap();
     for (wrong, expected) in [
         ("info Hammertest.csv", "vibro info \"Hammertest 2024.csv\""),
-        ("info Hamertest.csv", ""),
         ("response \"hammer m1-m2 5 hits.txt\"", "vibro info \"hammer m1-m2 5 hits.txt\""),
         ("inf c.txt", "vibro info c.txt"),
         ("info c.txt --rate 1,5", "--rate 1.5"),
@@ -556,17 +555,13 @@ fn what_a_command_tells_to_type_works() {
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{wrong}: {said}");
         let told = hint(&said);
-        assert!(expected.is_empty() || told == expected, "{wrong}: {said}");
-        if told.starts_with("ls") {
-            continue;
-        }
-        let mended = match told.strip_prefix("vibro ") {
-            Some(command) => words(command),
-            None => {
-                let [option, value] = words(told).try_into().unwrap();
-                let at = typed.iter().position(|word| *word == option).unwrap();
-                [&typed[..=at], &[value], &typed[at + 2..]].concat()
-            }
+        assert_eq!(told, expected, "{wrong}: {said}");
+        let mended = if let Some(command) = told.strip_prefix("vibro ") {
+            words(command)
+        } else {
+            let [option, value] = words(told).try_into().unwrap();
+            let at = typed.iter().position(|word| *word == option).unwrap();
+            [&typed[..=at], &[value], &typed[at + 2..]].concat()
         };
         let output = run(&mended);
         assert!(output.status.success(), "{wrong}: {told}: {}", String::from_utf8_lossy(&output.stderr));

@@ -246,9 +246,9 @@ fn table(text: &str) -> Result<Table> {
         };
         return Err(error.excerpt(text, key.span()));
     }
-    written.read::<Rig>(own, 0..0)?;
-    written.read::<Sections>(sections, 0..0)?;
-    written.read(written.parse()?, 0..0)
+    written.read::<Rig>(&own, 0..0)?;
+    written.read::<Sections>(&sections, 0..0)?;
+    written.read(&written.parse()?, 0..0)
 }
 
 /// A key that is of its kind and cannot be read with the others.
