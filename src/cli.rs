@@ -396,7 +396,7 @@ mod tests {
                 if matches!(error.kind(), ErrorKind::ValueValidation | ErrorKind::InvalidValue) {
                     let kind = error.source().and_then(|source| source.downcast_ref::<Kind>()).is_some();
                     let named = error.get(ContextKind::ValidValue).is_some();
-                    assert!(kind || named, "{typed:?} {arg}: {error}");
+                    assert!(kind || named, "{typed:?} {}: {error}", arg.get_id());
                     seen += 1;
                 }
             }

@@ -71,6 +71,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
     /// Integrations in frequency [default: 0]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::record::kind::whole::<i8, -2, 2>))]
     pub integrate: Option<i8>,
     /// Lowest frequency in Hz [default: two lines where integrated, else 0]
     pub fmin: Option<f64>,

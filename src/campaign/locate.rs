@@ -43,8 +43,8 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_with_what_can_be_written() {
         for (text, expected) in [
-            ("prior.gap = [1e-3]", &["invalid length 1", "two values between square brackets"][..]),
-            ("prior.gap = 1e-3", &["floating point `0.001`", "two values between square brackets"]),
+            ("prior.gap = [1e-3]", &["prior.gap = [1e-3];", "two values between square brackets"][..]),
+            ("prior.gap = 1e-3", &["prior.gap = 1e-3;", "two values between square brackets"]),
             (
                 "prior.gapp = [1e-3, 1e-5]",
                 &[

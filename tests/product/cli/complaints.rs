@@ -549,6 +549,7 @@ fn what_a_command_tells_to_type_works() {
         ("excitation c.txt --write-lists x", "vibro excitation --help"),
         ("restitution --masses 1;2 --before 1,0 --after 0.1,0.45", "--masses 1,2"),
         ("spectrum c.txt --rate 10 --window kaiser", "vibro spectrum --help"),
+        ("spectrum c.txt --rate 10 --integrate 3", "vibro spectrum --help"),
     ] {
         let typed = words(wrong);
         let output = run(&typed);
