@@ -39,7 +39,7 @@ pub use tables::{Compute, Drive, FitEntry, Follows, ModelEntry};
 pub(crate) use entry::Entry;
 pub(crate) use range::in_range;
 pub(crate) use reading::{Channel, Reading, above_zero};
-pub(crate) use value::{LowPass, channel, channels, one_or_more, part, two, without_unit, word};
+pub(crate) use value::{LowPass, channel, channels, one_or_more, two, word};
 
 use crate::error::{Error, Place, Result};
 use crate::model::{ContactKeys, Parameter, Rig, Scene};
@@ -138,8 +138,9 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::from_path`].
     pub fn parse(within: &Folder, path: &Path, text: String, sections: &[&str]) -> Result<Campaign> {
-        let complaint = |e: &toml::de::Error| locate::toml_error(path, &text, e, sections);
-        let table = DeTable::parse(&text).map_err(|e| complaint(&e))?.into_inner();
+        let written = locate::written(&text, sections);
+        let complaint = |e: Error| e.in_file(path);
+        let table = written.parse().map_err(complaint)?;
         let keys = || table.keys().map(|key| key.get_ref().as_ref());
         if keys().any(Parameter::is_of_rig)
             && keys().all(|key| Parameter::is_of_rig(key) || Scene::TABLES.contains(&key))
@@ -153,7 +154,7 @@ impl Campaign {
         let (records, head): (DeTable<'_>, DeTable<'_>) =
             table.into_iter().partition(|(key, _)| of_records(key.get_ref()));
         let sections = records.len();
-        let head: Campaign = locate::keys(head, 0..0).map_err(|e| complaint(&e))?;
+        let head: Campaign = written.read(&head, 0..0).map_err(complaint)?;
         let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let (path, folder) = (path.to_owned(), within.at(parent));
         let campaign = Campaign { sections, path, folder, text, ..head };
@@ -163,9 +164,7 @@ impl Campaign {
 
     /// The whole file.
     fn table(&self) -> Result<DeTable<'_>> {
-        let parsed = DeTable::parse(&self.text);
-        let parsed = parsed.map_err(|e| locate::toml_error(&self.path, &self.text, &e, &[]))?;
-        Ok(parsed.into_inner())
+        locate::written(&self.text, &[]).parse().map_err(|e| e.in_file(&self.path))
     }
 
     /// What it states but for these sections, without comments and blanks.
@@ -173,8 +172,8 @@ impl Campaign {
     /// # Errors
     /// If it is no TOML.
     pub(crate) fn stated_without(&self, left_out: impl Fn(&str) -> bool) -> Result<String> {
-        let mut all: toml::Table =
-            toml::from_str(&self.text).map_err(|e| locate::toml_error(&self.path, &self.text, &e, &[]))?;
+        let written = locate::written(&self.text, &[]);
+        let mut all: toml::Table = written.read(&self.table()?, 0..0)?;
         all.retain(|key, _| !left_out(key));
         Ok(format!("{all:?}"))
     }

@@ -18,6 +18,8 @@ use crate::analysis::{decay, frf, spectrum};
 use crate::campaign::in_range;
 use crate::error::{Error, Result};
 use crate::read::Limit;
+use crate::record::Kind;
+use crate::record::kind::{number, whole};
 use crate::report::Medium;
 use crate::report::words::Voice;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command as Typed};
@@ -206,7 +208,7 @@ fn long() -> String {
 
 fn command() -> Typed {
     let json = Arg::new("json").action(ArgAction::SetTrue).global(true);
-    let size = |text: &str| Limit::parse(text).ok_or("a size such as 2GB or 500MB");
+    let size = |text: &str| Limit::parse(text).ok_or(Kind::Other("a size such as 2GB or 500MB".to_owned()));
     let memory = Arg::new("max_memory").long("max-memory").value_name("SIZE").global(true);
     let memory = memory.value_parser(size).help(MEMORY);
     let commands = rows().map(|row| {
@@ -290,7 +292,7 @@ fn options(command: Typed) -> Typed {
         let long = arg.get_long().map_or_else(|| id.replace('_', "-"), str::to_owned);
         let own = arg.get_value_names().is_none_or(|names| names[0] != id.to_uppercase().as_str());
         let kind = kind(&arg);
-        let arg = arg.long(long);
+        let arg = read_by_type(arg.long(long));
         if takes && !own { arg.value_name(kind) } else { arg }
     };
     let command = command.mut_args(option).mut_subcommands(options);
@@ -312,17 +314,34 @@ const REPLACE: &str =
 
 /// The kind of an option's value.
 fn kind(arg: &Arg) -> &'static str {
-    let kinds = [
-        (TypeId::of::<f64>(), "NUMBER"),
-        (TypeId::of::<PathBuf>(), "FILE"),
-        (TypeId::of::<usize>(), "N"),
-        (TypeId::of::<u32>(), "N"),
-        (TypeId::of::<u16>(), "N"),
-        (TypeId::of::<u8>(), "N"),
-        (TypeId::of::<i8>(), "N"),
-    ];
     let is = arg.get_value_parser().type_id();
-    kinds.into_iter().find(|(id, _)| is == *id).map_or("NAME", |(_, name)| name)
+    if is == TypeId::of::<PathBuf>() {
+        return "FILE";
+    }
+    let whole = [
+        TypeId::of::<usize>(),
+        TypeId::of::<u32>(),
+        TypeId::of::<u16>(),
+        TypeId::of::<u8>(),
+        TypeId::of::<i8>(),
+    ];
+    match () {
+        () if is == TypeId::of::<f64>() => "NUMBER",
+        () if whole.iter().any(|of| is == *of) => "N",
+        () => "NAME",
+    }
+}
+
+/// How the values of a type are read that names no other way: so that what is wrong with one is of a type of
+/// ours.
+fn read_by_type(arg: Arg) -> Arg {
+    let is = arg.get_value_parser().type_id();
+    match () {
+        () if is == TypeId::of::<f64>() => arg.value_parser(number),
+        () if is == TypeId::of::<usize>() => arg.value_parser(whole::<usize, 0, { i64::MAX }>),
+        () if is == TypeId::of::<u32>() => arg.value_parser(whole::<u32, 0, { u32::MAX as i64 }>),
+        () => arg,
+    }
 }
 
 #[cfg(test)]
@@ -330,6 +349,8 @@ mod tests {
     use super::*;
     use crate::campaign::LowPass;
     use crate::model::Parameter;
+    use clap::error::{ContextKind, ErrorKind};
+    use std::error::Error as _;
 
     #[test]
     fn every_option_that_takes_a_number_has_its_range() {
@@ -357,5 +378,29 @@ mod tests {
             }
         }
         assert!(seen > 80, "{seen}");
+    }
+
+    /// What is wrong with a value is known by a type or a list of names, whichever crate reads it.
+    #[test]
+    fn every_value_that_is_refused_is_refused_with_its_kind() {
+        let mut left: Vec<(Vec<String>, Typed)> = vec![(vec!["vibro".to_owned()], command())];
+        let mut seen = 0;
+        while let Some((typed, at)) = left.pop() {
+            for part in at.get_subcommands() {
+                left.push(([&typed[..], &[part.get_name().to_owned()]].concat(), part.clone()));
+            }
+            for arg in at.get_arguments().filter(|arg| arg.get_action().takes_values()) {
+                let option = arg.get_long().map(|long| format!("--{long}"));
+                let words = typed.iter().cloned().chain(option).chain(["?".to_owned(), "?".to_owned()]);
+                let Err(error) = command().try_get_matches_from(words) else { continue };
+                if matches!(error.kind(), ErrorKind::ValueValidation | ErrorKind::InvalidValue) {
+                    let kind = error.source().and_then(|source| source.downcast_ref::<Kind>()).is_some();
+                    let named = error.get(ContextKind::ValidValue).is_some();
+                    assert!(kind || named, "{typed:?} {}: {error}", arg.get_id());
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 120, "{seen}");
     }
 }

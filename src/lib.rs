@@ -48,5 +48,5 @@ pub use vibro_record::{Error, Result};
 pub use vibro_signal as signal;
 /// Errors that say where, what was found, what was expected and what to try.
 pub mod error {
-    pub use vibro_record::{Error, Place, Result};
+    pub use vibro_record::{Error, Hint, Place, Result};
 }

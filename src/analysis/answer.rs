@@ -120,7 +120,7 @@ pub fn left_out(code: &'static str, error: &Error) -> Finding {
     let found = error.code().into_iter().fold(found, |found, code| found.name("refusal", code));
     let keys = error.settings_with(|key, value| Voice::Campaign.set(key, value));
     let keys = if keys.is_empty() { String::new() } else { format!(" ({})", keys.join(", ")) };
-    if error.advice().is_empty() { found } else { found.name("hint", error.advice().to_owned() + &keys) }
+    if error.advice().is_empty() { found } else { found.name("hint", error.advice() + &keys) }
 }
 
 #[cfg(test)]

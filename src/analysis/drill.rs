@@ -189,7 +189,7 @@ impl Keys {
             delay: self.delay.unwrap_or(plain.delay),
             points: self.points.unwrap_or(plain.points),
             smoothing: match (self.low_pass, self.smoothing) {
-                (Some(LowPass::Off(_)), _) => Smoothing::Off,
+                (Some(LowPass::Off), _) => Smoothing::Off,
                 (Some(LowPass::Corner(corner)), _) => Smoothing::LowPass(corner),
                 (None, Some(time)) => Smoothing::Exponential(time),
                 (None, None) => Smoothing::default(),

@@ -14,6 +14,7 @@ use super::{Analysis, Answer, Job, Source, no_file, sweep};
 use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};
+use crate::record::code;
 use crate::record::{Axis, Meta, Record, Trace, Window, shown};
 use crate::report::Cell;
 use crate::report::files;
@@ -70,6 +71,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Window>))]
     pub window: Option<Window>,
     /// Integrations in frequency [default: 0]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::record::kind::whole::<i8, -2, 2>))]
     pub integrate: Option<i8>,
     /// Lowest frequency in Hz [default: two lines where integrated, else 0]
     pub fmin: Option<f64>,
@@ -143,8 +145,8 @@ impl Keys {
         let answers = functions.into_iter().map(|function| {
             let mut answer = self.modes(source.name, &function)?;
             // What is left of a blow is said once.
-            let of_modes = answer.findings.iter().any(|(_, found)| found.code == "modal-blow-cut-off");
-            let said = |(_, found): &&About| !(of_modes && found.code == "response-cut-off");
+            let of_modes = answer.findings.iter().any(|(_, found)| found.code == code::MODAL_BLOW_CUT_OFF);
+            let said = |(_, found): &&About| !(of_modes && found.code == code::RESPONSE_CUT_OFF);
             answer.findings.splice(0..0, of_file.findings.iter().filter(said).cloned());
             Ok(answer)
         });

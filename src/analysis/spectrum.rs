@@ -42,6 +42,7 @@ pub struct Keys {
     #[cfg_attr(feature = "cli", arg(value_name = "NAME", value_parser = crate::campaign::word::<Scaling>))]
     pub scaling: Option<Scaling>,
     /// Integrations in frequency: 1 takes velocity to displacement, −1 to acceleration [default: 0]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::record::kind::whole::<i8, -2, 2>))]
     pub integrate: Option<i8>,
     /// Lowest frequency of the result, in Hz [default: two lines where integrated, else 0]
     pub fmin: Option<f64>,

@@ -45,10 +45,10 @@ fn mistakes_point_at_their_line() {
         ("[[rig]]\nm1 = 1.0", "line 1", "write [rig]"),
         ("[[sweep]\nname = \"a\"", "line 1", "write [[sweep]]"),
         ("sweep = \"a\"", "line 1", "double brackets"),
-        (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected a name between quotes"),
+        (&format!("{SWEEP}direction = 3"), "line 4", "direction = 3; expected \"up\" or \"down\""),
         (&format!("{SWEEP}direction = \"left\""), "line 4", "expected \"up\" or \"down\""),
-        (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected a name between quotes"),
-        (&format!("{SWEEP}mass = -1"), "line 4", "integer `-1`; expected a whole number, 0 or more"),
+        (&format!("{SWEEP}scaling = 1 # ?"), "line 4", "scaling = 1; expected one of \"peak\", \"rms\""),
+        (&format!("{SWEEP}mass = -1"), "line 4", "mass = -1; expected a whole number from 0"),
         ("[[sweep]]\nlist = \"L\"", "line 1", "add name = "),
         (
             "[[drop]]\nname = \"x\"\nfile = \"a.wav\"\n[[drop]]\nname = \"x\"\nfile = \"a.wav\"",

@@ -115,11 +115,12 @@ impl Campaign {
             keys.iter().filter(|key| beside.contains(key)).filter_map(|key| rows.remove_entry(*key)).collect()
         };
         let (named, channel, reading) = (part(&NAMED), part(&Channel::KEYS), part(&Reading::KEYS));
-        let complaint = |e| locate::toml_error(self.path(), &self.text, &e, &beside);
-        let keys = locate::keys(rows, head.clone()).map_err(complaint)?;
-        let Named { name, file } = locate::keys(named, head.clone()).map_err(complaint)?;
-        let channel = locate::keys(channel, head.clone()).map_err(complaint)?;
-        let reading = locate::keys(reading, head.clone()).map_err(complaint)?;
+        let text = locate::written(&self.text, &beside);
+        let complaint = |e: Error| e.in_file(self.path());
+        let keys = text.read(&rows, head.clone()).map_err(complaint)?;
+        let Named { name, file } = text.read(&named, head.clone()).map_err(complaint)?;
+        let channel = text.read(&channel, head.clone()).map_err(complaint)?;
+        let reading = text.read(&reading, head.clone()).map_err(complaint)?;
         Ok((Entry { name, file, channel, reading, keys, number, head, places }, in_range))
     }
 

@@ -36,7 +36,7 @@ pub struct Reading {
     /// Each column is a channel, however much the rows look like one series
     pub columns: bool,
     /// Only this part of a time trace, from and to in s; 600: is to its end
-    #[cfg_attr(feature = "cli", arg(value_name = "FROM:TO", allow_hyphen_values = true, value_parser = crate::campaign::part))]
+    #[cfg_attr(feature = "cli", arg(value_name = "FROM:TO", allow_hyphen_values = true, value_parser = crate::record::kind::part))]
     pub span: Option<(f64, f64)>,
     /// Stretch between lost samples that is used, by its number from 1
     #[cfg_attr(feature = "cli", arg(value_name = "N"))]
@@ -147,14 +147,18 @@ impl Channel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::Written;
 
     #[test]
     fn the_keys_are_those_that_can_be_read() {
-        let found = toml::from_str::<Reading>("x = 1").unwrap_err().message().to_owned()
-            + toml::from_str::<Channel>("x = 1").unwrap_err().message();
-        let known = Reading::KEYS.iter().chain(&Channel::KEYS);
-        assert!(known.clone().all(|key| found.contains(&format!("`{key}`"))), "{found}");
-        // Each known key stands between two marks, and so does `x` twice.
-        assert_eq!(found.matches('`').count(), 2 * (known.count() + 2), "{found}");
+        let stated = |text| Written { text, ..Written::default() };
+        let of = |error: Error| {
+            error.advice().split_once(": ").unwrap().1.split(", ").map(str::to_owned).collect()
+        };
+        let keys = |found: Result<()>| -> Vec<String> { of(found.unwrap_err()) };
+        let text = stated("x = 1");
+        let table = || text.parse().unwrap();
+        assert_eq!(keys(text.read::<Reading>(&table(), 0..0).map(drop)), Reading::KEYS);
+        assert_eq!(keys(text.read::<Channel>(&table(), 0..0).map(drop)), Channel::KEYS);
     }
 }

@@ -1,83 +1,38 @@
 //! Values that a campaign and a command line write alike: names, channels, a low-pass or none, two numbers.
 
-use serde::de::value::{Error, StrDeserializer};
+use crate::record::{Kind, kind};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{DeserializeOwned, Error, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
+use std::fmt::{self, Formatter};
 
 /// A value by its name, as a campaign writes it between quotes.
 ///
 /// # Errors
 /// With the names that are known.
-pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> Result<T, String> {
-    T::deserialize(StrDeserializer::<Error>::new(text)).map_err(|e| e.to_string())
+pub fn word<T: DeserializeOwned>(text: &str) -> Result<T, Kind> {
+    crate::record::named(text)
 }
 
 /// Two numbers with a mark between them: `LO:HI` or `A,B`.
 ///
 /// # Errors
-/// With what stands there.
-pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), String> {
-    let expected = || format!("two numbers with {MARK:?} between them");
-    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| expected());
-    let (a, b) = typed.split_once(MARK).ok_or_else(expected)?;
-    Ok((number(a)?, number(b)?))
-}
-
-/// A part of a record between two times in s, `FROM:TO`; without one of them to its end or from its
-/// beginning.
-///
-/// # Errors
-/// With what stands there.
-pub fn part(typed: &str) -> Result<(f64, f64), String> {
-    let whole = |text: &str, end: &str| if text.trim().is_empty() { end.to_owned() } else { text.to_owned() };
-    match typed.split_once(':') {
-        Some((from, to)) if !(from.trim().is_empty() && to.trim().is_empty()) => {
-            two::<':'>(&format!("{}:{}", whole(from, "-inf"), whole(to, "inf")))
-        }
-        _ => Err("two times in s with ':' between them, or one of them and ':'".to_owned()),
-    }
-}
-
-/// Units that keys of a campaign have, and parts of them as powers of ten.
-const UNITS: [(&str, i32); 17] = [
-    ("k", 3),
-    ("Hz", 0),
-    ("kHz", 3),
-    ("s", 0),
-    ("ms", -3),
-    ("us", -6),
-    ("µs", -6),
-    ("m", 0),
-    ("cm", -2),
-    ("mm", -3),
-    ("N", 0),
-    ("kN", 3),
-    ("kg", 0),
-    ("°", 0),
-    ("deg", 0),
-    ("%", -2),
-    ("m/s", 0),
-];
-
-/// The number that is meant by one with its unit, as the value of a key.
-pub fn without_unit(key: &str, text: &str) -> Option<f64> {
-    let meant = |(unit, decimals): &(&str, i32)| {
-        // By its text, so that no digit is lost.
-        format!("{}e{decimals}", text.trim().strip_suffix(unit)?.trim_end()).parse().ok()
-    };
-    // Of other keys a g may be that of an acceleration.
-    let grams = key.trim_start_matches('-').contains("mass") || ["m1", "m2"].contains(&key);
-    UNITS.iter().find_map(meant).or_else(|| meant(&("g", -3)).filter(|_| grams))
+/// If that is not what stands there.
+pub fn two<const MARK: char>(typed: &str) -> Result<(f64, f64), Kind> {
+    kind::pair(typed, MARK)
 }
 
 /// Low-pass of average and displacement of a drill, or of the instrument of a pulse.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "expected a corner in Hz, or \"none\"")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LowPass {
     /// Corner in Hz.
     Corner(f64),
     /// `none`.
-    Off(Word),
+    Off,
 }
+
+/// What it is typed as.
+const LOW_PASS: Kind = Kind::NumberOr("a corner in Hz", "none");
 
 impl LowPass {
     /// The corner in Hz, if there is one.
@@ -89,36 +44,70 @@ impl LowPass {
     ///
     /// # Errors
     /// If it is neither.
-    pub fn typed(text: &str) -> Result<LowPass, String> {
+    pub fn typed(text: &str) -> Result<LowPass, Kind> {
         match text {
-            "none" => Ok(LowPass::Off(Word::None)),
-            _ => text.parse().map(LowPass::Corner).map_err(|_| "a corner in Hz, or none".to_owned()),
+            "none" => Ok(LowPass::Off),
+            _ => kind::number(text).map(LowPass::Corner).map_err(|_| LOW_PASS),
         }
     }
 }
 
-/// The word for no low-pass.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Word {
-    /// `none`.
-    None,
+impl<'de> Deserialize<'de> for LowPass {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<LowPass, D::Error> {
+        of(from, &LOW_PASS.words("\""), |value| match value {
+            Scalar::Number(hz) => Some(LowPass::Corner(hz)),
+            Scalar::Whole(hz) => Some(LowPass::Corner(hz as f64)),
+            Scalar::Text(text) => (text == "none").then_some(LowPass::Off),
+        })
+    }
 }
 
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a channel by its name between quotes, or by its number from 1")]
-enum ChannelKey {
-    Name(String),
-    Number(u32),
+/// One value.
+enum Scalar<'a> {
+    Text(&'a str),
+    Whole(i64),
+    Number(f64),
 }
 
-impl ChannelKey {
-    /// As readers take it.
-    fn text(self) -> String {
-        match self {
-            ChannelKey::Name(name) => name,
-            ChannelKey::Number(number) => number.to_string(),
+/// One value as it is taken by `make`; `expected` in words.
+fn of<'de, D: Deserializer<'de>, T>(
+    from: D,
+    expected: &str,
+    make: impl Fn(Scalar<'_>) -> Option<T>,
+) -> Result<T, D::Error> {
+    struct One<'e, F>(&'e str, F);
+    impl<T, F: Fn(Scalar<'_>) -> Option<T>> Visitor<'_> for One<'_, F> {
+        type Value = T;
+
+        fn expecting(&self, f: &mut Formatter<'_>) -> fmt::Result {
+            f.write_str(self.0)
         }
+
+        fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
+            (self.1)(Scalar::Text(text)).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+        }
+
+        fn visit_i64<E: Error>(self, number: i64) -> Result<T, E> {
+            (self.1)(Scalar::Whole(number)).ok_or_else(|| E::invalid_value(Unexpected::Signed(number), &self))
+        }
+
+        fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
+            (self.1)(Scalar::Number(number)).ok_or_else(|| E::invalid_value(Unexpected::Float(number), &self))
+        }
+    }
+    from.deserialize_any(One(expected, make))
+}
+
+/// A channel as readers take it.
+struct ChannelKey(String);
+
+impl<'de> Deserialize<'de> for ChannelKey {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<ChannelKey, D::Error> {
+        of(from, "a channel by its name between quotes, or by its number from 1", |value| match value {
+            Scalar::Text(name) => Some(ChannelKey(name.to_owned())),
+            Scalar::Whole(number) => (number >= 0).then(|| ChannelKey(number.to_string())),
+            Scalar::Number(_) => None,
+        })
     }
 }
 
@@ -127,7 +116,7 @@ impl ChannelKey {
 /// # Errors
 /// If it is neither a name nor a number.
 pub fn channel<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
-    ChannelKey::deserialize(from).map(|channel| Some(channel.text()))
+    ChannelKey::deserialize(from).map(|channel| Some(channel.0))
 }
 
 /// One name or channel, or a list of them.
@@ -135,16 +124,27 @@ pub fn channel<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::
 /// # Errors
 /// If one is neither a name nor a number.
 pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged, expecting = "expected a name between quotes, or a list of them")]
-    enum Names {
-        One(ChannelKey),
-        More(Vec<ChannelKey>),
+    struct Names;
+    impl<'de> Visitor<'de> for Names {
+        type Value = Vec<String>;
+
+        fn expecting(&self, f: &mut Formatter<'_>) -> fmt::Result {
+            f.write_str("a name between quotes, or a list of them")
+        }
+
+        fn visit_str<E: Error>(self, name: &str) -> Result<Vec<String>, E> {
+            Ok(vec![name.to_owned()])
+        }
+
+        fn visit_i64<E: Error>(self, number: i64) -> Result<Vec<String>, E> {
+            Ok(vec![number.to_string()])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, all: A) -> Result<Vec<String>, A::Error> {
+            channels(SeqAccessDeserializer::new(all))
+        }
     }
-    Ok(match Names::deserialize(from)? {
-        Names::One(name) => vec![name.text()],
-        Names::More(names) => names.into_iter().map(ChannelKey::text).collect(),
-    })
+    from.deserialize_any(Names)
 }
 
 /// Channels, likewise.
@@ -152,5 +152,5 @@ pub fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D:
 /// # Errors
 /// If one is neither a name nor a number.
 pub fn channels<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
-    Vec::<ChannelKey>::deserialize(from).map(|all| all.into_iter().map(ChannelKey::text).collect())
+    Vec::<ChannelKey>::deserialize(from).map(|all| all.into_iter().map(|channel| channel.0).collect())
 }

@@ -8,7 +8,7 @@ use crate::campaign::{Campaign, FitEntry, Reading};
 use crate::error::Result;
 use crate::proposal::Proposal;
 use crate::read::{Folder, Occupant, Owner};
-use crate::record::shown;
+use crate::record::{shown, typed};
 use crate::report::Table;
 use crate::report::files::Names;
 use crate::report::words::{Voice, graded, sentences};
@@ -72,7 +72,7 @@ fn proposed(campaign: Campaign, kept: &AnswerCache, json: bool) -> Result<Campai
     let look = |bar: &ProgressBar| Proposal::of(within, &Reading::default(), None, kept, bar);
     let proposal = print::busy(json, "looking at files", look)?;
     init::tell(&proposal);
-    complain::line(&format!("to change any of it: vibro init {}", print::typed(folder)));
+    complain::line(&format!("to change any of it: vibro init {}", typed(folder)));
     proposal.campaign()
 }
 
@@ -140,7 +140,7 @@ impl Run {
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
         let results = campaign.within().at(&folder);
         let kept = if self.again { AnswerCache::none(&results) } else { AnswerCache::of(&results) };
-        let elsewhere = format!("--out {}", print::typed(&print::unused(&folder)));
+        let elsewhere = format!("--out {}", typed(print::unused(&folder)));
         let mut output = print::output(results, Owner::Run, elsewhere)?;
         let campaign = proposed(campaign, &kept, json)?;
         let run = |bar: &ProgressBar| analysis::run(&campaign, &kept, &mut output, bar);

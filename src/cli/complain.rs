@@ -1,11 +1,11 @@
 //! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
 
 use super::{CommandRow, print, rows};
-use crate::campaign::{two, without_unit};
-use crate::error::Error;
-use crate::record::{Severity, nearest};
+use crate::error::{Error, Hint};
+use crate::record::{Kind, Severity, nearest, typed};
 use crate::report::words::Voice;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command as Typed};
 use serde_json::json;
 use std::error::Error as _;
 use std::io::Write;
@@ -18,16 +18,10 @@ pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
 
 /// Prints several errors as [`error`] does one. The exit code is the largest.
 pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
-    // A hint of the crates below knows no name of the file.
-    let file = std::env::args_os().skip(2).find(|word| Path::new(word).is_file());
     let spoken = |error: &Error| {
-        let text = error.text_with(|key, value| voice.set(key, value));
-        let text = match (text.strip_suffix(" FILE"), &file) {
-            (Some(command), Some(file)) => format!("{command} {}", print::typed(Path::new(file))),
-            _ => text,
-        };
+        let text = error.text_with(|key, value| voice.set(key, value), spelt);
         let help = voice == Voice::Command && error.is_bare_usage();
-        if help { format!("{text}\n  try: {} --help", typed().0) } else { text }
+        if help { format!("{text}\n  try: {} --help", Words::typed().command) } else { text }
     };
     let texts: Vec<String> = all.iter().map(spoken).collect();
     for text in &texts {
@@ -63,21 +57,71 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     error(&plain(complaint), Voice::Command, json)
 }
 
-/// The command that was typed, with its row and the names of its own commands and options.
-fn typed() -> (String, Option<&'static CommandRow>, Vec<String>) {
-    let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
-    let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
-    let row = rows().find(|row| words.first().is_some_and(|word| word == row.name()));
-    let mut command = super::command();
-    let mut names = vec!["vibro"];
-    for word in words.iter().take(2) {
-        let Some(part) = command.find_subcommand(word).cloned() else { break };
-        command = part;
-        names.push(word);
+/// What to try, as it is typed here.
+fn spelt(hint: &Hint) -> String {
+    let words = || std::env::args_os().skip(1);
+    match hint {
+        Hint::OfFile(command) => match words().skip(1).find(|word| Path::new(word).is_file()) {
+            Some(file) => format!("{command} {}", typed(file)),
+            None => hint.to_string(),
+        },
+        Hint::Name { wrong, meant } if words().any(|word| word == *wrong) => {
+            let words = words().map(|word| typed(if word == *wrong { meant.as_os_str() } else { &word }));
+            format!("vibro {}", words.collect::<Vec<_>>().join(" "))
+        }
+        Hint::Name { meant, .. } => typed(meant),
+        Hint::Words(words) => words.clone(),
     }
-    let parts = command.get_subcommands().map(|part| part.get_name().to_owned());
-    let options = command.get_arguments().filter_map(|arg| Some(format!("--{}", arg.get_long()?)));
-    (names.join(" "), row, parts.chain(options).collect())
+}
+
+/// The command that was typed.
+struct Words {
+    /// It and what it is part of: `vibro model orbit`.
+    command: String,
+    row: Option<&'static CommandRow>,
+    /// Its own commands and arguments.
+    own: Typed,
+}
+
+impl Words {
+    fn typed() -> Words {
+        let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+        let words: Vec<String> = words.filter(|word| !word.starts_with('-')).collect();
+        let row = rows().find(|row| words.first().is_some_and(|word| word == row.name()));
+        let mut found = Words { command: "vibro".to_owned(), row, own: super::command() };
+        for word in words.iter().take(2) {
+            let Some(part) = found.own.find_subcommand(word).cloned() else { break };
+            found.own = part;
+            found.command = format!("{} {word}", found.command);
+        }
+        found
+    }
+
+    /// The names of its own commands and options.
+    fn names(&self) -> Vec<String> {
+        let parts = self.own.get_subcommands().map(|part| part.get_name().to_owned());
+        let options = self.own.get_arguments().filter_map(|arg| Some(format!("--{}", arg.get_long()?)));
+        parts.chain(options).collect()
+    }
+
+    /// How an argument is typed: an option with what it takes, or the name of a place; of one that is not
+    /// known, what was typed.
+    fn argument(&self, named: &str) -> String {
+        let name = |arg: &Arg| arg.get_value_names().unwrap_or_default().join(" ");
+        let is = |arg: &&Arg| match arg.get_long() {
+            Some(long) => {
+                named.split([' ', '=']).next().and_then(|word| word.strip_prefix("--")) == Some(long)
+            }
+            None => named.contains(&name(arg)),
+        };
+        match self.own.get_arguments().find(is) {
+            Some(arg) => {
+                let long = arg.get_long().map(|long| format!("--{long} "));
+                format!("{}{}", long.unwrap_or_default(), name(arg)).trim_end().to_owned()
+            }
+            None => named.to_owned(),
+        }
+    }
 }
 
 /// Words of the field, and the commands that are meant by them.
@@ -104,110 +148,114 @@ fn commands_with(option: &str) -> Vec<String> {
     super::command().get_subcommands().filter(|c| has(c)).map(|c| c.get_name().to_owned()).collect()
 }
 
-/// What clap complains of, in our form.
+/// What clap complains of, in our form: of its words none is read.
 fn plain(complaint: &clap::Error) -> Error {
-    let context = |kind| complaint.get(kind).map(ToString::to_string);
-    let (command, row, own) = typed();
-    let of =
-        command.strip_prefix("vibro ").map_or_else(|| "there is".to_owned(), |name| format!("{name} has"));
+    let context = |kind| complaint.get(kind).map(ToString::to_string).unwrap_or_default();
+    let words = Words::typed();
+    let command = &words.command;
+    let name = command.strip_prefix("vibro ");
     let help = format!("{command} --help");
-    let argument = context(ContextKind::InvalidArg).unwrap_or_default();
-    // Without clap's brackets: an option and what it takes.
-    let argument = argument.replace(['<', '>', '[', ']'], "").replace("...", "");
-    let option = argument.split_whitespace().next().unwrap_or_default();
+    let arguments = |kind| -> Vec<String> {
+        match complaint.get(kind) {
+            Some(ContextValue::Strings(all)) => all.iter().map(|named| words.argument(named)).collect(),
+            Some(ContextValue::String(named)) => vec![words.argument(named)],
+            _ => Vec::new(),
+        }
+    };
+    let argument = arguments(ContextKind::InvalidArg).join(", ");
+    let value = context(ContextKind::InvalidValue);
     match complaint.kind() {
-        ErrorKind::InvalidSubcommand => {
-            let name = context(ContextKind::InvalidSubcommand).unwrap_or_default();
-            let called =
-                WORDS.iter().find(|(word, _)| *word == name && command == "vibro").map(|(_, own)| *own);
-            let near = called.or_else(|| nearest(&name, own.iter().map(String::as_str)));
-            // What was typed behind it stays.
-            let behind = std::env::args_os().skip_while(|word| *word != *name).skip(1);
-            let rest = || behind.map(|word| print::typed(Path::new(&word))).collect::<Vec<_>>().join(" ");
-            let hint = match near {
-                _ if Path::new(&name).is_file() => format!("vibro info {}", print::typed(Path::new(&name))),
-                _ if Path::new(&name).is_dir() => format!("vibro run {}", print::typed(Path::new(&name))),
-                Some(near) => format!("{command} {near} {}", rest()).trim_end().to_owned(),
-                None => help.clone(),
-            };
-            Error::usage(format!("no command is called {name:?}"), "").hint(hint)
-        }
+        ErrorKind::InvalidSubcommand => unknown_command(&words, &context(ContextKind::InvalidSubcommand)),
         ErrorKind::MissingRequiredArgument => {
-            let example = row.map(|row| format!("vibro {}", row.example));
-            let example = example.filter(|example| example.starts_with(&command)).unwrap_or(help);
-            Error::usage(format!("{} needs {argument}", command.trim_start_matches("vibro ")), "")
-                .hint(example)
+            let example = words.row.map(|row| format!("vibro {}", row.example));
+            let example = example.filter(|example| example.starts_with(command)).unwrap_or(help);
+            Error::usage(format!("{} needs {argument}", name.unwrap_or(command)), "").hint(example)
         }
-        ErrorKind::UnknownArgument if Path::new(option).exists() => {
-            Error::usage(format!("one file too many: {argument}"), "")
-                .hint("one file at a time; for all of a folder: vibro run FOLDER")
-        }
-        ErrorKind::UnknownArgument => {
-            let what = if option.starts_with('-') { "option" } else { "place for" };
-            let others = commands_with(option);
-            let expected = if others.is_empty() {
-                String::new()
-            } else {
-                format!("an option of its own: {option} is one of {}", others.join(", "))
-            };
-            let near = nearest(option, own.iter().map(String::as_str)).filter(|_| others.is_empty());
-            Error::usage(format!("{of} no {what} {argument}"), expected).hint(near.unwrap_or(&help))
+        ErrorKind::UnknownArgument => unknown_argument(&words, &argument),
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation if value.is_empty() => {
+            let option = argument.split(' ').next().unwrap_or_default();
+            let expected = if option.starts_with('-') { &argument } else { "a name" };
+            Error::usage(format!("{option} without a value"), expected).hint(help)
         }
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => {
-            let value = context(ContextKind::InvalidValue).unwrap_or_default();
-            let why = complaint.source().map(ToString::to_string).unwrap_or_default();
-            value_of(&command, &argument, &value, &why, complaint.get(ContextKind::ValidValue))
+            let kind = complaint.source().and_then(|source| source.downcast_ref::<Kind>());
+            let names = match complaint.get(ContextKind::ValidValue) {
+                Some(ContextValue::Strings(names)) => names.clone(),
+                _ => Vec::new(),
+            };
+            wrong_value(command, &argument, &value, kind, &names)
         }
-        _ => {
-            let text = complaint.to_string();
-            let first = text.lines().next().unwrap_or_default();
-            Error::usage(first.trim_start_matches("error: "), "").hint(help)
+        ErrorKind::ArgumentConflict => {
+            let other = arguments(ContextKind::PriorArg).join(", ");
+            let found = if other == argument || other.is_empty() {
+                format!("{argument} stands twice")
+            } else {
+                format!("{argument} stands beside {other}")
+            };
+            Error::usage(found, "one of them").hint(help)
         }
+        ErrorKind::WrongNumberOfValues => {
+            let found = format!("{argument}: {} value", context(ContextKind::ActualNumValues));
+            Error::usage(found, context(ContextKind::ExpectedNumValues)).hint(help)
+        }
+        kind => Error::usage(format!("{argument} {kind}").trim_start(), "").hint(help),
     }
 }
 
-/// A value that an option cannot take.
-fn value_of(command: &str, argument: &str, value: &str, why: &str, known: Option<&ContextValue>) -> Error {
-    let (help, option) = (format!("{command} --help"), argument.split(' ').next().unwrap_or_default());
-    if value.is_empty() {
-        let expected = if option.starts_with('-') { argument } else { "a name" };
-        return Error::usage(format!("{option} without a value"), expected).hint(help);
+/// A command that is not known.
+fn unknown_command(words: &Words, name: &str) -> Error {
+    let Words { command, .. } = words;
+    let called = WORDS.iter().find(|(word, _)| *word == name && command == "vibro").map(|(_, own)| *own);
+    let own = words.names();
+    let near = called.or_else(|| nearest(name, own.iter().map(String::as_str)));
+    // What was typed behind it stays.
+    let behind = std::env::args_os().skip_while(|word| *word != *name).skip(1);
+    let rest = || behind.map(typed).collect::<Vec<_>>().join(" ");
+    let hint = match near {
+        _ if Path::new(name).is_file() => format!("vibro info {}", typed(name)),
+        _ if Path::new(name).is_dir() => format!("vibro run {}", typed(name)),
+        Some(near) => format!("{command} {near} {}", rest()).trim_end().to_owned(),
+        None => format!("{command} --help"),
+    };
+    Error::usage(format!("no command is called {name:?}"), "").hint(hint)
+}
+
+/// A word behind a command that has no place there.
+fn unknown_argument(words: &Words, argument: &str) -> Error {
+    let option = argument.split([' ', '=']).next().unwrap_or_default();
+    if Path::new(argument).exists() {
+        return Error::usage(format!("one file too many: {argument}"), "")
+            .hint("one file at a time; for all of a folder: vibro run FOLDER");
     }
-    let expected = NUMBERS.iter().find(|(of_std, _)| why.contains(of_std)).map(|(_, ours)| *ours);
-    let names = match known {
-        Some(ContextValue::Strings(names)) => names.clone(),
-        _ if why.contains(" is not in ") => Vec::new(),
-        _ => why.split('`').skip(3).step_by(2).map(str::to_owned).collect(),
-    };
-    let listed = (!names.is_empty()).then(|| format!("one of {}", names.join(", ")));
-    let range = why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..="));
-    let range = range.map(|(low, high)| format!("a whole number from {low} to {high}"));
-    let expected = expected.map(str::to_owned).or(range).or(listed).unwrap_or_else(|| why.to_owned());
-    let point = value.replacen(',', ".", 1);
-    let near = nearest(value, names.iter().map(String::as_str));
-    let range = value.replacen([',', '-', ';'], ":", 1);
-    let is_range = why.contains("':'") && two::<':'>(&range).is_ok();
-    let typed = |value: &str| {
-        if option.starts_with('-') { format!("{option} {value}") } else { format!("{command} {value}") }
-    };
-    let hint = if is_range {
-        typed(&range)
-    } else if value != point && expected == NUMBERS[0].1 && point.parse::<f64>().is_ok() {
-        typed(&point)
-    } else if let Some(number) = without_unit(option, value) {
-        typed(&number.to_string())
+    let of = words.command.strip_prefix("vibro ").map_or("there is".to_owned(), |name| format!("{name} has"));
+    let what = if option.starts_with('-') { "option" } else { "place for" };
+    let others = commands_with(option);
+    let expected = if others.is_empty() {
+        String::new()
     } else {
-        near.map_or(help, typed)
+        format!("an option of its own: {option} is one of {}", others.join(", "))
     };
+    let own = words.names();
+    let near = nearest(option, own.iter().map(String::as_str)).filter(|_| others.is_empty());
+    let hint = near.map_or_else(|| format!("{} --help", words.command), str::to_owned);
+    Error::usage(format!("{of} no {what} {argument}"), expected).hint(hint)
+}
+
+/// A value that an argument cannot take: of a kind of ours, or none of these names.
+fn wrong_value(command: &str, argument: &str, value: &str, kind: Option<&Kind>, names: &[String]) -> Error {
+    let option = argument.split(' ').next().unwrap_or_default();
+    let meant = match kind {
+        Some(kind) => kind.meant(option.trim_start_matches('-'), value),
+        None => nearest(value, names.iter().map(String::as_str)).map(str::to_owned),
+    };
+    let hint = match meant {
+        Some(meant) if option.starts_with('-') => format!("{option} {meant}"),
+        Some(meant) => format!("{command} {meant}"),
+        None => format!("{command} --help"),
+    };
+    let expected = kind.map_or_else(|| format!("one of {}", names.join(", ")), Kind::to_string);
     Error::usage(format!("{option} is {value}"), expected).hint(hint)
 }
-
-/// What the standard library says of a value that is no number, and what a person needs to know.
-const NUMBERS: [(&str, &str); 3] = [
-    ("invalid float literal", "a number, such as 0.5 or 1e-3"),
-    ("invalid digit found in string", "a whole number, 0 or more"),
-    ("cannot parse integer from empty string", "a whole number"),
-];
 
 /// What a program reads in place of an answer.
 fn object(error: &str, exit_code: u8) {

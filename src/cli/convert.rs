@@ -5,6 +5,7 @@ use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
+use crate::record::kind::whole;
 use crate::record::{Finding, Record, Trace};
 use crate::report::layout::headed;
 use crate::report::words::{Voice, graded};
@@ -103,7 +104,7 @@ struct TraceProcessing {
     /// Corner in Hz of a zero-phase Butterworth high-pass of order 4
     high_pass: Option<f64>,
     /// Integrations in time: 1 takes velocity to displacement, −1 to acceleration
-    #[arg(default_value_t = 0, value_parser = clap::value_parser!(i8).range(-2..=2))]
+    #[arg(default_value_t = 0, value_parser = whole::<i8, -2, 2>)]
     integrate: i8,
     /// Cut-off in Hz: corner of the zero-phase high-pass of order 4 after each integration, or before a
     /// differentiation

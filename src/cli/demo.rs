@@ -7,7 +7,7 @@ use crate::analysis;
 use crate::error::{Error, Place, Result};
 use crate::proposal::Proposal;
 use crate::read::Owner;
-use crate::record::{nearest, shown};
+use crate::record::{nearest, shown, typed};
 use crate::report::Output;
 use serde_json::json;
 use std::collections::btree_map::{BTreeMap, Entry};
@@ -74,7 +74,7 @@ impl super::CommandArgs for Demo {
 /// Writes the files of an example, all or none. One that is there with another content is left, and named.
 fn write(demo: &Example, folder: &Path) -> Result<()> {
     let mut outputs: BTreeMap<PathBuf, Output> = BTreeMap::new();
-    let elsewhere = format!("--out {}", print::typed(&print::unused(folder)));
+    let elsewhere = format!("--out {}", typed(print::unused(folder)));
     demo.make(&mut |name, bytes| {
         let path = folder.join(name);
         let parent = folder_of(&path);

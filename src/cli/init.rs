@@ -8,7 +8,7 @@ use crate::campaign::Reading;
 use crate::error::{Error, Result};
 use crate::proposal::{KeyStatus, Proposal, Table, TableKey};
 use crate::read::{Folder, Occupant, Owner};
-use crate::record::shown;
+use crate::record::{shown, typed};
 use crate::report::words::{Voice, graded, put};
 use crate::units::notation::counted;
 use serde_json::{Map, Value, json};
@@ -88,7 +88,7 @@ impl super::CommandArgs for Init {
                 (Some(_), false) => "added to the end of",
                 (Some(_), true) => "every recording of the folder stands in",
             };
-            print::text(&format!("{done} {}\nnext: vibro run {}\n", shown(&path), print::typed(&path)))?;
+            print::text(&format!("{done} {}\nnext: vibro run {}\n", shown(&path), typed(&path)))?;
         }
         Ok(0)
     }
@@ -104,7 +104,7 @@ fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
     }
     let renamed = path.with_extension("other.toml");
     let error = error.aside("this file is no campaign of vibro");
-    error.hint(format!("mv {} {}", print::typed(path), print::typed(&renamed)))
+    error.hint(format!("mv {} {}", typed(path), typed(&renamed)))
 }
 
 /// The keys that are known in one way.
@@ -148,7 +148,7 @@ impl super::CommandArgs for Check {
     fn run(&self, json: bool) -> Result<u8> {
         let of_folder = self.campaign.join(Proposal::FILE);
         if self.campaign.is_dir() && !of_folder.exists() {
-            let shown = print::typed(&self.campaign);
+            let shown = typed(&self.campaign);
             let error = Error::usage(format!("{shown} has no {}", Proposal::FILE), "");
             return Err(error.hint(format!("vibro init {shown}")));
         }
@@ -170,7 +170,7 @@ impl super::CommandArgs for Check {
             print::object(answer)?;
         } else {
             complain::warn(&graded(&commented, Voice::Campaign));
-            let shown = print::typed(&self.campaign);
+            let shown = typed(&self.campaign);
             print::text(&format!(
                 "{shown}: no fault, {} found\nnext: vibro run {shown}\n",
                 counted(files.len(), "file")

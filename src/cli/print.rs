@@ -4,7 +4,7 @@ use super::complain;
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
-use crate::record::{is_unprintable, shown};
+use crate::record::{is_unprintable, shown, typed};
 use crate::report::Picture;
 use crate::report::files::Names;
 use crate::report::words::{Voice, graded, put};
@@ -90,7 +90,7 @@ pub fn unused(path: &Path) -> PathBuf {
 /// As [`Output::new`] and [`Output::expect`].
 pub fn results(folder: &Folder, out: Option<&Path>, names: Names) -> Result<Option<Output>> {
     let Some(out) = out else { return Ok(None) };
-    let output = output(folder.at(out), Owner::Results, format!("--out {}", typed(&unused(out))))?;
+    let output = output(folder.at(out), Owner::Results, format!("--out {}", typed(unused(out))))?;
     output.expect(|name| names.has(name))?;
     Ok(Some(output))
 }
@@ -114,7 +114,7 @@ impl File {
             let found = format!("the folder {} does not exist", shown(parent));
             return Err(Error::usage(found, "an existing folder").hint("make that folder first"));
         }
-        let file = File { output: output(folder.at(parent), owner, typed(&unused(path)))?, name };
+        let file = File { output: output(folder.at(parent), owner, typed(unused(path)))?, name };
         file.expect().map(|()| file)
     }
 
@@ -180,12 +180,6 @@ pub fn text(text: &str) -> Result<()> {
 pub(crate) fn printable(text: &str) -> String {
     let breaks = |c: char| c == '\n' || c == '\t';
     text.chars().map(|c| if is_unprintable(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
-}
-
-/// A path as a shell takes it.
-pub fn typed(path: &Path) -> String {
-    let text = shown(path);
-    if text.contains(char::is_whitespace) { format!("\"{text}\"") } else { text }
 }
 
 /// Works with a bar on standard error, where that is a terminal and no JSON was asked for.

@@ -3,8 +3,8 @@
 
 use super::complain;
 use crate::analysis::matching;
-use crate::campaign::without_unit;
 use crate::read::Folder;
+use crate::record::without_unit;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 

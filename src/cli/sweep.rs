@@ -11,6 +11,7 @@ use crate::measure::waterfall::{Waterfall, waterfall};
 use crate::measure::{Estimate, excitation, legacy};
 use crate::proposal::{Proposal, more_steps, of_steps};
 use crate::read::{Folder, Owner, SweepList, SweepReader, plain};
+use crate::record::kind::whole;
 use crate::record::{Finding, Sweep, SweepPoint, shown};
 use crate::report::files::Names;
 use crate::report::layout::{headed, pair, table};
@@ -43,10 +44,10 @@ pub struct ResponseArgs {
     sweep: SweepSource,
     /// Integrations in frequency: 1 takes velocity to displacement [default: what takes the stored quantity
     /// to displacement]
-    #[arg(value_parser = clap::value_parser!(i8).range(-2..=2))]
+    #[arg(value_parser = whole::<i8, -2, 2>)]
     integrate: Option<i8>,
     /// Lines on both sides of the excitation that are searched for the peak
-    #[arg(default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(default_value_t = 3, value_parser = whole::<u16, 1, 1000>)]
     peak_lines: u16,
     /// Folder for figures as SVG and PNG, and tables as CSV
     #[arg(value_name = "DIR")]

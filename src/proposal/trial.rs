@@ -8,7 +8,7 @@ use crate::analysis::{self, Answer, AnswerCache, Evidence};
 use crate::campaign::Reading;
 use crate::measure::restitution::Train;
 use crate::read::{Folder, Header};
-use crate::record::{Fact, Finding, Record, Severity};
+use crate::record::{Fact, Finding, Record, Severity, code};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
@@ -20,10 +20,10 @@ const HEIGHT: &str = "height of the fall in m";
 const LONGEST_CONTACT: f64 = 0.1;
 
 /// What is said where a pulse is not the only one.
-const ANOTHER: &str = "pulse-not-alone";
+const ANOTHER: &str = code::PULSE_NOT_ALONE;
 
 /// What is said of a decay whose amplitude falls by as much in every swing.
-const FRICTION: [&str; 2] = ["decay-unexplained", "decay-changes"];
+const FRICTION: [&str; 2] = [code::DECAY_UNEXPLAINED, code::DECAY_CHANGES];
 
 /// Segments side by side that a function should have at least, and samples of a segment that are enough.
 const AVERAGES: usize = 4;

@@ -132,3 +132,76 @@ fn medians_and_quantiles_are_defined_once() {
     });
     assert_eq!(files, [Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/vibro-record/src/order.rs")]);
 }
+
+/// Words of another crate may change with its next release; the types of its errors do not without a word.
+#[test]
+fn no_code_reads_the_words_of_another_crates_error() {
+    let mut read = Vec::new();
+    for file in sources(&["src", "crates"]) {
+        let text = fs::read_to_string(&file).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        if !file.components().any(|part| part.as_os_str().to_string_lossy().starts_with("tests")) {
+            let words = words_read(code);
+            read.extend(words.map(|line| format!("{}:{line}", file.display())));
+        }
+    }
+    assert!(read.is_empty(), "{read:#?}");
+}
+
+/// Lines of code that look into a text made of an error.
+fn words_read(code: &str) -> impl Iterator<Item = usize> {
+    let said = |line: &str| {
+        ["message()", "error.to_string()", "e.to_string()", "source.to_string()"]
+            .iter()
+            .any(|s| line.contains(s))
+    };
+    let looks = |line: &str| {
+        let into = [
+            ".contains(",
+            ".starts_with(",
+            ".ends_with(",
+            ".strip_prefix(",
+            ".split",
+            ".replace",
+            ".find(",
+            "== \"",
+        ];
+        into.iter().any(|look| line.contains(look))
+    };
+    // A name that holds such a text, and every line that looks into it.
+    let named = |line: &str| Some(line.trim().strip_prefix("let ")?.split([' ', ':']).next()?.to_owned());
+    let held: Vec<String> = code.lines().filter(|line| said(line)).filter_map(named).collect();
+    let wrong = move |line: &str| {
+        let of = |name: &String| line.contains(&format!("{name}.")) && !name.is_empty();
+        looks(line) && (said(line) || held.iter().any(of))
+    };
+    let lines: Vec<usize> = (1..).zip(code.lines()).filter(|(_, line)| wrong(line)).map(|(n, _)| n).collect();
+    lines.into_iter()
+}
+
+#[test]
+fn the_test_sees_words_that_are_read() {
+    let lines = |code: &str| words_read(code).collect::<Vec<_>>();
+    assert_eq!(lines("let message = error.message();\nif message.starts_with(\"unknown field\") {}"), [2]);
+    assert_eq!(lines("let why = e.to_string();\nlet n = 3;\nwhy.split('`').count()"), [3]);
+    assert_eq!(lines("if error.to_string().contains(\"os error\") {}"), [1]);
+    assert!(lines("let text = error.to_string();\nprint(&text);").is_empty());
+}
+
+/// A finding's code that is branched on is a constant, which the compiler checks in both places.
+#[test]
+fn no_code_of_a_finding_is_compared_as_text() {
+    let mut compared = Vec::new();
+    for file in sources(&["src", "crates"]) {
+        let text = fs::read_to_string(&file).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        let of_tests = file.components().any(|part| part.as_os_str().to_string_lossy().starts_with("tests"))
+            || file.to_string_lossy().contains("_tests");
+        let literal = |line: &str| {
+            line.contains(".code == \"") || line.contains(".code != \"") || line.contains(".has(\"")
+        };
+        let lines = (1..).zip(code.lines()).filter(|(_, line)| !of_tests && literal(line));
+        compared.extend(lines.map(|(number, _)| format!("{}:{number}", file.display())));
+    }
+    assert!(compared.is_empty(), "{compared:#?}");
+}

@@ -1,6 +1,7 @@
 //! Values to records: which kind they are, over which axis.
 
 use crate::Options;
+use vibro_record::code;
 use vibro_record::units::{self, Quantity, Unit};
 use vibro_record::{
     Axis, AxisKind, Clock, Error, Finding, Frf, Grid, Meta, Record, Result, Scaling, Spectrum, Stretch,
@@ -38,7 +39,7 @@ pub fn record(mut meta: Meta, axis: Axis, values: Values, said: Spectral) -> Res
     };
     let scaling = said.scaling.unwrap_or(Scaling::Unknown);
     if scaling == Scaling::Unknown {
-        meta.found(said.doubt.unwrap_or_else(|| Finding::caution("scaling-unsaid")));
+        meta.found(said.doubt.unwrap_or_else(|| Finding::caution(code::SCALING_UNSAID)));
     }
     Ok(Record::Spectrum(Spectrum { meta, axis, values, scaling, window: said.window, enbw: said.enbw }))
 }
@@ -84,7 +85,7 @@ impl Options {
         if let Some(said) = said {
             return meta.adopt_unit(said);
         }
-        meta.found(Finding::caution("unit-unsaid"));
+        meta.found(Finding::caution(code::UNIT_UNSAID));
         1.0
     }
 }
@@ -153,8 +154,8 @@ pub fn from_values(
     }
     // Several samples within one printed digit have one time.
     let rises = smallest > 0.0 || (smallest == 0.0 && !is_fine(resolution, mean));
-    let gaps = with_gaps(&between_gaps, if rises { "samples-lost" } else { "axis-backwards" });
-    let code = if smallest > 0.0 { "axis-uneven" } else { "axis-backwards" };
+    let gaps = with_gaps(&between_gaps, if rises { code::SAMPLES_LOST } else { code::AXIS_BACKWARDS });
+    let code = if smallest > 0.0 { "axis-uneven" } else { code::AXIS_BACKWARDS };
     let found = gaps.unwrap_or_else(|| Finding::caution(code));
     let found = if kept { None } else { said(found) };
     JudgedAxis { axis: Axis { kind, grid: Grid::Uneven(values) }, clock: 0.0, found }
@@ -247,7 +248,7 @@ impl Abscissa {
             }
             (None, Some(even)) => even,
             (None, None) if silent => {
-                meta.found(Finding::caution("abscissa-unsaid"));
+                meta.found(Finding::caution(code::ABSCISSA_UNSAID));
                 return Axis::index(n);
             }
             // Lines of a spectrum are used one by one and keep their frequencies.

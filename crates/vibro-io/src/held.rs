@@ -2,6 +2,7 @@
 
 use crate::Options;
 use crate::assemble::{self, NOMINAL, Spectral};
+use vibro_record::code;
 use vibro_record::lanes::{Extremes, OPENING};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};
 
@@ -95,7 +96,7 @@ pub fn rises(values: &[f64]) -> bool {
 }
 
 /// What is said of instants with gaps until one of their stretches is used.
-const GAPS: [&str; 2] = ["samples-lost", "axis-backwards"];
+const GAPS: [&str; 2] = [code::SAMPLES_LOST, code::AXIS_BACKWARDS];
 
 /// Records of a file, with the ends of those whose values were not kept.
 #[derive(Debug)]

@@ -4,6 +4,7 @@
 use crate::assemble::{short, to_si};
 use crate::held::Contents;
 use crate::{Format, Options};
+use vibro_record::code;
 use vibro_record::units::is_level;
 use vibro_record::{AxisKind, Error, Meta, Record, Result, Spectrum, Trace, Values};
 
@@ -70,7 +71,7 @@ fn amplitudes(spectrum: &mut Spectrum) -> Result<()> {
         for level in values.iter_mut() {
             *level = 10f64.powf(*level / tenfold);
         }
-        meta.findings.retain(|found| found.code != "levels-in-decibels");
+        meta.findings.retain(|found| found.code != code::LEVELS_IN_DECIBELS);
         meta.step("from_levels", &[("unit", &meta.unit.symbol().to_owned())]);
         let factor = meta.adopt_unit(reference.symbol());
         return to_si(&mut spectrum.values, factor);

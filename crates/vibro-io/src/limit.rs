@@ -128,7 +128,7 @@ mod tests {
         let bytes = wave(4800);
         let reader = || Reader::new().max_memory(Limit(1e12)).beside(2e7 - 1.0);
         let said = reader().from_reader("x.wav", bytes.as_slice()).unwrap_err();
-        let typed = said.text_with(|key, value| format!("{key} = {value}"));
+        let typed = said.to_string();
         assert!(typed.ends_with("\n  try: span = [0, 0.065]"), "{typed}");
         let part = reader().span(Some((0.0, 0.065))).from_reader("x.wav", bytes.as_slice()).unwrap();
         assert_eq!(part.records[0].len(), 3120);

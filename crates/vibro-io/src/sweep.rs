@@ -1,6 +1,7 @@
 //! The spectra of a sweep, read together.
 
 use super::{Folder, Format, Reader, Recording, SweepList, level};
+use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{
     Axis, Direction, Error, Finding, Meta, Place, Record, Result, Scaling, Spectrum, Sweep, SweepPoint,
@@ -249,7 +250,8 @@ fn scaled(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Values> {
 
 /// Findings of the files, each once; what a sweep settles for itself is not repeated.
 fn gather(recording: &Recording, findings: &mut Vec<Finding>) {
-    const SETTLED: [&str; 4] = ["scaling-unsaid", "unit-unsaid", "axis-unit-assumed", "abscissa-unsaid"];
+    const SETTLED: [&str; 4] =
+        [code::SCALING_UNSAID, code::UNIT_UNSAID, code::AXIS_UNIT_ASSUMED, code::ABSCISSA_UNSAID];
     for found in recording.all_findings() {
         if !SETTLED.contains(&found.code.as_ref()) && findings.len() < 50 && !findings.contains(&found) {
             findings.push(found);

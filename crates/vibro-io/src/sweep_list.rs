@@ -13,7 +13,7 @@
 use super::text::encoding;
 use super::{Folder, Limit, Source, number};
 use std::path::{Path, PathBuf};
-use vibro_record::{Error, Place, Result, pattern};
+use vibro_record::{Error, Hint, Place, Result, pattern};
 
 /// Files of a stepped-sine sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,6 +105,16 @@ impl SweepList {
     }
 }
 
+/// The pattern of the steps of a sweep in place of one of them, where there are others.
+fn steps(path: &Path) -> Option<Hint> {
+    let all = pattern(path.file_name()?.to_str()?);
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let names =
+        std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let several = names.filter(|name| pattern(name) == all).nth(1).is_some();
+    several.then(|| Hint::Name { wrong: path.to_owned(), meant: path.with_file_name(all) })
+}
+
 fn parse(path: &Path, text: &str) -> Result<SweepList> {
     let lines = text.lines().zip(1u64..).map(|(l, n)| (n, l.trim())).filter(|(_, l)| !l.is_empty());
     let lines: Vec<(u64, &str)> = lines.collect();
@@ -118,11 +128,7 @@ fn parse(path: &Path, text: &str) -> Result<SweepList> {
         let expected =
             "a list file, which begins with the number of points, or all steps of a sweep, one file each";
         let error = Error::input(Place::line(path, *line), format!("found {first:?}"), expected);
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let all = pattern(&name);
-        let hint =
-            if all == name { HOLDS.to_owned() } else { path.with_file_name(all).display().to_string() };
-        return Err(error.hint(hint));
+        return Err(error.hint(steps(path).unwrap_or(Hint::OfFile("vibro info"))));
     }
     let number = |at: usize, what: &str| {
         let line = lines.get(at).map(|(_, line)| line);

@@ -18,6 +18,7 @@ use sines::{ENOUGH, MOST, Sines, decays};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use usable::{Usable, usable};
+use vibro_record::code;
 use vibro_record::{Error, Finding, Result, Trace};
 
 /// Part of the strongest amplitude from which on a steady line is named.
@@ -96,7 +97,7 @@ impl Sines {
                 modes.push(if doubted { mode.without_uncertainty() } else { mode });
                 if doubted {
                     findings.push(
-                        Finding::doubt("decay-unexplained")
+                        Finding::doubt(code::DECAY_UNEXPLAINED)
                             .number("frequency", modes[modes.len() - 1].frequency.value),
                     );
                 }
@@ -239,7 +240,7 @@ fn changed(levels: &[Level]) -> Option<Finding> {
     let sum = spread(&|mode| &mode.zeta) + spread(&|mode| &mode.frequency);
     let free = 2 * levels.len().checked_sub(1).filter(|free| *free > 0)?;
     (chi_squared_above(sum, free) < CHANGED).then(|| {
-        let found = Finding::doubt("decay-changes").number("from", first.mode.zeta.value);
+        let found = Finding::doubt(code::DECAY_CHANGES).number("from", first.mode.zeta.value);
         found
             .number("to", last.mode.zeta.value)
             .number("high", first.mode.amplitude.value)

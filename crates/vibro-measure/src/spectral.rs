@@ -10,6 +10,7 @@ use super::stands_out::{FALSE_ALARMS, REACH, floor};
 use super::tones;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use vibro_record::code;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Error, Finding, Meta, Result, Scaling, Spectrum, Trace, Traces, Window};
 use vibro_signal::impact::{BlowTransfer, Blows, from_blows, spacing};
@@ -282,7 +283,8 @@ fn of_blows(
         from_blows(force, response, &Blows { length, before, force_window, left_at_end }, estimator)
     };
     let clean = |found: &BlowTransfer| found.blows.iter().filter(|blow| blow.rejected.is_none()).count();
-    let rings = |found: &BlowTransfer| found.transfer.findings.iter().any(|f| f.code == "response-cut-off");
+    let rings =
+        |found: &BlowTransfer| found.transfer.findings.iter().any(|f| f.code == code::RESPONSE_CUT_OFF);
     let mut found = of(length)?;
     while options.segment.is_none() && rings(&found) && 2 * length <= longest {
         // What would lose a blow stays as it is.

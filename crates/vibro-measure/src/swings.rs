@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use vibro_record::units::Unit;
 use vibro_record::units::notation::{counted, estimate};
-use vibro_record::{Axis, Error, Meta, Trace};
+use vibro_record::{Axis, Error, Hint, Meta, Trace};
 
 /// Most modes: with more, a sum of sines follows even evenly spaced pulses.
 const MODES: usize = 3;
@@ -55,7 +55,7 @@ pub(crate) fn back_and_forth(
 
 /// Refuses a record that rings.
 fn refused(why: &str) -> Error {
-    Error::refused(format!("the record rings: {why}")).hint("vibro decay FILE")
+    Error::refused(format!("the record rings: {why}")).hint(Hint::OfFile("vibro decay"))
 }
 
 /// A free decay that explains the peaks of a record.

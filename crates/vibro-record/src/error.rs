@@ -4,8 +4,10 @@
 //! 1 where the data or the parameters do not allow an answer, 2 for wrong usage and for input that cannot be
 //! read.
 
-use crate::{nearest, pattern, shown};
+use crate::{nearest, pattern, shown, typed};
+use std::ffi::OsStr;
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Result with this crate's [`Error`].
@@ -27,11 +29,43 @@ struct Inner {
     /// The line at fault with a caret under it, ready to print.
     excerpt: String,
     /// What to try; empty where nothing would help.
-    hint: String,
+    hint: Hint,
     /// Keys of the settings that help, each with a value that can be tried, where one is known.
     settings: Vec<(&'static str, String)>,
     /// Code of a refusal that others than a person read.
     code: Option<&'static str>,
+}
+
+/// What to try.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Hint {
+    /// In words; empty where nothing would help.
+    Words(String),
+    /// A command on the file that was read.
+    OfFile(&'static str),
+    /// Another name in place of one.
+    Name {
+        /// What was named.
+        wrong: PathBuf,
+        /// What is there.
+        meant: PathBuf,
+    },
+}
+
+impl<T: Into<String>> From<T> for Hint {
+    fn from(words: T) -> Hint {
+        Hint::Words(words.into())
+    }
+}
+
+impl fmt::Display for Hint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Hint::Words(words) => f.write_str(words),
+            Hint::OfFile(command) => write!(f, "{command} FILE"),
+            Hint::Name { meant, .. } => f.write_str(&shown(meant)),
+        }
+    }
 }
 
 /// The three ways in which a request fails.
@@ -85,8 +119,8 @@ impl Place {
 
 impl Error {
     fn new(kind: Failure, place: Place, found: String, expected: String) -> Self {
-        let (excerpt, hint, settings, code) = (String::new(), String::new(), Vec::new(), None);
-        Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings, code }))
+        let (excerpt, hint, settings) = (String::new(), String::new().into(), Vec::new());
+        Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings, code: None }))
     }
 
     /// Input at `place` is not what it should be.
@@ -120,11 +154,8 @@ impl Error {
     #[allow(clippy::needless_pass_by_value)]
     pub fn io(action: &str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
         let path = path.as_ref();
-        let absent = source.kind() == std::io::ErrorKind::NotFound && action != "write";
-        let source = source.to_string();
-        // Without Rust's ` (os error 2)`.
-        let plain = source.split(" (os error").next().unwrap_or_default().to_lowercase();
-        let found = format!("cannot {action} {}: {plain}", shown(path));
+        let absent = source.kind() == ErrorKind::NotFound && action != "write";
+        let found = format!("cannot {action} {}: {}", shown(path), refusal(&source));
         let error = Error::new(Failure::Io, Place::default(), found, String::new());
         if absent { error.hint(instead(Path::new(""), path)) } else { error }
     }
@@ -158,16 +189,20 @@ impl Error {
     }
 
     /// The text of the error with settings as `typed` says of a key and a value, such as `low_pass` as
-    /// `--low-pass`.
-    pub fn text_with(&self, typed: impl Fn(&str, &str) -> String) -> String {
+    /// `--low-pass`, and with its hint as `spelt` says.
+    pub fn text_with(&self, typed: impl Fn(&str, &str) -> String, spelt: impl Fn(&Hint) -> String) -> String {
         let Inner { place, excerpt, hint, settings, .. } = &*self.0;
         let what = self.what(place);
         let values = settings.iter().any(|(_, value)| !value.is_empty());
-        let settings = self.settings_with(typed);
-        let advice = if hint.is_empty() && values {
-            format!("\n  try: {}", settings.join(" "))
-        } else {
-            part("\n  try: ", hint, "") + &part(" (", &settings.join(", "), ")")
+        let all = self.settings_with(typed);
+        let hint_text = spelt(hint);
+        let advice = match (hint, settings.first()) {
+            // The key stands in a file, whatever was typed.
+            (Hint::Name { .. }, Some((key, _))) if place.line.is_some() => {
+                format!("\n  try: write {key} = {:?}", hint.to_string())
+            }
+            _ if hint_text.is_empty() && values => format!("\n  try: {}", all.join(" ")),
+            _ => part("\n  try: ", &hint_text, "") + &part(" (", &all.join(", "), ")"),
         };
         what + &part("\n", excerpt, "") + &advice
     }
@@ -183,10 +218,10 @@ impl Error {
     }
 
     /// Adds what to try; in place of an earlier hint with its settings.
-    pub fn hint(mut self, text: impl Into<String>) -> Self {
-        let first = self.0.hint.is_empty();
+    pub fn hint(mut self, hint: impl Into<Hint>) -> Self {
+        let first = self.advice().is_empty();
         self.0.settings.retain(|_| first);
-        self.0.hint = text.into();
+        self.0.hint = hint.into();
         self
     }
 
@@ -196,8 +231,8 @@ impl Error {
     }
 
     /// What to try; empty where nothing would help.
-    pub fn advice(&self) -> &str {
-        &self.0.hint
+    pub fn advice(&self) -> String {
+        self.0.hint.to_string()
     }
 
     /// What is known of input, to be completed; nothing of other errors.
@@ -283,8 +318,9 @@ impl Error {
 
     /// Whether it is wrong usage, of no place in a file, that neither advice nor a setting stands beside.
     pub fn is_bare_usage(&self) -> bool {
-        let Inner { kind, place, hint, settings, .. } = &*self.0;
-        *kind == Failure::Input && *place == Place::default() && hint.is_empty() && settings.is_empty()
+        let Inner { kind, place, settings, .. } = &*self.0;
+        let is_bare = self.advice().is_empty() && settings.is_empty();
+        *kind == Failure::Input && *place == Place::default() && is_bare
     }
 
     /// Why the data or the parameters do not allow an answer; nothing where it is another error.
@@ -308,25 +344,53 @@ fn part(before: &str, text: &str, after: &str) -> String {
     if text.is_empty() { String::new() } else { [before, text, after].concat() }
 }
 
-/// What to type in place of a name that is not there in a folder: the nearest one beside it.
-fn instead(folder: &Path, name: &Path) -> String {
+/// Why the system refused.
+fn refusal(source: &std::io::Error) -> String {
+    let known = match source.kind() {
+        ErrorKind::NotFound => "no such file or directory",
+        ErrorKind::PermissionDenied => "permission denied",
+        ErrorKind::AlreadyExists => "it exists already",
+        ErrorKind::NotADirectory => "a file stands where a folder is named",
+        ErrorKind::IsADirectory => "this is a folder",
+        ErrorKind::ReadOnlyFilesystem => "nothing can be written to this disk",
+        ErrorKind::StorageFull => "the disk is full",
+        ErrorKind::InvalidFilename => "no name of a file",
+        _ => return source.to_string(),
+    };
+    known.to_owned()
+}
+
+/// What to type in place of a name that is not there in a folder: the nearest one beside it, else one that
+/// begins so.
+fn instead(folder: &Path, name: &Path) -> Hint {
     let path = folder.join(name);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let beside = std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| {
         let name = entry.ok()?.file_name().into_string().ok()?;
         Some(name).filter(|name| !name.starts_with('.') && path.file_name() != Some(name.as_ref()))
     });
-    let wrong = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let text =
+        |name: Option<&OsStr>| name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let wrong = text(path.file_name());
     // A pattern is like those of the names.
     let beside = beside.map(|name| if wrong.contains('*') { pattern(&name) } else { name });
-    let beside: Vec<String> = beside.collect();
-    match nearest(&wrong, beside.iter().map(String::as_str)) {
-        Some(near) => name.with_file_name(near).display().to_string(),
-        None if folder == Path::new(".") => "ls".to_owned(),
-        None if folder.is_dir() => format!("ls {}", folder.display()),
-        None => format!("another folder: there is no {}", folder.display()),
+    let mut beside: Vec<String> = beside.collect();
+    beside.sort();
+    let stem = text(path.file_stem()).to_lowercase();
+    let begins = |name: &&String| stem.len() >= SHORTEST && name.to_lowercase().starts_with(&stem);
+    let ending = |name: &&String| Path::new(name).extension() != path.extension();
+    let near = nearest(&wrong, beside.iter().map(String::as_str));
+    let near = near.or_else(|| beside.iter().filter(begins).min_by_key(ending).map(String::as_str));
+    match near {
+        Some(near) => Hint::Name { wrong: name.to_owned(), meant: name.with_file_name(near) },
+        None if folder == Path::new(".") => "ls".into(),
+        None if folder.is_dir() => format!("ls {}", typed(folder)).into(),
+        None => format!("another folder: there is no {}", folder.display()).into(),
     }
 }
+
+/// Letters of a name, at least, for one that begins so to be meant: fewer begin too many.
+const SHORTEST: usize = 3;
 
 fn floor_char(text: &str, at: usize) -> usize {
     let mut at = at.min(text.len());
@@ -351,9 +415,10 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text_with(|key, value| {
+        let typed = |key: &str, value: &str| {
             if value.is_empty() { key.to_owned() } else { format!("{key} = {value}") }
-        }))
+        };
+        f.write_str(&self.text_with(typed, Hint::to_string))
     }
 }
 
@@ -382,7 +447,10 @@ mod tests {
         let error = Error::refused("no rate").hint("state the sampling rate").setting("base_band");
         assert_eq!(error.to_string(), "no rate\n  try: state the sampling rate (base_band)");
         let option = |key: &str, _: &str| format!("--{}", key.replace('_', "-"));
-        assert_eq!(error.text_with(option), "no rate\n  try: state the sampling rate (--base-band)");
+        assert_eq!(
+            error.text_with(option, Hint::to_string),
+            "no rate\n  try: state the sampling rate (--base-band)"
+        );
     }
 
     #[test]

@@ -6,8 +6,10 @@
 
 mod axis;
 mod clock;
+pub mod code;
 mod error;
 mod finding;
+pub mod kind;
 pub mod lanes;
 mod meta;
 mod near;
@@ -20,24 +22,27 @@ mod trace;
 mod traces;
 pub mod units;
 mod window;
+mod written;
 
 use lanes::Extremes;
 use num_complex::Complex64;
 
 pub use axis::{Axis, AxisKind, Grid};
 pub use clock::{Clock, Stretch, is_fine, stretches, uniform_std};
-pub use error::{Error, Place, Result};
+pub use error::{Error, Hint, Place, Result};
 pub use finding::{Estimate, Fact, Finding, Severity};
+pub use kind::{Kind, without_unit};
 pub use meta::{ADDED_DECAY, AVERAGED_WITH, FROM_BLOWS, Meta, Step};
 pub use near::{nearest, pattern};
 pub use order::{median, quantile};
 pub use resample::evened;
-pub use shown::{is_unprintable, shown};
+pub use shown::{is_unprintable, shown, typed};
 pub use spectrum::{Frf, Scaling, Spectrum, Values};
 pub use sweep::{Direction, StepTraces, Sweep, SweepPoint};
 pub use trace::Trace;
 pub use traces::{Stream, Traces, find_channel};
 pub use window::Window;
+pub use written::{Written, named};
 
 /// Anything a file can hold.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,5 +1,6 @@
 //! What is known of a record beside its values.
 
+use crate::code;
 use crate::units::{Quantity, Unit};
 use crate::{Finding, Window};
 
@@ -147,7 +148,7 @@ impl Meta {
     pub fn adopt_unit(&mut self, text: &str) -> f64 {
         let unit = Unit::parse_or_opaque(text);
         if !unit.is_known() {
-            let code = if unit.is_level() { "levels-in-decibels" } else { "unit-unknown" };
+            let code = if unit.is_level() { code::LEVELS_IN_DECIBELS } else { "unit-unknown" };
             self.found(Finding::caution(code).name("unit", text.trim()));
         }
         self.unit = unit.si();

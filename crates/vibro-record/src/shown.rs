@@ -15,6 +15,13 @@ pub fn shown(path: impl AsRef<Path>) -> String {
     text.chars().map(|c| if is_unprintable(c) { '\u{fffd}' } else { c }).collect()
 }
 
+/// A path as a shell takes it.
+pub fn typed(path: impl AsRef<Path>) -> String {
+    let text = shown(path);
+    let splits = |c: char| c.is_whitespace() || "()[]{}<>;&|'`$!".contains(c);
+    if text.contains(splits) { format!("\"{text}\"") } else { text }
+}
+
 #[cfg(test)]
 mod tests {
     use super::shown;

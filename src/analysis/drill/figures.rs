@@ -1,6 +1,7 @@
 //! Hammer drills: the average turn, a few turns as measured, motion against noise, speed over time.
 
 use crate::measure::drill::{Corner, Drill, Impact, TurnsFrom};
+use crate::record::code;
 use crate::report::layout::lettered;
 use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use crate::units::notation::significant;
@@ -124,7 +125,7 @@ fn trace(name: &str, drill: &Drill) -> Figure {
 
 fn speed(name: &str, drill: &Drill) -> Figure {
     let plot = Plot::new(AxisSpec::new("Time", "s"), AxisSpec::new("Speed", "Hz"));
-    let sharp = drill.findings.iter().any(|found| found.code == "drill-edges-sharp");
+    let sharp = drill.findings.iter().any(|found| found.code == code::DRILL_EDGES_SHARP);
     // A turn is a whole number of samples then: a line through each would show steps of one sample alone.
     let (name_of, turns) = if sharp && drill.speeds.len() > TOGETHER * TOGETHER {
         (format!("mean of {TOGETHER} turns"), TOGETHER)

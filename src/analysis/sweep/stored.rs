@@ -3,7 +3,7 @@
 use crate::campaign::above_zero;
 use crate::error::{Error, Result};
 use crate::read::SweepReader;
-use crate::record::{Scaling, Window};
+use crate::record::{Kind, Scaling, Window};
 use crate::units::{Quantity, Unit};
 
 /// Quantities that an analyser stores of a response.
@@ -22,12 +22,18 @@ pub struct StoredResponseKeys {
     /// [default: hann, assumed]
     pub window: Option<String>,
     /// Scaling of the spectra: peak or rms [default: peak, assumed]
-    #[cfg_attr(feature = "cli", arg(value_parser = clap::builder::TypedValueParser::try_map(
-        clap::builder::PossibleValuesParser::new(["peak", "rms"]), |name| crate::campaign::word::<Scaling>(&name))))]
+    #[cfg_attr(feature = "cli", arg(value_parser = stored_scaling))]
     pub scaling: Option<Scaling>,
     /// How often the analyser integrated before it stored, 0 to 2 [default: once for a displacement]
-    #[cfg_attr(feature = "cli", arg(value_parser = clap::value_parser!(u8).range(0..=2)))]
+    #[cfg_attr(feature = "cli", arg(value_parser = crate::record::kind::whole::<u8, 0, 2>))]
     pub analyser_integrated: Option<u8>,
+}
+
+/// The scaling of stored lines.
+fn stored_scaling(name: &str) -> std::result::Result<Scaling, Kind> {
+    let known =
+        crate::campaign::word(name).ok().filter(|scaling| [Scaling::Peak, Scaling::Rms].contains(scaling));
+    known.ok_or(Kind::Names(&["peak", "rms"]))
 }
 
 impl StoredResponseKeys {

@@ -507,3 +507,117 @@ fn a_file_that_a_list_names_and_that_is_missing() {
         &["LIST.TXT, line 17", "1 of 24 files is missing", "VUP0002.DAT"],
     );
 }
+
+/// What is told to be tried, of a complaint.
+fn hint(complaint: &str) -> &str {
+    let hint = complaint.split("try: ").nth(1).unwrap_or_else(|| panic!("no hint: {complaint}"));
+    hint.lines().next().unwrap()
+}
+
+/// Words as a shell parts them.
+fn words(typed: &str) -> Vec<String> {
+    let parts = typed.split('"').enumerate().flat_map(|(k, part)| -> Vec<&str> {
+        if k % 2 == 1 { vec![part] } else { part.split_whitespace().collect() }
+    });
+    parts.map(str::to_owned).collect()
+}
+
+#[test]
+fn what_a_command_tells_to_type_works() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &[String]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_vibro"));
+        command.args(words).current_dir(folder.path()).output().unwrap()
+    };
+    let trace = "t [s],v [m/s]\n0,1\n0.1,2\n0.2,1\n0.3,2\n";
+    for name in ["Hammertest 2024.csv", "hammer m1-m2 5 hits.txt", "step 1.csv", "step 2.csv"] {
+        fs::write(folder.path().join(name), trace).unwrap();
+    }
+    fs::write(folder.path().join("c.txt"), "1\n2\n1\n2\n").unwrap();
+    for (wrong, expected) in [
+        ("info Hammertest.csv", "vibro info \"Hammertest 2024.csv\""),
+        ("response \"hammer m1-m2 5 hits.txt\"", "vibro info \"hammer m1-m2 5 hits.txt\""),
+        ("inf c.txt", "vibro info c.txt"),
+        ("info c.txt --rate 1,5", "--rate 1.5"),
+        ("info c.txt --rate 5kHz", "--rate 5000"),
+        ("info c.txt --rate 5,5kHz", "--rate 5500"),
+        ("info c.txt --decimal komma", "--decimal comma"),
+        ("info \"step 1.csv\" --span 0-0.2", "--span 0:0.2"),
+        ("info \"step 1.csv\" --stretch 1.0", "--stretch 1"),
+        ("info c.txt --rate x", "vibro info --help"),
+        ("info c.txt --rate 1 --base-band 2", "vibro info --help"),
+        ("excitation c.txt --write-lists x", "vibro excitation --help"),
+        ("restitution --masses 1;2 --before 1,0 --after 0.1,0.45", "--masses 1,2"),
+        ("spectrum c.txt --rate 10 --window kaiser", "vibro spectrum --help"),
+        ("spectrum c.txt --rate 10 --integrate 3", "vibro spectrum --help"),
+    ] {
+        let typed = words(wrong);
+        let output = run(&typed);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {said}");
+        let told = hint(&said);
+        assert_eq!(told, expected, "{wrong}: {said}");
+        let mended = if let Some(command) = told.strip_prefix("vibro ") {
+            words(command)
+        } else {
+            let [option, value] = words(told).try_into().unwrap();
+            let at = typed.iter().position(|word| *word == option).unwrap();
+            [&typed[..=at], &[value], &typed[at + 2..]].concat()
+        };
+        let output = run(&mended);
+        assert!(output.status.success(), "{wrong}: {told}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
+fn what_a_campaign_is_told_to_write_works() {
+    let folder = tempfile::tempdir().unwrap();
+    let trace = "t [s],v [m/s]\n0,1\n0.1,2\n0.2,1\n0.3,2\n";
+    fs::write(folder.path().join("a.csv"), trace).unwrap();
+    let path = folder.path().join("campaign.toml");
+    let drill = "[[drill]]\nfile = \"a.csv\"\nvelocity = \"v\"\nbeam_angle = 0\nbeam_from = \"axis\"\nsensitivity = 1\n";
+    let frf = "[[frf]]\nfile = \"a.csv\"\nreference = 1\n";
+    for (table, wrong, right) in [
+        (drill, "low_pass = 40000,", "low_pass = 40000"),
+        (drill, "low_pass = 40000,5", "low_pass = 40000.5"),
+        (drill, "low_pass = \"no\"", "low_pass = \"none\""),
+        (drill, "low_pass = \"40 kHz\"", "low_pass = 40000"),
+        (drill, "edge = \"up\"", "edge = \"rising\""),
+        (drill, "edge = \"fallin\"", "edge = \"falling\""),
+        (drill, "edge = 3", "edge = \"rising\""),
+        (drill, "pulses_per_turn = 1.0 # one", "pulses_per_turn = 1"),
+        (frf, "band = \"1-2\"", "band = [1, 2]"),
+        (frf, "band = 1:2", "band = [1, 2]"),
+        (frf, "band = [1; 2]", "band = [1, 2]"),
+        (frf, "hammer = yes", "hammer = true"),
+        (frf, "hammer = 1", "hammer = true"),
+        (frf, "least coherence = 0.5", "least_coherence = 0.5"),
+        (frf, "least_coherence = 50 %", "least_coherence = 0.5"),
+        (frf, "least_coherence = ,5", "least_coherence = 0.5"),
+        (frf, "least_coherence: 0,5", "least_coherence = 0.5"),
+        ("[fit]\n", "parameters = \"gap\"", "parameters = [\"gap\"]"),
+        ("[fit]\n", "parameters = [\"gapp\", \"k1\"]", "parameters = [\"gap\", \"k1\"]"),
+        ("[rig]\n", "gap = 1 mm", "gap = 0.001"),
+        ("", "[[rig]]", "[rig]"),
+        ("", "[[frf]", "[[frf]]"),
+        ("", "name = abc", "name = \"abc\""),
+        ("", "name = 3", "name = \"3\""),
+    ] {
+        fs::write(&path, format!("{table}{wrong}\n")).unwrap();
+        let said = complaint(&["check", text(&path)], 2);
+        let told = hint(&said).strip_prefix("write ").unwrap_or_else(|| panic!("{wrong}: {said}"));
+        assert_eq!(told, right, "{said}");
+        fs::write(&path, format!("{table}{told}\n")).unwrap();
+        let output = vibro(&["check", text(&path)]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        let line = format!("campaign.toml, line {}", table.lines().count() + 1);
+        // A table without its file is told at its head.
+        assert!(!said.contains(&line) || right == "[[frf]]", "{said}");
+    }
+    // What no value of this kind is meant by has none.
+    for (table, wrong) in [("[rig]\n", "gap = true"), (frf, "band = [1]"), (frf, "channel = 1.5")] {
+        fs::write(&path, format!("{table}{wrong}\n")).unwrap();
+        let said = complaint(&["check", text(&path)], 2);
+        assert!(said.contains(&format!("{wrong}; expected ")) && !said.contains("try: write"), "{said}");
+    }
+}

@@ -188,7 +188,8 @@ fn info_says_of_what_it_is_a_part() {
         let said = vibro(&["info", text(&root.path().join(part))]).stdout;
         let said = String::from_utf8(said).unwrap();
         let file = part.split('/').next().unwrap();
-        let format = if file.ends_with(".xlsx") { "workbook" } else { "csv" };
+        let format =
+            if Path::new(file).extension().is_some_and(|e| e == "xlsx") { "workbook" } else { "csv" };
         assert!(said.contains(&format!("{part} ({format} in {file})")), "{said}");
     }
 }

@@ -263,7 +263,7 @@ fn impossible_counts_say_which_and_what_to_type() {
             ("--impacts 33 --cycles 2", "33 impacts in a period; expected 1 to 32", "try: 32 (--impacts)"),
             ("--impacts 2 --cycles 33", "33 cycles in a period; expected 1 to 32", "try: 32 (--cycles)"),
             ("--impacts 1.5", "--impacts is 1.5", "expected a whole number"),
-            ("--impacts=-1", "--impacts is -1", "expected a whole number from 0"),
+            ("--impacts=-1", "--impacts is -1", "expected a whole number, 0 or more"),
             ("--cycles two", "--cycles is two", "expected a whole number"),
         ] {
             let said = refused(&format!("{command} {typed}"), 2);

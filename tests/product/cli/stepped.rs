@@ -95,7 +95,10 @@ fn sweeps_that_cannot_be_say_what_is_wrong() {
     steps(folder.path());
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     for (table, word) in [
-        ("traces = \"stop*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"", "try: step*.csv"),
+        (
+            "traces = \"stop*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"",
+            "try: write traces = \"step*.csv\"",
+        ),
         ("traces = \"../*.csv\"\nforce = \"Force\"\nresponse = \"Accel\"", "leads outside"),
         ("traces = \"step*.csv\"\nforce = \"Accel\"\nresponse = \"Accel\"", "force_calibration"),
         (

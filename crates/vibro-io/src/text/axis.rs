@@ -3,6 +3,7 @@
 use super::header::Stated;
 use crate::Options;
 use crate::assemble::{NOMINAL, domain, short};
+use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
 
 /// Relative difference that no statement means: six digits are the least that a person states.
@@ -244,7 +245,7 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {
-            findings.push(Finding::caution("abscissa-unsaid"));
+            findings.push(Finding::caution(code::ABSCISSA_UNSAID));
             Axis::index(n)
         }
     }

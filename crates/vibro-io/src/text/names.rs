@@ -7,6 +7,7 @@ use super::unit_words::{
 };
 use crate::assemble::{self, domain, kind_of};
 use crate::number;
+use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Error, Finding, Result};
 
@@ -111,7 +112,7 @@ impl Name {
         let Some(text) = &self.unit else {
             let assumed = match bracketed(&self.name, '(', ')') {
                 Some((_, unit)) => Finding::caution("axis-unit-unknown").name("said", unit),
-                None => Finding::caution("axis-unit-assumed"),
+                None => Finding::caution(code::AXIS_UNIT_ASSUMED),
             };
             return Ok((1.0, Some(assumed.name("unit", domain(kind).1))));
         };

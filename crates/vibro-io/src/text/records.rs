@@ -14,6 +14,7 @@ use crate::held::Held;
 use crate::{Format, Options, level, number};
 use num_complex::Complex64;
 use std::borrow::Cow;
+use vibro_record::code;
 use vibro_record::lanes::Extremes;
 use vibro_record::units::Unit;
 use vibro_record::units::notation::counted;
@@ -223,7 +224,7 @@ impl RecordContext<'_> {
             }
             (None, Some(kind)) => {
                 let (unit, factor) = self.unit_by_rate(&values).unwrap_or((domain(&kind).1, 1.0));
-                (kind, factor, Some(Finding::caution("axis-unit-assumed").name("unit", unit)))
+                (kind, factor, Some(Finding::caution(code::AXIS_UNIT_ASSUMED).name("unit", unit)))
             }
             (None, None) => {
                 (AxisKind::Other(name.to_owned()), 1.0, Some(Finding::caution("axis-kind-unsaid")))
@@ -262,8 +263,10 @@ impl RecordContext<'_> {
         let resampled = self.options.resample.is_some();
         let JudgedAxis { axis, clock, found } = from_values(kind, values, own * factor, &label, resampled);
         let assumed = assumed.map(|found| found.name("column", label.as_str()));
-        let assumed = assumed
-            .map(|found| if found.code == "axis-unit-assumed" { found.name("head", head) } else { found });
+        let assumed =
+            assumed.map(
+                |found| if found.code == code::AXIS_UNIT_ASSUMED { found.name("head", head) } else { found },
+            );
         let findings = assumed.into_iter().chain(found).collect();
         let resolution = own * factor;
         Ok(PrintedAbscissa {

@@ -4,6 +4,7 @@ use super::codes::{self, FunctionType};
 use super::heading::{AxisCharacteristics, Heading};
 use crate::number;
 use crate::uff::stream::Stream;
+use vibro_record::code;
 use vibro_record::units::{Dimension, Quantity, Unit};
 use vibro_record::{Finding, Scaling};
 
@@ -152,7 +153,7 @@ fn plain(
         return Ok((Dimension::NONE, 1, 0));
     }
     if above.unsaid() && below.unsaid() {
-        return Err(Some(Finding::caution("unit-unsaid")));
+        return Err(Some(Finding::caution(code::UNIT_UNSAID)));
     }
     let (Some(numerator), Some(denominator)) = (above.dimension, below.dimension) else { return Err(None) };
     let dimension = numerator.times(denominator.inverse());
@@ -170,7 +171,11 @@ fn plain(
     if above.text {
         return Ok((dimension, 1, 0)); // the text is the unit of the lines, such as g²/Hz
     }
-    if below.unsaid() { Ok((dimension, power, seconds)) } else { Err(Some(Finding::caution("unit-unsaid"))) }
+    if below.unsaid() {
+        Ok((dimension, power, seconds))
+    } else {
+        Err(Some(Finding::caution(code::UNIT_UNSAID)))
+    }
 }
 
 fn is_frf(quantity: Quantity) -> bool {

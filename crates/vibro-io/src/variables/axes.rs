@@ -11,6 +11,7 @@ use crate::options::{Options, POSSIBLE};
 use crate::text::names::Name;
 use std::cmp::Reverse;
 use std::collections::HashMap;
+use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{Axis, AxisKind, Error, Finding, Grid, Meta, Result};
 
@@ -47,7 +48,7 @@ fn kind(
             let (first, last) = (values[0], values[values.len() - 1]);
             let step = (last - first) / (values.len() - 1) as f64;
             let days = !dialect.attributes && DATENUM.contains(&first) && step < 1.0;
-            let days = days.then_some(("axis-unit-assumed", "d", DAY));
+            let days = days.then_some((code::AXIS_UNIT_ASSUMED, "d", DAY));
             let dated = epoch(first).map(|(unit, factor)| ("axis-epoch", unit, factor)).or(days);
             if let Some((code, unit, factor)) = dated {
                 return Some((kind, [first, factor], Some(Finding::caution(code).name("unit", unit))));
@@ -325,7 +326,7 @@ impl<'a> Axes<'a> {
     /// What to say of values without an abscissa: which variables may hold it.
     fn unsaid(&self, name: &str, values: &Held, record: &str) -> Finding {
         let (n, complex) = (values.len(), values.is_complex());
-        let mut found = Finding::caution("abscissa-unsaid");
+        let mut found = Finding::caution(code::ABSCISSA_UNSAID);
         let offered = self
             .scalars
             .over(name)

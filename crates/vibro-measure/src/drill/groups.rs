@@ -7,6 +7,7 @@ use crate::mean::Mean;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::Finding;
+use vibro_record::code;
 
 /// Bias of a mean, in standard uncertainties, that leaves ± 1.96 of them a coverage of 94 %.
 const BIAS: f64 = 0.3;
@@ -164,7 +165,7 @@ impl Group {
         self.restitution.iter_mut().for_each(|r| add(r, (1.0 + r.value) * unknown / before.abs()));
         add(&mut self.before, unknown);
         add(&mut self.after, unknown);
-        let found = Finding::doubt("drill-mean-velocity").number("mean", offset.value);
+        let found = Finding::doubt(code::DRILL_MEAN_VELOCITY).number("mean", offset.value);
         self.findings.extend(doubted.then_some(found));
         self
     }

@@ -9,6 +9,7 @@ use crate::exposure::Exposure;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use vibro_record::Finding;
+use vibro_record::code;
 
 /// Everything found in a record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -152,7 +153,7 @@ pub(super) fn findings(
     let drifts = Finding::caution("drill-drift").number("drift", drift).number("stroke", stroke);
     let mean = drift * d.speed.value;
     let moved = |v: &Estimate| mean.abs() > v.std.unwrap_or(SMALL * v.value.abs());
-    let doubted = |g: &Group| g.findings.iter().any(|found| found.code == "drill-mean-velocity");
+    let doubted = |g: &Group| g.findings.iter().any(|found| found.code == code::DRILL_MEAN_VELOCITY);
     let moved = |g: &Group| !doubted(g) && (moved(&g.before) || moved(&g.after));
     let removed = Finding::caution("drill-mean-removed").number("mean", mean);
     let own = d.turns_from == TurnsFrom::Impacts;
@@ -167,7 +168,7 @@ pub(super) fn findings(
         (r.missing > 0, Finding::caution(missing).count("n", r.missing)),
         (!own && r.extra > 0, Finding::caution("drill-edges-extra").count("n", r.extra)),
         (r.pauses > 0, Finding::caution("drill-reference-pauses").count("n", r.pauses)),
-        (sharp, Finding::caution("drill-edges-sharp").number("std", r.std).number("speed", of_a_turn)),
+        (sharp, Finding::caution(code::DRILL_EDGES_SHARP).number("std", r.std).number("speed", of_a_turn)),
         (pulses > 1, Finding::caution("drill-first-pulse-unknown").count("pulses", pulses)),
         (f.dropouts + f.spikes > 0, bridged),
         (f.lost > 0, lost.count("turns", d.cycles - d.averaged)),

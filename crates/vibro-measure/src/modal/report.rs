@@ -8,6 +8,7 @@ use crate::Estimate;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::Finding;
+use vibro_record::code;
 
 /// A modal constant within this of 0 or 180°, in degrees, has a sign.
 const IN_STEP: f64 = 45.0;
@@ -67,7 +68,7 @@ impl Candidate<'_> {
         if blows {
             // A record that ends T after the blow lacks e^(sT − iωT) of a mode's part: a factor on A.
             let left = (-TAU * pole.frequency * pole.zeta / spacing).exp();
-            let cut_off = Finding::caution("modal-blow-cut-off").number("part", left);
+            let cut_off = Finding::caution(code::MODAL_BLOW_CUT_OFF).number("part", left);
             find(left * pole.constant.norm() > std[2], cut_off);
             (std[2], std[3]) = (std[2].hypot(left * pole.constant.norm()), std[3].hypot(left));
         }

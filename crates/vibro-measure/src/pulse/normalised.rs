@@ -9,6 +9,7 @@ use crate::mean::average;
 use crate::swings;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use vibro_record::code;
 use vibro_record::units::Quantity;
 use vibro_record::{Error, Finding, Result, Trace, median};
 
@@ -129,7 +130,8 @@ impl<'a> Normalised<'a> {
         let other = (0..trace.values.len())
             .filter(|i| !(-0.5..=2.0).contains(&self.time(*i)))
             .find(|i| (trace.values[*i] - found.baseline) / found.height > 0.5);
-        findings.extend(other.map(|i| Finding::caution("pulse-not-alone").number("time", trace.axis.at(i))));
+        findings
+            .extend(other.map(|i| Finding::caution(code::PULSE_NOT_ALONE).number("time", trace.axis.at(i))));
     }
 
     /// Factor from the fitted velocity to m/s, where the record is an acceleration, or a force on a known

@@ -575,7 +575,7 @@ fn an_advice_was_tried() {
     let how = ImpactsOptions { threshold: Some(Train::THRESHOLD), ..Default::default() };
     let refused = Train::of(&trace, &how, None).unwrap_err();
     assert_eq!(refused.code(), Some(Train::UNTOLD));
-    let advice = refused.text_with(|key, value| format!("{key} = {value}"));
+    let advice = refused.settings_with(|key, value| format!("{key} = {value}")).concat();
     let (_, span) = advice.split_once("span = [").expect("a part is named");
     let ends: Vec<f64> = span.split([',', ']']).filter_map(|end| end.trim().parse().ok()).collect();
     let part = trace.axis.between(ends[0], ends[1]);

@@ -5,11 +5,10 @@ use crate::excitation::{Excitation, Part};
 use crate::least::{NumberRange, number};
 use crate::{Parameter, Rig};
 use serde::Deserialize;
-use serde::de::IntoDeserializer;
 use std::path::{Path, PathBuf};
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 use toml::{Spanned, Table, Value};
-use vibro_record::{Error, Place, Result, nearest};
+use vibro_record::{Error, Place, Result, Written, nearest};
 
 /// Kinds of excitation, each with the keys that belong to it.
 const KINDS: [(&str, &[&str]); 4] = [
@@ -156,8 +155,8 @@ impl Draft {
     pub fn scene(&self) -> Result<Scene> {
         let (sections, own): (Table, Table) =
             self.table.clone().into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.as_str()));
-        let rig = Rig::deserialize(own).map_err(|e| complaint(&e, ""))?;
-        let keys = Sections::deserialize(sections).map_err(|e| complaint(&e, ""))?;
+        let rig = Rig::deserialize(own).map_err(|e| unread(&e))?;
+        let keys = Sections::deserialize(sections).map_err(|e| unread(&e))?;
         if let Some((key, error)) = rig.fault() {
             return Err(self.at(key, error));
         }
@@ -204,7 +203,7 @@ impl Draft {
             return Err(error.hint(format!("state {key}, in [excitation] of a rig's file")));
         }
         section.insert("kind".to_owned(), Value::String(kind));
-        let excitation = Excitation::deserialize(section).map_err(|e| complaint(&e, ""))?;
+        let excitation = Excitation::deserialize(section).map_err(|e| unread(&e))?;
         let excitation = whole.map_or_else(|| excitation.clone(), |hz| excitation.at_frequency(hz));
         excitation.check().map_err(|error| {
             let key = error.settings().next().unwrap_or("kind");
@@ -234,8 +233,8 @@ impl Draft {
 
 /// Keys and values of a text, each known and of its kind.
 fn table(text: &str) -> Result<Table> {
-    let wrong = |e: toml::de::Error| complaint(&e, text);
-    let all = DeTable::parse(text).map_err(wrong)?.into_inner();
+    let written = Written { text, ..Written::default() };
+    let all = written.parse()?;
     let (sections, own): (DeTable<'_>, DeTable<'_>) =
         all.into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.get_ref().as_ref()));
     if let Some((key, _)) = own.iter().find(|(key, _)| !Parameter::is_of_rig(key.get_ref())) {
@@ -247,17 +246,14 @@ fn table(text: &str) -> Result<Table> {
         };
         return Err(error.excerpt(text, key.span()));
     }
-    let read = |table| Spanned::new(0..0, DeValue::Table(table)).into_deserializer();
-    Rig::deserialize(read(own)).map_err(wrong)?;
-    Sections::deserialize(read(sections)).map_err(wrong)?;
-    toml::from_str(text).map_err(wrong)
+    written.read::<Rig>(&own, 0..0)?;
+    written.read::<Sections>(&sections, 0..0)?;
+    written.read(&written.parse()?, 0..0)
 }
 
-/// What serde complains of, with its place.
-fn complaint(error: &toml::de::Error, text: &str) -> Error {
-    let message = error.message().replace("unknown field", "unknown key").replace("f64", "a number");
-    let (found, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
-    Error::usage(found, expected).excerpt(text, error.span().unwrap_or(0..0))
+/// A key that is of its kind and cannot be read with the others.
+fn unread(error: &toml::de::Error) -> Error {
+    Error::usage(error.message(), "")
 }
 
 /// The complaint about a campaign where a rig file should stand: it has the rig in a table, or lists of
@@ -315,11 +311,11 @@ mod tests {
             ("[excitation]\nforce = -1\nfrequency = 5", "line 2", "force is -1 N"),
             ("[excitation]\nkind = \"sine\"\nforce = 1", "line 2", "has no frequency"),
             ("m1 = -1", "line 1", "m1 is -1 kg"),
-            ("m1 = \"heavy\"", "line 1", "string \"heavy\"; expected a number"),
-            ("gap = 1\ngap = 2", "line 2", "duplicate key"),
-            ("excitation = 3", "line 1", "integer `3`; expected a table"),
+            ("m1 = \"heavy\"", "line 1", "m1 = \"heavy\"; expected a number"),
+            ("gap = 1\ngap = 2", "line 2", "every key once"),
+            ("excitation = 3", "line 1", "excitation = 3; expected a table"),
             ("[contact]\nstiffness = 0", "line 2", "contact.stiffness is 0 N/m"),
-            ("[excitation]\nparts = [{force = 1}]", "line 2", "missing field `frequency`"),
+            ("[excitation]\nparts = [{force = 1}]", "line 2", "the key `frequency` is missing"),
             ("restitution = nan", "line 1", "restitution is NaN"),
             ("m1 =", "line 1", ""),
         ] {

@@ -5,6 +5,7 @@ use crate::fft::Transform;
 use crate::transfer::Transfer;
 use std::f64::consts::TAU;
 use vibro_record::Finding;
+use vibro_record::code;
 
 /// Parts of a record after the blow; the first and the last are compared.
 const PARTS: usize = 4;
@@ -82,7 +83,7 @@ pub(super) fn widen(transfer: &mut Transfer, values: &[f64], kept: &[usize], how
         transfer.phase_std[k] = transfer.phase_std[k].hypot(*part);
         if *part > LEAST && *strong && part * h.norm() > most {
             most = part * h.norm();
-            let here = Finding::caution("response-cut-off").number("frequency", transfer.frf.axis.at(k));
+            let here = Finding::caution(code::RESPONSE_CUT_OFF).number("frequency", transfer.frf.axis.at(k));
             finding = Some(here.number("left", *part));
         }
     }

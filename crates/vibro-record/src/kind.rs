@@ -1,0 +1,211 @@
+//! What a value should be, as data, and the value of that kind that is meant by another text.
+
+use crate::nearest;
+use std::fmt;
+
+/// What a value that a person types should be. As an error it says that another one was typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// A whole number between two others, both included.
+    Whole(i64, i64),
+    /// True or false.
+    Truth,
+    /// Text.
+    Text,
+    /// One of these names.
+    Names(&'static [&'static str]),
+    /// A number of a quantity, or a word in its place.
+    NumberOr(&'static str, &'static str),
+    /// Two numbers with this mark between them.
+    Pair(char),
+    /// Two times in s with a colon between them, or one of them and the colon.
+    Part,
+    /// So many values in a list.
+    Values(usize),
+    /// A list of values, or of tables.
+    List,
+    /// Keys with their values.
+    Table,
+    /// In words.
+    Other(String),
+}
+
+impl Kind {
+    /// It in words, with `quote` around names.
+    pub fn words(&self, quote: &str) -> String {
+        let quoted = |name: &&str| format!("{quote}{name}{quote}");
+        match self {
+            Kind::Number => "a number, such as 0.5 or 1e-3".to_owned(),
+            Kind::Whole(0, most) if *most >= u32::MAX.into() => "a whole number, 0 or more".to_owned(),
+            Kind::Whole(least, most) => format!("a whole number from {least} to {most}"),
+            Kind::Truth => "true or false".to_owned(),
+            Kind::Text => "text between quotes".to_owned(),
+            Kind::Names([name]) => quoted(name),
+            Kind::Names([a, b]) => format!("{} or {}", quoted(a), quoted(b)),
+            Kind::Names(all) => format!("one of {}", all.iter().map(quoted).collect::<Vec<_>>().join(", ")),
+            Kind::NumberOr(quantity, name) => format!("{quantity}, or {}", quoted(name)),
+            Kind::Pair(mark) => format!("two numbers with {mark:?} between them"),
+            Kind::Part => "two times in s with ':' between them, or one of them and ':'".to_owned(),
+            Kind::Values(2) => "two values between square brackets".to_owned(),
+            Kind::Values(n) => format!("{n} values between square brackets"),
+            Kind::List => "a list between square brackets, or tables with double brackets".to_owned(),
+            Kind::Table => "a table".to_owned(),
+            Kind::Other(words) => words.clone(),
+        }
+    }
+
+    /// The text of this kind that is meant by another one, as the value of `key`, typed without quotes.
+    pub fn meant(&self, key: &str, text: &str) -> Option<String> {
+        match self {
+            Kind::Number => meant_number(key, text),
+            Kind::Whole(least, most) => {
+                let number: f64 = meant_number(key, text).as_deref().unwrap_or(text).parse().ok()?;
+                let whole = number.fract() == 0.0 && number >= *least as f64 && number <= *most as f64;
+                whole.then(|| format!("{number:.0}"))
+            }
+            Kind::Names(names) => nearest(text, names.iter().copied()).map(str::to_owned),
+            Kind::NumberOr(_, name) => {
+                let off = nearest(text, [*name, "no", "off", "false"]).map(|_| (*name).to_owned());
+                off.or_else(|| meant_number(key, text))
+            }
+            Kind::Pair(mark) => respelt(text, *mark, pair),
+            Kind::Part => respelt(text, ':', |text, _| part(text)),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(""))
+    }
+}
+
+impl std::error::Error for Kind {}
+
+/// A number.
+///
+/// # Errors
+/// If it is none.
+pub fn number(text: &str) -> Result<f64, Kind> {
+    text.trim().parse().map_err(|_| Kind::Number)
+}
+
+/// A whole number from `LEAST` to `MOST`.
+///
+/// # Errors
+/// If it is none, or lies outside.
+pub fn whole<T: TryFrom<i64>, const LEAST: i64, const MOST: i64>(text: &str) -> Result<T, Kind> {
+    let number = text.parse().ok().filter(|number| (LEAST..=MOST).contains(number));
+    number.and_then(|number| T::try_from(number).ok()).ok_or(Kind::Whole(LEAST, MOST))
+}
+
+/// Two numbers with a mark between them.
+///
+/// # Errors
+/// If that is not what stands there.
+pub fn pair(text: &str, mark: char) -> Result<(f64, f64), Kind> {
+    let two = text.split_once(mark).and_then(|(a, b)| Some((number(a).ok()?, number(b).ok()?)));
+    two.ok_or(Kind::Pair(mark))
+}
+
+/// A part of a record between two times in s, `FROM:TO`; without one of them to its end or from its
+/// beginning.
+///
+/// # Errors
+/// If that is not what stands there.
+pub fn part(text: &str) -> Result<(f64, f64), Kind> {
+    let end = |text: &str, open: f64| if text.trim().is_empty() { Ok(open) } else { number(text) };
+    let (from, to) = text.split_once(':').ok_or(Kind::Part)?;
+    let ends = (end(from, f64::NEG_INFINITY), end(to, f64::INFINITY));
+    let (Ok(from_time), Ok(to_time)) = ends else { return Err(Kind::Part) };
+    if (from.to_owned() + to).trim().is_empty() { Err(Kind::Part) } else { Ok((from_time, to_time)) }
+}
+
+/// The text with another mark between its two parts, where that makes it one that is read.
+fn respelt<T>(text: &str, mark: char, read: impl Fn(&str, char) -> Result<T, Kind>) -> Option<String> {
+    // Not the sign in front of the first number.
+    let marks = text.char_indices().filter(|(at, c)| *at > 0 && [',', ';', ':', '-'].contains(c));
+    let mut meant = marks.map(|(at, c)| format!("{}{mark}{}", &text[..at], &text[at + c.len_utf8()..]));
+    meant.find(|meant| read(meant, mark).is_ok())
+}
+
+/// Units that numbers are typed with, and parts of them as powers of ten.
+const UNITS: [(&str, i32); 17] = [
+    ("k", 3),
+    ("Hz", 0),
+    ("kHz", 3),
+    ("s", 0),
+    ("ms", -3),
+    ("us", -6),
+    ("µs", -6),
+    ("m", 0),
+    ("cm", -2),
+    ("mm", -3),
+    ("N", 0),
+    ("kN", 3),
+    ("kg", 0),
+    ("°", 0),
+    ("deg", 0),
+    ("%", -2),
+    ("m/s", 0),
+];
+
+/// The number that is meant by one with its unit, as the value of a key.
+pub fn without_unit(key: &str, text: &str) -> Option<f64> {
+    let meant = |(unit, decimals): &(&str, i32)| {
+        // By its text, so that no digit is lost.
+        format!("{}e{decimals}", text.trim().strip_suffix(unit)?.trim_end()).parse().ok()
+    };
+    // Of other keys a g may be that of an acceleration.
+    let grams = key.trim_start_matches('-').contains("mass") || ["m1", "m2"].contains(&key);
+    UNITS.iter().find_map(meant).or_else(|| meant(&("g", -3)).filter(|_| grams))
+}
+
+/// The number that is meant by one with a decimal comma, with a unit, or with no digit on one side of its
+/// point.
+pub(crate) fn meant_number(key: &str, text: &str) -> Option<String> {
+    let point = text.trim().replacen(',', ".", 1);
+    let number: Option<f64> = point.parse().ok().filter(|number: &f64| number.is_finite());
+    match number {
+        Some(_) if point.starts_with('.') => Some(format!("0{point}")),
+        Some(_) if point.ends_with('.') => Some(format!("{point}0")),
+        Some(_) => Some(point),
+        None => without_unit(key, &point).map(|number| number.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_meant_is_of_the_kind() {
+        for (kind, text, expected) in [
+            (Kind::Number, "0,57", Some("0.57")),
+            (Kind::Number, "35 kHz", Some("35000")),
+            (Kind::Number, "3,5 ms", Some("0.0035")),
+            (Kind::Number, ",5", Some("0.5")),
+            (Kind::Number, "x", None),
+            (Kind::Number, "inf", None),
+            (Kind::Whole(0, 9), "2.0", Some("2")),
+            (Kind::Whole(0, 9), "1e1", None),
+            (Kind::Whole(0, 9), "-1", None),
+            (Kind::Names(&["rising", "falling"]), "risin", Some("rising")),
+            (Kind::Names(&["rising", "falling"]), "up", None),
+            (Kind::NumberOr("a corner in Hz", "none"), "off", Some("none")),
+            (Kind::NumberOr("a corner in Hz", "none"), "5kHz", Some("5000")),
+            (Kind::Pair(':'), "10-20", Some("10:20")),
+            (Kind::Pair(','), "-1;-2", Some("-1,-2")),
+            (Kind::Pair(':'), "10", None),
+            (Kind::Part, "-1--0.5", Some("-1:-0.5")),
+        ] {
+            assert_eq!(kind.meant("rate", text).as_deref(), expected, "{kind:?} {text}");
+        }
+        assert_eq!(part("600:"), Ok((600.0, f64::INFINITY)));
+        assert_eq!([part(":"), part("5")], [Err(Kind::Part), Err(Kind::Part)]);
+        assert_eq!(whole::<u8, 0, 2>("3"), Err(Kind::Whole(0, 2)));
+    }
+}

@@ -1,0 +1,499 @@
+//! Values that a person writes as TOML. What is wrong with one is told by its place and by the kind that its
+//! type asks for; of the words of a parser none is read.
+
+use crate::kind::{Kind, meant_number};
+use crate::{Error, nearest};
+use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer, StrDeserializer};
+use serde::de::{self, DeserializeOwned, Deserializer, Expected, IntoDeserializer, Unexpected, Visitor};
+use serde::forward_to_deserialize_any;
+use std::fmt;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A text of TOML, and what is known of it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Written<'a> {
+    /// The whole text.
+    pub text: &'a str,
+    /// Keys that are known beside those of the type.
+    pub beside: &'a [&'a str],
+    /// Words of the field, and the tables that are meant by them.
+    pub meant: &'a [(&'a str, &'a str)],
+}
+
+/// What is wrong, and where.
+#[derive(Debug)]
+struct Fault {
+    what: What,
+    span: Option<Range<usize>>,
+}
+
+#[derive(Debug)]
+enum What {
+    /// A key that is not among these.
+    UnknownKey(String, &'static [&'static str]),
+    /// A name of a quantity as a key that is not among these.
+    UnknownName(String, Kind),
+    MissingKey(&'static str),
+    /// A key that stands there under two of its names.
+    Twice(&'static str),
+    /// A value of another kind.
+    Value(Kind),
+    /// In the words of the type.
+    Other(String),
+}
+
+impl From<What> for Fault {
+    fn from(what: What) -> Fault {
+        Fault { what, span: None }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.what)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl de::Error for Fault {
+    fn custom<T: fmt::Display>(words: T) -> Fault {
+        What::Other(words.to_string()).into()
+    }
+
+    fn invalid_type(_: Unexpected<'_>, expected: &dyn Expected) -> Fault {
+        What::Value(Kind::Other(expected.to_string())).into()
+    }
+
+    fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Fault {
+        Fault::invalid_type(found, expected)
+    }
+
+    fn invalid_length(_: usize, expected: &dyn Expected) -> Fault {
+        Fault::invalid_type(Unexpected::Seq, expected)
+    }
+
+    fn unknown_variant(_: &str, names: &'static [&'static str]) -> Fault {
+        What::Value(Kind::Names(names)).into()
+    }
+
+    fn unknown_field(key: &str, known: &'static [&'static str]) -> Fault {
+        What::UnknownKey(key.to_owned(), known).into()
+    }
+
+    fn missing_field(key: &'static str) -> Fault {
+        What::MissingKey(key).into()
+    }
+
+    fn duplicate_field(key: &'static str) -> Fault {
+        What::Twice(key).into()
+    }
+}
+
+/// A key or a value with its place.
+struct Node<'de> {
+    value: DeValue<'de>,
+    span: Range<usize>,
+    is_key: bool,
+}
+
+impl<'de> Node<'de> {
+    fn of(value: Spanned<DeValue<'de>>) -> Node<'de> {
+        Node { span: value.span(), value: value.into_inner(), is_key: false }
+    }
+
+    fn table(rows: DeTable<'de>, span: &Range<usize>) -> Node<'de> {
+        Node { value: DeValue::Table(rows), span: span.clone(), is_key: false }
+    }
+
+    /// Reads it as what its type asks for; what is wrong with the value itself has its place and this kind.
+    fn read<V: Visitor<'de>>(self, kind: Option<Kind>, visitor: V) -> Result<V::Value, Fault> {
+        let span = self.span.clone();
+        let name = self.value.as_str().filter(|_| self.is_key).map(str::to_owned);
+        self.visit(visitor).map_err(|mut fault| {
+            if fault.span.is_none() {
+                fault.span = Some(span);
+                fault.what = match (fault.what, kind, name) {
+                    (What::Value(of_type), kind, Some(name)) => {
+                        What::UnknownName(name, kind.unwrap_or(of_type))
+                    }
+                    (What::Value(_), Some(kind), None) => What::Value(kind),
+                    (what, ..) => what,
+                };
+            }
+            fault
+        })
+    }
+
+    fn visit<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.value {
+            DeValue::String(text) => visitor.visit_str(&text),
+            DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+                Ok(number) => visitor.visit_i64(number),
+                Err(_) => Err(de::Error::invalid_type(Unexpected::Other(number.as_str()), &visitor)),
+            },
+            DeValue::Float(number) => match number.as_str().parse() {
+                Ok(number) => visitor.visit_f64(number),
+                Err(_) => Err(de::Error::invalid_type(Unexpected::Other(number.as_str()), &visitor)),
+            },
+            DeValue::Boolean(truth) => visitor.visit_bool(truth),
+            DeValue::Datetime(_) => Err(de::Error::invalid_type(Unexpected::Other("a date"), &visitor)),
+            DeValue::Array(all) => {
+                let mut all = SeqDeserializer::new(all.into_iter().map(Node::of));
+                let read = visitor.visit_seq(&mut all)?;
+                all.end().map(|()| read)
+            }
+            DeValue::Table(rows) => {
+                let mut rows = rows_of(rows);
+                let read = visitor.visit_map(&mut rows)?;
+                rows.end().map(|()| read)
+            }
+        }
+    }
+}
+
+type Rows<'de, I> = MapDeserializer<'de, I, Fault>;
+
+/// Keys and values in their order.
+fn rows_of(rows: DeTable<'_>) -> Rows<'_, impl Iterator<Item = (Node<'_>, Node<'_>)>> {
+    let key =
+        |key: Spanned<_>| Node { span: key.span(), value: DeValue::String(key.into_inner()), is_key: true };
+    MapDeserializer::new(rows.into_iter().map(move |(name, value)| (key(name), Node::of(value))))
+}
+
+impl<'de> IntoDeserializer<'de, Fault> for Node<'de> {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// Methods that ask for a value of a kind.
+macro_rules! asks {
+    ($($name:ident: $kind:expr),*) => {
+        $(fn $name<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+            self.read(Some($kind), visitor)
+        })*
+    };
+}
+
+impl<'de> Deserializer<'de> for Node<'de> {
+    type Error = Fault;
+
+    asks! {
+        deserialize_f32: Kind::Number, deserialize_f64: Kind::Number,
+        deserialize_i8: Kind::Whole(i8::MIN.into(), i8::MAX.into()),
+        deserialize_i16: Kind::Whole(i16::MIN.into(), i16::MAX.into()),
+        deserialize_i32: Kind::Whole(i32::MIN.into(), i32::MAX.into()),
+        deserialize_i64: Kind::Whole(i64::MIN, i64::MAX),
+        deserialize_u8: Kind::Whole(0, u8::MAX.into()), deserialize_u16: Kind::Whole(0, u16::MAX.into()),
+        deserialize_u32: Kind::Whole(0, u32::MAX.into()), deserialize_u64: Kind::Whole(0, i64::MAX),
+        deserialize_bool: Kind::Truth, deserialize_str: Kind::Text, deserialize_string: Kind::Text,
+        deserialize_seq: Kind::List
+    }
+
+    forward_to_deserialize_any! {
+        char bytes byte_buf unit unit_struct identifier ignored_any
+    }
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        self.read(None, visitor)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, n: usize, visitor: V) -> Result<V::Value, Fault> {
+        self.read(Some(Kind::Values(n)), visitor)
+    }
+
+    fn deserialize_tuple_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        n: usize,
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        self.deserialize_tuple(n, visitor)
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.value {
+            // A list would pass for the fields of a struct in their order.
+            DeValue::Table(_) => self.read(Some(Kind::Table), visitor),
+            _ => Err(Fault { what: What::Value(Kind::Table), span: Some(self.span) }),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        self.deserialize_map(visitor)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        names: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        struct Named<V>(V);
+        impl<'de, V: Visitor<'de>> Visitor<'de> for Named<V> {
+            type Value = V::Value;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.expecting(f)
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<V::Value, E> {
+                self.0.visit_enum(StrDeserializer::new(name))
+            }
+
+            fn visit_map<A: de::MapAccess<'de>>(self, rows: A) -> Result<V::Value, A::Error> {
+                self.0.visit_enum(MapAccessDeserializer::new(rows))
+            }
+        }
+        self.read(Some(Kind::Names(names)), Named(visitor))
+    }
+}
+
+/// A value by its name.
+///
+/// # Errors
+/// With the names that are known.
+pub fn named<T: DeserializeOwned>(name: &str) -> Result<T, Kind> {
+    T::deserialize(StrDeserializer::<Fault>::new(name)).map_err(|fault| match fault.what {
+        What::Value(kind) => kind,
+        other => Kind::Other(format!("{other:?}")),
+    })
+}
+
+impl<'a> Written<'a> {
+    /// Its keys and values.
+    ///
+    /// # Errors
+    /// If it is no TOML, with its line and what can be written in place of it.
+    pub fn parse(&self) -> Result<DeTable<'a>, Error> {
+        DeTable::parse(self.text).map(Spanned::into_inner).map_err(|error| {
+            let span = error.span().unwrap_or(0..0);
+            let line = line_at(self.text, span.start);
+            let head = uncommented(line);
+            let told = |found: &str, expected: &str, hint: String| {
+                Error::usage(found, expected).excerpt(self.text, span.clone()).hint(hint)
+            };
+            let before = &self.text[..start_of_line(self.text, span.start)];
+            let stands_twice = is_toml(line) && !line.is_empty() && is_toml(before);
+            if stands_twice {
+                told(line, "every key once in a table", "remove this line, or the other one".to_owned())
+            } else if let Some(meant) = head_of_tables(head) {
+                told(line, "two brackets on both sides", format!("write {meant}"))
+            } else if let Some(key) = head.strip_suffix('=') {
+                let key = key.trim_end();
+                told(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
+            } else if let Some((expected, meant)) = respelt(head) {
+                told(head, &expected, format!("write {meant}"))
+            } else {
+                told(error.message(), "", String::new())
+            }
+        })
+    }
+
+    /// A table of it, at `span`, as a type.
+    ///
+    /// # Errors
+    /// With the line of an unknown or missing key or a value of the wrong kind, and what can be written in
+    /// place of it: tried, so that the type takes it.
+    pub fn read<T: DeserializeOwned>(&self, table: &DeTable<'a>, span: Range<usize>) -> Result<T, Error> {
+        T::deserialize(Node::table(table.clone(), &span)).map_err(|fault| {
+            let at = fault.span.clone().unwrap_or_default();
+            let takes = |meant: &str| {
+                let text = format!("x = {meant}");
+                let mut table: DeTable<'_> = table.clone();
+                let parsed = DeTable::parse(&text).ok().and_then(|parsed| parsed.into_inner().remove("x"));
+                let changed = parsed.and_then(|value| put(&mut table, &at, value.into_inner()));
+                let again = T::deserialize(Node::table(table, &span)).err().and_then(|fault| fault.span);
+                changed.is_some() && again.is_none_or(|span| span.start > at.end || span.end < at.start)
+            };
+            self.told(fault.what, at.clone(), takes)
+        })
+    }
+
+    /// What is wrong there, in words.
+    fn told(&self, what: What, at: Range<usize>, takes: impl Fn(&str) -> bool) -> Error {
+        let line = line_at(self.text, at.start);
+        let (stated, head) = (&self.text[at.clone()], uncommented(line));
+        let told = |found: &str, expected: &str, hint: String| {
+            Error::usage(found, expected).excerpt(self.text, at.clone()).hint(hint)
+        };
+        // The line with another text at the place.
+        let with = |meant: &str| {
+            let line = &self.text[start_of_line(self.text, at.start)..];
+            let from = at.start - (self.text.len() - line.trim_start().len());
+            format!("write {}{meant}{}", &head[..from], head.get(from + stated.len()..).unwrap_or_default())
+        };
+        match what {
+            What::UnknownKey(key, known) => self.unknown_key(&key, known, line, told),
+            What::UnknownName(name, kind) => {
+                let near = kind.meant("", &name).map(|near| format!("did you mean `{near}`?"));
+                told(&format!("the name `{name}`"), &kind.words("\""), near.unwrap_or_default())
+            }
+            What::MissingKey(key) => {
+                told(&format!("the key `{key}` is missing"), "", format!("add {key} = …"))
+            }
+            What::Twice(key) => {
+                told(&format!("{key} stands twice"), "every key once in a table", "remove one".to_owned())
+            }
+            What::Value(Kind::Table) if line.starts_with("[[") => {
+                let single = head.replace("[[", "[").replace("]]", "]");
+                told(
+                    &format!("{head} begins one table of several"),
+                    "a single table",
+                    format!("write {single}"),
+                )
+            }
+            What::Value(_) if stated.contains('\n') => told(line, "", String::new()),
+            What::Value(kind) => {
+                let key = head.split_once('=').map_or("", |(key, _)| key.trim());
+                let meant = values(key, stated, Some(&kind)).into_iter().find(|(_, meant)| takes(meant));
+                let (expected, hint) = meant.map(|(expected, meant)| (expected, with(&meant))).unzip();
+                told(head, &expected.unwrap_or_else(|| kind.words("\"")), hint.unwrap_or_default())
+            }
+            What::Other(words) => told(&words, "", String::new()),
+        }
+    }
+
+    fn unknown_key(
+        &self,
+        key: &str,
+        known: &[&str],
+        line: &str,
+        told: impl Fn(&str, &str, String) -> Error,
+    ) -> Error {
+        let known = [self.beside, known].concat();
+        let (what, meant) = if line.starts_with('[') { ("table", self.meant) } else { ("key", &[][..]) };
+        let called = meant.iter().find(|(word, _)| *word == key);
+        let called = called.map(|(_, table)| format!("write [[{table}]]"));
+        let near = || nearest(key, known.iter().copied()).map(|near| format!("did you mean `{near}`?"));
+        let all = || format!("{what}s known here: {}", known.join(", "));
+        told(&format!("unknown {what} `{key}`"), "", called.or_else(near).unwrap_or_else(all))
+    }
+}
+
+/// Puts another value to a place; nothing where there is none.
+fn put<'i>(table: &mut DeTable<'i>, at: &Range<usize>, value: DeValue<'i>) -> Option<()> {
+    let mut left: Vec<&mut Spanned<DeValue<'i>>> = table.iter_mut().map(|(_, value)| value).collect();
+    while let Some(one) = left.pop() {
+        if one.span() == *at {
+            *one.get_mut() = value;
+            return Some(());
+        }
+        match one.get_mut() {
+            DeValue::Array(all) => left.extend(all.iter_mut()),
+            DeValue::Table(rows) => left.extend(rows.iter_mut().map(|(_, value)| value)),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// What may be meant by a value, in the order in which it is tried, each with what was expected; of a value
+/// that is no TOML no kind is known.
+fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)> {
+    let bare = stated.trim_matches(['"', '\'', '“', '”']).trim();
+    let word = bare.to_lowercase();
+    let is = |words: [&str; 4]| words.contains(&&*word);
+    let is_name = bare.starts_with(char::is_alphabetic);
+    let of_number = match bare {
+        _ if bare.contains(',') => "a number with a decimal point",
+        _ if bare.starts_with('.') => "a digit before the point",
+        _ if bare.ends_with('.') => "a digit behind the point",
+        _ if bare.parse::<f64>().is_ok() => "a number without quotes",
+        _ => "a number in the unit of this key, without it",
+    };
+    let words = kind.map_or_else(String::new, |kind| kind.words("\""));
+    let two = bare.split_once([':', '-', ';']).map(|(low, high)| format!("[{low}, {high}]"));
+    let first = if let Some(Kind::Names(names)) = kind { names.first() } else { None };
+    let quoted = |text: String| format!("\"{text}\"");
+    let is_text = matches!(kind, Some(Kind::Text));
+    let whole = matches!(kind, Some(Kind::Whole(..)));
+    let near = kind.filter(|_| !whole).and_then(|kind| kind.meant(key, bare)).map(quoted);
+    let all = [
+        (&*words, near),
+        ("no mark behind a value", stated.strip_suffix([',', ';']).map(str::to_owned)),
+        ("a whole number", kind.filter(|_| whole).and_then(|kind| kind.meant(key, bare))),
+        (of_number, meant_number(key, bare)),
+        ("true or false", is(["yes", "on", "1", "true"]).then(|| "true".to_owned())),
+        ("true or false", is(["no", "off", "0", "false"]).then(|| "false".to_owned())),
+        (&words, is(["no", "off", "0", "false"]).then(|| quoted("none".to_owned()))),
+        ("commas between values", stated.starts_with('[').then(|| stated.replace(';', ","))),
+        ("two values between square brackets", two),
+        ("a path between single quotes", bare.contains('\\').then(|| format!("'{bare}'"))),
+        ("text between quotes", (is_name || is_text).then(|| quoted(bare.to_owned()))),
+        (&words, matches!(kind, Some(Kind::List)).then(|| format!("[{stated}]"))),
+        (&words, first.map(|first| quoted((*first).to_owned()))),
+    ];
+    all.into_iter().filter_map(|(expected, meant)| Some((expected.to_owned(), meant?))).collect()
+}
+
+/// What is meant by a line that is no TOML, with what was expected.
+fn respelt(line: &str) -> Option<(String, String)> {
+    let at = line.find(['=', ':'])?;
+    let (key, stated) = (line[..at].trim(), line[at + 1..].trim());
+    let own = key.replace(' ', "_");
+    let mut all = values(key, stated, None);
+    if own != key || line[at..].starts_with(':') {
+        let expected = "an equals sign behind a key of one word";
+        for (known, _) in &mut all {
+            expected.clone_into(known);
+        }
+        all.insert(0, (expected.to_owned(), stated.to_owned()));
+    }
+    let lines = all.into_iter().map(|(expected, meant)| (expected, format!("{own} = {meant}")));
+    lines.into_iter().find(|(_, meant)| is_toml(meant))
+}
+
+fn is_toml(text: &str) -> bool {
+    DeTable::parse(text).is_ok()
+}
+
+/// A line or a part of one without the comment at its end.
+fn uncommented(line: &str) -> &str {
+    let mut quotes = 0;
+    let is_comment = |c: char| {
+        quotes += usize::from(c == '"');
+        c == '#' && quotes % 2 == 0
+    };
+    line.split(is_comment).next().unwrap_or_default().trim_end()
+}
+
+/// The head of one of several tables that is meant by a line whose brackets are no pairs.
+fn head_of_tables(head: &str) -> Option<String> {
+    let name = head.trim_start_matches('[').trim_end_matches(']');
+    let outside = head.len() - name.len();
+    let odd = !name.contains(['[', ']', '=']) && (head.starts_with("[[") || head.ends_with("]]"));
+    (odd && outside == 3).then(|| format!("[[{}]]", name.trim()))
+}
+
+/// Where the line begins that holds byte `at`.
+fn start_of_line(text: &str, at: usize) -> usize {
+    text.get(..at).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1)
+}
+
+/// The line that holds byte `at`, without the blanks around it.
+fn line_at(text: &str, at: usize) -> &str {
+    text.get(start_of_line(text, at)..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim()
+}
