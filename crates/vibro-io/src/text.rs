@@ -40,7 +40,7 @@ use names::Name;
 use rows::Rows;
 pub(crate) use tables::{LONGER, rows as count_rows};
 pub(crate) use tail::Digits;
-use vibro_record::{AxisKind, Error, Finding, Record, Result, Trace, Values};
+use vibro_record::{AxisKind, Error, Finding, Record, Result, Trace, Values, code};
 use word_columns::LeftOut;
 
 /// Whether a text begins with a table under names.
@@ -81,7 +81,7 @@ pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> 
 fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(LeftOut { source, found, changes }) = word_columns::left_out(text)? else { return Err(why) };
     let contents = without((source, found), options)?;
-    let backwards = |found: &Finding| found.code == "axis-backwards";
+    let backwards = |found: &Finding| found.code == code::AXIS_BACKWARDS;
     let timed = |(record, _): &(Record, _)| {
         record.axis().kind == AxisKind::Time && !record.meta().findings.iter().any(backwards)
     };

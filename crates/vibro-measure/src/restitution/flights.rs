@@ -134,8 +134,8 @@ fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
 const OUTSIDE: [f64; 9] = [31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59];
 
 /// R of the first and the last bounce by the straight line through ln R of each, where it rises or falls
-/// beyond chance (Student's quantile 0.9995 of its slope). Noise of the onsets, which makes neighbours differ,
-/// makes the slope seem less sure than it is.
+/// beyond chance: its slope exceeds Student's quantile 0.9995. Noise of the onsets makes neighbouring R
+/// differ, and the slope seem less sure than it is.
 fn changing(flights: &[Flight]) -> Option<[f64; 2]> {
     let ratio = |pair: &[Flight]| {
         let places = (pair[1].place - pair[0].place) as f64;

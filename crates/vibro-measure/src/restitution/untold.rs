@@ -1,5 +1,5 @@
-//! What to try where sounds do not tell which of them are the bounces of one body: each advice is tried before
-//! it is given.
+//! What to try where sounds do not tell which of them are the bounces of one body: each advice is tried
+//! before it is given.
 
 use super::Train;
 use super::plausible::{FallRecord, Plausible, plausible};
