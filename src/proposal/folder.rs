@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::read::{Folder, Header, MAGNITUDE, SweepList};
 use crate::record::{Fact, shown};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// What lies in a folder.
@@ -41,6 +41,48 @@ pub struct FileSeries {
 /// A file and its channels.
 type Member = (PathBuf, Vec<Header>);
 
+/// Whether a file tells its own times, and its channels.
+type Surveyed = (bool, Result<Vec<Header>>);
+
+/// What files of one kind have in common.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct FileKind {
+    /// Their name, with `*` for the number in which they differ.
+    name: String,
+    /// Their channels in words.
+    channels: String,
+    /// Whether they tell their own times.
+    timed: bool,
+}
+
+impl FileKind {
+    /// The pattern that means these files, and no other of `every` one.
+    fn pattern(&self, files: &[String], every: &[String], numbers: &Numbers) -> Option<String> {
+        let [before, after] = apart(&files[0], numbers);
+        let meant = |own: &&String| {
+            own.len() > before.len() + after.len() && own.starts_with(&before) && own.ends_with(&after)
+        };
+        let plain = !self.name.replacen('*', "", 1).contains(['*', '?', '[']);
+        (plain && every.iter().filter(meant).count() == files.len()).then(|| self.name.clone())
+    }
+}
+
+/// Channels of the first file; those of several names go by their numbers.
+fn named_alike(members: &[Member]) -> Vec<Header> {
+    let mut headers = members[0].1.clone();
+    for (k, header) in headers.iter_mut().enumerate() {
+        if members.iter().any(|(_, all)| all[k].name != header.name) {
+            header.name.clear();
+        }
+    }
+    headers
+}
+
+/// Whether no channel of a file has a time.
+fn untimed(headers: &[Header]) -> bool {
+    headers.iter().all(|h| h.kind == "trace" && h.rate.is_none())
+}
+
 impl Inventory {
     /// Lists and sorts the files of a folder that no table of `known` names; a sampling rate that is stated
     /// is that of files without one.
@@ -67,16 +109,7 @@ impl Inventory {
         let left = skipped.into_iter().map(|(path, why)| (shown(within(&path)), why)).collect();
         let mut found = Inventory { left, ..Inventory::default() };
         progress.start("reading files", paths.len());
-        let lists: Vec<(PathBuf, SweepList)> = paths
-            .par_iter()
-            .filter_map(|path| Some((path.clone(), SweepList::from_path(path, folder).ok()?)))
-            .collect();
-        for (path, list) in &lists {
-            paths.retain(|other| {
-                other != path && !list.force.contains(other) && !list.response.contains(other)
-            });
-            found.lists.push((stem(path), within(path)));
-        }
+        found.take_lists(&mut paths, folder, &within);
         // Of an archive or a workbook without a main part each is a recording.
         let parts = |path: PathBuf| match reader.parts(&path) {
             Ok(parts) if !parts.is_empty() => parts,
@@ -84,63 +117,26 @@ impl Inventory {
         };
         paths = paths.into_par_iter().flat_map_iter(parts).collect();
         analysis::in_order(&mut paths);
-        let mut groups: BTreeMap<(String, String, bool), Vec<Member>> = BTreeMap::new();
-        let mut order = Vec::new();
         let names: Vec<String> = paths.iter().map(|path| within(path)).collect();
         let numbers = numbers(&names);
         let every: Vec<String> = all.iter().map(|path| within(path)).collect();
-        let untimed = |headers: &[Header]| headers.iter().all(|h| h.kind == "trace" && h.rate.is_none());
         let stated = reading.rate.or(reading.base_band).is_some();
-        let surveyed: Vec<_> = paths
+        let surveyed: Vec<Surveyed> = paths
             .par_iter()
             .map(|path| {
                 let own = reader.survey(path);
                 let timed = own.as_ref().is_ok_and(|(_, headers, _)| !untimed(headers));
                 progress.step();
-                (timed, if timed || !stated { own } else { with_rate.survey(path) })
+                let found = if timed || !stated { own } else { with_rate.survey(path) };
+                (timed, found.map(|(_, headers, _)| headers))
             })
             .collect();
-        for (path, (timed, found_in)) in paths.iter().zip(surveyed) {
-            match found_in {
-                Ok((_, headers, _)) if headers.is_empty() => {
-                    found.left.push((within(path), "no records".to_owned()));
-                }
-                Ok((_, headers, _)) if untimed(&headers) => {
-                    let why = if headers.iter().any(|h| h.dx.is_none()) {
-                        "its samples are unevenly spaced; cut the file where samples are lost, or fill them in"
-                    } else {
-                        "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder"
-                    };
-                    found.left.push((within(path), why.to_owned()));
-                }
-                Ok((_, headers, _)) => {
-                    let key = (apart(&within(path), &numbers).join("*"), signature(&headers), timed);
-                    if !groups.contains_key(&key) {
-                        order.push(key.clone());
-                    }
-                    groups.entry(key).or_default().push((path.clone(), headers));
-                }
-                Err(error) => found.left.push((within(path), short(&error))),
-            }
-        }
-        for key in order {
-            let Some(members) = groups.remove(&key) else { continue };
+        for (kind, members) in found.kinds(paths.into_iter().zip(surveyed), &numbers, &within) {
             let files: Vec<String> = members.iter().map(|(path, _)| within(path)).collect();
-            let [before, after] = apart(&files[0], &numbers);
+            let pattern = kind.pattern(&files, &every, &numbers);
+            let reading = if kind.timed { &untimed_reading } else { reading }.clone();
+            let headers = named_alike(&members);
             let name = name(&files);
-            let meant = |own: &&String| {
-                own.len() > before.len() + after.len() && own.starts_with(&before) && own.ends_with(&after)
-            };
-            let plain = !key.0.replacen('*', "", 1).contains(['*', '?', '[']);
-            let pattern = (plain && every.iter().filter(meant).count() == files.len()).then(|| key.0.clone());
-            let mut headers = members[0].1.clone();
-            for (k, header) in headers.iter_mut().enumerate() {
-                // Channels of several names go by their numbers.
-                if members.iter().any(|(_, all)| all[k].name != header.name) {
-                    header.name.clear();
-                }
-            }
-            let reading = if key.2 { &untimed_reading } else { reading }.clone();
             found.series.push(FileSeries { name, files, headers, pattern, alike: false, reading });
         }
         found.name_apart();
@@ -152,6 +148,55 @@ impl Inventory {
             found.left.push((names, "not a recording, by the ending".to_owned()));
         }
         Ok(found)
+    }
+
+    /// Takes list files, and the files that they name, out of the paths.
+    fn take_lists(&mut self, paths: &mut Vec<PathBuf>, folder: &Folder, within: &impl Fn(&Path) -> String) {
+        let list = |path: &PathBuf| Some((path.clone(), SweepList::from_path(path, folder).ok()?));
+        let lists: Vec<(PathBuf, SweepList)> = paths.par_iter().filter_map(list).collect();
+        for (path, list) in &lists {
+            paths.retain(|other| {
+                other != path && !list.force.contains(other) && !list.response.contains(other)
+            });
+            self.lists.push((stem(path), within(path)));
+        }
+    }
+
+    /// The files of each kind, in the order of their first; those without a time go to what is left.
+    fn kinds(
+        &mut self,
+        surveyed: impl Iterator<Item = (PathBuf, Surveyed)>,
+        numbers: &Numbers,
+        within: &impl Fn(&Path) -> String,
+    ) -> Vec<(FileKind, Vec<Member>)> {
+        let mut kinds: Vec<(FileKind, Vec<Member>)> = Vec::new();
+        let mut places: HashMap<FileKind, usize> = HashMap::new();
+        for (path, (timed, headers)) in surveyed {
+            let why = match headers {
+                Ok(headers) if headers.is_empty() => "no records".to_owned(),
+                Ok(headers) if untimed(&headers) && headers.iter().any(|h| h.dx.is_none()) => {
+                    "its samples are unevenly spaced; cut the file where samples are lost, or fill them in"
+                        .to_owned()
+                }
+                Ok(headers) if untimed(&headers) => {
+                    "the file has no sampling rate; vibro init FOLDER --rate HZ states one for the whole folder"
+                        .to_owned()
+                }
+                Ok(headers) => {
+                    let name = apart(&within(&path), numbers).join("*");
+                    let kind = FileKind { name, channels: signature(&headers), timed };
+                    let place = *places.entry(kind.clone()).or_insert(kinds.len());
+                    if place == kinds.len() {
+                        kinds.push((kind, Vec::new()));
+                    }
+                    kinds[place].1.push((path, headers));
+                    continue;
+                }
+                Err(error) => short(&error),
+            };
+            self.left.push((within(&path), why));
+        }
+        kinds
     }
 
     /// Names files of one name in several folders or archives by their paths.

@@ -1,6 +1,6 @@
 //! Samples that an instrument's range cut off.
 
-use crate::residuals::chi_squared_above;
+use crate::chance::{normal_above, normal_beyond};
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -96,7 +96,7 @@ fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f6
         let beyond = |i: &usize| {
             let expected = p.dot(&row(*i));
             let z = (side(*i) * (y(*i) - expected) - 0.5) / noise;
-            row(*i) * (expected + side(*i) * noise * (-0.5 * z * z).exp() / TAU.sqrt() / above(z).max(1e-300))
+            row(*i) * (expected + side(*i) * noise * normal_beyond(z))
         };
         let next = all.solve(&(right + at.iter().map(beyond).sum::<Vector3<f64>>()));
         let moved = (next - p).norm();
@@ -126,17 +126,13 @@ fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f6
             let off = SURE * sigma * (own.dot(&kept.solve(&own)) * repeats).sqrt();
             let over = side(*i) * (p.dot(&own) - y(*i)) - off;
             // Of what is there or beyond, the part that lies within its step.
-            -(1.0 - above((0.5 - over) / noise) / above((-0.5 - over) / noise).max(1e-300)).max(1e-12).ln()
+            -(1.0 - normal_above((0.5 - over) / noise) / normal_above((-0.5 - over) / noise).max(1e-300))
+                .max(1e-12)
+                .ln()
         };
         at.iter().filter(|i| values[**i] == **end).map(ratio).sum::<f64>() > RATIO * repeats
     };
     Some(ends.iter().filter(passes).copied().collect())
-}
-
-/// P(x > z) of N(0, 1).
-fn above(z: f64) -> f64 {
-    let beyond = 0.5 * chi_squared_above(z * z, 1);
-    if z > 0.0 { beyond } else { 1.0 - beyond }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ mod sines;
 mod usable;
 
 use super::Estimate;
-use super::residuals::chi_squared_above;
+use super::chance::chi_squared_above;
 use damped::{Damped, LINES, OWN, SineGroup, lines};
 pub use result::{DecayMode, DecayOptions, DecayResult, Level};
 use sines::{ENOUGH, MOST, Sines, decays};

@@ -155,19 +155,8 @@ fn impacts_so(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
 /// The mean interval of impacts that were detected, and what they repeat.
 fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> Result<Impacts> {
     let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution, .. } = detected;
-    let stated = options.complete || options.refractory.is_some();
-    if let Some(echoes) = echoes(&times, &heights).filter(|_| !stated) {
-        let n = echoes.places.len();
-        if echoes.sure {
-            let keep = |i: usize| echoes.places.binary_search(&i).is_err();
-            times = (0..times.len()).filter(|i| keep(*i)).map(|i| times[i]).collect();
-            heights = (0..heights.len()).filter(|i| keep(*i)).map(|i| heights[i]).collect();
-            let found = Finding::caution("echoes-ignored").count("n", n);
-            findings.push(found.number("delay", echoes.delay));
-        } else {
-            let found = Finding::doubt("impacts-or-echoes").count("n", n).number("delay", echoes.delay);
-            findings.push(found.number("pause", PAUSE * echoes.delay));
-        }
+    if !options.complete && options.refractory.is_none() {
+        without_echoes(&mut times, &mut heights, &mut findings);
     }
     let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let pattern = pattern(&steps);
@@ -176,20 +165,7 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     let even = pattern.map_or_else(|| kept.clone(), |length| evened(&kept, length));
     let known = options.complete || options.excitation.is_some() || options.reference.is_some();
     if !known && pattern.is_none() && irregular(&steps) {
-        let why = format!("{} bursts whose intervals are irregular: no period is in them", times.len());
-        let refused = Error::refused(why);
-        // What was done already is no advice.
-        return Err(match (options.band, options.envelope) {
-            (Some(_), true) => refused
-                .hint("another band, where a spectrum shows the impacts ringing; or say that none is missed, for their mean interval")
-                .setting("band")
-                .setting("none_missed"),
-            _ => refused
-                .hint("choose the band in which the impacts ring, and the envelope; or say that none is missed, for their mean interval")
-                .setting("band")
-                .setting("envelope")
-                .setting("none_missed"),
-        });
+        return Err(without_period(times.len(), options));
     }
     let fitted = interval(&even, &counted.index).ok_or_else(|| {
         Error::refused("one impact alone counts: an interval needs two")
@@ -246,6 +222,38 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     let of_train = of_train(&answer);
     answer.findings.extend(of_train);
     Ok(answer)
+}
+
+/// Takes bursts that repeat impacts at fixed delays out of these, or says that they may be such.
+fn without_echoes(times: &mut Vec<f64>, heights: &mut Vec<f64>, findings: &mut Vec<Finding>) {
+    let Some(echoes) = echoes(times, heights) else { return };
+    let n = echoes.places.len();
+    if echoes.sure {
+        let impacts: Vec<usize> =
+            (0..times.len()).filter(|i| echoes.places.binary_search(i).is_err()).collect();
+        *times = impacts.iter().map(|i| times[*i]).collect();
+        *heights = impacts.iter().map(|i| heights[*i]).collect();
+        findings.push(Finding::caution("echoes-ignored").count("n", n).number("delay", echoes.delay));
+    } else {
+        let found = Finding::doubt("impacts-or-echoes").count("n", n).number("delay", echoes.delay);
+        findings.push(found.number("pause", PAUSE * echoes.delay));
+    }
+}
+
+/// The refusal of bursts in which no period is: what was done already is no advice.
+fn without_period(n: usize, options: &ImpactsOptions) -> Error {
+    let refused = Error::refused(format!("{n} bursts whose intervals are irregular: no period is in them"));
+    match (options.band, options.envelope) {
+        (Some(_), true) => refused
+            .hint("another band, where a spectrum shows the impacts ringing; or say that none is missed, for their mean interval")
+            .setting("band")
+            .setting("none_missed"),
+        _ => refused
+            .hint("choose the band in which the impacts ring, and the envelope; or say that none is missed, for their mean interval")
+            .setting("band")
+            .setting("envelope")
+            .setting("none_missed"),
+    }
 }
 
 /// A pause that counts echoes with their impact, over the longest delay.

@@ -9,6 +9,7 @@
 //! ```
 
 mod answered;
+pub mod chance;
 mod clipping;
 pub mod crossing;
 pub mod decay;

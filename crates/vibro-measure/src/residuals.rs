@@ -1,5 +1,6 @@
 //! Whether what a fit leaves is noise, and what it costs where it is not.
 
+use crate::chance::{chi_squared_above, normal_at, student_at};
 use vibro_record::Finding;
 
 /// What residuals in a row say of the model that left them.
@@ -67,24 +68,6 @@ impl Whiteness {
     }
 }
 
-/// P(χ² > x) for an even number of degrees of freedom, a finite sum (Abramowitz & Stegun 26.4.21).
-pub(crate) fn chi_squared_above(x: f64, even: usize) -> f64 {
-    let half = x / 2.0;
-    let (mut term, mut sum) = (1.0, 1.0);
-    for j in 1..even / 2 {
-        term *= half / j as f64;
-        sum += term;
-    }
-    (sum * (-half).exp()).clamp(0.0, 1.0)
-}
-
-/// The quantile of χ² with `free` degrees of freedom that is this `normal` one, within 4 % from 0.95 to 0.999
-/// (E. Wilson and M. Hilferty, Proc. Nat. Acad. Sci. 17 (1931) 684).
-pub(crate) fn chi_squared_at(normal: f64, free: usize) -> f64 {
-    let part = 2.0 / (9.0 * free as f64);
-    free as f64 * (1.0 - part + normal * part.sqrt()).powi(3)
-}
-
 /// Standard deviation of Student's distribution of `free` degrees of freedom, √(ν/(ν − 2)): what a standard
 /// uncertainty from a variance that was itself estimated is to be multiplied by (JCGM 101:2008, 6.4.9.2).
 /// `None` up to two degrees of freedom, where it has none.
@@ -95,7 +78,7 @@ pub fn student(free: usize) -> Option<f64> {
 /// Factor on a standard uncertainty with `free` degrees of freedom: the standard deviation of Student's
 /// distribution where it has one, otherwise its quantile of 97.5 % over that of the normal one.
 pub fn widened(free: usize) -> f64 {
-    student(free).unwrap_or(if free == 2 { 4.303 / 1.960 } else { 12.706 / 1.960 })
+    student(free).unwrap_or_else(|| student_at(0.975, free.max(1)) / normal_at(0.975))
 }
 
 /// Akaike's criterion for a fit of `parameters` (the variance of the noise is one more) to `n` values,
@@ -116,18 +99,6 @@ pub const NO_SUPPORT: f64 = 10.0;
 mod tests {
     use super::*;
     use vibro_math::Noise;
-
-    #[test]
-    fn chi_squared_has_its_tabulated_quantiles() {
-        // Abramowitz & Stegun, table 26.8: the quantiles are given to 5 or 6 digits.
-        assert!((chi_squared_above(18.3070, 10) - 0.05).abs() < 1e-5);
-        assert!((chi_squared_above(13.2767, 4) - 0.01).abs() < 1e-6);
-        for (normal, free, quantile) in
-            [(1.645, 1, 3.841), (1.645, 2, 5.991), (3.090, 1, 10.828), (3.090, 5, 20.515)]
-        {
-            assert!((chi_squared_at(normal, free) / quantile - 1.0).abs() < 0.04, "{free}");
-        }
-    }
 
     #[test]
     fn student_has_a_standard_deviation_from_three_degrees_of_freedom_on() {

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::error::Result;
 use crate::math::Minimum;
+use crate::measure::chance::chi_squared_at;
 use crate::measure::residuals::{Whiteness, student};
 use crate::record::median;
 use rayon::prelude::*;
@@ -19,8 +20,8 @@ const MOST: usize = 6;
 /// Pace of simulated sweeps on the way: parameters that are wrong by more than a disturbance leaves need no
 /// long wait for it.
 const BRIEF: Pace = Pace { settle: 60, measure: 36 };
-/// Normal deviate that χ²/ν exceeds by chance in one of a thousand cases.
-const CHANCE: f64 = 3.09;
+/// Chance that residuals of the stated uncertainties have no larger χ².
+const CHANCE: f64 = 0.999;
 
 /// The least sum of squares with given motions.
 #[derive(Debug, Clone)]
@@ -161,10 +162,10 @@ fn leave_out(kinds: &mut [Option<MotionKind>], steps: &BTreeSet<usize>) {
 }
 
 impl LeastSquares<'_> {
-    /// Whether χ²/ν is larger than chance makes it (E. B. Wilson & M. M. Hilferty 1931).
+    /// Whether χ²/ν is larger than chance makes it.
     pub(crate) fn beyond_chance(&self) -> bool {
-        let part = 2.0 / (9.0 * self.problem.freedom() as f64);
-        self.reduced > (1.0 - part + CHANCE * part.sqrt()).powi(3)
+        let free = self.problem.freedom();
+        self.reduced * free as f64 > chi_squared_at(CHANCE, free)
     }
 }
 

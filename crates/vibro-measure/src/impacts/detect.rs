@@ -82,18 +82,8 @@ pub(crate) fn detect_among(
     // A force, a switch, or the voltage of a sensor. Levels of sound have one sign, too, and last longer than
     // a contact.
     let is_force = matches!(trace.meta.quantity, Quantity::Force | Quantity::Voltage) && !options.envelope;
-    let mut values = banded(trace, options, rate)?;
     let mut findings = Vec::new();
-    let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), &mut findings) };
-    let mut quiet = background(&values);
-    let zeroed = |values: &mut [f64], level: f64| values.iter_mut().for_each(|v| *v -= level);
-    zeroed(&mut values, quiet.level);
-    if options.envelope {
-        values = envelope(&values);
-        let width = options.band.map_or(0.5 * rate, |(low, high)| high.min(0.5 * rate) - low);
-        quiet = quiet.of_envelope(&values, rate / width);
-        zeroed(&mut values, quiet.level);
-    }
+    let (mut values, quiet, hum) = cleared(trace, options, rate, &mut findings)?;
     let pause = options.refractory.map(|s| ((s * rate) as usize).max(1));
     let (mut bursts, stable) = match choose.filter(|_| pause.is_none()) {
         Some(_) => (rises(&values, quiet.reach, rate), None),
@@ -138,23 +128,15 @@ pub(crate) fn detect_among(
     let shape = options.shape.as_ref().map(|pulse| recorded(pulse, rate)).transpose()?;
     let Onsets { each, method, sharp } = onsets(&values, &bursts, quiet.sigma, shape.as_ref());
     if each.len() < 2 {
-        let highest = values.iter().fold(0.0f64, |h, v| h.max(v.abs()));
-        let [noise, highest] = [quiet.reach, highest].map(|v| quantity(v, unit, 3));
-        let why = format!(
-            "{} found, an interval needs two: an impact must exceed {noise}, the trace reaches {highest}",
-            counted(each.len(), "impact")
-        );
-        let refused = Error::refused(why);
-        let joined = || pause.is_some() && self::bursts(&values, quiet.reach, None).0.len() > 1;
-        let hidden = match options.band {
-            Some(_) => "another band: a spectrum shows where the impacts ring",
-            None => "a band above hum and slow levels, in which the impacts ring: it is a high-pass",
-        };
-        return Err(match low {
-            0 if joined() => refused.hint("a shorter pause").setting("refractory"),
-            0 => refused.hint(hidden).setting("band"),
-            _ => refused.hint("a lower threshold, as lower bursts were ignored").setting("threshold"),
-        });
+        let joined = pause.is_some() && self::bursts(&values, quiet.reach, None).0.len() > 1;
+        return Err(too_few(
+            each.len(),
+            &values,
+            (quiet.reach, unit),
+            low > 0,
+            joined,
+            options.band.is_some(),
+        ));
     }
     let mut std = median(each.iter().map(|o| o.std)) / rate;
     if sharp {
@@ -174,6 +156,57 @@ pub(crate) fn detect_among(
         method,
         resolution: sharp.then_some(1.0 / rate),
     })
+}
+
+/// The values without mains hum and level, or the envelope of these; their noise, and the hum that was removed.
+fn cleared(
+    trace: &Trace,
+    options: &ImpactsOptions,
+    rate: f64,
+    findings: &mut Vec<Finding>,
+) -> Result<(Vec<f64>, Background, Option<Hum>)> {
+    let mut values = banded(trace, options, rate)?;
+    let unit = trace.meta.unit.symbol();
+    let hum = if options.keep_hum { None } else { hum::remove(&mut values, (rate, unit), findings) };
+    let mut quiet = background(&values);
+    let zeroed = |values: &mut [f64], level: f64| values.iter_mut().for_each(|v| *v -= level);
+    zeroed(&mut values, quiet.level);
+    if options.envelope {
+        values = envelope(&values);
+        let width = options.band.map_or(0.5 * rate, |(low, high)| high.min(0.5 * rate) - low);
+        quiet = quiet.of_envelope(&values, rate / width);
+        zeroed(&mut values, quiet.level);
+    }
+    Ok((values, quiet, hum))
+}
+
+/// The refusal of so few impacts above the noise limit: whether lower ones were ignored, a shorter pause would
+/// part more, and a band is chosen already decides what to try.
+fn too_few(
+    n: usize,
+    values: &[f64],
+    (reach, unit): (f64, &str),
+    lower: bool,
+    joined: bool,
+    banded: bool,
+) -> Error {
+    let highest = values.iter().fold(0.0f64, |h, v| h.max(v.abs()));
+    let [noise, highest] = [reach, highest].map(|v| quantity(v, unit, 3));
+    let why = format!(
+        "{} found, an interval needs two: an impact must exceed {noise}, the trace reaches {highest}",
+        counted(n, "impact")
+    );
+    let refused = Error::refused(why);
+    let hidden = if banded {
+        "another band: a spectrum shows where the impacts ring"
+    } else {
+        "a band above hum and slow levels, in which the impacts ring: it is a high-pass"
+    };
+    match (lower, joined) {
+        (true, _) => refused.hint("a lower threshold, as lower bursts were ignored").setting("threshold"),
+        (false, true) => refused.hint("a shorter pause").setting("refractory"),
+        (false, false) => refused.hint(hidden).setting("band"),
+    }
 }
 
 /// A pulse lasts as long as it is above this part of its height, or above the noise where that is more.

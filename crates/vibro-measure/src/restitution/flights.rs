@@ -3,8 +3,8 @@
 use super::fit::{Flight, FlightNoise, TrainFit, fit, misfit};
 use super::{MethodAnswer, Train, above_zero, not_negative, repeated, together};
 use crate::Estimate;
+use crate::chance::{chi_squared_at, student_at};
 use crate::mean::average;
-use crate::residuals::chi_squared_at;
 use vibro_record::lanes::Extremes;
 use vibro_record::{Error, Finding, Result};
 
@@ -27,10 +27,10 @@ pub(super) fn longer(train: &Train) -> Option<usize> {
 /// Trains from which on their scatter shows all that is uncertain in each.
 const MANY: usize = 4;
 
-/// Normal quantile 0.95: trains that differ by more than the noise of their flights are not fitted together.
-const DIFFER: f64 = 1.645;
-/// Normal quantile 0.999: that they differ is said.
-const SURELY: f64 = 3.090;
+/// Chance that trains of one body differ by less than what parts them: beyond it they are not fitted together.
+const DIFFER: f64 = 0.95;
+/// Beyond this one, that they differ is said.
+const SURELY: f64 = 0.999;
 
 /// R of trains of bounces, `None` where no train has two flights; and the noise of their flights, where it
 /// shows. Up to three trains that do not differ share R and noise, and where all begin with the same `fall`,
@@ -42,55 +42,18 @@ pub(super) fn answer(
 ) -> Result<(Option<MethodAnswer>, Option<FlightNoise>)> {
     let (mut all, mut fits) = (Vec::new(), Vec::new());
     for (train, t) in trains.iter().enumerate().map(|(i, t)| (i + 1, t)) {
-        not_negative("an uncertainty of the time of an impact", t.onset_std)?;
-        t.intervals.iter().try_for_each(|interval| above_zero("a flight time", *interval))?;
-        if let Some(n) = longer(t) {
-            let why = format!(
-                "{n} flights of train {train} are longer than the first: other sounds count as impacts"
-            );
-            let hint = "cut the record to the bounces, or raise the threshold; else intervals in the order of the bounces";
-            return Err(Error::refused(why).hint(hint).setting("threshold").setting("refractory"));
-        }
-        let mut flights: Vec<Flight> =
-            t.intervals.iter().enumerate().map(|(place, d)| Flight { place, log: d.ln() }).collect();
-        while let Some((worst, expected)) = worst(&flights) {
-            let bad = flights.remove(worst);
-            findings.push(
-                Finding::caution("flight-outlier")
-                    .count("flight", bad.place + 1)
-                    .count("train", train)
-                    .number("interval", bad.log.exp())
-                    .number("expected", expected),
-            );
-        }
-        if let Some([first, last]) = changing(&flights) {
-            let found = Finding::caution("restitution-changes").count("train", train);
-            findings.push(found.number("first", first).number("last", last));
-        }
-        // A train of one flight has no ratio.
-        if flights.len() > 1 {
-            let fit = fit(&[(flights.clone(), t.onset_std)], false)
-                .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
-            let noise = t.onset_std.unwrap_or(0.0);
-            if let Some(flight) = grown(&flights, noise).or(flights.last().filter(|_| fit.log_r >= 0.0)) {
-                let flight = flight.place + 1;
-                let why =
-                    format!("the flight times grow, at flight {flight} of train {train}: R would be above 1");
-                let hint = "a longer pause where ringing or echoes count as impacts; else intervals in the order of the bounces";
-                return Err(Error::refused(why).hint(hint).setting("refractory"));
-            }
-            fits.push(fit);
-        }
+        let flights = usable(train, t, findings)?;
+        fits.extend(fitted(train, &flights, t.onset_std)?);
         all.push((flights, t.onset_std));
     }
     if fits.is_empty() {
         return Ok((None, None));
     }
     let own = FlightNoise::mean(&fits.iter().filter_map(|fit| fit.noise).collect::<Vec<_>>());
-    // Whether trains are too far from this ln R for one body, by the quantile that is this normal one.
-    let apart = |log: f64, noise: Option<FlightNoise>, normal: f64| {
+    // Whether trains are further from this ln R than those of one body are with this chance.
+    let apart = |log: f64, noise: Option<FlightNoise>, chance: f64| {
         let noise = noise.filter(|_| fits.len() > 1);
-        noise.is_some_and(|noise| misfit(&all, log, noise) > chi_squared_at(normal, fits.len() - 1))
+        noise.is_some_and(|noise| misfit(&all, log, noise) > chi_squared_at(chance, fits.len() - 1))
     };
     let alike = |joint: &TrainFit| !apart(joint.log_r, own.or(joint.noise), DIFFER);
     let joint = (all.len() < MANY).then(|| fit(&all, fall)).flatten().filter(alike);
@@ -117,6 +80,52 @@ pub(super) fn answer(
     Ok((Some(MethodAnswer { method: "flight times", restitution }), noise))
 }
 
+/// The flights of a train without outliers.
+fn usable(train: usize, t: &Train, findings: &mut Vec<Finding>) -> Result<Vec<Flight>> {
+    not_negative("an uncertainty of the time of an impact", t.onset_std)?;
+    t.intervals.iter().try_for_each(|interval| above_zero("a flight time", *interval))?;
+    if let Some(n) = longer(t) {
+        let why =
+            format!("{n} flights of train {train} are longer than the first: other sounds count as impacts");
+        let hint = "cut the record to the bounces, or raise the threshold; else intervals in the order of the bounces";
+        return Err(Error::refused(why).hint(hint).setting("threshold").setting("refractory"));
+    }
+    let logs = t.intervals.iter().enumerate().map(|(place, d)| Flight { place, log: d.ln() });
+    let mut flights: Vec<Flight> = logs.collect();
+    while let Some((worst, expected)) = worst(&flights) {
+        let bad = flights.remove(worst);
+        findings.push(
+            Finding::caution("flight-outlier")
+                .count("flight", bad.place + 1)
+                .count("train", train)
+                .number("interval", bad.log.exp())
+                .number("expected", expected),
+        );
+    }
+    if let Some([first, last]) = changing(&flights) {
+        let found = Finding::caution("restitution-changes").count("train", train);
+        findings.push(found.number("first", first).number("last", last));
+    }
+    Ok(flights)
+}
+
+/// What a train tells by itself; nothing of one flight, which has no ratio.
+fn fitted(train: usize, flights: &[Flight], onset_std: Option<f64>) -> Result<Option<TrainFit>> {
+    if flights.len() < 2 {
+        return Ok(None);
+    }
+    let fit = fit(&[(flights.to_vec(), onset_std)], false)
+        .ok_or_else(|| Error::refused("flight times from which no ratio follows"))?;
+    let grown = grown(flights, onset_std.unwrap_or(0.0));
+    if let Some(flight) = grown.or(flights.last().filter(|_| fit.log_r >= 0.0)) {
+        let flight = flight.place + 1;
+        let why = format!("the flight times grow, at flight {flight} of train {train}: R would be above 1");
+        let hint = "a longer pause where ringing or echoes count as impacts; else intervals in the order of the bounces";
+        return Err(Error::refused(why).hint(hint).setting("refractory"));
+    }
+    Ok(Some(fit))
+}
+
 /// Growth beyond this many standard deviations of the onset noise is none of it.
 const BEYOND: f64 = 4.0;
 
@@ -130,11 +139,11 @@ fn grown(flights: &[Flight], onset_std: f64) -> Option<&Flight> {
     flights.windows(2).find(grows).map(|pair| &pair[1])
 }
 
-/// Quantile 0.9995 of Student's t from 2 degrees of freedom on: what lies beyond is an outlier.
-const OUTSIDE: [f64; 9] = [31.6, 12.92, 8.61, 6.87, 5.96, 5.41, 5.04, 4.78, 4.59];
+/// Quantile of Student's t beyond which one is none of the others.
+const OUTSIDE: f64 = 0.9995;
 
 /// R of the first and the last bounce by the straight line through ln R of each, where it rises or falls
-/// beyond chance: its slope exceeds Student's quantile 0.9995. Noise of the onsets makes neighbouring R
+/// beyond chance, from four on. Noise of the onsets makes neighbouring R
 /// differ, and the slope seem less sure than it is.
 fn changing(flights: &[Flight]) -> Option<[f64; 2]> {
     let ratio = |pair: &[Flight]| {
@@ -142,8 +151,8 @@ fn changing(flights: &[Flight]) -> Option<[f64; 2]> {
         (0.5 * (pair[0].place + pair[1].place) as f64, (pair[1].log - pair[0].log) / places)
     };
     let points: Vec<(f64, f64)> = flights.windows(2).map(ratio).collect();
-    let free = points.len().checked_sub(2)?;
-    let quantile = OUTSIDE.get(free.min(OUTSIDE.len() + 1).checked_sub(2)?)?;
+    let free = points.len().checked_sub(2).filter(|free| *free > 1)?;
+    let quantile = student_at(OUTSIDE, free);
     let mean = |of: fn(&(f64, f64)) -> f64| average(&points.iter().map(of).collect::<Vec<f64>>());
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));
     let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|p| of(p.0 - x, p.1 - y)).sum::<f64>();
@@ -159,7 +168,7 @@ fn changing(flights: &[Flight]) -> Option<[f64; 2]> {
 /// How far the flight `one` is from what the `others` expect, in parts of the quantile, and that logarithm:
 /// by the straight line through the logarithms, where the variance of a logarithm goes as Δt to −`power`.
 fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
-    let free = others.len().checked_sub(4)?;
+    let free = others.len().checked_sub(2).filter(|free| *free > 1)?;
     let weight = |log: f64| (power * log).exp();
     let sum =
         |f: &dyn Fn(&Flight) -> f64| others.iter().map(|other| weight(other.log) * f(other)).sum::<f64>();
@@ -171,10 +180,10 @@ fn off(one: &Flight, others: &[Flight], power: f64) -> Option<(f64, f64)> {
     let residual = |f: &Flight| f.log - log - slope * x(f);
     let expected = one.log - residual(one);
     let leverage = weight(expected).recip() + total.recip() + x(one) * x(one) / sxx;
-    let variance = sum(&|f| residual(f).powi(2)) / (free + 2) as f64 * leverage;
+    let variance = sum(&|f| residual(f).powi(2)) / free as f64 * leverage;
     // Numbers that were typed have three digits at least: half a unit of the last is 1e-3 of a flight.
     let score = residual(one).abs() / variance.max(1e-6).sqrt();
-    Some((score / OUTSIDE[free.min(OUTSIDE.len() - 1)], expected))
+    Some((score / student_at(OUTSIDE, free), expected))
 }
 
 /// The flight that fits the others worst, where it is an outlier, and the time that they expect of it: one

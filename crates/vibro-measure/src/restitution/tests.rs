@@ -272,7 +272,7 @@ fn two_drops_have_no_uncertainty_and_five_a_bootstrap() {
     // Three: s = 2 ms, Student's 4.303 of two degrees of freedom where the normal distribution has 1.960, and
     // half of the height's 1/570.
     let found = drops(&all[..3]).restitution;
-    let timing = 4.303 / 1.960 * 2e-3 / 3f64.sqrt() / 0.142;
+    let timing = 4.302_653 / 1.959_964 * 2e-3 / 3f64.sqrt() / 0.142;
     let expected = found.value * timing.hypot(0.5e-3 / 0.57);
     assert!((found.std.unwrap() / expected - 1.0).abs() < 1e-12, "{found:?}");
     assert!(drops(&all[..4]).restitution.std.is_some());
@@ -319,11 +319,11 @@ fn a_drop_is_no_surer_than_the_flights_behind_it_scatter() {
     let log = |a: f64, b: f64| (b / a).ln();
     // Two ratios: one degree of freedom.
     let s = (log(0.4, 0.3) - log(0.3, 0.22)).abs() / 2f64.sqrt();
-    let one = of_drops(&[&[0.4, 0.3, 0.22]]) / (12.706 / 1.960 * s);
+    let one = of_drops(&[&[0.4, 0.3, 0.22]]) / (12.706_205 / 1.959_964 * s);
     // A ratio each and that of the first flights: two.
     let squares = (log(0.4, 0.3) - log(0.402, 0.297)).powi(2) / 2.0 + log(0.4, 0.402).powi(2) / 2.0;
-    let two =
-        of_drops(&[&[0.4, 0.3], &[0.402, 0.297]]) / (4.303 / 1.960 * (squares / 2.0).sqrt() / 2f64.sqrt());
+    let two = of_drops(&[&[0.4, 0.3], &[0.402, 0.297]])
+        / (4.302_653 / 1.959_964 * (squares / 2.0).sqrt() / 2f64.sqrt());
     // The onsets, 1 µs, add (√2e-6/0.4/0.01)²/2 = 6e-8, and the height no more.
     assert!((one - 1.0).abs() < 1e-6 && (two - 1.0).abs() < 1e-6, "{one} {two}");
 }
