@@ -269,12 +269,13 @@ fn two_drops_have_no_uncertainty_and_five_a_bootstrap() {
     let found = drops(&all[..2]);
     assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
-    // Three: s = 2 ms, Student's 4.303 of two degrees of freedom where the normal distribution has 1.960, and
-    // half of the height's 1/570.
+    // Three: s = 2 ms, Student's quantile of two degrees of freedom, c√(2/(1 − c²)) for a part c between its
+    // ends, where the normal distribution has 1.96, and half of the height's 1/570. Quantiles are found to 1e-9.
     let found = drops(&all[..3]).restitution;
-    let timing = 4.302_653 / 1.959_964 * 2e-3 / 3f64.sqrt() / 0.142;
+    let student = 0.95 * (2.0 / (1.0 - 0.95f64.powi(2))).sqrt();
+    let timing = student / 1.959_963_984_540_054 * 2e-3 / 3f64.sqrt() / 0.142;
     let expected = found.value * timing.hypot(0.5e-3 / 0.57);
-    assert!((found.std.unwrap() / expected - 1.0).abs() < 1e-12, "{found:?}");
+    assert!((found.std.unwrap() / expected - 1.0).abs() < 1e-8, "{found:?}");
     assert!(drops(&all[..4]).restitution.std.is_some());
     let found = drops(&all);
     // Variance of the drawn mean: Σd²/n² = 40e-6/25; 2000 drawings scatter by 1/√4000 = 1.6 %, four times
