@@ -15,8 +15,8 @@ pub enum Evidence {
     Sweep { steps: usize, sure: usize, jumps: bool },
     /// A decay: when it begins and ends, and the end of its record, in s.
     Decay { start: f64, end: f64, last: f64 },
-    /// Impacts: how many, how many are missed, and whether they repeat.
-    Impacts { n: usize, missed: usize, regular: bool },
+    /// Impacts: how many, how many are missed, and the spread of their intervals as a part of one.
+    Impacts { n: usize, missed: usize, spread: f64 },
     /// Drops: their files, their restitution, and whether each has one interval between impacts.
     Drops { files: usize, restitution: f64, one_interval_each: bool },
     /// A contact pulse: its duration in s.
@@ -38,7 +38,8 @@ impl From<&DecayResult> for Evidence {
 
 impl From<&Impacts> for Evidence {
     fn from(found: &Impacts) -> Evidence {
-        Evidence::Impacts { n: found.n, missed: found.missed, regular: found.regular }
+        let spread = found.spread.unwrap_or(f64::INFINITY) / found.median_interval;
+        Evidence::Impacts { n: found.n, missed: found.missed, spread }
     }
 }
 

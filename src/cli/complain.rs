@@ -112,7 +112,7 @@ impl Words {
             Some(long) => {
                 named.split([' ', '=']).next().and_then(|word| word.strip_prefix("--")) == Some(long)
             }
-            None => named.contains(&name(arg)),
+            None => named.trim_matches(['<', '>', '[', ']', '.']) == name(arg),
         };
         match self.own.get_arguments().find(is) {
             Some(arg) => {

@@ -42,6 +42,10 @@ const SINE: Range<f64> = 1.8..2.7;
 /// Restitution beyond which nothing returns: a ringing body repeats, it does not bounce.
 const LOSSLESS: f64 = 0.99;
 
+/// Spread of the intervals of impacts in a row, as a part of one, at most: a machine jitters, and steps of a
+/// person do by a tenth, while flights of bounces shrink from a half on.
+const STEADY: f64 = 0.25;
+
 /// What stands in names of channels with the pulses of a crank.
 const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
 
@@ -241,11 +245,11 @@ impl Trial<'_> {
         self.answering(table.open("tones", "", what))
     }
 
-    /// Whether the records of a table are one motion: a decay that is most of them, or impacts that repeat.
+    /// Whether the records of a table are one motion: a decay that is most of them, or impacts in a row.
     /// Each bounce of a fall rings down, too, and bounces are impacts in a row.
     fn is_one(&self, table: &Table) -> bool {
         let one = |of: &Evidence| match of {
-            Evidence::Impacts { regular, .. } => *regular,
+            Evidence::Impacts { spread, .. } => *spread < STEADY,
             _ => true,
         };
         self.answers(from_ref(table)).is_ok_and(|heard| !is_brief(&heard) && heard.evidence.iter().all(one))

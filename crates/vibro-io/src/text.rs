@@ -86,7 +86,12 @@ fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents>
         record.axis().kind == AxisKind::Time && !record.meta().findings.iter().any(backwards)
     };
     let rises = contents.records.iter().all(timed) && !contents.findings.iter().any(backwards);
-    if changes && !rises { Err(why) } else { Ok(contents) }
+    // Rows of several channels below each other have times of their own: those of a rate tell nothing.
+    let from_head = |found: &Finding| found.code == code::RATE_FROM_HEAD;
+    let of_rate = options.rate.is_some()
+        || contents.findings.iter().any(from_head)
+        || contents.records.iter().any(|(record, _)| record.meta().findings.iter().any(from_head));
+    if changes && (!rises || of_rate) { Err(why) } else { Ok(contents) }
 }
 
 /// The longest of several tables; where none is, the complaint `why` they cannot be read as one.

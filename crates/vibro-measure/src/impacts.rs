@@ -103,14 +103,15 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     if shown || !open {
         return whole;
     }
-    // All that rises at once; a record that rings is refused before.
+    // All that rises at once.
     let all = |sounds: &[Sound], _: f64, _: f64| Ok(((0..sounds.len()).collect(), Vec::new()));
     let sounding = detect_among(trace, options, Some(&all));
-    if sounding.is_err() && rings(trace) {
-        return whole;
+    let sounding = sounding.and_then(|detected| of_detected(trace, options, detected)).ok();
+    match sounding.filter(|found| found.n >= ENOUGH && repeats(found)) {
+        Some(found) => Ok(found),
+        None if rings(trace) => whole,
+        None => ringing(trace, options).map_or(whole, Ok),
     }
-    let sounding = sounding.and_then(|detected| of_detected(trace, options, detected)).ok().filter(repeats);
-    sounding.or_else(|| ringing(trace, options)).map_or(whole, Ok)
 }
 
 /// Whether the record swings: an envelope shows no swings, and that of two modes that beat looks like
@@ -143,6 +144,10 @@ fn ringing(trace: &Trace, options: &ImpactsOptions) -> Option<Impacts> {
     let each = octaves(trace.sampling_rate().ok()?).filter_map(inside);
     each.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }
+
+/// Sounds that show that they repeat: seven intervals within 5 % of their median, of which chance brings one
+/// in ten there.
+const ENOUGH: usize = 8;
 
 /// Of so many impacts of a band fewer than one is missing.
 const MISSING: usize = 4;

@@ -6,6 +6,8 @@ pub const SAMPLES_LOST: &str = "samples-lost";
 pub const AXIS_BACKWARDS: &str = "axis-backwards";
 /// The unit of an axis is not stated.
 pub const AXIS_UNIT_ASSUMED: &str = "axis-unit-assumed";
+/// The sampling rate is that of the head.
+pub const RATE_FROM_HEAD: &str = "rate-from-head";
 /// The scaling of a spectrum is not stated.
 pub const SCALING_UNSAID: &str = "scaling-unsaid";
 /// The unit of a record is not stated.

@@ -19,7 +19,13 @@ pub fn shown(path: impl AsRef<Path>) -> String {
 pub fn typed(path: impl AsRef<Path>) -> String {
     let text = shown(path);
     let splits = |c: char| c.is_whitespace() || "()[]{}<>;&|'`$!".contains(c);
-    if text.contains(splits) { format!("\"{text}\"") } else { text }
+    // Between double quotes a shell still reads some of them.
+    let read = ['$', '`', '!', '"', '\\'];
+    match text.contains(splits) || text.contains('"') {
+        false => text,
+        true if text.contains(read) && !text.contains('\'') => format!("'{text}'"),
+        true => format!("\"{text}\""),
+    }
 }
 
 #[cfg(test)]

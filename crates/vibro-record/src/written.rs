@@ -343,7 +343,10 @@ impl<'a> Written<'a> {
         let with = |meant: &str| {
             let line = &self.text[start_of_line(self.text, at.start)..];
             let from = at.start - (self.text.len() - line.trim_start().len());
-            format!("write {}{meant}{}", &head[..from], head.get(from + stated.len()..).unwrap_or_default())
+            // A value with a mark of a comment in it is longer than what stands before that mark.
+            let head = if head.len() < from + stated.len() { line.trim() } else { head };
+            let [before, behind] = [head.get(..from), head.get(from + stated.len()..)];
+            format!("write {}{meant}{}", before.unwrap_or_default(), behind.unwrap_or_default())
         };
         match what {
             What::UnknownKey(key, known) => self.unknown_key(&key, known, line, told),
@@ -472,10 +475,15 @@ fn is_toml(text: &str) -> bool {
 
 /// A line or a part of one without the comment at its end.
 fn uncommented(line: &str) -> &str {
-    let mut quotes = 0;
+    let (mut open, mut escaped) = (None, false);
     let is_comment = |c: char| {
-        quotes += usize::from(c == '"');
-        c == '#' && quotes % 2 == 0
+        match open {
+            None if matches!(c, '"' | '\'') => open = Some(c),
+            Some(quote) if c == quote && !escaped => open = None,
+            _ => {}
+        }
+        escaped = c == '\\' && open == Some('"') && !escaped;
+        c == '#' && open.is_none()
     };
     line.split(is_comment).next().unwrap_or_default().trim_end()
 }

@@ -240,7 +240,7 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             let assumed = header.assumed.map(|key| Finding::caution("head-step-assumed").name("key", key));
             findings.extend(assumed.map(|found| found.number("step", 1.0 / rate)));
             if header.assumed.is_none() {
-                findings.push(Finding::note("rate-from-head").number("rate", rate));
+                findings.push(Finding::note(code::RATE_FROM_HEAD).number("rate", rate));
             }
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }

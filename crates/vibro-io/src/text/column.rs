@@ -55,15 +55,15 @@ impl Column {
         let (Some(own_unit), true) = (self.name.seconds(), time) else { return false };
         let (own, other) = (self.reals(), axis.reals());
         let (Some(first), Some(last)) = (own.first(), own.last()) else { return false };
-        let factor = (last - first) / (other[other.len() - 1] - other[0]);
-        let alike = |unit: f64| (factor * own_unit / unit - 1.0).abs() < 1e-3;
         let units = axis.name.seconds().map_or(vec![1.0, 1e-3, 1e-6, 1e-9], |unit| vec![unit]);
         // Nanoseconds since 1970 are whole in steps of 256.
         let most = 1e-2 * (last - first) / own.len() as f64;
-        let off = |(v, t): (&f64, &f64)| ((v - first) - factor * (t - other[0])).abs();
-        units.into_iter().any(alike)
-            && own.len() == other.len()
-            && own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
+        // Another clock drifts.
+        let is_same = |unit: f64| {
+            let off = |(v, t): (&f64, &f64)| ((v - first) - unit / own_unit * (t - other[0])).abs();
+            own.iter().zip(other.iter()).all(|pair| off(pair) <= most)
+        };
+        own.len() == other.len() && units.into_iter().any(is_same)
     }
 
     pub fn counts(&self) -> bool {

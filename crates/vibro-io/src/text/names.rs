@@ -197,7 +197,7 @@ impl Name {
         let force = || self.name.to_lowercase().contains(Quantity::Force.name());
         let count = unit == NATURAL && (self.may_count() || naturals && !force());
         let warm = self.name == "T" || TEMPERATURES.contains(&self.last_word().as_str());
-        if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
+        if count { Some(COUNT) } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
     }
 
     /// The last word of the name in lower case: `sample` of `loggingSample`, `loop_sample` and `Sample`.
@@ -302,6 +302,9 @@ const COUNTS: &str =
 /// Words that end the name of a column that only counts, behind others.
 const COUNT_WORDS: [&str; 9] =
     ["sample", "samples", "index", "count", "counter", "number", "record", "row", "frame"];
+
+/// What a column is by its name that counts.
+pub(super) const COUNT: &str = "count";
 
 /// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
 pub(super) const NATURAL: &str = "N";

@@ -5,7 +5,7 @@ use super::column::{Column, repeats};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
-use super::names::{ComplexPart, NATURAL, Name};
+use super::names::{COUNT, ComplexPart, NATURAL, Name};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
@@ -191,10 +191,12 @@ impl RecordContext<'_> {
                 && column.reals().iter().all(|v| v.is_finite())
         };
         if self.is_table {
+            let named = self.dialect.named_abscissa()?;
             let is = |at: &usize| {
-                by_name(&table[*at]) || table[*at].rises() || self.dialect.clock_at() == Some(*at)
+                by_name(&table[*at]) || table[*at].rises() || self.dialect.clock_at() == Some(named)
             };
-            return self.dialect.named_abscissa().filter(is);
+            // Columns without a value are gone.
+            return table.iter().position(|column| column.at - 1 == named).filter(is);
         }
         let pair = self.options.complex && table.len() == 2 && !self.dialect.complex;
         let clock = table.iter().position(|column| Some(column.at - 1) == self.dialect.clock_at());
@@ -393,6 +395,9 @@ impl RecordContext<'_> {
     fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Built> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
         let against = column.name.against_unit(self.naturals).filter(|_| self.options.unit.is_none());
+        // What is no whole number is counted by nobody.
+        let whole = || column.reals().iter().all(|v| v.fract() == 0.0);
+        let against = against.filter(|what| *what != COUNT || whole());
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {

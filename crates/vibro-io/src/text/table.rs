@@ -13,6 +13,7 @@
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
 use super::dialect::Dialect;
+use super::header::Stated;
 use super::headings::{headings, is_title, is_types, names_in, rate_of_columns};
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::names::Name;
@@ -230,9 +231,13 @@ fn fit(
     }
     let last = spoken.get(used.end.max(1) - 1)?.number;
     let used: Vec<u64> = spoken.get(used)?.iter().map(|line| line.number).collect();
-    let header = above.iter().filter(|l| !used.contains(&l.number)).map(|l| {
-        let rate = rate_of_columns(l, separator).filter(|_| l.remark.is_none());
-        rate.unwrap_or_else(|| key_and_value(l, separator))
+    let head = || above.iter().filter(|l| !used.contains(&l.number));
+    // A rate behind its key goes before a row of rates, which may be those of a filter.
+    let keyed: Vec<String> = head().map(|l| key_and_value(l, separator)).collect();
+    let is_stated = Stated::of(keyed.iter().map(String::as_str)).rate.is_some();
+    let header = head().zip(&keyed).map(|(l, keyed)| {
+        let rate = rate_of_columns(l, separator).filter(|_| l.remark.is_none() && !is_stated);
+        rate.unwrap_or_else(|| keyed.clone())
     });
     let dialect = Dialect {
         format: Format::Csv,

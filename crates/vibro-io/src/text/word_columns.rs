@@ -14,8 +14,8 @@ use vibro_record::{Error, Finding, Result};
 /// Rows that tell which columns hold text.
 const ENOUGH: usize = 24;
 
-/// Rows for each word that comes back, at least, in a column that holds a state. Where words name the channel
-/// or the sensor of a row they come back more often; dates and numbers of frames never do.
+/// Rows for each text that comes back, at least, in a column that holds a state such as `7 / 12`. Words that
+/// come back may name the channel or the sensor of a row; dates and numbers of frames never do.
 const STATE: usize = 10;
 
 /// What is left of a text without its columns of text.
@@ -40,6 +40,8 @@ struct Held {
     /// Words that differ from the one above, and those of them that stood further up.
     changes: usize,
     returns: usize,
+    /// Whether one that begins with a letter stood further up: it may name the channel of its rows.
+    names: bool,
 }
 
 /// The text without the columns that hold text and in no row a number; `None` where these are not
@@ -82,7 +84,8 @@ pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
         without(&mut kept, &line, &cells, separator, &columns);
     }
     kept.push('\n');
-    if let Some(why) = held.iter_mut().find(|held| held.returns * STATE > rows).and_then(|h| h.mixed.take()) {
+    let named = |held: &&mut Held| held.names || held.returns * STATE > rows;
+    if let Some(why) = held.iter_mut().find(named).and_then(|held| held.mixed.take()) {
         return Err(why);
     }
     let said = |(i, held): (usize, &Held)| {
@@ -106,11 +109,12 @@ impl Held {
         } else {
             self.changes += 1;
             self.returns += usize::from(!new);
+            self.names |= !new && cell.starts_with(char::is_alphabetic);
             let last = &self.last;
             self.mixed.get_or_insert_with(|| {
                 let found = format!("{:?} below {:?}", shorten(cell), shorten(last));
                 let place = in_line(line.number).column(line.column(at));
-                Error::input(place, found, "numbers, or one word in all rows of a column")
+                Error::input(place, found, "numbers, or words that do not come back")
                     .hint("write the rows of each word to a file of their own, or take out the column")
             });
         }

@@ -158,7 +158,8 @@ pub(crate) fn detect_among(
     })
 }
 
-/// The values without mains hum and level, or the envelope of these; their noise, and the hum that was removed.
+/// The values without mains hum and level, or the envelope of these; their noise, and the hum that was
+/// removed.
 fn cleared(
     trace: &Trace,
     options: &ImpactsOptions,
@@ -180,8 +181,8 @@ fn cleared(
     Ok((values, quiet, hum))
 }
 
-/// The refusal of so few impacts above the noise limit: whether lower ones were ignored, a shorter pause would
-/// part more, and a band is chosen already decides what to try.
+/// The refusal of so few impacts above the noise limit. What to try depends on whether `lower` ones were
+/// ignored, a shorter pause parts those that were `joined`, and a band is chosen already.
 fn too_few(
     n: usize,
     values: &[f64],

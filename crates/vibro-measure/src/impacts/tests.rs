@@ -280,7 +280,6 @@ fn ball_passages_in_the_sound_of_a_machine() {
     }
 }
 
-/// Bursts at random, as of rain: no period is in them.
 /// Ticks of a clock in a room: each begins at once and dies away as noise does, with peaks of any height.
 /// Half of the largest of 48 samples of noise, 2.3σ, is passed by one in four: an onset scatters by 3.5
 /// samples, and ten intervals of 0.5 s by √2·3.5/16 000/10 s.
@@ -300,6 +299,7 @@ fn ticks_in_a_room_that_reverberates_are_counted_once() {
     assert!((found.interval.value - 0.5).abs() < 4.0 * std, "{:?}", found.interval);
 }
 
+/// Bursts at random, as of rain: no period is in them.
 #[test]
 fn what_has_no_period_is_refused() {
     let mut noise = Noise::new(1);

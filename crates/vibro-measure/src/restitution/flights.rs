@@ -27,7 +27,8 @@ pub(super) fn longer(train: &Train) -> Option<usize> {
 /// Trains from which on their scatter shows all that is uncertain in each.
 const MANY: usize = 4;
 
-/// Chance that trains of one body differ by less than what parts them: beyond it they are not fitted together.
+/// Chance that trains of one body differ by less than what parts them: beyond it they are not fitted
+/// together.
 const DIFFER: f64 = 0.95;
 /// Beyond this one, that they differ is said.
 const SURELY: f64 = 0.999;

@@ -270,7 +270,8 @@ fn two_drops_have_no_uncertainty_and_five_a_bootstrap() {
     assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
     // Three: s = 2 ms, Student's quantile of two degrees of freedom, c√(2/(1 − c²)) for a part c between its
-    // ends, where the normal distribution has 1.96, and half of the height's 1/570. Quantiles are found to 1e-9.
+    // ends, where the normal distribution has 1.96, and half of the height's 1/570. Quantiles are found to
+    // 1e-9.
     let found = drops(&all[..3]).restitution;
     let student = 0.95 * (2.0 / (1.0 - 0.95f64.powi(2))).sqrt();
     let timing = student / 1.959_963_984_540_054 * 2e-3 / 3f64.sqrt() / 0.142;
