@@ -67,6 +67,7 @@ mod tests {
             ("scatter = .01", &["write scatter = 0.01"]),
             ("scatter = .5 # a \"#\" ", &["scatter = .5;", "write scatter = 0.5"]),
             ("prior.gap = [1; 2]", &["write prior.gap = [1, 2]"]),
+            ("parameters = ['#gap']", &["parameters = ['#gap'];"]),
             ("starts = three", &["text between quotes", "write starts = \"three\""]),
             ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),
         ] {

@@ -67,11 +67,11 @@ impl FileKind {
     }
 }
 
-/// Channels of the first file; those of several names go by their numbers.
-fn named_alike(members: &[Member]) -> Vec<Header> {
-    let mut headers = members[0].1.clone();
+/// Channels of the first of several files; those of several names go by their numbers.
+pub(super) fn named_alike(files: &[&[Header]]) -> Vec<Header> {
+    let mut headers = files[0].to_vec();
     for (k, header) in headers.iter_mut().enumerate() {
-        if members.iter().any(|(_, all)| all[k].name != header.name) {
+        if files.iter().any(|all| all[k].name != header.name) {
             header.name.clear();
         }
     }
@@ -135,7 +135,7 @@ impl Inventory {
             let files: Vec<String> = members.iter().map(|(path, _)| within(path)).collect();
             let pattern = kind.pattern(&files, &every, &numbers);
             let reading = if kind.timed { &untimed_reading } else { reading }.clone();
-            let headers = named_alike(&members);
+            let headers = named_alike(&members.iter().map(|(_, all)| all.as_slice()).collect::<Vec<_>>());
             let name = name(&files);
             found.series.push(FileSeries { name, files, headers, pattern, alike: false, reading });
         }

@@ -1,7 +1,7 @@
 //! Files of one folder that hold alike records under odd names: steps of one sweep, drops of one series.
 
 use super::alike::spread;
-use super::folder::{FileSeries, columns, name};
+use super::folder::{FileSeries, columns, name, named_alike};
 use super::trial::{STEPS, Trial};
 use crate::analysis::sweep::order::same;
 use crate::analysis::tone::Strongest;
@@ -155,12 +155,7 @@ impl FileSeries {
 
     /// All files of several series as one.
     fn of_all(members: &[&FileSeries]) -> FileSeries {
-        let mut headers = members[0].headers.clone();
-        for (k, header) in headers.iter_mut().enumerate() {
-            if members.iter().any(|other| other.headers[k].name != header.name) {
-                header.name.clear();
-            }
-        }
+        let headers = named_alike(&members.iter().map(|one| one.headers.as_slice()).collect::<Vec<_>>());
         let mut files: Vec<PathBuf> = members.iter().flat_map(|one| &one.files).map(PathBuf::from).collect();
         in_order(&mut files);
         let files: Vec<String> = files.iter().map(|file| file.to_string_lossy().into_owned()).collect();

@@ -19,9 +19,6 @@ const HEIGHT: &str = "height of the fall in m";
 /// Seconds beyond which a hump is no contact.
 const LONGEST_CONTACT: f64 = 0.1;
 
-/// What is said where a pulse is not the only one.
-const ANOTHER: &str = code::PULSE_NOT_ALONE;
-
 /// What is said of a decay whose amplitude falls by as much in every swing.
 const FRICTION: [&str; 2] = [code::DECAY_UNEXPLAINED, code::DECAY_CHANGES];
 
@@ -230,7 +227,7 @@ impl Trial<'_> {
             let short =
                 |e: &Evidence| matches!(e, Evidence::Pulse { duration } if *duration < LONGEST_CONTACT);
             heard.evidence.first().is_some_and(short)
-                && heard.findings.iter().all(|(_, finding)| finding.code != ANOTHER)
+                && heard.findings.iter().all(|(_, finding)| finding.code != code::PULSE_NOT_ALONE)
         };
         if self.answers(from_ref(&pulse)).is_ok_and(alone) {
             return FoundTables::table(pulse);

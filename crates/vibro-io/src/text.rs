@@ -81,17 +81,14 @@ pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> 
 fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(LeftOut { source, found, changes }) = word_columns::left_out(text)? else { return Err(why) };
     let contents = without((source, found), options)?;
-    let backwards = |found: &Finding| found.code == code::AXIS_BACKWARDS;
-    let timed = |(record, _): &(Record, _)| {
-        record.axis().kind == AxisKind::Time && !record.meta().findings.iter().any(backwards)
-    };
-    let rises = contents.records.iter().all(timed) && !contents.findings.iter().any(backwards);
+    let of_records = contents.records.iter().flat_map(|(record, _)| &record.meta().findings);
+    let findings: Vec<&Finding> = contents.findings.iter().chain(of_records).collect();
+    let is_said = |code: &str| findings.iter().any(|found| found.code == code);
+    let timed = contents.records.iter().all(|(record, _)| record.axis().kind == AxisKind::Time);
+    let rises = timed && !is_said(code::AXIS_BACKWARDS);
     // Rows of several channels below each other have times of their own: those of a rate tell nothing.
-    let from_head = |found: &Finding| found.code == code::RATE_FROM_HEAD;
-    let of_rate = options.rate.is_some()
-        || contents.findings.iter().any(from_head)
-        || contents.records.iter().any(|(record, _)| record.meta().findings.iter().any(from_head));
-    if changes && (!rises || of_rate) { Err(why) } else { Ok(contents) }
+    let by_rate = options.rate.is_some() || is_said(code::RATE_FROM_HEAD);
+    if changes && (!rises || by_rate) { Err(why) } else { Ok(contents) }
 }
 
 /// The longest of several tables; where none is, the complaint `why` they cannot be read as one.

@@ -21,10 +21,12 @@ pub fn typed(path: impl AsRef<Path>) -> String {
     let splits = |c: char| c.is_whitespace() || "()[]{}<>;&|'`$!".contains(c);
     // Between double quotes a shell still reads some of them.
     let read = ['$', '`', '!', '"', '\\'];
-    match text.contains(splits) || text.contains('"') {
-        false => text,
-        true if text.contains(read) && !text.contains('\'') => format!("'{text}'"),
-        true => format!("\"{text}\""),
+    if !text.contains(splits) && !text.contains('"') {
+        text
+    } else if text.contains(read) && !text.contains('\'') {
+        format!("'{text}'")
+    } else {
+        format!("\"{text}\"")
     }
 }
 

@@ -341,12 +341,9 @@ impl<'a> Written<'a> {
         };
         // The line with another text at the place.
         let with = |meant: &str| {
-            let line = &self.text[start_of_line(self.text, at.start)..];
-            let from = at.start - (self.text.len() - line.trim_start().len());
-            // A value with a mark of a comment in it is longer than what stands before that mark.
-            let head = if head.len() < from + stated.len() { line.trim() } else { head };
-            let [before, behind] = [head.get(..from), head.get(from + stated.len()..)];
-            format!("write {}{meant}{}", before.unwrap_or_default(), behind.unwrap_or_default())
+            let before = self.text[start_of_line(self.text, at.start)..at.start].trim_start();
+            let behind = self.text[at.end..].lines().next().map_or("", uncommented);
+            format!("write {before}{meant}{behind}")
         };
         match what {
             What::UnknownKey(key, known) => self.unknown_key(&key, known, line, told),

@@ -190,14 +190,14 @@ impl Name {
 
     /// What the name says that the values are, where its unit is none of that: a count in newtons, a
     /// temperature in degrees of an angle. Where a counter has the unit N, as `naturals` says, N is newton
-    /// only behind a name that says force.
-    pub fn against_unit(&self, naturals: bool) -> Option<&'static str> {
+    /// only behind a name that says force. What is not `whole` is counted by nobody.
+    pub fn against_unit(&self, naturals: bool, whole: impl Fn() -> bool) -> Option<&'static str> {
         let unit = self.unit.as_deref()?;
         let quantity = Unit::parse(unit)?.quantity();
         let force = || self.name.to_lowercase().contains(Quantity::Force.name());
-        let count = unit == NATURAL && (self.may_count() || naturals && !force());
+        let count = unit == NATURAL && (self.may_count() || naturals && !force()) && whole();
         let warm = self.name == "T" || TEMPERATURES.contains(&self.last_word().as_str());
-        if count { Some(COUNT) } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
+        if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
     }
 
     /// The last word of the name in lower case: `sample` of `loggingSample`, `loop_sample` and `Sample`.
@@ -302,9 +302,6 @@ const COUNTS: &str =
 /// Words that end the name of a column that only counts, behind others.
 const COUNT_WORDS: [&str; 9] =
     ["sample", "samples", "index", "count", "counter", "number", "record", "row", "frame"];
-
-/// What a column is by its name that counts.
-pub(super) const COUNT: &str = "count";
 
 /// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
 pub(super) const NATURAL: &str = "N";

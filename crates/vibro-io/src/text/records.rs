@@ -5,7 +5,7 @@ use super::column::{Column, repeats};
 use super::decoded::Text;
 use super::dialect::Dialect;
 use super::header::Stated;
-use super::names::{COUNT, ComplexPart, NATURAL, Name};
+use super::names::{ComplexPart, NATURAL, Name};
 use super::rows::Rows;
 use super::tail;
 use super::unit_words::amplitude;
@@ -394,10 +394,8 @@ impl RecordContext<'_> {
     /// The record of one column.
     fn record(&self, i: usize, column: Column, axis: &Axis) -> Result<Built> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
-        let against = column.name.against_unit(self.naturals).filter(|_| self.options.unit.is_none());
-        // What is no whole number is counted by nobody.
         let whole = || column.reals().iter().all(|v| v.fract() == 0.0);
-        let against = against.filter(|what| *what != COUNT || whole());
+        let against = column.name.against_unit(self.naturals, whole).filter(|_| self.options.unit.is_none());
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {

@@ -74,6 +74,9 @@ impl Train {
     }
 }
 
+/// Sounds among which a train is sought above a corner: in a band of steady noise sounds have no end.
+const FEW: usize = 32;
+
 /// The train of three impacts or more above the corner that shows most of them, the highest of these: it
 /// times them best.
 fn above_hum(trace: &Trace, options: &ImpactsOptions, choose: Choose<'_>) -> Option<Detected> {
@@ -152,6 +155,3 @@ pub(super) fn apart(times: [f64; 2]) -> [String; 2] {
     let shown = |digits| times.map(|time| quantity(time, "s", digits));
     (3..9).map(shown).find(|[a, b]| a != b).unwrap_or_else(|| shown(3))
 }
-
-/// Sounds among which a train is sought above a corner: in a band of steady noise sounds have no end.
-const FEW: usize = 32;

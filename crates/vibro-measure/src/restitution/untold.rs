@@ -7,7 +7,7 @@ use crate::impacts::{ImpactsOptions, Sound};
 use std::cell::RefCell;
 use vibro_record::{Error, Trace};
 
-/// Sounds before a fall that a part of the record may leave out.
+/// A part of the record leaves out fewer sounds before a fall than these.
 const CLAPS: usize = 4;
 
 /// Difference of first flights, as a part of them, that is none: a train with the echo of its first impact in
