@@ -36,6 +36,12 @@ pub const KINDS: &[Kind] = &[
         every: 5,
         draw: |mix| heard(mix, Room::Hard),
     },
+    Kind {
+        name: "drops, dull bodies",
+        ranges: "as in a room; R 0.12 to 0.5, and in half of the drops the sound of the release at 3 to 60 % of the first impact",
+        every: 5,
+        draw: |mix| heard(mix, Room::Dull),
+    },
 ];
 
 const ROOMS: &str = "R 0.4 to 0.93, up to 1 % of scatter in half of the series, 1 to 8 drops from 0.1 to 1 m, each up to 3 to 9 impacts; contact 0.05 \

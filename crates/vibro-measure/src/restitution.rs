@@ -18,6 +18,7 @@ pub use velocities::Velocities;
 use super::Estimate;
 use crate::mean::{average, scatter};
 use crate::residuals::widened;
+use plausible::SCATTER;
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result};
 
@@ -182,9 +183,9 @@ fn contact(measured: &Measured) -> (f64, f64) {
     }
 }
 
-/// Answers that differ by more than this part disagree where one has no uncertainty: the height would be
-/// wrong by twice as much. So it is with a missed flight and a height in mm.
-const GROSS: f64 = 0.2;
+/// Answers of which one has no uncertainty disagree where they differ by more than this part of them beyond
+/// what the other may be off: R scatters by 2 % from bounce to bounce, and the ratio of two by √2 of that.
+const GROSS: f64 = 1.96 * std::f64::consts::SQRT_2 * SCATTER;
 
 /// Whether every pair of answers agrees at 95 %; `None` where one has no uncertainty and the others agree.
 /// Methods may share numbers, as a drop and its train do: the largest possible correlation is assumed.
@@ -195,11 +196,14 @@ fn agreement(by: &[MethodAnswer], findings: &mut Vec<Finding>) -> Option<bool> {
             let (first, second) = (a.restitution.value, b.restitution.value);
             let apart = (first - second).abs();
             let std = a.restitution.std.zip(b.restitution.std).map(|(u, v)| u + v);
+            let known = a.restitution.std.or(b.restitution.std).unwrap_or(0.0);
             let found = match std {
                 Some(std) if apart > 1.96 * std => {
                     Finding::doubt("methods-disagree").number("ratio", apart / std)
                 }
-                None if apart > GROSS * first.max(second) => Finding::doubt("methods-far-apart"),
+                None if apart > GROSS * first.max(second) + 1.96 * known => {
+                    Finding::doubt("methods-far-apart")
+                }
                 Some(_) => continue,
                 None => {
                     agree = agree.filter(|agree| !agree);

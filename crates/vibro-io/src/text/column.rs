@@ -79,6 +79,36 @@ impl Column {
     }
 }
 
+/// Most channels or sensors whose rows stand below each other, and words for what numbers them.
+const TURNS: usize = 64;
+const NUMBERED: [&str; 9] = ["channel", "chan", "ch", "sensor", "node", "device", "probe", "id", "kanal"];
+
+impl Column {
+    /// Two values of a column that numbers the channel or the sensor of each row, the first and one that
+    /// follows: whole numbers in turns, or few of them that come back under a name that says so.
+    pub fn numbers_channels(&self) -> Option<[f64; 2]> {
+        let values = self.values.opening();
+        let first = *values.first().filter(|_| self.sparse.is_none() && self.name.unit.is_none())?;
+        let turn = values.iter().take(TURNS + 1).skip(1).position(|v| *v == first)? + 1;
+        let mut known: Vec<f64> = Vec::new();
+        for v in values {
+            if v.fract() != 0.0 || known.len() > TURNS {
+                return None;
+            }
+            if !known.contains(v) {
+                known.push(*v);
+            }
+        }
+        let in_turns = || {
+            known.len() == turn
+                && values.len() >= 4 * turn
+                && values.iter().zip(values.iter().skip(turn)).all(|(a, b)| a == b)
+        };
+        let named = || NUMBERED.contains(&self.name.last_word().as_str()) && 4 * known.len() <= values.len();
+        (known.len() > 1 && (in_turns() || named())).then(|| [first, known[1]])
+    }
+}
+
 /// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
 const REPEATS: f64 = 0.05;
 

@@ -201,7 +201,7 @@ impl Name {
     }
 
     /// The last word of the name in lower case: `sample` of `loggingSample`, `loop_sample` and `Sample`.
-    fn last_word(&self) -> String {
+    pub fn last_word(&self) -> String {
         let name = self.name.trim_end_matches(|c: char| !c.is_alphanumeric());
         let begins = |(at, c): &(usize, char)| {
             !c.is_alphanumeric() || c.is_uppercase() && name[..*at].ends_with(char::is_lowercase)

@@ -65,6 +65,7 @@ pub fn build(
     table.retain(|column| !printed.as_ref().is_some_and(|axis| is_table && column.is_clock_of(axis)));
     let printed = printed.map(|column| made.printed(column, &table)).transpose()?;
     table.retain(|column| Some(column.at - 1) != dialect.clock_at());
+    of_one_channel(&table)?;
     let has_axis = printed.is_some();
     if numbered && !has_axis {
         of_axis.push(Finding::caution("column-numbers-rows"));
@@ -134,6 +135,17 @@ pub fn build(
         findings.append(&mut of_axis);
     }
     Ok(built)
+}
+
+/// Refuses rows of several channels or sensors below each other, which a column numbers.
+fn of_one_channel(table: &[Column]) -> Result<()> {
+    let numbers = |c: &Column| Some((c.label(), c.numbers_channels()?));
+    let Some((name, [one, next])) = table.iter().filter(|_| table.len() > 1).find_map(numbers) else {
+        return Ok(());
+    };
+    let found = format!("{name:?} goes from {} to {} and back", short(one), short(next));
+    Err(Error::usage(found, "rows of one channel or sensor")
+        .hint("write the rows of each number to a file of their own, or take out the column"))
 }
 
 /// The record of a column, and how its values are read again.

@@ -382,6 +382,32 @@ fn two_clocks_in_one_file_are_refused() {
 }
 
 #[test]
+fn rows_of_several_channels_are_refused_and_whole_numbers_are_read() {
+    let of = |head: &str, number: fn(i32) -> i32| {
+        let row = |i: i32| format!("{:.3},{},{:.4}\n", 1e-3 * f64::from(i), number(i), f64::from(i).sin());
+        let text = head.to_owned() + &(0..60).map(row).collect::<String>();
+        read_table(&Source::memory("x.csv", text.into_bytes()).unwrap(), &Options::default(), false)
+    };
+    // In turns under any name; where one sensor is read twice as often, under one that says so.
+    for (head, number) in [
+        ("t (s),which,a (g)\n", (|i| 1 + i % 2) as fn(i32) -> i32),
+        ("t (s),Sensor ID,a (g)\n", |i| if i % 3 == 0 { 7 } else { 9 }),
+    ] {
+        let why = of(head, number).unwrap_err().to_string();
+        assert!(why.contains("and back"), "{why}");
+    }
+    // A level in volts, a sensor of its own file, a state that changes now and then, and a count.
+    for (head, number) in [
+        ("t (s),U (V),a (g)\n", (|i| 1 + i % 2) as fn(i32) -> i32),
+        ("t (s),Sensor ID,a (g)\n", |_| 7),
+        ("t (s),state,a (g)\n", |i| i / 7 % 2),
+        ("t (s),n,a (g)\n", |i| i),
+    ] {
+        assert!(of(head, number).is_ok(), "{head}");
+    }
+}
+
+#[test]
 fn a_time_that_runs_backwards_is_refused_whatever_the_rate() {
     let mut rows = String::new();
     for i in 0..50 {

@@ -18,6 +18,8 @@ pub enum Room {
     Ordinary,
     /// Echoes to 50 %, a voice in four of ten series, up to as loud as the impacts.
     Hard,
+    /// As an ordinary room; bodies that hardly bounce, and the sound of the release in half of the drops.
+    Dull,
 }
 
 /// One series of drops of one body from one height.
@@ -52,8 +54,9 @@ impl Room {
     /// The series of a seed.
     pub fn drops(self, seed: u64) -> Drops {
         let noise = &mut Noise::new(0x0D09 + seed);
+        let [least, most] = if self == Room::Dull { [0.12, 0.5] } else { [0.4, 0.93] };
         let (r, height, height_std) =
-            (noise.between(0.4, 0.93), log(noise, 0.1, 1.0), log(noise, 3e-4, 2e-3));
+            (noise.between(least, most), log(noise, 0.1, 1.0), log(noise, 3e-4, 2e-3));
         let contact = log(noise, 5e-5, 1e-3);
         let scatter = if noise.uniform() < 0.5 { log(noise, 5e-4, 0.01) } else { 0.0 };
         let count = noise.between(1.0, 9.0) as usize;
@@ -61,7 +64,7 @@ impl Room {
         let sound = self.sound(noise);
         let (hum, white) = (log(noise, 1e-4, 0.02), log(noise, 3e-4, 0.01));
         let (voices, loudest) = match self {
-            Room::Ordinary => (0.1, 0.1),
+            Room::Ordinary | Room::Dull => (0.1, 0.1),
             Room::Hard => (0.4, 1.0),
         };
         let mut records = Vec::new();
@@ -86,6 +89,11 @@ impl Room {
                 // A hand or a latch before the fall.
                 let (at, part) = (strikes[0].0 - noise.between(0.08, 0.19), log(noise, 0.02, 0.3));
                 sound.strike(noise, &mut values, at, part);
+            }
+            if self == Room::Dull && noise.uniform() < 0.5 {
+                let fall = (2.0 * height / GRAVITY).sqrt();
+                let (at, part) = (strikes[0].0 - fall + 0.003 * noise.normal(), log(noise, 0.03, 0.6));
+                sound.strike(noise, &mut values, at.max(0.0), part);
             }
             let phase = noise.uniform();
             for (i, v) in values.iter_mut().enumerate() {

@@ -1,6 +1,6 @@
 //! A train of bounces as it is heard: which of the sounds of a record are the bounces of one falling body.
 
-use super::plausible::{FallRecord, Plausible, SHADOW, plausible};
+use super::plausible::{FallRecord, Plausible, Rival, SHADOW, plausible};
 use super::untold::Untold;
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};
@@ -55,7 +55,7 @@ impl Train {
         let heard = Cell::new(usize::MAX);
         let choose = |sounds: &[Sound], reach: f64, median: f64| {
             heard.set(sounds.len());
-            choose(sounds, FallRecord { reach, median, ends, full }, untold)
+            choose(sounds, FallRecord { reach, median, ends, full, pause: options.refractory }, untold)
         };
         let mut found = detect_among(trace, options, Some(&choose));
         // Below the impacts may lie hum or slow levels that hide them.
@@ -127,9 +127,16 @@ fn choose(
         let hint = "`vibro impacts` for a machine; for a drop among voices the part with the bounces, or the height of its fall";
         return Err(Error::refused(why).hint(hint).setting("span").setting("height"));
     }
-    if let Some((i, j)) = train.rival {
-        let time = |i: usize| sounds[i].time;
-        let (a, b) = (train.impacts[0], train.impacts[1]);
+    let time = |i: usize| sounds[i].time;
+    let (a, b) = (train.impacts[0], train.impacts[1]);
+    if let Some(Rival::Fall(i, j)) = train.rival {
+        let [fall, begin, end] = [time(j) - time(i), time(i), time(j)].map(|time| quantity(time, "s", 3));
+        let why = format!(
+            "the sounds at {begin} and {end} may be the release and the first impact: {fall} is the time of the fall from that height"
+        );
+        return refused(why, &train);
+    }
+    if let Some(Rival::Train(i, j)) = train.rival {
         let [first, other] = apart([time(b) - time(a), time(j) - time(i)]);
         let [begin, later] = apart([time(a), time(i)]);
         let why = format!(
@@ -139,9 +146,24 @@ fn choose(
     }
     let before = train.impacts[0];
     let other = n - train.impacts.len() - before - train.echoes;
-    if train.impacts.len() == 2 && before + other > 0 {
-        let others = counted(before + other, "other sound");
+    let foreign = before - train.release + other;
+    if train.impacts.len() == 2 && foreign > 0 {
+        let others = counted(foreign, "other sound");
         let why = format!("one flight beside {others}: no second flight shows that it is that of a bounce");
+        return refused(why, &train);
+    }
+    // More impacts than two show by themselves that they are those of one fall.
+    let flight = time(b) - time(a);
+    if train.impacts.len() == 2 && flight < SHADOW {
+        let flight = quantity(flight, "s", 3);
+        let why = format!("one flight, of {flight}: the second sound may be the echo of the first");
+        return refused(why, &train);
+    }
+    if train.impacts.len() == 2
+        && let Some(expected) = train.expected
+    {
+        let expected = quantity(expected, "s", 3);
+        let why = format!("two impacts, and the third, expected at {expected}, is not heard");
         return refused(why, &train);
     }
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));

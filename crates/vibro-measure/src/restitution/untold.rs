@@ -1,8 +1,8 @@
 //! What to try where sounds do not tell which of them are the bounces of one body: each advice is tried
 //! before it is given.
 
-use super::Train;
-use super::plausible::{FallRecord, Plausible, plausible};
+use super::plausible::{FallRecord, Plausible, Rival, plausible};
+use super::{GROSS, Train};
 use crate::impacts::{ImpactsOptions, Sound};
 use std::cell::RefCell;
 use vibro_record::{Error, Trace};
@@ -42,6 +42,11 @@ impl Untold {
                 .hint("a pause that leaves one of them, if what follows an impact within it is its echo")
                 .set("refractory", format!("{pause:.2}"));
         }
+        if let Some((from, to)) = self.before_third(read) {
+            return refused
+                .hint("the part that ends before it, if the body was caught")
+                .set("span", format!("[{from:.2}, {to:.2}]"));
+        }
         if let Some((from, to)) = self.part(read) {
             return refused
                 .hint("the part behind what is heard first, if that is a hand or a clap")
@@ -58,9 +63,8 @@ impl Untold {
 
     /// Whether the record, so read, tells its bounces: three impacts, or two where the height is known,
     /// which holds their flight to be that of a bounce.
-    fn is_told(&self, (trace, options, full): Read<'_>) -> bool {
-        let train = Train::among(trace, options, full, &RefCell::new(None));
-        train.is_ok_and(|(train, _)| train.intervals.len() + 1 >= self.enough())
+    fn is_told(&self, read: Read<'_>) -> bool {
+        told(read).is_some_and(|train| train.intervals.len() + 1 >= self.enough())
     }
 
     fn enough(&self) -> usize {
@@ -104,7 +108,7 @@ impl Untold {
     /// A pause in s behind each impact, a half more than the delay of what follows it, that tells the
     /// bounces.
     fn pause(&self, (trace, options, full): Read<'_>) -> Option<f64> {
-        let (i, j) = self.train.rival?;
+        let Some(Rival::Train(i, j)) = self.train.rival else { return None };
         let (a, b) = (self.train.impacts[0], self.train.impacts[1]);
         let time = |i: usize| self.sounds[i].time;
         let (flight, other) = (time(b) - time(a), time(j) - time(i));
@@ -115,17 +119,46 @@ impl Untold {
         self.is_told((trace, &with, full)).then_some(pause)
     }
 
-    /// The part of the record in s behind the first sounds that tells the bounces.
+    /// The part of the record in s that ends before a third impact which is expected and not heard.
+    fn before_third(&self, (trace, options, full): Read<'_>) -> Option<(f64, f64)> {
+        let (Some(expected), None, &[_, second]) =
+            (self.train.expected, self.train.rival, &self.train.impacts[..])
+        else {
+            return None;
+        };
+        let end = f64::midpoint(self.sounds[second].time, expected);
+        let (from, to) = (hundredths(self.heard.ends.0), hundredths(end));
+        let part = part(trace, from, to)?;
+        self.is_told((&part, options, full)).then_some((from, to))
+    }
+
+    /// The part of the record in s behind the first sounds that tells the bounces: three, whose R by their
+    /// flights is that by the height. What is cut off may be the first impact.
     fn part(&self, (trace, options, full): Read<'_>) -> Option<(f64, f64)> {
         let behind = |first: &usize| self.may_tell(&self.sounds[*first..]).is_some();
         let first = (1..self.sounds.len().min(CLAPS)).find(behind)?;
-        // As it is typed.
-        let hundredths = |time: f64| (100.0 * time).round() / 100.0;
         let between = f64::midpoint(self.sounds[first - 1].time, self.sounds[first].time);
         let (from, to) = (hundredths(between), hundredths(self.heard.ends.1));
-        let cut = trace.axis.between(from, to);
-        let values = trace.values.get(cut.clone())?.to_vec();
-        let part = Trace { meta: trace.meta.clone(), axis: trace.axis.part(cut), values };
-        self.is_told((&part, options, full)).then_some((from, to))
+        let train = told((&part(trace, from, to)?, options, full))?;
+        let [fall, bounce, ..] = train.intervals[..] else { return None };
+        let agree = full.is_none_or(|full| (bounce / fall / (fall / full) - 1.0).abs() < GROSS);
+        agree.then_some((from, to))
     }
+}
+
+/// The train of the record, so read, where it is told.
+fn told((trace, options, full): Read<'_>) -> Option<Train> {
+    Train::among(trace, options, full, &RefCell::new(None)).ok().map(|(train, _)| train)
+}
+
+/// A time as it is typed.
+fn hundredths(time: f64) -> f64 {
+    (100.0 * time).round() / 100.0
+}
+
+/// The samples from one time to another, in s.
+fn part(trace: &Trace, from: f64, to: f64) -> Option<Trace> {
+    let cut = trace.axis.between(from, to);
+    let values = trace.values.get(cut.clone())?.to_vec();
+    Some(Trace { meta: trace.meta.clone(), axis: trace.axis.part(cut), values })
 }
