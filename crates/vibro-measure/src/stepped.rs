@@ -122,6 +122,7 @@ struct StepReading {
 impl StepReading {
     fn of(step: &StepTraces) -> Result<StepReading> {
         let StepTraces { force, response, .. } = step;
+        let metas = [&force.meta, &response.meta];
         let together = || {
             Error::refused("force and response are not sampled together").hint("export both with one clock")
         };
@@ -169,6 +170,10 @@ impl StepReading {
         response.allow(drift * ratio.value.norm());
         response.allow(left * force.0);
         ratio.allow(left);
+        // What interpolation takes it takes of both: the ratio keeps it.
+        let [of_force, of_response] = metas.map(|meta| meta.lost(frequency.value));
+        force.1 = force.1.map(|std| std.hypot(of_force * force.0));
+        response.allow(of_response * response.value.norm());
         if !stays {
             let part = left / ratio.value.norm();
             findings.push(about(Finding::doubt, "step-not-settled").number("left", part));

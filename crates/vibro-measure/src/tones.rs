@@ -401,6 +401,7 @@ impl SineFit {
                 findings.extend(tone.widened(lines, other));
             }
             tone.frequency = tone.frequency.by_clock(trace.meta.clock);
+            tone.amplitude = tone.amplitude.by_loss(trace.meta.lost(frequency));
             tone
         };
         let tones = self.omega.iter().zip(self.linear.chunks_exact(2)).enumerate().map(tone).collect();

@@ -203,4 +203,10 @@ impl Estimate {
         self.std = self.std.map(|std| std.hypot(clock * self.value));
         self
     }
+
+    /// The same of an amplitude of which interpolation may have taken up to this part.
+    pub fn by_loss(mut self, lost: f64) -> Estimate {
+        self.std = self.std.map(|std| std.hypot(lost * self.value));
+        self
+    }
 }

@@ -52,6 +52,8 @@ pub struct Meta {
     pub notes: Vec<(String, String)>,
     /// Relative standard uncertainty of the sampling rate, where instants were printed or jitter; else 0.
     pub clock: f64,
+    /// Distance in s of the samples between which values were interpolated; 0 where none were.
+    pub interpolated: f64,
     /// Half a unit in the last digit that instants were printed with, in s; 0 where they were not printed.
     pub resolution: f64,
     /// Instant 0 of the record in s since 1970, where the file counts from there; else 0.
@@ -63,6 +65,13 @@ pub struct Meta {
 }
 
 impl Meta {
+    /// Largest part of its amplitude that a sine of a frequency in Hz has lost to interpolation by cubics:
+    /// half way between samples, where a cubic takes 9/16 of the two beside and −1/16 of the two beyond.
+    pub fn lost(&self, frequency: f64) -> f64 {
+        let half = std::f64::consts::PI * (frequency * self.interpolated).min(0.5);
+        1.0 - (9.0 * half.cos() - (3.0 * half).cos()) / 8.0
+    }
+
     /// Meta data of a record in `unit`, which is taken to be SI already (see [`Unit::si`]).
     pub fn new(name: impl Into<String>, unit: Unit) -> Meta {
         let (name, quantity) = (name.into(), unit.quantity());
@@ -74,6 +83,7 @@ impl Meta {
             declared_n: None,
             notes,
             clock: 0.0,
+            interpolated: 0.0,
             resolution: 0.0,
             origin: 0.0,
             findings,

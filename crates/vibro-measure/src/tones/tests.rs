@@ -2,6 +2,8 @@ use super::*;
 use crate::synthetic::{pink, trace};
 use std::f64::consts::TAU;
 use vibro_math::Noise;
+use vibro_record::{Axis, AxisKind, Grid, Trace};
+
 #[test]
 fn a_clean_sine_is_exact_from_two_periods_on() {
     for f in [12.0, 47.3, 211.0, 455.5] {
@@ -227,5 +229,25 @@ fn sums_of_sines_that_are_clipped_are_found() {
                 assert!(own.is_some_and(|t| off(&t)), "{level} {f}: {found:?}");
             }
         }
+    }
+}
+
+/// A sine sampled at 200 Hz with steps that are uneven by a third, interpolated on an even grid: what that
+/// takes of its amplitude is within the stated uncertainty, which is no more than ten times as large.
+#[test]
+fn what_interpolation_takes_is_in_the_uncertainty() {
+    for frequency in [5.0f64, 20.0, 35.0] {
+        let mut noise = Noise::new(frequency.to_bits());
+        let times: Vec<f64> =
+            (0..2000).map(|i| (f64::from(i) + 0.33 * noise.between(-1.0, 1.0)) / 200.0).collect();
+        let values: Vec<f64> =
+            times.iter().map(|t| 2.0 * (TAU * frequency * t).cos() + 1e-5 * noise.normal()).collect();
+        let axis = Axis { kind: AxisKind::Time, grid: Grid::Uneven(times) };
+        let mut trace = Trace { axis, ..trace(values) };
+        trace.resample(200.0).unwrap();
+        let found = &sine(&trace, None).unwrap().tones[0].amplitude;
+        let (off, std) = ((found.value - 2.0).abs(), found.std.unwrap());
+        assert!(off < 2.0 * std, "{frequency} Hz: {found:?}");
+        assert!(std < 10.0 * off.max(1e-5), "{frequency} Hz: {found:?}");
     }
 }
