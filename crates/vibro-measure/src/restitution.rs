@@ -6,6 +6,7 @@
 mod drop;
 mod fit;
 mod flights;
+mod pairs;
 mod plausible;
 mod train;
 mod untold;
@@ -18,7 +19,7 @@ pub use velocities::Velocities;
 use super::Estimate;
 use crate::mean::{average, scatter};
 use crate::residuals::widened;
-use plausible::SCATTER;
+use pairs::SCATTER;
 use serde::Serialize;
 use vibro_record::{Error, Finding, Result};
 

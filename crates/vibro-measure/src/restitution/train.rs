@@ -1,6 +1,7 @@
 //! A train of bounces as it is heard: which of the sounds of a record are the bounces of one falling body.
 
-use super::plausible::{FallRecord, Plausible, Rival, SHADOW, plausible};
+use super::pairs::{FallRecord, Rival, SHADOW};
+use super::plausible::{Plausible, plausible};
 use super::untold::Untold;
 use crate::Estimate;
 use crate::impacts::{Choose, Detected, ImpactsOptions, Sound, chosen, detect_among, octaves};

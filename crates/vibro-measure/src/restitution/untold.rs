@@ -1,7 +1,8 @@
 //! What to try where sounds do not tell which of them are the bounces of one body: each advice is tried
 //! before it is given.
 
-use super::plausible::{FallRecord, Plausible, Rival, plausible};
+use super::pairs::{FallRecord, Rival};
+use super::plausible::{Plausible, plausible};
 use super::{GROSS, Train};
 use crate::impacts::{ImpactsOptions, Sound};
 use std::cell::RefCell;

@@ -1,0 +1,340 @@
+//! The most plausible train of bounces among sounds: flights that shrink by a common ratio, and impacts that
+//! grow quieter with them.
+//!
+//! Every pair of sounds may be the first two impacts. The evidence for a pair is the likelihood of the best
+//! train that begins with it, over the one that all sounds are foreign and come at random, averaged over ln
+//! R; the train follows by dynamic programming over pairs of sounds. A sound that follows an impact soon and
+//! is quieter is its echo or ringing.
+
+use crate::impacts::{QUIETER, Sound};
+
+/// Steps of ln R, and least R.
+pub const STEP: f64 = 0.015;
+const LEAST: f64 = 0.03;
+/// Largest R of a bounce: a superball returns with 0.92, steel on an anvil with 0.97. Sounds whose intervals
+/// shrink less are evenly spaced.
+pub const LARGEST: f64 = 0.985;
+/// Steps of ln R above 0 that are looked at: intervals of a voice or a machine grow, too.
+const GROWS: usize = 2;
+/// Standard deviation of ln R from bounce to bounce.
+pub const SCATTER: f64 = 0.02;
+/// Standard deviation of the time of an impact in s: what of a contact is loudest differs.
+const TIMING: f64 = 3e-4;
+/// Standard deviation of the logarithm of loudness over speed of an impact.
+const LOUDNESS: f64 = 0.5;
+/// Standard deviation of ln R by the stated height: 6 % of the height.
+const FALL: f64 = 0.03;
+/// A deviation of loudness, or from the stated height, costs no more: contacts may switch, and heights be in
+/// mm.
+const CAP: f64 = 4.0;
+/// Within this time in s echoes of a room and ringing follow an impact, so many a second.
+pub const SHADOW: f64 = 0.06;
+const ECHOES: f64 = 50.0;
+/// One record in five has the sound of the release that begins the fall.
+const RELEASES: f64 = 0.2;
+/// First flights in s, evenly likely on a logarithmic scale.
+const FLIGHTS: [f64; 2] = [5e-3, 2.0];
+/// The flight in s behind a fall of 5 mm, if R were 1: 2√(2h/g). What is dropped falls further; the pitch of
+/// a voice, 2 to 13 ms, and its multiples hold trains of such falls.
+pub const LOWEST: f64 = 0.064;
+/// Sounds of a record that may begin within a train: a ball is heard a dozen times.
+const CLEAN: usize = 16;
+/// Cost of an end while the next impact is expected to exceed the noise limit by [`HEARD`]: one in ten balls
+/// rolls off.
+const ENDS: f64 = 2.3;
+const HEARD: f64 = 3.0;
+/// Trains whose evidence is less than one in so many of the best one's are ruled out.
+pub const ODDS: f64 = 20.0;
+
+/// The record of a fall.
+#[derive(Debug, Clone, Copy)]
+pub struct FallRecord {
+    /// Noise limit of the sounds.
+    pub reach: f64,
+    /// Median height, of which a threshold is a part.
+    pub median: f64,
+    /// Begin and end of the record in s.
+    pub ends: (f64, f64),
+    /// The flight in s that would follow if R were 1, where the height is stated.
+    pub full: Option<f64>,
+    /// Shortest time between two impacts, in s, where it is stated.
+    pub pause: Option<f64>,
+}
+
+/// What the sounds are if they are not the bounces of the most plausible train.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rival {
+    /// First two impacts of another train.
+    Train(usize, usize),
+    /// The release and the only impact that is heard: what lies between them is the fall.
+    Fall(usize, usize),
+}
+
+/// √(2π).
+const TURN: f64 = 2.506_628_274_631_000_5;
+
+/// Standard deviation of the logarithm of a flight behind another.
+fn scatter(expected: f64) -> f64 {
+    (SCATTER * SCATTER + 6.0 * TIMING * TIMING / (expected * expected)).sqrt()
+}
+
+/// What speaks for a pair of impacts, over all ln R.
+#[derive(Clone, Copy)]
+struct Evidence {
+    /// Its best score, and the ln R of that.
+    best: f64,
+    log_r: f64,
+    /// Sum of all likelihoods over that of the best.
+    sum: f64,
+}
+
+/// A likelihood below e to this power of another adds nothing to it: 1e-17.
+const NOTHING: f64 = -39.0;
+
+impl Evidence {
+    const NONE: Evidence = Evidence { best: f64::NEG_INFINITY, log_r: 0.0, sum: 0.0 };
+
+    /// Adds a log-likelihood.
+    fn add(&mut self, score: f64, log_r: f64) {
+        let below = score - self.best;
+        if below > 0.0 {
+            self.sum = 1.0 + if below < -NOTHING { self.sum * (-below).exp() } else { 0.0 };
+            (self.best, self.log_r) = (score, log_r);
+        } else if below > NOTHING {
+            self.sum += below.exp();
+        }
+    }
+
+    /// Logarithm of the sum of all likelihoods.
+    fn all(&self) -> f64 {
+        self.best + self.sum.ln()
+    }
+}
+
+/// A train with its ln R, what else is as plausible, when its next impact is expected, and how many sounds
+/// are its echoes or its release.
+pub struct BestTrain {
+    pub train: Vec<usize>,
+    pub log_r: f64,
+    pub rival: Option<Rival>,
+    pub expected: Option<f64>,
+    pub echoes: usize,
+    pub release: usize,
+    /// How much more likely it is that these are the release than that they are foreign.
+    pub odds: f64,
+}
+
+/// The next impact that a pair of impacts lets expect.
+struct Next {
+    /// The flight to it in s.
+    flight: f64,
+    /// Factor within which the flight lies.
+    range: f64,
+    /// Whether it would be loud enough, and lie within the record.
+    stands_out: bool,
+}
+
+/// What every pair of sounds is, whatever R is.
+pub struct Pairs<'a> {
+    sounds: &'a [Sound],
+    heard: FallRecord,
+    /// Rate of foreign sounds in 1/s.
+    rate: f64,
+    /// Its logarithm, over that of heights.
+    foreign: f64,
+    /// What an echo explains.
+    echo: f64,
+    logs: Vec<f64>,
+    /// What a sound of the release before a first impact tells, for each sound that may be that impact.
+    released: Vec<f64>,
+}
+
+impl Pairs<'_> {
+    pub fn new(sounds: &[Sound], heard: FallRecord, rate: f64) -> Pairs<'_> {
+        let highest = sounds.iter().fold(heard.reach, |h, s| h.max(s.height));
+        let heights = (highest / heard.reach).ln().max(1.0);
+        let mut pairs = Pairs {
+            sounds,
+            heard,
+            rate,
+            foreign: (rate / heights).ln(),
+            echo: (ECHOES / rate).ln().max(0.0),
+            logs: sounds.iter().map(|s| s.height.ln()).collect(),
+            released: Vec::new(),
+        };
+        let released = |j: usize| {
+            let releases = (0..j).filter_map(|i| pairs.release(i, j));
+            (1.0 - RELEASES + releases.sum::<f64>()).ln()
+        };
+        pairs.released = (0..sounds.len()).map(released).collect();
+        pairs
+    }
+
+    /// How much more likely it is that `i` and its echoes are the release before the first impact `j` than
+    /// foreign; `None` where the height of the fall is not known.
+    fn release(&self, i: usize, j: usize) -> Option<f64> {
+        let fall = 0.5 * self.heard.full?;
+        let echoes = self.echo * self.shadowed(i, j) as f64;
+        Some(RELEASES / self.rate * (Self::timed(self.flight(i, j), fall, FALL) + echoes).exp())
+    }
+
+    /// Sounds that are likely the release before the first impact `j` and its echoes, and the odds of it.
+    fn likeliest_release(&self, j: usize) -> (usize, f64) {
+        let releases = (0..j).filter_map(|i| Some((i, self.release(i, j)?)));
+        let likeliest = releases.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, odds)| *odds > 1.0);
+        likeliest.map_or((0, 0.0), |(i, odds)| (1 + self.shadowed(i, j), odds))
+    }
+
+    /// The train with the most evidence; `None` of fewer than two sounds.
+    pub fn best(&self) -> Option<BestTrain> {
+        let n = self.sounds.len();
+        let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+        let first: Vec<_> = all.map(|(i, j)| ((i, j), self.first(i, j))).collect();
+        let mut told = vec![Evidence::NONE; n * n];
+        for step in 0..=((1.0 / LEAST).ln() / STEP) as usize + GROWS {
+            let log_r = STEP * (GROWS as f64 - step as f64);
+            let (r, (value, _)) = (log_r.exp(), self.behind(log_r));
+            for (pair, first) in &first {
+                let at = pair.0 * n + pair.1;
+                told[at].add(self.begin(*pair, *first, log_r, r) + value[at], log_r);
+            }
+        }
+        let pairs = || (0..n * n).filter(|at| at / n < at % n);
+        let evidence = |at: &usize| told[*at].all();
+        let most = pairs().max_by(|a, b| evidence(a).total_cmp(&evidence(b)));
+        let most = most.filter(|at| evidence(at).is_finite())?;
+        let trains = pairs().filter(|at| *at != most);
+        let trains = trains.map(|at| (evidence(&at), Rival::Train(at / n, at % n)));
+        let falls = pairs().map(|at| (self.fall(at / n, at % n), Rival::Fall(at / n, at % n)));
+        let rival = trains.chain(falls).max_by(|a, b| a.0.total_cmp(&b.0));
+        let rival = rival.filter(|(told, _)| *told > evidence(&most) - ODDS.ln());
+        let log_r = told[most].log_r;
+        let train = self.follow(most / n, most % n, &self.behind(log_r).1);
+        let ends = train.iter().skip(1).copied().chain([n]);
+        let echoes = train.iter().zip(ends).map(|(j, k)| self.shadowed(*j, k)).sum();
+        let expected = match train[..] {
+            [.., j, k] => Some(self.next(j, k, log_r.exp()))
+                .filter(|next| next.stands_out)
+                .map(|next| self.sounds[k].time + next.flight),
+            _ => None,
+        };
+        let rival = rival.map(|(_, rival)| rival);
+        let (release, odds) = self.likeliest_release(train[0]);
+        Some(BestTrain { train, log_r, rival, expected, echoes, release, odds })
+    }
+
+    /// The next impact behind a pair, for R.
+    fn next(&self, j: usize, k: usize, r: f64) -> Next {
+        let flight = self.flight(j, k) * r;
+        let range = (4.0 * scatter(flight)).exp();
+        let loud = self.sounds[k].height * r > HEARD * self.heard.reach;
+        let within = self.sounds[k].time + flight * range < self.heard.ends.1;
+        Next { flight, range, stands_out: loud && within }
+    }
+
+    /// The evidence that `i` is the release and `j` the only impact that is heard: R is evenly likely on a
+    /// logarithmic scale, and the second impact is quieter than what stands out, is heard as the end of the
+    /// first, or comes behind the end of the record.
+    fn fall(&self, i: usize, j: usize) -> f64 {
+        let (Some(full), Some(release)) = (self.heard.full, self.release(i, j)) else {
+            return f64::NEG_INFINITY;
+        };
+        let impact = self.sounds[j];
+        let part = |r: f64| (r.clamp(LEAST, 1.0) / LEAST).ln() / (1.0 / LEAST).ln();
+        let hidden = self.heard.pause.unwrap_or(SHADOW).max(SHADOW) / full;
+        let low = part((HEARD * self.heard.reach / impact.height).max(hidden));
+        let late = 1.0 - part((self.heard.ends.1 - impact.time) / full);
+        let unheard = (low + late).min(1.0);
+        let unheard = unheard + (1.0 - unheard) * (-ENDS).exp();
+        let echoes = self.echo * self.shadowed(j, self.sounds.len()) as f64;
+        release.ln() + unheard.ln() + echoes
+    }
+
+    /// Sounds between two impacts that are echoes or ringing of the first.
+    fn shadowed(&self, j: usize, k: usize) -> usize {
+        let impact = self.sounds[j];
+        let near = self.sounds[j + 1..k].iter().take_while(|s| s.time < impact.time + SHADOW);
+        near.filter(|s| s.height < QUIETER * impact.height).count()
+    }
+
+    fn flight(&self, j: usize, k: usize) -> f64 {
+        self.sounds[k].time - self.sounds[j].time
+    }
+
+    /// What the loudness of impact `k` behind `j` tells.
+    fn loudness(&self, j: usize, k: usize, log_r: f64) -> f64 {
+        let z = (self.logs[k] - self.logs[j] - log_r) / LOUDNESS;
+        -(0.5 * z * z).min(CAP) - (TURN * LOUDNESS).ln()
+    }
+
+    /// What a flight tells that should last `expected`.
+    fn timed(flight: f64, expected: f64, scatter: f64) -> f64 {
+        let std = scatter.hypot(6f64.sqrt() * TIMING / expected);
+        let z = (flight / expected).ln() / std;
+        -0.5 * z * z - (TURN * std * flight).ln()
+    }
+
+    /// What the first two impacts tell, whatever R is: that the flight is any, and the rest.
+    fn first(&self, i: usize, j: usize) -> (f64, f64) {
+        let any = -((FLIGHTS[1] / FLIGHTS[0]).ln() * self.flight(i, j)).ln();
+        (any, self.released[i] - self.foreign + self.echo * self.shadowed(i, j) as f64)
+    }
+
+    /// What the first two impacts tell.
+    fn begin(&self, (i, j): (usize, usize), (any, rest): (f64, f64), log_r: f64, r: f64) -> f64 {
+        let flight = self.flight(i, j);
+        // What follows evenly is found as such, however short its intervals are.
+        let shrinks = log_r <= LARGEST.ln();
+        if shrinks && self.sounds.len() > CLEAN && flight < LOWEST * r {
+            return f64::NEG_INFINITY;
+        }
+        let timed = match self.heard.full {
+            Some(full) => Self::timed(flight, full * r, FALL).max(any - CAP),
+            None => any,
+        };
+        timed + self.loudness(i, j, log_r) + rest
+    }
+
+    /// What follows each pair of impacts at its best, and the next impact, for one R.
+    fn behind(&self, log_r: f64) -> (Vec<f64>, Vec<usize>) {
+        let n = self.sounds.len();
+        let (mut value, mut next) = (vec![0.0; n * n], vec![usize::MAX; n * n]);
+        let r = log_r.exp();
+        let ends: Vec<f64> = (0..n).map(|k| self.echo * self.shadowed(k, n) as f64).collect();
+        for j in (0..n).rev() {
+            for k in j + 1..n {
+                let Next { flight: expected, range, stands_out } = self.next(j, k, r);
+                let begins = self.sounds[k].time + expected / range;
+                let mut best = ends[k] - if stands_out { ENDS } else { 0.0 };
+                let mut last = usize::MAX;
+                for l in k + 1 + self.sounds[k + 1..].partition_point(|s| s.time < begins)..n {
+                    let flight = self.flight(k, l);
+                    if flight > expected * range {
+                        break;
+                    }
+                    let told =
+                        Self::timed(flight, expected, SCATTER) + self.loudness(k, l, log_r) - self.foreign;
+                    let score = told + self.echo * self.shadowed(k, l) as f64 + value[k * n + l];
+                    if score > best {
+                        (best, last) = (score, l);
+                    }
+                }
+                (value[j * n + k], next[j * n + k]) = (best, last);
+            }
+        }
+        (value, next)
+    }
+
+    /// The train from its first two impacts on.
+    fn follow(&self, i: usize, j: usize, next: &[usize]) -> Vec<usize> {
+        let mut train = vec![i, j];
+        while let [.., a, b] = train[..] {
+            let c = next[a * self.sounds.len() + b];
+            if c == usize::MAX {
+                break;
+            }
+            train.push(c);
+        }
+        train
+    }
+}
