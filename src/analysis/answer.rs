@@ -1,7 +1,7 @@
 //! What an analysis of one record has to show.
 
-use super::Evidence;
-use super::sweep::modelled::ComparedRig;
+use super::compared_rig::ComparedRig;
+use super::evidence::Evidence;
 use crate::error::{Error, Result};
 use crate::record::{Finding, Step};
 use crate::report::files::Files;

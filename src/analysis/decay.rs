@@ -2,8 +2,11 @@
 
 pub mod figures;
 
+use super::answer::Answer;
 use super::headline::headline;
-use super::{Analysis, Answer, Job, OfFile, Source, no_file};
+use super::job::Job;
+use super::kind::{Analysis, OfFile, no_file};
+use super::source::Source;
 use crate::campaign::Entry;
 use crate::error::Result;
 use crate::measure::Estimate;

@@ -5,8 +5,11 @@ pub mod figures;
 mod file;
 pub mod tables;
 
+use super::answer::Answer;
 use super::headline::headline;
-use super::{Analysis, Answer, Job, Source, no_file};
+use super::job::Job;
+use super::kind::{Analysis, no_file};
+use super::source::Source;
 use crate::campaign::{Channel, Entry, LowPass, channel, channels};
 use crate::error::{Error, Result};
 use crate::measure::drill::{AngleOrigin, Beam, Cycle, DrillOptions, Edge, Slices, Smoothing, drill_each};

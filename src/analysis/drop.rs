@@ -1,9 +1,14 @@
 //! Drops: `[[drop]]`, `vibro restitution`.
 
+use super::answer::Answer;
+use super::evidence::Evidence;
 use super::headline::headline;
+use super::impacts;
 use super::job::AnsweredRecord;
+use super::job::Job;
+use super::kind::Analysis;
+use super::source::Source;
 use super::source::{file_name, name_of};
-use super::{Analysis, Answer, Evidence, Job, Source, impacts};
 use crate::campaign::Entry;
 use crate::error::{Error, Result};
 use crate::measure::impacts::ImpactsOptions;

@@ -6,11 +6,15 @@ pub mod tables;
 
 pub use function::Function;
 
+use super::answer::Answer;
 use super::answer::left_out;
 use super::headline::headline;
+use super::job::Job;
+use super::kind::{Analysis, no_file};
+use super::source::Source;
 use super::spectrum::{self, Detrend};
+use super::sweep;
 use super::tone::Strongest;
-use super::{Analysis, Answer, Job, Source, no_file, sweep};
 use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::modal::{Measured, ModalOptions, ModalResult, modal};

@@ -2,8 +2,11 @@
 
 pub mod figures;
 
+use super::answer::Answer;
 use super::headline::headline;
-use super::{Analysis, Answer, Job, Source, no_file};
+use super::job::Job;
+use super::kind::{Analysis, no_file};
+use super::source::Source;
 use crate::campaign::{Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::impacts::{Impacts, ImpactsOptions, REGULAR, impacts};

@@ -1,7 +1,7 @@
 //! What a campaign is computed from, by content.
 
-use super::file_name;
 use super::kept::AnswerCache;
+use super::source::file_name;
 use crate::campaign::Campaign;
 use crate::read::listed;
 use crate::record::shown;

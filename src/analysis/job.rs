@@ -1,55 +1,28 @@
-//! All that a campaign asks for, and its files.
+//! A campaign at work: what is asked of its records, and what they gave.
 
-use super::answer::{left_out, unwritten};
+use super::answer::{Answer, left_out, unwritten};
 use super::headline::of_record;
-use super::inputs::inputs;
-use super::kept::{AnswerCache, digest, packed};
-use super::recordings::beside;
+use super::kept::{AnswerCache, digest};
+use super::kind::{Analysis, AnalysisKind};
+use super::progress::Progress;
 use super::source::{Source, file_name, name_of};
-use super::{Analysis, AnalysisKind, Answer, KINDS, faults, files as files_of, page, twice};
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::read::Digest;
-use crate::record::Finding;
-use crate::report::Picture;
-use crate::report::files::Names;
+use crate::report::files::{self, Names};
 use crate::report::words::{About, Voice, put};
-use crate::report::{Output, files};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::{Map, Value};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-
-/// The files of a campaign's results that are not figures or tables of one record.
-pub const RESULTS: &str = "results.json";
-/// The page.
-pub const REPORT: &str = "report.html";
-/// What the results were computed from.
-pub const INPUTS: &str = "inputs.sha256";
-
-/// Told how far a job is.
-pub trait Progress: Sync {
-    /// A part with this many steps begins.
-    fn start(&self, what: &str, steps: usize);
-    /// One step is done.
-    fn step(&self);
-    /// So many of all steps are done.
-    fn at(&self, done: usize, all: usize);
-}
-
-/// Nobody is told.
-impl Progress for () {
-    fn start(&self, _: &str, _: usize) {}
-    fn step(&self) {}
-    fn at(&self, _: usize, _: usize) {}
-}
 
 /// A campaign at work: what its analyses ask, and where they put what they find.
 pub struct Job<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
     kept: &'a AnswerCache,
+    /// All kinds of records.
+    kinds: &'static [AnalysisKind],
     /// Told how far it is.
     pub progress: &'a dyn Progress,
     /// Title of the report.
@@ -59,15 +32,21 @@ pub struct Job<'a> {
     /// How many records answered.
     pub(super) answers: usize,
     /// How many answers are those of the last run.
-    again: usize,
+    pub(super) again: usize,
     /// The first record that could not be read.
-    failed: Option<Error>,
+    pub(super) failed: Option<Error>,
 }
 
 impl<'a> Job<'a> {
-    fn new(campaign: &'a Campaign, kept: &'a AnswerCache, progress: &'a dyn Progress) -> Job<'a> {
+    pub(super) fn new(
+        campaign: &'a Campaign,
+        kept: &'a AnswerCache,
+        kinds: &'static [AnalysisKind],
+        progress: &'a dyn Progress,
+    ) -> Job<'a> {
         let title = if campaign.name.is_empty() { "Campaign".to_owned() } else { campaign.name.clone() };
-        Job { campaign, kept, progress, title, found: Answer::default(), answers: 0, again: 0, failed: None }
+        let (found, answers, again, failed) = (Answer::default(), 0, 0, None);
+        Job { campaign, kept, kinds, progress, title, found, answers, again, failed }
     }
 
     /// What a record gave; `None` and a finding where it gave none: one bad record loses only itself.
@@ -158,7 +137,7 @@ impl<'a> Job<'a> {
     ) -> Result<()> {
         let (on, files) = self.rests_on(&[section])?;
         let answered = self.kept.or_make(on, &files, || {
-            let mut own = Job::new(self.campaign, self.kept, self.progress);
+            let mut own = Job::new(self.campaign, self.kept, self.kinds, self.progress);
             measure(&mut own)?;
             match own.failed {
                 Some(error) if own.answers == 0 => Err(error),
@@ -178,7 +157,7 @@ impl<'a> Job<'a> {
     /// records.
     fn rests_on(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
         let (these, others): (Vec<&AnalysisKind>, Vec<&AnalysisKind>) =
-            KINDS.iter().partition(|kind| sections.contains(&kind.section));
+            self.kinds.iter().partition(|kind| sections.contains(&kind.section));
         let files: Result<Vec<_>> = these.iter().map(|kind| (kind.files)(self.campaign)).collect();
         let stated = self.campaign.stated_without(|key| others.iter().any(|kind| kind.section == key))?;
         let files = files?.concat();
@@ -297,115 +276,4 @@ pub struct AnsweredRecord {
     pub mark: String,
     /// What was found.
     pub answer: Answer,
-}
-
-/// What one kind of record adds to the report: its heading, and which tables, figures, long tables and
-/// findings.
-pub(super) type Part = (&'static str, [Range<usize>; 4]);
-
-/// How many tables, figures, long tables and findings an answer has.
-fn size(answer: &Answer) -> [usize; 4] {
-    [answer.tables.len(), answer.figures.len(), answer.details.len(), answer.findings.len()]
-}
-
-/// Measures the records of a campaign without a report; where none answers, the finding that says why, if one
-/// does.
-///
-/// # Errors
-/// As [`run`].
-pub fn answers(
-    campaign: &Campaign,
-    kept: &AnswerCache,
-    progress: &dyn Progress,
-) -> Result<std::result::Result<Answer, Option<Finding>>> {
-    let mut job = Job::new(campaign, kept, progress);
-    for kind in KINDS {
-        (kind.run)(&mut job)?;
-    }
-    if job.answers > 0 {
-        return Ok(Ok(job.found));
-    }
-    let mut findings = job.found.findings.into_iter().map(|(_, finding)| finding);
-    Ok(Err(findings.find(|finding| finding.fact("why").is_some())))
-}
-
-/// What a campaign gave.
-#[derive(Debug)]
-pub struct CampaignOutcome {
-    /// All answers.
-    pub answer: Answer,
-    /// Names of the files that were written.
-    pub files: Vec<String>,
-    /// Whether any record was answered.
-    pub answered: bool,
-    /// How many answers are those of the last run, because all that they rest on is the same.
-    pub again: usize,
-}
-
-/// Does all that a campaign asks for, and writes it to `output`.
-///
-/// # Errors
-/// If no record was answered and one of them could not be read; if a file cannot be found or written; if a
-/// file that is not vibro's stands in the way.
-pub fn run(
-    campaign: &Campaign,
-    kept: &AnswerCache,
-    output: &mut Output,
-    progress: &dyn Progress,
-) -> Result<CampaignOutcome> {
-    // What an earlier run has read and kept is an input, too.
-    let files = files_of(campaign)?;
-    for path in &files {
-        campaign.within().reads(path);
-    }
-    let asked = |kind: &&AnalysisKind| campaign.written(kind.section).is_ok_and(|tables| !tables.is_empty());
-    let (own, kinds) =
-        ([RESULTS, REPORT, INPUTS, AnswerCache::FILE], KINDS.iter().filter(asked).collect::<Vec<_>>());
-    output.expect(|name| own.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
-    let mut job = Job::new(campaign, kept, progress);
-    // Before anything is read: what changes meanwhile is for the next run.
-    let inputs = inputs(campaign, files, kept);
-    let version = env!("CARGO_PKG_VERSION");
-    job.put("campaign", &job.title.clone())?;
-    job.put("version", &version)?;
-    let mut parts = Vec::new();
-    for kind in KINDS {
-        let from = size(&job.found);
-        (kind.run)(&mut job)?;
-        let to = size(&job.found);
-        parts.push((kind.title, [0, 1, 2, 3].map(|i| from[i]..to[i])));
-    }
-    job.found.add("", campaign.commented());
-    job.found.add("", beside(campaign)?);
-    job.found.add("", twice(campaign)?);
-    if job.answers == 0 {
-        let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
-        of_tables.chain(job.failed.take()).next().map_or(Ok(()), Err)?;
-    }
-    if campaign.is_empty() {
-        job.found.add("", [Finding::caution("campaign-without-record")]);
-    } else if job.answers == 0 {
-        job.found.add("", [Finding::caution("no-record-answers")]);
-    }
-    let mut all = std::mem::take(&mut job.found);
-    progress.start("drawing figures", all.figures.len());
-    let medium = output.medium;
-    let pictures = files::figures(output, &all.figures, |figure| {
-        let on = digest([packed(&(medium as u8, figure)).unwrap_or_default()]);
-        let picture = kept.or_make(on, &[], || Picture::of(figure, medium));
-        progress.step();
-        picture
-    })?;
-    for (name, bytes) in &all.files {
-        output.write(name, bytes)?;
-    }
-    put(&mut all.result, &all.findings, Voice::Campaign);
-    output.write(INPUTS, &inputs)?;
-    let names: Vec<String> = output.written().chain([RESULTS, REPORT]).map(str::to_owned).collect();
-    all.result.insert("files".to_owned(), names.clone().into());
-    let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
-    output.write(RESULTS, json + "\n")?;
-    output.write(REPORT, page::page(&job, version, &inputs, &all, &pictures, &parts).html())?;
-    output.write(AnswerCache::FILE, kept.bytes())?;
-    Ok(CampaignOutcome { answer: all, files: names, answered: job.answers > 0, again: job.again })
 }

@@ -1,9 +1,9 @@
 //! The report of a campaign as one page.
 
+use super::answer::Answer;
+use super::compared_rig::ComparedRig;
 use super::headline::shortened;
-use super::job::Part;
-use super::sweep::modelled::ComparedRig;
-use super::{Answer, Job};
+use super::job::Job;
 use crate::model::Parameter;
 use crate::record::{Severity, Step};
 use crate::report::Page;
@@ -12,6 +12,11 @@ use crate::report::words::{Voice, graded};
 use crate::units::notation::{counted, shortest};
 use serde_json::json;
 use std::fmt::Write as _;
+use std::ops::Range;
+
+/// What one kind of record adds to the report: its heading, and which tables, figures, long tables and
+/// findings.
+pub(super) type Part = (&'static str, [Range<usize>; 4]);
 
 /// Lays out all that is shown, with the pictures of its figures: answers first, then kind by kind, then where
 /// they come from.

@@ -2,8 +2,11 @@
 
 pub mod figures;
 
+use super::answer::Answer;
 use super::headline::headline;
-use super::{Analysis, Answer, Job, Source};
+use super::job::Job;
+use super::kind::Analysis;
+use super::source::Source;
 use crate::campaign::{Entry, LowPass};
 use crate::error::{Error, Result};
 use crate::measure::pulse::{Instrument, PulseOptions, PulseResult, pulse, two_times};

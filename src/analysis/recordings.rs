@@ -1,12 +1,11 @@
-//! The recordings of a folder, and those of them that its campaign does not name.
+//! The recordings of a folder, and patterns of their names.
 
-use super::{REPORT, RESULTS, few, file_name, files};
-use crate::campaign::Campaign;
+use super::own_files::{REPORT, RESULTS};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Manifest, Walk, plain};
-use crate::record::{Finding, shown};
+use crate::record::shown;
 use glob::{MatchOptions, Pattern};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 /// Levels below a folder that are looked into.
@@ -124,7 +123,7 @@ pub fn matching(folder: &Folder, name: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// A star means no more than a part of one name.
-const WHOLE_NAMES: MatchOptions = MatchOptions {
+pub(super) const WHOLE_NAMES: MatchOptions = MatchOptions {
     case_sensitive: true,
     require_literal_separator: true,
     require_literal_leading_dot: false,
@@ -132,65 +131,3 @@ const WHOLE_NAMES: MatchOptions = MatchOptions {
 
 /// Levels into which `**` reaches.
 const DEEPEST: usize = 16;
-
-/// Those of the files that the campaign names in no table and in no comment.
-///
-/// # Errors
-/// As [`files`].
-pub fn unnamed(campaign: &Campaign, all: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let named: BTreeSet<PathBuf> =
-        files(campaign)?.iter().map(|path| plain(campaign.within().file(path))).collect();
-    let folder = plain(campaign.folder());
-    let ends = |c: char| !c.is_alphanumeric() && !['_', '-', '.', '/', '\\'].contains(&c);
-    // A table that is still a comment may name a pattern.
-    let commented = campaign.text().lines().filter_map(|line| {
-        let key = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("file")?;
-        key.trim_start().strip_prefix('=')?.split('"').nth(1)
-    });
-    let patterns: Vec<Pattern> = commented.filter_map(|text| Pattern::new(text).ok()).collect();
-    let said = |path: &Path| {
-        let name = path.strip_prefix(&folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
-        let in_words = || {
-            campaign.text().match_indices(&name).any(|(at, _)| {
-                let (before, behind) = (&campaign.text()[..at], &campaign.text()[at + name.len()..]);
-                // A full stop ends a sentence, too, and a part of a file stands behind it.
-                let behind = behind
-                    .strip_prefix('.')
-                    .filter(|b| !b.starts_with(char::is_alphanumeric))
-                    .unwrap_or(behind);
-                before.chars().next_back().is_none_or(ends)
-                    && behind.chars().next().is_none_or(|c| c == '/' || ends(c))
-            })
-        };
-        patterns.iter().any(|pattern| pattern.matches_with(&name, WHOLE_NAMES)) || in_words()
-    };
-    let new = |path: &&PathBuf| {
-        let path = plain(path);
-        !named.contains(&path) && !said(&path)
-    };
-    Ok(all.iter().filter(new).cloned().collect())
-}
-
-/// What is said of files in the folder of a campaign that it does not name, and of what could not be looked
-/// at, where it is the folder's own.
-///
-/// # Errors
-/// As [`files`].
-pub fn beside(campaign: &Campaign) -> Result<Vec<Finding>> {
-    if !campaign.is_file() || !campaign.path().ends_with(OWN) {
-        return Ok(Vec::new());
-    }
-    let seen = recordings(campaign.within())?;
-    let new = unnamed(campaign, &seen.files)?;
-    let names: Vec<String> = new.iter().map(|path| file_name(path)).collect();
-    let found = Finding::note("files-not-named").count("n", new.len());
-    let found = (!new.is_empty()).then(|| found.name("files", few(&names)));
-    let skipped = seen.skipped.into_iter().map(|(path, why)| (file_name(&path), why));
-    // One that the campaign names says itself why it is not used.
-    let skipped = skipped.filter(|(name, _)| !campaign.text().contains(name));
-    let skipped = skipped.map(|(name, why)| Finding::note("file-not-used").about(name).name("why", why));
-    Ok(found.into_iter().chain(skipped).collect())
-}
-
-/// Name of the file of a folder's own campaign.
-pub const OWN: &str = "campaign.toml";

@@ -1,6 +1,7 @@
 //! Where a record comes from: a table of a campaign, or a command line.
 
-use super::{Analysis, Progress};
+use super::kind::Analysis;
+use super::progress::Progress;
 use crate::campaign::{Channel, Entry, Reading};
 use crate::error::Result;
 use crate::read::{Folder, Reader, Recording};

@@ -2,7 +2,10 @@
 
 pub mod figures;
 
-use super::{Analysis, Answer, Job, OfFile, Source, named_in, no_file};
+use super::answer::Answer;
+use super::job::Job;
+use super::kind::{Analysis, OfFile, named_in, no_file};
+use super::source::Source;
 use crate::campaign::{Campaign, Entry, channel};
 use crate::error::{Error, Result};
 use crate::measure::spectral::{Lines, Method, SpectralOptions, SpectralResult, spectral, stored};

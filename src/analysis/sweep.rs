@@ -11,7 +11,11 @@ pub mod tables;
 pub use listed::{Files, Listed};
 pub use stored::StoredResponseKeys;
 
-use super::{Analysis, Answer, Job, Progress, all_entries, check, entries};
+use super::answer::Answer;
+use super::entries::{all_entries, check, entries};
+use super::job::Job;
+use super::kind::Analysis;
+use super::progress::Progress;
 use crate::campaign::{Campaign, Entry, Fault, one_or_more};
 use crate::error::{Error, Place, Result};
 use crate::measure::response::{Response, ResponseOptions};

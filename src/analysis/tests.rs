@@ -1,6 +1,12 @@
+use super::entries::entries;
+use super::kinds::faults;
 use super::*;
+use crate::campaign::Campaign;
+use crate::error::Result;
+use crate::read::Folder;
 use crate::report::words::{Voice, sentences};
 use crate::units::Quantity;
+use std::path::{Path, PathBuf};
 
 fn of(text: &str) -> Result<Campaign> {
     let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,6 @@
 //! Channels of a file.
 
-use crate::analysis::Progress;
+use crate::analysis::progress::Progress;
 use std::path::Path;
 use vibro_io::Reader;
 use vibro_record::units::Quantity;

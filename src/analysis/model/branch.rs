@@ -1,7 +1,7 @@
 //! Motions followed over a value through folds, flips and grazing: `vibro model continue`.
 
 use super::{Driven, SceneKeys, figures, pattern};
-use crate::analysis::Answer;
+use crate::analysis::answer::Answer;
 use crate::error::{Error, Result};
 use crate::model::continuation::check_range;
 use crate::model::{Branch, Parameter, PeriodicOrbit, Rig, Sine, follow, orbits, search};

@@ -1,7 +1,7 @@
 //! The simplest model that is good enough: `vibro model choose`.
 
 use super::{Driven, SceneKeys, figures};
-use crate::analysis::Answer;
+use crate::analysis::answer::Answer;
 use crate::compare::Overlay;
 use crate::error::{Error, Result};
 use crate::model::Observable;

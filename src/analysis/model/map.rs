@@ -1,7 +1,8 @@
 //! Regime and stability over two parameters: `vibro model map`.
 
 use super::{Driven, SceneKeys, figures};
-use crate::analysis::{Answer, Progress};
+use crate::analysis::answer::Answer;
+use crate::analysis::progress::Progress;
 use crate::error::Result;
 use crate::model::map::{Cell, MapAxis, Plan};
 use crate::record::Finding;

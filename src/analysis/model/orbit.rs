@@ -2,7 +2,7 @@
 //! orbit`.
 
 use super::{Driven, JudgedOrbit, SceneKeys, check_gap_std, figures, pattern};
-use crate::analysis::Answer;
+use crate::analysis::answer::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
 use crate::model::{Compliance, NoImpact, Orbit, Orbits, Rig, Softened, orbits_of, search, softened};

@@ -1,7 +1,7 @@
 //! Motions with one impact a period over frequency: `vibro model response`.
 
 use super::{Driven, JudgedOrbit, SceneKeys, check_gap_std, figures};
-use crate::analysis::Answer;
+use crate::analysis::answer::Answer;
 use crate::campaign::above_zero;
 use crate::error::Result;
 use crate::model::{Response, ResponsePoint, response};

@@ -2,7 +2,7 @@
 
 use super::contact::{self, Contact};
 use super::{Driven, SceneKeys, figures};
-use crate::analysis::Answer;
+use crate::analysis::answer::Answer;
 use crate::error::{Error, Result};
 use crate::model::portrait::{Portrait, PortraitOptions};
 use crate::model::{Motion, Regime, Rig, Simulation, State};

@@ -2,7 +2,7 @@
 
 use super::contact::{self, Contact, Moving};
 use super::{Driven, SceneKeys, figures};
-use crate::analysis::Answer;
+use crate::analysis::answer::Answer;
 use crate::compare::{Named, named};
 use crate::error::Result;
 use crate::measure::jump::Jump;

@@ -1,7 +1,7 @@
 //! The files of a sweep, before they are read.
 
 use super::{Keys, order};
-use crate::analysis::matching;
+use crate::analysis::recordings::matching;
 use crate::campaign::{Campaign, Entry};
 use crate::error::{Error, Result};
 use crate::measure::response::{Response, ResponseOptions, answerable, response};

@@ -1,6 +1,7 @@
 //! The order of the steps of a sweep, and steps at one frequency.
 
-use crate::analysis::{few, file_name};
+use crate::analysis::named_file::few;
+use crate::analysis::source::file_name;
 use crate::measure::response::Response;
 use crate::record::{Direction, Finding, Sweep};
 use crate::units::notation::significant;

@@ -1,0 +1,84 @@
+//! The tables of a campaign that are of one kind of record.
+
+use super::kind::Analysis;
+use super::recordings::{is_pattern, matching};
+use super::source::name_of;
+use crate::campaign::{Campaign, Entry, Fault};
+use crate::error::{Error, Result};
+use crate::record::shown;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// The tables of a kind of record as they are written, one of each file that a pattern matches, with what is
+/// wrong with the table.
+fn written<A: Analysis>(campaign: &Campaign) -> Result<Vec<(Entry<A>, Result<()>)>> {
+    let folder = campaign.within();
+    let each = |(entry, checked): (Entry<A>, Result<()>)| {
+        let pattern = entry.file.clone().filter(|file| checked.is_ok() && is_pattern(folder, file));
+        let Some(pattern) = pattern else { return vec![(entry, checked)] };
+        let files = match matching(folder, &pattern) {
+            Ok(files) => files,
+            Err(error) => {
+                let error = campaign.fault(&entry, error.setting("file"));
+                return vec![(entry, Err(error))];
+            }
+        };
+        let one = |file: PathBuf| {
+            let own = |name: &String| {
+                if A::TOGETHER { name.clone() } else { format!("{name}, {}", shown(&file)) }
+            };
+            let mut one = entry.clone();
+            one.name = entry.name.as_ref().map(own);
+            one.file = Some(file);
+            (one, Ok(()))
+        };
+        files.into_iter().map(one).collect()
+    };
+    Ok(campaign.entries(A::SECTION, A::OF_FILES)?.into_iter().flat_map(each).collect())
+}
+
+/// The tables of a kind of record that can be; one whose file is a pattern stands for one of each file that
+/// it matches.
+///
+/// # Errors
+/// As [`Campaign::entries`].
+pub(crate) fn entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
+    let faults: BTreeSet<_> = campaign.faults().iter().map(|fault| &fault.place).collect();
+    let all = written::<A>(campaign)?.into_iter().map(|(entry, _)| entry);
+    Ok(all.filter(|entry| !faults.contains(&entry.place())).collect())
+}
+
+/// As [`entries`], where none may be left out.
+///
+/// # Errors
+/// That of the first table that cannot be.
+pub(crate) fn all_entries<A: Analysis>(campaign: &Campaign) -> Result<Vec<Entry<A>>> {
+    check::<A>(campaign)?.into_iter().next().map_or(Ok(()), |fault| Err(fault.error))?;
+    entries(campaign)
+}
+
+/// What is wrong with the tables of a kind of record.
+///
+/// # Errors
+/// As [`Campaign::entries`].
+pub(crate) fn check<A: Analysis>(campaign: &Campaign) -> Result<Vec<Fault>> {
+    let (mut usable, mut faults): (Vec<Entry<A>>, Vec<Fault>) = (Vec::new(), Vec::new());
+    for (entry, checked) in written::<A>(campaign)? {
+        let reads = entry.reads().filter(|_| A::OF_FILES && entry.file.is_none());
+        let without =
+            |key| Error::usage(format!("{key} without a file"), "file, too, or leave it out").setting(key);
+        let checked = checked.and_then(|()| match reads {
+            Some(key) => Err(campaign.fault(&entry, without(key))),
+            None => (entry.reading.reader().and_then(|_| A::check(&entry, &usable)))
+                .map_err(|e| campaign.fault(&entry, e)),
+        });
+        match checked {
+            Ok(()) => usable.push(entry),
+            Err(error) => {
+                let (section, name, place) = (A::SECTION, name_of(&entry), entry.place());
+                faults.push(Fault { section, name, place, error });
+            }
+        }
+    }
+    Ok(faults)
+}

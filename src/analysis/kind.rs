@@ -1,0 +1,107 @@
+//! A kind of record: its keys, and what a campaign asks of them.
+
+use super::answer::Answer;
+use super::job::Job;
+use super::named_file::NamedFile;
+use super::source::Source;
+use crate::campaign::{Campaign, Entry, Fault};
+use crate::error::{Error, Result};
+use crate::report::files::Names;
+use serde::de::DeserializeOwned;
+use std::path::PathBuf;
+
+/// The keys of a kind of record.
+pub(crate) trait Analysis: Clone + DeserializeOwned {
+    /// Its section of a campaign: `impacts` for `[[impacts]]`.
+    const SECTION: &'static str;
+    /// Its heading in the report.
+    const TITLE: &'static str;
+    /// Whether records lie in files: their tables then have the keys of how a file is read.
+    const OF_FILES: bool = true;
+
+    /// Names of the files that it writes.
+    const FILES: Names;
+
+    /// Whether its tables are answered together, not each by itself.
+    const TOGETHER: bool = false;
+    /// Other sections that tables without a file name.
+    const RESTS_ON: &'static [&'static str] = &[];
+
+    /// Whether a table can be, after those before it and before anything is measured. An error names the key
+    /// at fault as its setting.
+    ///
+    /// # Errors
+    /// If keys contradict each other, are impossible, or one is missing.
+    fn check(entry: &Entry<Self>, earlier: &[Entry<Self>]) -> Result<()>;
+
+    /// The name that a table states.
+    fn stated_name(entry: &Entry<Self>) -> Option<String> {
+        entry.name.clone()
+    }
+
+    /// Keys that name files beside that of the record.
+    fn beside(&self) -> Option<(&'static str, &PathBuf)> {
+        None
+    }
+
+    /// Keys that name channels of its first file beside `channel`.
+    fn channels(&self) -> Vec<(&'static str, &String)> {
+        Vec::new()
+    }
+
+    /// The files of a table.
+    ///
+    /// # Errors
+    /// If one leads outside the folder or does not exist.
+    fn files(campaign: &Campaign, entry: &Entry<Self>) -> Result<Vec<PathBuf>> {
+        named_in(campaign, entry)
+    }
+
+    /// Those of its files that hold what it measures: a force may be that of several records.
+    ///
+    /// # Errors
+    /// As [`Analysis::files`].
+    fn measured(campaign: &Campaign, entry: &Entry<Self>) -> Result<Vec<PathBuf>> {
+        Self::files(campaign, entry)
+    }
+
+    /// Measures the records of all tables.
+    ///
+    /// # Errors
+    /// If a file cannot be read. A record that allows no answer is left out.
+    fn run(entries: &[Entry<Self>], job: &mut Job<'_>) -> Result<()>;
+}
+
+/// Keys of a kind of record that lies alone in a file.
+pub(crate) trait OfFile {
+    /// Measures the record.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or its record allows no answer.
+    fn measure(&self, source: &Source<'_>) -> Result<Answer>;
+}
+
+/// A row of the table of kinds.
+#[derive(Clone, Copy)]
+pub(crate) struct AnalysisKind {
+    pub(super) section: &'static str,
+    pub(super) title: &'static str,
+    pub(super) names: Names,
+    pub(super) check: fn(&Campaign) -> Result<Vec<Fault>>,
+    pub(super) files: fn(&Campaign) -> Result<Vec<PathBuf>>,
+    pub(super) channels: fn(&Campaign) -> Result<Vec<Error>>,
+    pub(super) records: fn(&Campaign) -> Result<Vec<NamedFile>>,
+    pub(super) run: fn(&mut Job<'_>) -> Result<()>,
+}
+
+/// The file of a table, and those beside it.
+pub(super) fn named_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<Vec<PathBuf>> {
+    let own = entry.file.as_ref().map(|file| ("file", file));
+    let all = own.into_iter().chain(entry.keys.beside());
+    all.map(|(key, file)| campaign.file(entry, key, file)).collect()
+}
+
+/// The error of a table that must name a file.
+pub(super) fn no_file() -> Error {
+    Error::usage("the key file is missing", "").hint("add file = …")
+}

@@ -1,0 +1,172 @@
+//! All kinds of records, and what they say of a campaign together.
+
+use super::answer::left_out;
+use super::entries::{check, entries};
+use super::job::Job;
+use super::kind::{Analysis, AnalysisKind};
+use super::named_file::NamedFile;
+use super::source::name_of;
+use super::{decay, drill, drop, frf, impacts, pulse, spectrum, sweep};
+use crate::campaign::{Campaign, Entry, Fault};
+use crate::error::{Error, Result};
+use crate::read::{Folder, plain};
+use crate::record::{find_channel, shown};
+use std::path::{Path, PathBuf};
+
+/// All kinds of records, in the order in which they are measured and shown.
+pub(crate) const KINDS: &[AnalysisKind] = &[
+    row::<sweep::Keys>(),
+    row::<spectrum::Keys>(),
+    row::<frf::Keys>(),
+    row::<drill::Keys>(),
+    row::<impacts::Keys>(),
+    row::<drop::Keys>(),
+    row::<decay::Keys>(),
+    row::<pulse::Keys>(),
+];
+
+/// Names of the sections of a campaign, in the order in which they are measured and shown.
+pub(crate) fn sections() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|kind| kind.section)
+}
+
+/// Reads a campaign and checks all its records. A table with a value that cannot be is left out:
+/// [`Campaign::faults`].
+///
+/// # Errors
+/// If it is not TOML, has an unknown key, or a value that cannot be outside of the tables of records; each
+/// points at its line.
+pub fn open(path: impl AsRef<Path>) -> Result<Campaign> {
+    open_in(&Folder::default(), path.as_ref())
+}
+
+/// As [`open`], of a disk or a memory; names may lead outside the folder of the campaign where `within`
+/// allows it.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_in(within: &Folder, path: &Path) -> Result<Campaign> {
+    checked(Campaign::from_path(within, path, &sections().collect::<Vec<_>>())?)
+}
+
+/// Checks the text of a campaign and all its records, as if it stood in a file.
+///
+/// # Errors
+/// As [`open`].
+pub fn parse(within: &Folder, path: &Path, text: String) -> Result<Campaign> {
+    checked(Campaign::parse(within, path, text, &sections().collect::<Vec<_>>())?)
+}
+
+fn checked(campaign: Campaign) -> Result<Campaign> {
+    let faults = faults(&campaign)?;
+    Ok(campaign.without(faults))
+}
+
+/// The tables of a campaign that cannot be.
+pub(super) fn faults(campaign: &Campaign) -> Result<Vec<Fault>> {
+    of_kinds(|kind| (kind.check)(campaign))
+}
+
+/// All that is wrong with the tables of a campaign: values that cannot be, files that do not exist or cannot
+/// be read, channels that a file does not have.
+///
+/// # Errors
+/// As [`open`].
+pub fn errors(campaign: &Campaign) -> Result<Vec<Error>> {
+    let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
+    Ok(of_tables.chain(of_kinds(|kind| (kind.channels)(campaign))?).collect())
+}
+
+/// The recordings that the tables of a campaign name, but for those of a table that names one that is outside
+/// its folder or does not exist.
+///
+/// # Errors
+/// As [`open`].
+pub fn files(campaign: &Campaign) -> Result<Vec<PathBuf>> {
+    of_kinds(|kind| (kind.files)(campaign))
+}
+
+/// What all kinds of records have, one behind the other.
+pub(crate) fn of_kinds<T>(each: impl Fn(&AnalysisKind) -> Result<Vec<T>>) -> Result<Vec<T>> {
+    Ok(KINDS.iter().map(each).collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+}
+
+/// The row of a kind of record.
+const fn row<A: Analysis>() -> AnalysisKind {
+    AnalysisKind {
+        section: A::SECTION,
+        title: A::TITLE,
+        names: A::FILES,
+        check: check::<A>,
+        files: files_of::<A>,
+        channels: channels_of::<A>,
+        records: records_of::<A>,
+        run: run_all::<A>,
+    }
+}
+
+fn channels_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<Error>> {
+    Ok(entries::<A>(campaign)?.iter().filter_map(|entry| channels_in(campaign, entry).err()).collect())
+}
+
+/// Looks for the channels that a table names in its file.
+fn channels_in<A: Analysis>(campaign: &Campaign, entry: &Entry<A>) -> Result<()> {
+    let files = A::files(campaign, entry)?;
+    let named = entry.channel.channel.iter().map(|name| ("channel", name));
+    let named: Vec<_> = named.chain(entry.keys.channels()).collect();
+    let Some(path) = files.first().filter(|_| entry.file.is_some() || !named.is_empty()) else {
+        return Ok(());
+    };
+    let surveyed = entry.reading.reader()?.within(campaign.within()).survey(path);
+    // What is wrong in a line of the file is said of that line; what is stated is at fault otherwise.
+    let at = |error: Error| if error.line().is_some() { error } else { campaign.fault(entry, error) };
+    let (_, headers, _) = surveyed.map_err(at)?;
+    // Values that are numbered, as a step without a rate shows.
+    if headers.iter().all(|h| h.kind == "trace" && h.rate.is_none() && h.dx.is_some()) {
+        let error = Error::usage(format!("{} has no sampling rate", shown(path)), "rate = HZ");
+        return Err(campaign.fault(entry, error.setting("rate").setting("file")));
+    }
+    let names = headers.iter().map(|h| (h.name.as_str(), h.quantity));
+    named.into_iter().try_for_each(|(key, name)| {
+        find_channel(path, name, names.clone()).map(drop).map_err(|e| campaign.fault(entry, e.setting(key)))
+    })
+}
+
+fn files_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<PathBuf>> {
+    // A table whose files are not there says so itself.
+    let files = entries::<A>(campaign)?.into_iter().filter_map(|entry| A::files(campaign, &entry).ok());
+    Ok(files.flatten().collect())
+}
+
+fn records_of<A: Analysis>(campaign: &Campaign) -> Result<Vec<NamedFile>> {
+    let mut all = Vec::new();
+    for entry in &entries::<A>(campaign)? {
+        let files: Vec<PathBuf> = match &entry.file {
+            Some(file) => vec![campaign.folder().join(file)],
+            None if A::OF_FILES => Vec::new(),
+            None => A::measured(campaign, entry).unwrap_or_default(),
+        };
+        let (own, also) = (&entry.channel.channel, entry.keys.channels());
+        let record = format!("{own:?} {also:?} {:?}", entry.reading.stated());
+        let (section, table) = (A::SECTION, name_of(entry));
+        let named = |file: PathBuf| NamedFile {
+            file: plain(&file),
+            section,
+            table: table.clone(),
+            record: record.clone(),
+        };
+        all.extend(files.into_iter().map(named));
+    }
+    Ok(all)
+}
+
+fn run_all<A: Analysis>(job: &mut Job<'_>) -> Result<()> {
+    for fault in job.campaign.faults().iter().filter(|fault| fault.section == A::SECTION) {
+        job.found.add(&fault.name, [left_out("left-out", &fault.error)]);
+    }
+    let entries = entries::<A>(job.campaign)?;
+    if A::TOGETHER && !entries.is_empty() {
+        return job.together(A::SECTION, |job| A::run(&entries, job));
+    }
+    A::run(&entries, job)
+}

@@ -1,0 +1,126 @@
+//! A campaign from its first record to its report.
+
+use super::answer::{Answer, unwritten};
+use super::inputs::inputs;
+use super::job::Job;
+use super::kept::{AnswerCache, digest, packed};
+use super::kind::AnalysisKind;
+use super::kinds::{KINDS, faults, files as files_of};
+
+use super::own_files::{INPUTS, REPORT, RESULTS};
+use super::page;
+use super::progress::Progress;
+use super::twice::twice;
+use super::unnamed::beside;
+use crate::campaign::Campaign;
+use crate::error::Result;
+use crate::record::Finding;
+use crate::report::words::{Voice, put};
+use crate::report::{Output, Picture, files};
+
+/// How many tables, figures, long tables and findings an answer has.
+fn size(answer: &Answer) -> [usize; 4] {
+    [answer.tables.len(), answer.figures.len(), answer.details.len(), answer.findings.len()]
+}
+
+/// Measures the records of a campaign without a report; where none answers, the finding that says why, if one
+/// does.
+///
+/// # Errors
+/// As [`run`].
+pub fn answers(
+    campaign: &Campaign,
+    kept: &AnswerCache,
+    progress: &dyn Progress,
+) -> Result<std::result::Result<Answer, Option<Finding>>> {
+    let mut job = Job::new(campaign, kept, KINDS, progress);
+    for kind in KINDS {
+        (kind.run)(&mut job)?;
+    }
+    if job.answers > 0 {
+        return Ok(Ok(job.found));
+    }
+    let mut findings = job.found.findings.into_iter().map(|(_, finding)| finding);
+    Ok(Err(findings.find(|finding| finding.fact("why").is_some())))
+}
+
+/// What a campaign gave.
+#[derive(Debug)]
+pub struct CampaignOutcome {
+    /// All answers.
+    pub answer: Answer,
+    /// Names of the files that were written.
+    pub files: Vec<String>,
+    /// Whether any record was answered.
+    pub answered: bool,
+    /// How many answers are those of the last run, because all that they rest on is the same.
+    pub again: usize,
+}
+
+/// Does all that a campaign asks for, and writes it to `output`.
+///
+/// # Errors
+/// If no record was answered and one of them could not be read; if a file cannot be found or written; if a
+/// file that is not vibro's stands in the way.
+pub fn run(
+    campaign: &Campaign,
+    kept: &AnswerCache,
+    output: &mut Output,
+    progress: &dyn Progress,
+) -> Result<CampaignOutcome> {
+    // What an earlier run has read and kept is an input, too.
+    let files = files_of(campaign)?;
+    for path in &files {
+        campaign.within().reads(path);
+    }
+    let asked = |kind: &&AnalysisKind| campaign.written(kind.section).is_ok_and(|tables| !tables.is_empty());
+    let (own, kinds) =
+        ([RESULTS, REPORT, INPUTS, AnswerCache::FILE], KINDS.iter().filter(asked).collect::<Vec<_>>());
+    output.expect(|name| own.contains(&name) || kinds.iter().any(|kind| kind.names.has(name)))?;
+    let mut job = Job::new(campaign, kept, KINDS, progress);
+    // Before anything is read: what changes meanwhile is for the next run.
+    let inputs = inputs(campaign, files, kept);
+    let version = env!("CARGO_PKG_VERSION");
+    job.put("campaign", &job.title.clone())?;
+    job.put("version", &version)?;
+    let mut parts = Vec::new();
+    for kind in KINDS {
+        let from = size(&job.found);
+        (kind.run)(&mut job)?;
+        let to = size(&job.found);
+        parts.push((kind.title, [0, 1, 2, 3].map(|i| from[i]..to[i])));
+    }
+    job.found.add("", campaign.commented());
+    job.found.add("", beside(campaign)?);
+    job.found.add("", twice(campaign)?);
+    if job.answers == 0 {
+        let of_tables = faults(campaign)?.into_iter().map(|fault| fault.error);
+        of_tables.chain(job.failed.take()).next().map_or(Ok(()), Err)?;
+    }
+    if campaign.is_empty() {
+        job.found.add("", [Finding::caution("campaign-without-record")]);
+    } else if job.answers == 0 {
+        job.found.add("", [Finding::caution("no-record-answers")]);
+    }
+    let mut all = std::mem::take(&mut job.found);
+    progress.start("drawing figures", all.figures.len());
+    let medium = output.medium;
+    let pictures = files::figures(output, &all.figures, |figure| {
+        let on = digest([packed(&(medium as u8, figure)).unwrap_or_default()]);
+        let picture = kept.or_make(on, &[], || Picture::of(figure, medium));
+        progress.step();
+        picture
+    })?;
+    for (name, bytes) in &all.files {
+        output.write(name, bytes)?;
+    }
+    put(&mut all.result, &all.findings, Voice::Campaign);
+    output.write(INPUTS, &inputs)?;
+    let names: Vec<String> = output.written().chain([RESULTS, REPORT]).map(str::to_owned).collect();
+    all.result.insert("files".to_owned(), names.clone().into());
+    let json = serde_json::to_string_pretty(&all.result).map_err(unwritten)?;
+    output.write(RESULTS, json + "\n")?;
+    output.write(REPORT, page::page(&job, version, &inputs, &all, &pictures, &parts).html())?;
+    output.write(AnswerCache::FILE, kept.bytes())?;
+    Ok(CampaignOutcome { answer: all, files: names, answered: job.answers > 0, again: job.again })
+}
