@@ -1,6 +1,7 @@
 //! A slow continuous sweep of the frequency, in steps so fine that they do not matter.
 
-use super::{Motion, Piece, scales};
+use super::motion::{Motion, Piece};
+use super::scales;
 use std::f64::consts::PI;
 use vibro_record::{Error, Result};
 
@@ -71,7 +72,10 @@ impl Chirp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rig, Simulation, Sine, State};
+    use crate::excitation::Sine;
+    use crate::flow::State;
+    use crate::rig::Rig;
+    use crate::simulate::Simulation;
     use std::f64::consts::TAU;
 
     fn far() -> Simulation {

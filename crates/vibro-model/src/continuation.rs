@@ -3,7 +3,10 @@
 
 mod walk;
 
-use super::{Loss, Parameter, PeriodicOrbit, scales};
+use super::orbit::Loss;
+use super::parameter::Parameter;
+use super::periodic::PeriodicOrbit;
+use super::scales;
 use serde::Serialize;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};

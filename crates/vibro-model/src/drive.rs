@@ -1,9 +1,12 @@
 //! Excitation under way, as closed forms take it: the forced motion under its sines.
 
+use super::excitation::{Excitation, Sine};
 use super::forcing::Forcing;
+use super::rig::Rig;
+use super::scales;
+use super::steady::Steady;
 use super::waves::MOST_SINES;
 use super::waves::Waves;
-use super::{Excitation, Rig, Sine, Steady, scales};
 use num_complex::Complex64;
 use vibro_record::Result;
 

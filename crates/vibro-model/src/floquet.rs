@@ -1,6 +1,6 @@
 //! Stability of a periodic motion with impacts: monodromy and Floquet multipliers.
 
-use super::Rig;
+use super::rig::Rig;
 use nalgebra::{Matrix2, Matrix4, RowVector4, SVD, Schur, Vector4};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};

@@ -1,10 +1,10 @@
 //! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse
 //! or step is due.
 
+use super::excitation::{Excitation, Part, Pulses, Sine};
 use super::least::{NumberRange, number};
 use super::linear::{ORDER, Terms};
 use super::waves::MOST_SINES;
-use super::{Excitation, Part, Pulses, Sine};
 use std::f64::consts::TAU;
 use std::mem::discriminant;
 use vibro_record::{Error, Result};
@@ -245,7 +245,7 @@ fn within(phase: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Impulses, Pulses, Sine, Sines};
+    use crate::excitation::{Impulses, Pulses, Sine, Sines};
 
     #[test]
     fn the_series_is_the_force() {

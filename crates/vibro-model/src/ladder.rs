@@ -34,7 +34,10 @@ pub use rung::{Model, Need, Needed, Rung};
 pub use starts::Followed;
 pub(crate) use starts::starts;
 
-use super::{Law, Rig, Scene, scales};
+use super::law::Law;
+use super::rig::Rig;
+use super::scales;
+use super::scene::Scene;
 use climb::Climb;
 use question::Answer;
 use serde::Serialize;

@@ -8,7 +8,7 @@
 //! lasts at most 1/s and 1/ω, so that the series, cut after [`ORDER`] terms, leaves out less than e/(ORDER +
 //! 1)! = 2.3e-17 of the norm: below rounding.
 
-use super::State;
+use super::flow::State;
 use super::motion::Path;
 use vibro_math::Polynomial;
 

@@ -1,11 +1,18 @@
 //! Regime and stability over two parameters.
 
+use super::excitation::Excitation;
+use super::floquet;
+use super::flow::State;
 use super::forcing::Forcing;
+use super::motion::Motion;
+use super::parallel;
+use super::parameter::Parameter;
+use super::periodic::PeriodicOrbit;
+use super::regime::{Pattern, Regime};
 use super::regime::{Strike, Watch};
-use super::{
-    Excitation, Motion, Parameter, Pattern, PeriodicOrbit, Regime, Rig, Simulation, State, floquet, parallel,
-    scales,
-};
+use super::rig::Rig;
+use super::scales;
+use super::simulate::Simulation;
 use nalgebra::Matrix4;
 use serde::Serialize;
 use vibro_record::{Error, Result};

@@ -1,6 +1,10 @@
 //! What all simulated motions have in common, whatever their contact law: they go from event to event.
 
-use super::{Counts, Excitation, Impact, Law, Rig, State};
+use super::excitation::Excitation;
+use super::flow::State;
+use super::impact::{Counts, Impact};
+use super::law::Law;
+use super::rig::Rig;
 use vibro_record::Result;
 
 /// What ended a piece of a motion.

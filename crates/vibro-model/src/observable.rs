@@ -4,7 +4,8 @@
 //! displacement trace with half its peak-to-peak. The two differ by all harmonics that impacts make; one is
 //! never compared with the other.
 
-use super::{NoImpact, Orbit, Softened};
+use super::orbit::{Orbit, Softened};
+use super::steady::NoImpact;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -76,7 +77,8 @@ impl Observable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rig, orbits};
+    use crate::orbit::orbits;
+    use crate::rig::Rig;
 
     #[test]
     fn an_impacting_motion_shows_more_in_a_trace_than_in_its_fundamental() {

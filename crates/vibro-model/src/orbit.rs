@@ -17,7 +17,11 @@ pub use validity::{Loss, Validity};
 pub(super) use course::Course;
 pub(super) use validity::Judged;
 
-use super::{Excitation, NoImpact, Rig, Sine, State, Steady, scales};
+use super::excitation::{Excitation, Sine};
+use super::flow::State;
+use super::rig::Rig;
+use super::scales;
+use super::steady::{NoImpact, Steady};
 use conditions::Conditions;
 use driven::PulseResponse;
 use num_complex::Complex64;

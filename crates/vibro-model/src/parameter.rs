@@ -1,7 +1,8 @@
 //! The table of what can be varied: the rig's values and those of its excitation.
 
+use super::excitation::{Excitation, Sine};
 use super::least::{NumberRange, number};
-use super::{Excitation, Rig, Sine};
+use super::rig::Rig;
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 

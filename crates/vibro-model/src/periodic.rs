@@ -10,11 +10,14 @@ mod system;
 pub use search::search;
 pub(super) use system::System;
 
+use super::excitation::Sine;
+use super::flow::{Flight, State};
 use super::orbit::Course;
 use super::orbit::Judged;
+use super::orbit::Validity;
 use super::regime::Strike;
+use super::rig::Rig;
 use super::waves::Waves;
-use super::{Flight, Rig, Sine, State, Validity};
 use nalgebra::{DVector, Matrix4};
 use num_complex::Complex64;
 use serde::Serialize;

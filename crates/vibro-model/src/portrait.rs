@@ -1,8 +1,11 @@
 //! What is seen of a motion over some cycles: its impacts, its pattern, its traces, and where it is once a
 //! cycle.
 
+use super::flow::State;
+use super::impact::Impact;
+use super::motion::{Event, Motion, Piece};
+use super::reaction::{Reaction, Tally};
 use super::regime::{Pattern, Watch};
-use super::{Event, Impact, Motion, Piece, Reaction, State, Tally};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
@@ -137,7 +140,9 @@ impl Samples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rig, Simulation, Sine};
+    use crate::excitation::Sine;
+    use crate::rig::Rig;
+    use crate::simulate::Simulation;
 
     #[test]
     fn samples_and_sections_are_states_of_the_motion() {

@@ -1,6 +1,8 @@
 //! The force between the masses over some cycles: peak, root mean square, and impulse a cycle.
 
-use super::{Event, Law, Motion, Piece, State};
+use super::flow::State;
+use super::law::Law;
+use super::motion::{Event, Motion, Piece};
 use serde::Serialize;
 
 /// What the force between the masses was over some cycles.
@@ -136,7 +138,10 @@ impl Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Compliant, Excitation, Rig, Simulation, Sine};
+    use crate::contact::Compliant;
+    use crate::excitation::{Excitation, Sine};
+    use crate::rig::Rig;
+    use crate::simulate::Simulation;
 
     fn seen(motion: &mut dyn Motion, settle: f64, cycles: u32) -> (Reaction, f64) {
         motion.advance(settle / motion.frequency(), &mut |_| {}).unwrap();

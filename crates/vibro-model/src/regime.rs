@@ -4,7 +4,8 @@
 //! phase at which, the p-th impact before it did. Counting impacts would call two impacts in two cycles a
 //! pattern of one.
 
-use super::{Event, Motion, Piece, State};
+use super::flow::State;
+use super::motion::{Event, Motion, Piece};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 use std::collections::VecDeque;

@@ -1,7 +1,12 @@
 //! Response curves: all motions with one impact a period over a range of frequencies, and where they change.
 
+use super::excitation::Excitation;
+use super::orbit::{Loss, Orbit};
 use super::orbit::{backbone, orbits_of};
-use super::{Excitation, Loss, NoImpact, Orbit, Rig, parallel, scales};
+use super::parallel;
+use super::rig::Rig;
+use super::scales;
+use super::steady::NoImpact;
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
@@ -239,7 +244,7 @@ fn halved(mut near: f64, mut far: f64, mut same: impl FnMut(f64) -> Option<bool>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Impulses, Sine};
+    use crate::excitation::{Impulses, Sine};
 
     #[test]
     fn changes_lie_where_the_conditions_say() {

@@ -1,7 +1,8 @@
 //! The rig: two masses on springs and dampers, a gap and a restitution.
 
 use super::body::Body;
-use super::{Parameter, State};
+use super::flow::State;
+use super::parameter::Parameter;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use vibro_math::Oscillator;

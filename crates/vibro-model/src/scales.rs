@@ -4,7 +4,9 @@
 //! all digits, √ε, are left for n ≤ 1/(2π√ε) = 1.07e7. A flight is searched for contacts at each swing, so
 //! this bounds the work of a cycle as well.
 
-use super::{Excitation, Parameter, Rig};
+use super::excitation::Excitation;
+use super::parameter::Parameter;
+use super::rig::Rig;
 use std::f64::consts::TAU;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
@@ -142,7 +144,14 @@ pub(super) fn check_work(cycles: f64) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Impulses, Observable, Scene, Simulation, Sine, ladder, map, orbits_of, response};
+    use crate::excitation::{Impulses, Sine};
+    use crate::ladder;
+    use crate::map;
+    use crate::observable::Observable;
+    use crate::orbit::orbits_of;
+    use crate::response;
+    use crate::scene::Scene;
+    use crate::simulate::Simulation;
 
     const SINE: Sine = Sine { force: 0.5, frequency: 11.0 };
 

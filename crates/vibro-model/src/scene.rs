@@ -4,7 +4,9 @@ mod draft;
 
 pub use draft::Draft;
 
-use super::{Excitation, Law, Rig};
+use super::excitation::Excitation;
+use super::law::Law;
+use super::rig::Rig;
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 

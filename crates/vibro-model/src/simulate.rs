@@ -9,9 +9,13 @@
 mod meet;
 
 use super::drive::Drive;
+use super::excitation::Excitation;
+use super::flow::{Flight, State};
+use super::impact::{Counts, Impact};
+use super::motion::{Event, Motion, Path, Piece};
+use super::rig::Rig;
 use super::scales::{self, MOST_EVENTS, check_time, check_work};
 use super::stick::Pair;
-use super::{Counts, Event, Excitation, Flight, Impact, Motion, Path, Piece, Rig, State};
 use vibro_math::Oscillator;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};

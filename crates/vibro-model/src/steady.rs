@@ -1,7 +1,8 @@
 //! The motion without impacts.
 
 use super::body::Body;
-use super::{Rig, Sine};
+use super::excitation::Sine;
+use super::rig::Rig;
 use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};

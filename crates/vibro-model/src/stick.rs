@@ -2,8 +2,9 @@
 
 use super::body::Body;
 use super::flow::Free;
+use super::flow::{Flight, State};
+use super::rig::Rig;
 use super::waves::Waves;
-use super::{Flight, Rig, State};
 use vibro_math::root::{Bounded, first_fall};
 
 /// Motion of both masses in contact, in closed form; time counts from its start.

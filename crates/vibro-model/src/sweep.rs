@@ -8,7 +8,9 @@ pub use gauge::Gauge;
 use gauge::LOW_PASS;
 pub use gauge::Observable;
 
-use super::{Motion, Reaction, Tally, scales};
+use super::motion::Motion;
+use super::reaction::{Reaction, Tally};
+use super::scales;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};

@@ -1,7 +1,7 @@
 //! What events change: the stage of a contact, the velocities, the spring of mass 1.
 
 use super::compliant::{Compliant, ContactStage, Mark};
-use crate::State;
+use crate::flow::State;
 use crate::forcing::Tick;
 use crate::impact::Impact;
 use crate::motion::{Event, Path, Piece};

@@ -4,6 +4,8 @@
 use super::change::Still;
 use super::modes::Modes;
 use super::within::Within;
+use crate::excitation::Excitation;
+use crate::flow::State;
 use crate::forcing::Forcing;
 use crate::forcing::Tick;
 use crate::impact::Impact;
@@ -11,7 +13,9 @@ use crate::law::Law;
 use crate::least::{NumberRange, number};
 use crate::linear::{Linear, Quantity, QuantityCourse};
 use crate::motion::{Event, Motion, Path, Piece};
-use crate::{Buffer, Excitation, Rig, State, scales};
+use crate::rig::Rig;
+use crate::scales;
+use crate::scene::Buffer;
 use vibro_record::{Error, Result};
 
 /// Pieces of one call at most, of linear motion: some minutes. An integrated one counts as ten.

@@ -2,7 +2,8 @@
 
 use crate::law::Law;
 use crate::linear::{Linear, Quantity};
-use crate::{Buffer, Rig};
+use crate::rig::Rig;
+use crate::scene::Buffer;
 
 /// All linear modes of a rig, each with the spring and damper of mass 1 acting or not.
 #[derive(Debug, Clone, PartialEq)]

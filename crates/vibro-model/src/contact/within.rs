@@ -1,10 +1,11 @@
 //! Contacts whose force is not linear, integrated while they last.
 
+use crate::flow::State;
 use crate::forcing::Forcing;
 use crate::law::Law;
 use crate::linear::Linear;
 use crate::motion::Path;
-use crate::{Rig, State};
+use crate::rig::Rig;
 use vibro_math::runge_kutta::{Dop853, Integrator, Step, Tolerance};
 use vibro_record::Result;
 

@@ -1,5 +1,7 @@
 use super::*;
-use crate::{Orbit, Rig, Sine, orbits};
+use crate::excitation::Sine;
+use crate::orbit::{Orbit, orbits};
+use crate::rig::Rig;
 use std::f64::consts::TAU;
 
 fn one(rig: &Rig, force: f64, frequency: f64) -> PeriodicOrbit {

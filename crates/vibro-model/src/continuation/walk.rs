@@ -1,8 +1,12 @@
 //! A walk along a branch, by predictor and corrector.
 
 use super::{End, Mark};
+use crate::excitation::Sine;
+use crate::orbit::Loss;
+use crate::parameter::Parameter;
+use crate::periodic::PeriodicOrbit;
 use crate::periodic::{System, ordered};
-use crate::{Loss, Parameter, PeriodicOrbit, Rig, Sine};
+use crate::rig::Rig;
 use nalgebra::{DMatrix, DVector, Matrix4, Matrix6};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};

@@ -1,5 +1,7 @@
 use super::*;
-use crate::{Rig, Sine, Steady};
+use crate::excitation::Sine;
+use crate::rig::Rig;
+use crate::steady::Steady;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_math::Noise;

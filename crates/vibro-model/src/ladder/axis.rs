@@ -1,8 +1,9 @@
 //! The ladder along an axis of frequencies: it may choose differently, and says where.
 
 use super::{Change, Choice, Model, Need, Question, choose, chosen};
+use crate::parallel;
 use crate::response::axis;
-use crate::{Scene, parallel};
+use crate::scene::Scene;
 use serde::Serialize;
 use vibro_record::Result;
 

@@ -6,7 +6,7 @@ use super::reading::Settling;
 use super::rung::{Model, Need, Needed, Rung};
 use super::stage::{DrivenScene, is_curved, keys};
 use super::{Choice, Sensitivity};
-use crate::Law;
+use crate::law::Law;
 use crate::law::conversion;
 use std::f64::consts::PI;
 use vibro_record::{Finding, Result};

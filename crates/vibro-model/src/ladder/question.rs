@@ -1,8 +1,8 @@
 //! What is asked of a model, what it answers, and how far that is from another model's answer.
 
 use super::Model;
-use crate::Observable;
 use crate::least::{NumberRange, number};
+use crate::observable::Observable;
 use serde::Serialize;
 use vibro_record::{Direction, Error, Result};
 

@@ -1,9 +1,11 @@
 //! What a motion shows, followed until it has settled.
 
 use super::question::{Answer, Question};
+use crate::motion::{Event, Motion};
+use crate::observable::Observable;
 use crate::regime::{Regime, Strike, Watch};
+use crate::rig::Rig;
 use crate::sweep::{self, Gauge};
-use crate::{Event, Motion, Observable, Rig};
 use std::f64::consts::TAU;
 use vibro_record::Result;
 

@@ -3,7 +3,7 @@
 use super::question::{Answer, Change};
 use super::reading::{Reading, Settling};
 use super::stage::keys;
-use crate::Scene;
+use crate::scene::Scene;
 use serde::Serialize;
 use vibro_record::{Error, Finding};
 

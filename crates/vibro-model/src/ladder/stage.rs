@@ -4,11 +4,16 @@ use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Question};
 use super::reading::{BRIEF, MotionReader, Reading, Settling};
 use super::rung::{Found, Model, Rung};
+use crate::contact::Compliant;
+use crate::excitation::Excitation;
+use crate::law::Law;
 use crate::law::conversion;
-use crate::{
-    Compliance, Compliant, ContactKeys, Excitation, Law, Motion, Observable, Orbit, Rig, Scene, Simulation,
-    Softened, no_impact, orbits_of, softened,
-};
+use crate::motion::Motion;
+use crate::observable::Observable;
+use crate::orbit::{Compliance, Orbit, Softened, no_impact, orbits_of, softened};
+use crate::rig::Rig;
+use crate::scene::{ContactKeys, Scene};
+use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use std::time::Instant;
 use vibro_record::{Error, Finding, Result};

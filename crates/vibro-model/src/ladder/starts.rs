@@ -1,8 +1,14 @@
 //! From where motions are followed: the way the frequency came, or states all around.
 
-use crate::{
-    Compliant, Excitation, Law, Motion, Orbits, Rig, Simulation, State, Steady, no_impact, orbits_of,
-};
+use crate::contact::Compliant;
+use crate::excitation::Excitation;
+use crate::flow::State;
+use crate::law::Law;
+use crate::motion::Motion;
+use crate::orbit::{Orbits, no_impact, orbits_of};
+use crate::rig::Rig;
+use crate::simulate::Simulation;
+use crate::steady::Steady;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Result};
@@ -121,7 +127,8 @@ pub fn starts(rig: &Rig, excitation: &Excitation) -> impl Iterator<Item = (State
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Simulation, Sine};
+    use crate::excitation::Sine;
+    use crate::simulate::Simulation;
 
     #[test]
     fn states_are_apart_and_grow_in_all_directions() {

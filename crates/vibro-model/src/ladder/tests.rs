@@ -1,9 +1,12 @@
 use super::{Choice, Model, Need, Question, Rung, choose, choose_over};
-use crate::Motion;
-use crate::{
-    Buffer, Compliance, ContactKeys, Excitation, Green, Impulses, Observable, Rig, Scene, Simulation, Sine,
-    orbits,
-};
+use crate::excitation::{Excitation, Impulses, Sine};
+use crate::green::Green;
+use crate::motion::Motion;
+use crate::observable::Observable;
+use crate::orbit::{Compliance, orbits};
+use crate::rig::Rig;
+use crate::scene::{Buffer, ContactKeys, Scene};
+use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Fact, Finding, Severity};
 

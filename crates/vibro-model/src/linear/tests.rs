@@ -1,5 +1,7 @@
 use super::*;
-use crate::{Rig, Sine, Steady};
+use crate::excitation::Sine;
+use crate::rig::Rig;
+use crate::steady::Steady;
 
 /// Product of two 5×5 matrices.
 fn product(p: &[[f64; 5]; 5], q: &[[f64; 5]; 5]) -> [[f64; 5]; 5] {

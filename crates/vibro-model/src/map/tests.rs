@@ -1,5 +1,8 @@
 use super::*;
-use crate::{PeriodicOrbit, Sine, orbits, regime};
+use crate::excitation::Sine;
+use crate::orbit::orbits;
+use crate::periodic::PeriodicOrbit;
+use crate::regime;
 
 fn plan(n: usize) -> Plan {
     Plan {

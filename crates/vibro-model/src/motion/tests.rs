@@ -1,5 +1,11 @@
+use crate::contact::Compliant;
+use crate::excitation::{Excitation, Impulses, Pulses, Sine};
+use crate::flow::State;
+use crate::law::Law;
+use crate::motion::Motion;
+use crate::rig::Rig;
+use crate::simulate::Simulation;
 use crate::sweep::{Observable, Pace, Plan};
-use crate::{Compliant, Excitation, Impulses, Law, Motion, Pulses, Rig, Simulation, Sine, State};
 use vibro_record::Direction;
 
 const FREQUENCIES: [f64; 6] = [3.0, 4.0, 5.7, 7.1, 8.0, 11.0];

@@ -2,7 +2,10 @@
 
 use super::validity::Judged;
 use super::{Course, Orbit};
-use crate::{Excitation, Green, Rig, scales};
+use crate::excitation::Excitation;
+use crate::green::Green;
+use crate::rig::Rig;
+use crate::scales;
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 

@@ -1,7 +1,7 @@
 //! The motion of an orbit from just after an impact to just before the next, stretch by stretch.
 
 use super::turns::Signal;
-use crate::{Flight, State};
+use crate::flow::{Flight, State};
 
 /// Flights without an impulse or a step of the force inside, one after the other.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,7 @@
 //! Steady motion of mass 1 alone under impulses or rectangular pulses, once a cycle.
 
-use crate::{Green, NoImpact};
+use crate::green::Green;
+use crate::steady::NoImpact;
 use vibro_math::Oscillator;
 use vibro_record::Result;
 

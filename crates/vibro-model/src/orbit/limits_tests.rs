@@ -1,7 +1,9 @@
 //! Orbits in limits: against a wall, without losses, with contacts that last.
 
 use super::*;
-use crate::{Event, Impulses, Motion, Pulses, Simulation};
+use crate::excitation::{Impulses, Pulses};
+use crate::motion::{Event, Motion};
+use crate::simulate::Simulation;
 
 /// ν = ω/Ω₁ to a frequency in Hz.
 fn at(rig: &Rig, nu: f64) -> f64 {

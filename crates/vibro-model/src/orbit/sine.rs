@@ -2,10 +2,13 @@
 
 use super::conditions::{Conditions, Root};
 use super::{Course, Orbit, driven};
+use crate::excitation::{Excitation, Sine};
+use crate::flow::Flight;
 use crate::least::{NumberRange, number};
+use crate::rig::Rig;
 use crate::scales::check_values;
+use crate::steady::Steady;
 use crate::waves::Waves;
-use crate::{Excitation, Flight, Rig, Sine, Steady};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::Result;
@@ -163,7 +166,7 @@ pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orbits;
+    use crate::orbit::orbits;
 
     #[test]
     fn it_is_the_fundamental_of_the_upper_orbit() {

@@ -1,8 +1,10 @@
 //! What a contact that gives way changes in an orbit, to first order in the duration of the contact.
 
 use super::{Orbit, Orbits};
+use crate::excitation::Excitation;
+use crate::law::Law;
 use crate::law::conversion;
-use crate::{Excitation, Law, Rig};
+use crate::rig::Rig;
 use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};

@@ -1,8 +1,10 @@
 //! Orbits against their own conditions, their energy balance, other computations of them, and golden numbers.
 
 use super::*;
-use crate::Motion;
-use crate::{Impulses, Pulses, Simulation, Sines, floquet};
+use crate::excitation::{Impulses, Pulses, Sines};
+use crate::floquet;
+use crate::motion::Motion;
+use crate::simulate::Simulation;
 
 /// ν = ω/Ω₁ to a frequency in Hz.
 fn at(rig: &Rig, nu: f64) -> f64 {

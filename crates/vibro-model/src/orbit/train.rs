@@ -3,8 +3,9 @@
 use super::conditions::{Conditions, Root};
 use super::driven::{Piece, PulseResponse};
 use super::{Course, Orbit};
+use crate::excitation::Excitation;
+use crate::flow::Flight;
 use crate::waves::Waves;
-use crate::{Excitation, Flight};
 use std::f64::consts::TAU;
 use vibro_math::root::bracketed;
 

@@ -1,6 +1,6 @@
 //! Where x₁, x₂ and the gap turn in a flight: no impact, impulse or step of the force inside.
 
-use crate::Flight;
+use crate::flow::Flight;
 use vibro_math::Oscillator;
 
 /// What is looked at: x₁, x₂, or the gap g = Δ + x₂ − x₁.

@@ -1,7 +1,8 @@
 //! Is a computed orbit real? Four verdicts, each on its own.
 
 use super::Course;
-use crate::{Rig, floquet};
+use crate::floquet;
+use crate::rig::Rig;
 use nalgebra::Matrix4;
 use num_complex::Complex64;
 use serde::Serialize;

@@ -1,9 +1,13 @@
 //! Motions with p impacts in q cycles at one frequency, stable or not, from close returns of simulations.
 
 use super::PeriodicOrbit;
+use crate::excitation::{Excitation, Sine};
+use crate::impact::Impact;
 use crate::ladder::starts;
+use crate::motion::{Event, Motion};
 use crate::orbit::driven;
-use crate::{Event, Excitation, Impact, Motion, Rig, Simulation, Sine};
+use crate::rig::Rig;
+use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
@@ -96,7 +100,7 @@ impl PeriodicOrbit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::orbits;
+    use crate::orbit::orbits;
 
     #[test]
     fn one_impact_in_one_or_more_cycles_is_the_closed_form() {

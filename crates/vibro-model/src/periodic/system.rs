@@ -1,6 +1,9 @@
 //! The equations of a motion with p impacts in q cycles, and their exact Jacobian.
 
-use crate::{Green, Rig, Sine, Steady};
+use crate::excitation::Sine;
+use crate::green::Green;
+use crate::rig::Rig;
+use crate::steady::Steady;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

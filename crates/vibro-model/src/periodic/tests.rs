@@ -1,5 +1,8 @@
 use super::*;
-use crate::{Regime, Simulation, orbits, regime};
+use crate::orbit::orbits;
+use crate::regime;
+use crate::regime::Regime;
+use crate::simulate::Simulation;
 
 #[test]
 fn one_impact_a_cycle_is_the_closed_form() {

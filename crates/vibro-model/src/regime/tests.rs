@@ -1,5 +1,7 @@
 use super::*;
-use crate::{Rig, Simulation, Sine};
+use crate::excitation::Sine;
+use crate::rig::Rig;
+use crate::simulate::Simulation;
 
 fn of(rig: &Rig, force: f64, frequency: f64, settle: u32, cycles: u32) -> Pattern {
     let mut motion = Simulation::new(rig, &Sine { force, frequency }).unwrap();

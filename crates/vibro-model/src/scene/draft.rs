@@ -3,7 +3,8 @@
 use super::{Buffer, ContactKeys, Scene};
 use crate::excitation::{Excitation, Part};
 use crate::least::{NumberRange, number};
-use crate::{Parameter, Rig};
+use crate::parameter::Parameter;
+use crate::rig::Rig;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -271,7 +272,7 @@ fn campaign(path: &Path, text: &str) -> Option<Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Impulses, Pulses, Sine, Sines};
+    use crate::excitation::{Impulses, Pulses, Sine, Sines};
 
     #[test]
     fn a_scene_of_every_part() {

@@ -1,10 +1,11 @@
 //! Impacts, rests and kicks: what changes a simulated motion at an instant.
 
 use super::{Hold, Simulation};
+use crate::flow::State;
 use crate::forcing::Tick;
 use crate::impact::Impact;
+use crate::motion::Event;
 use crate::stick::Press;
-use crate::{Event, State};
 use std::f64::consts::TAU;
 use vibro_record::Result;
 

@@ -1,6 +1,7 @@
 use super::*;
+use crate::excitation::Sine;
+use crate::orbit::orbits;
 use crate::portrait::Samples;
-use crate::{Sine, orbits};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 mod bounds;

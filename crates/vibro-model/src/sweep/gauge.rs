@@ -1,6 +1,8 @@
 //! What is read off a motion while a sweep passes.
 
-use crate::{Path, Rig, State};
+use crate::flow::State;
+use crate::motion::Path;
+use crate::rig::Rig;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

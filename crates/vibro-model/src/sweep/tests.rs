@@ -1,6 +1,12 @@
 use super::*;
-use crate::Buffer;
-use crate::{Compliant, Excitation, Law, Pulses, Rig, Simulation, Sine, State, orbits, orbits_of};
+use crate::contact::Compliant;
+use crate::excitation::{Excitation, Pulses, Sine};
+use crate::flow::State;
+use crate::law::Law;
+use crate::orbit::{orbits, orbits_of};
+use crate::rig::Rig;
+use crate::scene::Buffer;
+use crate::simulate::Simulation;
 
 fn both<M: Motion + Clone + Sync>(
     plan: &Plan,

@@ -1,5 +1,6 @@
 use super::*;
-use crate::{Event, Motion, Sine};
+use crate::excitation::Sine;
+use crate::motion::{Event, Motion};
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
 
 fn sine(force: f64, frequency: f64) -> Excitation {

@@ -1,8 +1,10 @@
 use super::*;
-use crate::Impact;
 use crate::contact::conversion;
+use crate::excitation::{Impulses, Pulses, Sine};
+use crate::impact::Impact;
+use crate::motion::Event;
 use crate::motion::{Motion, Piece};
-use crate::{Event, Impulses, Pulses, Simulation, Sine};
+use crate::simulate::Simulation;
 use std::cell::Cell;
 use std::path::Path;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::Sine;
+use crate::excitation::Sine;
 
 #[test]
 fn sticking_and_release_come_when_they_should() {
@@ -34,7 +34,7 @@ fn sticking_and_release_come_when_they_should() {
 
 #[test]
 fn rebounds_are_those_of_the_closed_form_flights() {
-    use crate::Simulation;
+    use crate::simulate::Simulation;
     let rig = Rig::thesis();
     let sine = Sine { force: 0.5, frequency: 11.0 };
     let mut plain = Vec::new();

@@ -1,7 +1,14 @@
 use super::{Answer, CurrentMotion, DrivenScene, Followed, MotionReader, Motions};
+use crate::contact::Compliant;
+use crate::excitation::{Excitation, Sine};
+use crate::flow::State;
 use crate::ladder::tests::fastest;
 use crate::ladder::{Choice, Model, Need, Question, choose};
-use crate::{Compliant, ContactKeys, Excitation, Motion, Observable, Rig, Scene, Simulation, Sine, State};
+use crate::motion::Motion;
+use crate::observable::Observable;
+use crate::rig::Rig;
+use crate::scene::{ContactKeys, Scene};
+use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
 use vibro_record::{Direction, Fact};

@@ -1,9 +1,14 @@
 use super::{BRIEF, MotionReader, Settling, drifts, mean};
-use crate::Motion;
+use crate::excitation::{Excitation, Sine};
+use crate::flow::State;
 use crate::ladder::Question;
 use crate::ladder::question::APART;
 use crate::ladder::tests::fastest;
-use crate::{Excitation, Observable, Rig, Simulation, Sine, State, no_impact};
+use crate::motion::Motion;
+use crate::observable::Observable;
+use crate::orbit::no_impact;
+use crate::rig::Rig;
+use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};

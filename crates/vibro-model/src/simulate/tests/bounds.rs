@@ -1,7 +1,7 @@
 //! Work is bounded, whatever is asked; resting, pressing and parting masses do not stop time.
 
 use super::*;
-use crate::{Impulses, Pulses};
+use crate::excitation::{Impulses, Pulses};
 
 #[test]
 fn a_thousand_million_cycles_are_refused_at_once() {

@@ -1,7 +1,7 @@
 //! Energy balances in every kind of excitation, with sticking and without.
 
 use super::*;
-use crate::{Impulses, Part, Pulses, Sines};
+use crate::excitation::{Impulses, Part, Pulses, Sines};
 
 /// Energy of both masses and springs in J.
 fn energy(rig: &Rig, s: &State) -> f64 {

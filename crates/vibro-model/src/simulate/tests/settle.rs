@@ -1,7 +1,7 @@
 //! Random rigs from rest against the closed form and its verdicts.
 
 use super::*;
-use crate::Orbit;
+use crate::orbit::Orbit;
 use crate::orbit::orbits;
 use vibro_math::Noise;
 

@@ -1,7 +1,11 @@
 //! Mass 2 as a wall: what a huge mass on a huge spring tends to, and what a mass pressed against it does.
 
-use crate::Motion;
-use crate::{Event, Excitation, Pulses, Rig, Simulation, Sine, State};
+use crate::excitation::{Excitation, Pulses, Sine};
+use crate::flow::State;
+use crate::motion::Event;
+use crate::motion::Motion;
+use crate::rig::Rig;
+use crate::simulate::Simulation;
 
 const WALL: Rig =
     Rig { m1: 0.125, m2: f64::INFINITY, k1: 135.0, k2: 0.0, c1: 0.1, c2: 0.0, gap: 1e-4, restitution: 0.2 };
