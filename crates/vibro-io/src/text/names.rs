@@ -154,8 +154,13 @@ impl Name {
             let omega = matches!(key.as_str(), "omega" | "ω" | "w" | "angular frequency" | "kreisfrequenz");
             return Some(AxisKind::Frequency).filter(|kind| omega || word.as_ref() == Some(kind));
         }
-        let known = unit.is_some_and(|unit| unit.is_known());
-        word.filter(|word| !known || by_unit.as_ref() == Some(word)).or(by_unit.filter(|_| first))
+        let known = unit.as_ref().is_some_and(Unit::is_known);
+        // Revolutions a minute are a frequency where the name says so.
+        let is_frequency = unit.is_some_and(|unit| unit.quantity() == Quantity::Frequency);
+        let fits = |word: &AxisKind| {
+            !known || by_unit.as_ref() == Some(word) || is_frequency && *word == AxisKind::Frequency
+        };
+        word.filter(fits).or(by_unit.filter(|_| first))
     }
 
     /// What stands in brackets behind the name as a unit does, and is none that is known: up to three
@@ -422,7 +427,16 @@ mod tests {
         for text in ["time [s]", "Time", "t", "t (ms)", "time_abs", "Zeit [s]", "x [s]", "time [h]"] {
             assert_eq!(axis(text, true), Some(AxisKind::Time), "{text}");
         }
-        for text in ["f [Hz]", "Frequency", "freq (kHz)", "f", "line [Hz]"] {
+        for text in [
+            "f [Hz]",
+            "Frequency",
+            "freq (kHz)",
+            "f",
+            "line [Hz]",
+            "Frequency (CPM)",
+            "Freq. [rpm]",
+            "f (RPM)",
+        ] {
             assert_eq!(axis(text, true), Some(AxisKind::Frequency), "{text}");
         }
         for text in ["T", "F", "timeout", "t [m]", "f [N]", "speed [rpm]", "time [m]"] {

@@ -268,6 +268,25 @@ fn angular_frequencies_become_hertz() {
     assert!(has_finding(&recording.findings, "axis-angular", &[]), "{:?}", recording.findings);
 }
 
+/// One cycle a minute is 1/60 Hz; as a speed it stays a channel.
+#[test]
+fn cycles_a_minute_become_hertz() {
+    for unit in ["CPM", "cpm", "RPM", "rpm", "1/min"] {
+        for head in
+            [format!("Frequency ({unit}),Amplitude (mm/s)"), format!("Frequency,Amplitude\n{unit},mm/s")]
+        {
+            let recording = of(format!("{head}\n0,1\n60,2\n120,3\n180,4\n"));
+            let [Record::Spectrum(spectrum)] = &recording.records[..] else { panic!("{head}") };
+            assert_eq!(spectrum.axis.kind, AxisKind::Frequency, "{head}");
+            // The quotient of 60 by 60, rounded twice.
+            assert!((spectrum.axis.step().unwrap() - 1.0).abs() < 1e-15, "{head}: {:?}", spectrum.axis);
+            assert_eq!(spectrum.meta.unit.symbol(), "m/s");
+        }
+    }
+    let channels = of("Speed (RPM),v (mm/s)\n60,1\n120,2\n180,3\n");
+    assert_eq!(channels.records.len(), 2);
+}
+
 #[test]
 fn missing_values_kept_are_counted() {
     let text = "t [s],a [g]\n0.0,1\n0.1,\n0.2,3\n";
