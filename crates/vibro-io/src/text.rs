@@ -95,14 +95,15 @@ fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents>
 fn one_table(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(line) = why.line().filter(|_| why.advice() == rows::TABLES) else { return Err(why) };
     let Some(left) = tables::longest(text, line)? else { return Err(why) };
-    without(left, options).map_err(|_| why)
+    let (source, found) = left;
+    without((source, vec![found]), options).map_err(|_| why)
 }
 
 /// The contents of what is left of a text, and what was left out of it.
-fn without((source, found): (Source, Finding), options: &Options) -> Result<Contents> {
+fn without((source, found): (Source, Vec<Finding>), options: &Options) -> Result<Contents> {
     let read = if is_table(source.head(), &source) { read_table } else { read_numbers };
     let mut contents = read(&source, options, false)?;
-    contents.findings.push(found);
+    contents.findings.extend(found);
     Ok(contents)
 }
 

@@ -170,6 +170,10 @@ fn a_column_that_only_counts_is_left_out() {
     let with_time = of(",t [s],a [g]\n0,0.0,5\n1,0.1,6\n");
     assert_eq!(with_time.records.len(), 1);
     assert_eq!(with_time.records[0].axis(), &Axis::time(0.0, 0.1, 2));
+    assert!(with_time.findings.is_empty(), "{:?}", with_time.findings);
+    let between = of("t [s],Counter,a [g],frame\n0.0,7,5,1\n0.1,8,6,2\n");
+    assert_eq!(between.records.len(), 1);
+    assert!(has_finding(&between.findings, "columns-count", &["columns=Counter, frame"]));
     // Not counting: a record.
     assert_eq!(of("n,a [g]\n1,5\n3,6\n").records.len(), 2);
     assert_eq!(of("index\n0\n1\n").records.len(), 1);
@@ -515,6 +519,37 @@ fn the_cell_that_is_no_number_is_named() {
     assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
     let found = said("time,level,state\n0,4.2 mm/s,on\n1,4.3 mm/s,on\n");
     assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
+}
+
+/// A unit in the cells is never dropped: a time in ms would be one in s.
+#[test]
+fn units_in_the_cells_are_those_of_the_values_or_are_refused() {
+    for text in [
+        "time,unit,force,unit\n0,ms,1,kN\n0.5,ms,-2,kN\n1,ms,0,kN\n",
+        "time\tunit\tforce (kN)\n0\tms\t1\n0.5\tms\t-2\n1\tms\t0\n",
+        "time force [kN]\n0 ms 1\n0.5 ms -2\n1 ms 0\n",
+    ] {
+        let found = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap();
+        let [Record::Trace(force)] = &found.records[..] else { panic!("{text}") };
+        assert_eq!(
+            (force.axis.clone(), force.meta.name.as_str()),
+            (Axis::time(0.0, 0.5e-3, 3), "force"),
+            "{text}"
+        );
+        assert_eq!((&force.values[..], force.meta.unit.symbol()), (&[1e3, -2e3, 0.0][..], "N"), "{text}");
+        assert!(has_finding(&found.findings, "units-in-cells", &["time (ms)"]), "{:?}", found.findings);
+        assert!(!has_finding(&found.findings, "axis-unit-assumed", &[]), "{:?}", found.findings);
+    }
+    // What is no unit, or has another in its name, stays a column of words.
+    let plain = read_with(&Reader::new(), "time (s),unit,x\n0,m,1\n0.5,m,2\n1,m,3\n").unwrap();
+    assert_eq!(plain.records[0].axis(), &Axis::time(0.0, 0.5, 3));
+    assert!(has_finding(&plain.findings, "columns-of-words", &["columns=unit (m)"]), "{:?}", plain.findings);
+    let glued = "time,level\n0ms,4\n0.5ms,5\n1ms,6\n";
+    let why = read_with(&Reader::new(), glued).unwrap_err();
+    assert!(why.advice().ends_with("name [ms]"), "{}", why.advice());
+    // Done as it says.
+    let mended = glued.replace("ms", "").replacen("time", "time [ms]", 1);
+    assert_eq!(of(mended).records[0].axis(), &Axis::time(0.0, 0.5e-3, 3));
 }
 
 #[test]

@@ -43,7 +43,7 @@ pub const ALL: &[Dialect] = &[
         outcome: read(
             &[ch("Accel_x", "m/s²", 0, 1.0, 5e-7), ch("Accel_y", "m/s²", 1, 9.80665, 5e-7)],
             X::Even(0.0),
-            &["axis-clock"],
+            &["axis-clock", "columns-count"],
         ),
     },
     Dialect {
