@@ -134,7 +134,7 @@ impl Name {
     pub fn axis(&self, first: bool) -> Option<AxisKind> {
         let unit = self.unit.as_deref().map(Unit::parse_or_opaque);
         let by_unit = unit.as_ref().and_then(kind_of);
-        let key = self.name.to_lowercase();
+        let key = self.run().map_or(self.name.as_str(), |(name, _)| name).to_lowercase();
         let word = match key.as_str() {
             "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" | "relative time"
             | "relative zeit" | "running time" | "time since start" | "время" | "时间" | "時間" => {
@@ -161,6 +161,21 @@ impl Name {
             !known || by_unit.as_ref() == Some(word) || is_frequency && *word == AxisKind::Frequency
         };
         word.filter(fits).or(by_unit.filter(|_| first))
+    }
+
+    /// The name without the run that it is of, and that run: `Time Run #1`, `Run 1: Time`.
+    pub fn run(&self) -> Option<(&str, &str)> {
+        let number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        let behind = || {
+            let (before, _) = self.name.rsplit_once('#').filter(|(_, behind)| number(behind))?;
+            let (name, _) = before.trim_end().rsplit_once(' ')?;
+            Some((name.trim_end(), self.name[name.len()..].trim_start()))
+        };
+        let before = || {
+            let (run, name) = self.name.split_once(": ")?;
+            run.rsplit_once(' ').filter(|(_, behind)| number(behind)).map(|_| (name, run))
+        };
+        behind().or_else(before)
     }
 
     /// What stands in brackets behind the name as a unit does, and is none that is known: up to three
@@ -442,7 +457,9 @@ mod tests {
         for text in ["T", "F", "timeout", "t [m]", "f [N]", "speed [rpm]", "time [m]"] {
             assert_eq!(axis(text, true), None, "{text}");
         }
-        assert_eq!(axis("time [ms]", false), Some(AxisKind::Time));
+        for text in ["time [ms]", "Time (s) Run #2", "Zeit Versuch #1 (s)", "Run 2: Time (s)"] {
+            assert_eq!(axis(text, false), Some(AxisKind::Time), "{text}");
+        }
         for text in ["t", "interval [s]", "speed [Hz]", "time of flight [s]"] {
             assert_eq!(axis(text, false), None, "{text}");
         }

@@ -385,6 +385,35 @@ fn a_survey_says_what_reading_says() {
     assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
 }
 
+/// As PASCO's programs and Vernier's write them.
+#[test]
+fn runs_side_by_side_have_times_of_their_own() {
+    let rows = "0;1;0;5\n0,5;2;0,25;6\n1;0;0,5;7\n;;0,75;8\n";
+    for names in [
+        "Zeit Versuch #1 (s);Position Versuch #1 (m);Zeit Versuch #2 (s);Position Versuch #2 (m)",
+        "Time (s) Run #1;Position (m) Run #1;Time (s) Run #2;Position (m) Run #2",
+        "Time Run #1 (s);Position Run #1 (m);Time Run #2 (s);Position Run #2 (m)",
+        "Run 1: Time (s);Run 1: Position (m);Run 2: Time (s);Run 2: Position (m)",
+    ] {
+        let found = of(format!("{names}\n{rows}"));
+        let [Record::Trace(one), Record::Trace(two)] = &found.records[..] else { panic!("{names}") };
+        assert!(one.meta.name.contains("Position") && two.meta.name.contains('2'), "{}", two.meta.name);
+        assert_eq!((&one.values[..], &one.axis), (&[1.0, 2.0, 0.0][..], &Axis::time(0.0, 0.5, 3)), "{names}");
+        assert_eq!(
+            (&two.values[..], &two.axis),
+            (&[5.0, 6.0, 7.0, 8.0][..], &Axis::time(0.0, 0.25, 4)),
+            "{names}"
+        );
+        assert!(found.findings.is_empty(), "{:?}", found.findings);
+        let odd = rows.replace("0,25;6", "0,25;x");
+        let why = read_with(&Reader::new(), format!("{names}\n{odd}")).unwrap_err();
+        assert_eq!(why.line(), Some(3), "{why}");
+    }
+    // A time behind its values is known, too.
+    let behind = of("Force Run #1 (N),Time Run #1 (s)\n1,0\n2,0.5\n0,1\n");
+    assert_eq!((behind.records.len(), behind.records[0].axis()), (1, &Axis::time(0.0, 0.5, 3)));
+}
+
 #[test]
 fn two_clocks_in_one_file_are_refused() {
     let text = |step: f64, from: f64| {

@@ -224,7 +224,7 @@ impl Held {
 
 /// Adds a line with blanks in place of its cells of text and the marks behind them: all others stay in their
 /// columns.
-fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
+pub fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
     let begin = kept.len();
     kept.push_str(&line.text[..cells[0].0]);
     for (i, (at, _)) in cells.iter().enumerate() {
