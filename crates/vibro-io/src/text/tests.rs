@@ -1046,6 +1046,17 @@ fn a_unit_above_all_is_that_of_those_without_one_and_said_of_several() {
 }
 
 #[test]
+fn a_rate_with_a_comma_before_three_digits_is_named_as_what_it_may_be() {
+    let found = of("Sampling rate,\"51,200\"\nacc (g),force (N)\n1,2\n3,1\n2,2\n");
+    assert!(
+        has_finding(&found.findings, "abscissa-unsaid", &["variable=51,200", "rate=51200"]),
+        "{:?}",
+        found.findings
+    );
+    assert_eq!(found.records[0].axis().kind, AxisKind::Index);
+}
+
+#[test]
 fn what_a_preamble_states() {
     for (head, step) in [
         ("Sample Rate;51200,0", Some(1.0 / 51_200.0)),
