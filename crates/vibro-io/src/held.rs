@@ -99,7 +99,7 @@ pub fn rises(values: &[f64]) -> bool {
 const GAPS: [&str; 2] = [code::SAMPLES_LOST, code::AXIS_BACKWARDS];
 
 /// Records of a file, with the ends of those whose values were not kept.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Contents {
     pub records: Vec<(Record, Option<Extremes>)>,
     pub findings: Vec<Finding>,

@@ -21,6 +21,7 @@ mod numbers;
 mod preamble;
 mod records;
 mod rows;
+mod runs;
 mod stream;
 mod table;
 mod tables;
@@ -62,12 +63,27 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
         .setting("format")
     };
     with_text(source, options.limit, |text| match table::detect(text, options) {
+        Some(dialect) if !runs::others_of(&dialect).is_empty() => read_runs(text, &dialect, options, survey),
         Some(dialect) => table::grouped(text, &dialect)
             .and_then(|()| read(text, &dialect, options, survey))
             .or_else(|why| one_table(text, options, why))
             .or_else(|why| without_words(text, options, why)),
         None => without_words(text, options, without_names()),
     })
+}
+
+/// The runs of a text that stand side by side, one after the other.
+fn read_runs(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Contents> {
+    let mut all = Contents::default();
+    for others in runs::others_of(dialect) {
+        let run = read_table(&runs::alone(text, dialect, &others)?, options, survey)?;
+        all.records.extend(run.records);
+        // What holds for each of them is said once.
+        all.findings.extend(
+            run.findings.into_iter().filter(|found| !all.findings.contains(found)).collect::<Vec<_>>(),
+        );
+    }
+    Ok(all)
 }
 
 pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
@@ -95,14 +111,15 @@ fn without_words(text: &Text, options: &Options, why: Error) -> Result<Contents>
 fn one_table(text: &Text, options: &Options, why: Error) -> Result<Contents> {
     let Some(line) = why.line().filter(|_| why.advice() == rows::TABLES) else { return Err(why) };
     let Some(left) = tables::longest(text, line)? else { return Err(why) };
-    without(left, options).map_err(|_| why)
+    let (source, found) = left;
+    without((source, vec![found]), options).map_err(|_| why)
 }
 
 /// The contents of what is left of a text, and what was left out of it.
-fn without((source, found): (Source, Finding), options: &Options) -> Result<Contents> {
+fn without((source, found): (Source, Vec<Finding>), options: &Options) -> Result<Contents> {
     let read = if is_table(source.head(), &source) { read_table } else { read_numbers };
     let mut contents = read(&source, options, false)?;
-    contents.findings.push(found);
+    contents.findings.extend(found);
     Ok(contents)
 }
 
@@ -146,8 +163,8 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
             Format::Ascii => numbers::detect(text, options).ok(),
             _ => None,
         };
-        let Some(dialect) = dialect.filter(|d| format == Format::Ascii || table::grouped(text, d).is_ok())
-        else {
+        let of_one_run = |d: &Dialect| table::grouped(text, d).is_ok() && runs::others_of(d).is_empty();
+        let Some(dialect) = dialect.filter(|d| format == Format::Ascii || of_one_run(d)) else {
             return Ok(None);
         };
         let Read { columns, findings, clean } = read_rows(text, &dialect, options, true)?;

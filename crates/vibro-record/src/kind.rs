@@ -61,7 +61,8 @@ impl Kind {
         match self {
             Kind::Number => meant_number(key, text),
             Kind::Whole(least, most) => {
-                let number: f64 = meant_number(key, text).as_deref().unwrap_or(text).parse().ok()?;
+                let text = ungrouped(text).map_or(text.to_owned(), |(whole, _)| whole);
+                let number: f64 = meant_number(key, &text).as_deref().unwrap_or(&text).parse().ok()?;
                 let whole = number.fract() == 0.0 && number >= *least as f64 && number <= *most as f64;
                 whole.then(|| format!("{number:.0}"))
             }
@@ -164,10 +165,28 @@ pub fn without_unit(key: &str, text: &str) -> Option<f64> {
     UNITS.iter().find_map(meant).or_else(|| meant(&("g", -3)).filter(|_| grams))
 }
 
-/// The number that is meant by one with a decimal comma, with a unit, or with no digit on one side of its
-/// point.
+/// Keys in Hz of numbers that are thousands: a comma before three digits groups them.
+const THOUSANDS: [&str; 2] = ["rate", "base_band"];
+
+/// A text without the commas that group digits in threes, `1,000,000` or `1,000.5`, and whether they can be
+/// nothing else: one comma may also be a decimal one. `None` where none does.
+fn ungrouped(text: &str) -> Option<(String, bool)> {
+    let text = text.trim();
+    let is_digit = |c: char| c.is_ascii_digit() || c == ',';
+    let (whole, behind) = text.split_at(text.find(|c| !is_digit(c)).unwrap_or(text.len()));
+    let mut groups = whole.split(',');
+    groups.next().filter(|first| (1..=3).contains(&first.len()) && *first != "0")?;
+    let groups: Vec<&str> = groups.collect();
+    let threes = !groups.is_empty() && groups.iter().all(|group| group.len() == 3);
+    threes.then(|| (whole.replace(',', "") + behind, groups.len() > 1 || behind.starts_with('.')))
+}
+
+/// The number that is meant by one with a decimal comma, with digits in groups, with a unit, or with no digit
+/// on one side of its point.
 pub(crate) fn meant_number(key: &str, text: &str) -> Option<String> {
-    let point = text.trim().replacen(',', ".", 1);
+    let in_thousands = THOUSANDS.contains(&key.replace('-', "_").as_str());
+    let grouped = ungrouped(text).filter(|(_, sure)| *sure || in_thousands);
+    let point = grouped.map_or_else(|| text.trim().replacen(',', ".", 1), |(whole, _)| whole);
     let number: Option<f64> = point.parse().ok().filter(|number: &f64| number.is_finite());
     match number {
         Some(_) if point.starts_with('.') => Some(format!("0{point}")),
@@ -188,6 +207,13 @@ mod tests {
             (Kind::Number, "35 kHz", Some("35000")),
             (Kind::Number, "3,5 ms", Some("0.0035")),
             (Kind::Number, ",5", Some("0.5")),
+            (Kind::Number, "51,200", Some("51200")),
+            (Kind::Number, "51,200 Hz", Some("51200")),
+            (Kind::Number, "51,2", Some("51.2")),
+            (Kind::Number, "51,200.5", Some("51200.5")),
+            (Kind::Number, "1,000,000", Some("1000000")),
+            (Kind::Number, "0,512", Some("0.512")),
+            (Kind::Whole(0, 9999), "1,024", Some("1024")),
             (Kind::Number, "x", None),
             (Kind::Number, "inf", None),
             (Kind::Whole(0, 9), "2.0", Some("2")),
@@ -204,6 +230,9 @@ mod tests {
         ] {
             assert_eq!(kind.meant("rate", text).as_deref(), expected, "{kind:?} {text}");
         }
+        // A height of some metres is no thousand of them.
+        assert_eq!(Kind::Number.meant("height", "1,234").as_deref(), Some("1.234"));
+        assert_eq!(Kind::Number.meant("base-band", "1,600").as_deref(), Some("1600"));
         assert_eq!(part("600:"), Ok((600.0, f64::INFINITY)));
         assert_eq!([part(":"), part("5")], [Err(Kind::Part), Err(Kind::Part)]);
         assert_eq!(whole::<u8, 0, 2>("3"), Err(Kind::Whole(0, 2)));

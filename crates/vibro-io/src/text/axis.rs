@@ -245,7 +245,12 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {
-            findings.push(Finding::caution(code::ABSCISSA_UNSAID));
+            let found = Finding::caution(code::ABSCISSA_UNSAID);
+            let found = match &header.perhaps_rate {
+                Some((said, rate)) => found.name("variable", said.as_str()).number("rate", *rate),
+                None => found,
+            };
+            findings.push(found);
             Axis::index(n)
         }
     }

@@ -16,6 +16,8 @@ pub struct Stated {
     pub base_band: Option<f64>,
     /// Sampling rate in Hz.
     pub rate: Option<f64>,
+    /// What may be the sampling rate in Hz, for the comma in it may group its digits, and how it is written.
+    pub perhaps_rate: Option<(String, f64)>,
     /// Number of values of a series.
     pub values: Option<usize>,
     /// Whether it is a step that is stated, as above the values of one series, and no rate.
@@ -152,10 +154,11 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         unit_in_key.is_empty() && (of(RATE, &HERTZ) || of(STEP, &SECONDS))
     });
     let (key, unit_in_key) = behind.unwrap_or((key.as_str(), unit_in_key));
-    let hertz = || {
+    let hertz_of = |value: &str| {
         let value = value.replace("mHz", MILLIHERTZ);
         quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ)
     };
+    let hertz = || hertz_of(value);
     let bare = unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit());
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other
     // things.
@@ -180,6 +183,8 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         }
         key if RATE.split('|').any(|known| known == key) => {
             stated.rate = hertz().or(stated.rate);
+            let ungrouped = || Some((value.to_owned(), hertz_of(&value.replace(',', ""))?));
+            stated.perhaps_rate = if stated.rate.is_none() { ungrouped() } else { None };
         }
         key if STEP.split('|').any(|known| known == key) => {
             let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
@@ -315,6 +320,16 @@ mod tests {
     fn an_analyser_line_without_keys() {
         let s = of(&["SPS390 SPECTRUM", "20 Hz 400 lines"]);
         assert_eq!((s.lines, s.base_band), (Some(400.0), Some(20.0)));
+    }
+
+    /// It may be 51.2 Hz or 51 200 Hz: the second is said, and none is used.
+    #[test]
+    fn a_rate_in_groups_of_digits_is_a_question() {
+        for text in ["Sampling rate: 51,200", "Sample rate [Hz]: 51,200", "fs = 51,200 Hz"] {
+            let s = of(&[text]);
+            assert_eq!((s.rate, s.perhaps_rate.map(|(_, rate)| rate)), (None, Some(51_200.0)), "{text}");
+        }
+        assert_eq!(of(&["Sampling rate: 51,2 kHz"]).perhaps_rate, None);
     }
 
     #[test]

@@ -134,7 +134,7 @@ impl Name {
     pub fn axis(&self, first: bool) -> Option<AxisKind> {
         let unit = self.unit.as_deref().map(Unit::parse_or_opaque);
         let by_unit = unit.as_ref().and_then(kind_of);
-        let key = self.name.to_lowercase();
+        let key = self.run().map_or(self.name.as_str(), |(name, _)| name).to_lowercase();
         let word = match key.as_str() {
             "time" | "timestamp" | "time stamp" | "zeit" | "temps" | "elapsed time" | "relative time"
             | "relative zeit" | "running time" | "time since start" | "время" | "时间" | "時間" => {
@@ -154,8 +154,28 @@ impl Name {
             let omega = matches!(key.as_str(), "omega" | "ω" | "w" | "angular frequency" | "kreisfrequenz");
             return Some(AxisKind::Frequency).filter(|kind| omega || word.as_ref() == Some(kind));
         }
-        let known = unit.is_some_and(|unit| unit.is_known());
-        word.filter(|word| !known || by_unit.as_ref() == Some(word)).or(by_unit.filter(|_| first))
+        let known = unit.as_ref().is_some_and(Unit::is_known);
+        // Revolutions a minute are a frequency where the name says so.
+        let is_frequency = unit.is_some_and(|unit| unit.quantity() == Quantity::Frequency);
+        let fits = |word: &AxisKind| {
+            !known || by_unit.as_ref() == Some(word) || is_frequency && *word == AxisKind::Frequency
+        };
+        word.filter(fits).or(by_unit.filter(|_| first))
+    }
+
+    /// The name without the run that it is of, and that run: `Time Run #1`, `Run 1: Time`.
+    pub fn run(&self) -> Option<(&str, &str)> {
+        let number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        let behind = || {
+            let (before, _) = self.name.rsplit_once('#').filter(|(_, behind)| number(behind))?;
+            let (name, _) = before.trim_end().rsplit_once(' ')?;
+            Some((name.trim_end(), self.name[name.len()..].trim_start()))
+        };
+        let before = || {
+            let (run, name) = self.name.split_once(": ")?;
+            run.rsplit_once(' ').filter(|(_, behind)| number(behind)).map(|_| (name, run))
+        };
+        behind().or_else(before)
     }
 
     /// What stands in brackets behind the name as a unit does, and is none that is known: up to three
@@ -422,13 +442,24 @@ mod tests {
         for text in ["time [s]", "Time", "t", "t (ms)", "time_abs", "Zeit [s]", "x [s]", "time [h]"] {
             assert_eq!(axis(text, true), Some(AxisKind::Time), "{text}");
         }
-        for text in ["f [Hz]", "Frequency", "freq (kHz)", "f", "line [Hz]"] {
+        for text in [
+            "f [Hz]",
+            "Frequency",
+            "freq (kHz)",
+            "f",
+            "line [Hz]",
+            "Frequency (CPM)",
+            "Freq. [rpm]",
+            "f (RPM)",
+        ] {
             assert_eq!(axis(text, true), Some(AxisKind::Frequency), "{text}");
         }
         for text in ["T", "F", "timeout", "t [m]", "f [N]", "speed [rpm]", "time [m]"] {
             assert_eq!(axis(text, true), None, "{text}");
         }
-        assert_eq!(axis("time [ms]", false), Some(AxisKind::Time));
+        for text in ["time [ms]", "Time (s) Run #2", "Zeit Versuch #1 (s)", "Run 2: Time (s)"] {
+            assert_eq!(axis(text, false), Some(AxisKind::Time), "{text}");
+        }
         for text in ["t", "interval [s]", "speed [Hz]", "time of flight [s]"] {
             assert_eq!(axis(text, false), None, "{text}");
         }

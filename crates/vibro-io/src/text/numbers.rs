@@ -15,6 +15,7 @@ use super::table::beginning;
 use super::{clock, names};
 use crate::{Format, Options, number};
 use num_complex::Complex64;
+use vibro_record::units::Unit;
 use vibro_record::{Error, Result};
 
 /// Marks of remarks above the rows, those between rows first: there a quoted cell begins a row.
@@ -132,11 +133,25 @@ fn stray(lines: &[Line]) -> Option<Error> {
     let row = cells(lines[first])?;
     let (byte, cell) = row.iter().find(|(_, cell)| !fine(cell))?;
     let place = in_line(lines[first].number).column(lines[first].column(*byte));
-    let cell = shorten(cell);
-    Some(
+    let error = |cell: &str| {
         Error::input(place, format!("{cell:?}, and no row of numbers"), "numbers in all cells of a row")
-            .hint("take out the column, or what is no number in its cells, and read again"),
-    )
+    };
+    Some(match unit_of(cell) {
+        // Without it, a time in ms would be one in s.
+        Some(unit) => error(cell).hint(format!(
+            "take {unit} out of all cells of this column, and write it behind the column's name above the rows: \
+             name [{unit}]"
+        )),
+        None => error(&shorten(cell)).hint("take out the column, or what is no number in its cells, and read again"),
+    })
+}
+
+/// The unit behind the number of a cell.
+fn unit_of(cell: &str) -> Option<&str> {
+    let used =
+        [b'.', b','].iter().filter_map(|mark| Some(number::prefix(cell.as_bytes(), *mark)?.1)).max()?;
+    let unit = cell.get(used..)?.trim_start();
+    Unit::parse(unit).filter(|_| unit.starts_with(|c: char| c.is_alphabetic() || c == '%')).map(|_| unit)
 }
 
 /// `300 0.005` above rows of three columns and more: number of values and step in s, as Fortran programs

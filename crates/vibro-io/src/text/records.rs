@@ -55,7 +55,7 @@ pub fn build(
     }
     let printed = made.abscissa(&table).map(|at| table.remove(at));
     // A column that only counts says nothing, unless there is no other.
-    let first = if is_table { made.without_counters(&mut table) } else { None };
+    let first = if is_table { made.without_counters(&mut table, findings) } else { None };
     // Where every channel has the time beside it, once is enough.
     let again =
         |c: &Column, axis: &Column| c.name.axis(true) == axis.name.axis(true) && c.values == axis.values;
@@ -181,7 +181,8 @@ impl RecordContext<'_> {
     }
 
     /// Takes out the columns that only count, unless there are no others; gives the first value of the first.
-    fn without_counters(&mut self, table: &mut Vec<Column>) -> Option<f64> {
+    /// Of the first column everyone expects it, any other is named.
+    fn without_counters(&mut self, table: &mut Vec<Column>, findings: &mut Vec<Finding>) -> Option<f64> {
         let counter =
             |(at, column): (usize, &Column)| column.counts() && (at == 0 || !column.name.name.is_empty());
         let counters: Vec<bool> = table.iter().enumerate().map(counter).collect();
@@ -189,8 +190,14 @@ impl RecordContext<'_> {
         self.naturals = table.iter().zip(&counters).any(|(column, counts)| *counts && natural(column));
         let at = counters.iter().position(|counts| *counts).filter(|_| counters.contains(&false))?;
         let first = table[at].reals().first().copied();
-        let mut counts = counters.iter();
-        table.retain(|_| counts.next() == Some(&false));
+        let (left_out, kept): (Vec<_>, Vec<_>) =
+            table.drain(..).zip(counters).partition(|(_, counts)| *counts);
+        table.extend(kept.into_iter().map(|(column, _)| column));
+        let named = left_out.iter().filter(|(column, _)| column.at > 1).map(|(column, _)| column.label());
+        let named: Vec<String> = named.collect();
+        if !named.is_empty() {
+            findings.push(Finding::note("columns-count").name("columns", named.join(", ")));
+        }
         first
     }
 

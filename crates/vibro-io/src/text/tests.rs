@@ -170,6 +170,10 @@ fn a_column_that_only_counts_is_left_out() {
     let with_time = of(",t [s],a [g]\n0,0.0,5\n1,0.1,6\n");
     assert_eq!(with_time.records.len(), 1);
     assert_eq!(with_time.records[0].axis(), &Axis::time(0.0, 0.1, 2));
+    assert!(with_time.findings.is_empty(), "{:?}", with_time.findings);
+    let between = of("t [s],Counter,a [g],frame\n0.0,7,5,1\n0.1,8,6,2\n");
+    assert_eq!(between.records.len(), 1);
+    assert!(has_finding(&between.findings, "columns-count", &["columns=Counter, frame"]));
     // Not counting: a record.
     assert_eq!(of("n,a [g]\n1,5\n3,6\n").records.len(), 2);
     assert_eq!(of("index\n0\n1\n").records.len(), 1);
@@ -268,6 +272,25 @@ fn angular_frequencies_become_hertz() {
     assert!(has_finding(&recording.findings, "axis-angular", &[]), "{:?}", recording.findings);
 }
 
+/// One cycle a minute is 1/60 Hz; as a speed it stays a channel.
+#[test]
+fn cycles_a_minute_become_hertz() {
+    for unit in ["CPM", "cpm", "RPM", "rpm", "1/min"] {
+        for head in
+            [format!("Frequency ({unit}),Amplitude (mm/s)"), format!("Frequency,Amplitude\n{unit},mm/s")]
+        {
+            let recording = of(format!("{head}\n0,1\n60,2\n120,3\n180,4\n"));
+            let [Record::Spectrum(spectrum)] = &recording.records[..] else { panic!("{head}") };
+            assert_eq!(spectrum.axis.kind, AxisKind::Frequency, "{head}");
+            // The quotient of 60 by 60, rounded twice.
+            assert!((spectrum.axis.step().unwrap() - 1.0).abs() < 1e-15, "{head}: {:?}", spectrum.axis);
+            assert_eq!(spectrum.meta.unit.symbol(), "m/s");
+        }
+    }
+    let channels = of("Speed (RPM),v (mm/s)\n60,1\n120,2\n180,3\n");
+    assert_eq!(channels.records.len(), 2);
+}
+
 #[test]
 fn missing_values_kept_are_counted() {
     let text = "t [s],a [g]\n0.0,1\n0.1,\n0.2,3\n";
@@ -360,6 +383,35 @@ fn a_survey_says_what_reading_says() {
     let (format, headers, _) = Reader::new().survey(&path).unwrap();
     assert_eq!((format, headers.len()), (Format::Csv, 2));
     assert_eq!((headers[1].max_abs, headers[1].max_at, headers[1].n), (Some(9.0 * 1e-3), Some(0.0), 2));
+}
+
+/// As PASCO's programs and Vernier's write them.
+#[test]
+fn runs_side_by_side_have_times_of_their_own() {
+    let rows = "0;1;0;5\n0,5;2;0,25;6\n1;0;0,5;7\n;;0,75;8\n";
+    for names in [
+        "Zeit Versuch #1 (s);Position Versuch #1 (m);Zeit Versuch #2 (s);Position Versuch #2 (m)",
+        "Time (s) Run #1;Position (m) Run #1;Time (s) Run #2;Position (m) Run #2",
+        "Time Run #1 (s);Position Run #1 (m);Time Run #2 (s);Position Run #2 (m)",
+        "Run 1: Time (s);Run 1: Position (m);Run 2: Time (s);Run 2: Position (m)",
+    ] {
+        let found = of(format!("{names}\n{rows}"));
+        let [Record::Trace(one), Record::Trace(two)] = &found.records[..] else { panic!("{names}") };
+        assert!(one.meta.name.contains("Position") && two.meta.name.contains('2'), "{}", two.meta.name);
+        assert_eq!((&one.values[..], &one.axis), (&[1.0, 2.0, 0.0][..], &Axis::time(0.0, 0.5, 3)), "{names}");
+        assert_eq!(
+            (&two.values[..], &two.axis),
+            (&[5.0, 6.0, 7.0, 8.0][..], &Axis::time(0.0, 0.25, 4)),
+            "{names}"
+        );
+        assert!(found.findings.is_empty(), "{:?}", found.findings);
+        let odd = rows.replace("0,25;6", "0,25;x");
+        let why = read_with(&Reader::new(), format!("{names}\n{odd}")).unwrap_err();
+        assert_eq!(why.line(), Some(3), "{why}");
+    }
+    // A time behind its values is known, too.
+    let behind = of("Force Run #1 (N),Time Run #1 (s)\n1,0\n2,0.5\n0,1\n");
+    assert_eq!((behind.records.len(), behind.records[0].axis()), (1, &Axis::time(0.0, 0.5, 3)));
 }
 
 #[test]
@@ -496,6 +548,37 @@ fn the_cell_that_is_no_number_is_named() {
     assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
     let found = said("time,level,state\n0,4.2 mm/s,on\n1,4.3 mm/s,on\n");
     assert!(found.contains("line 2, column 3") && found.contains("\"4.2 mm/s\""), "{found}");
+}
+
+/// A unit in the cells is never dropped: a time in ms would be one in s.
+#[test]
+fn units_in_the_cells_are_those_of_the_values_or_are_refused() {
+    for text in [
+        "time,unit,force,unit\n0,ms,1,kN\n0.5,ms,-2,kN\n1,ms,0,kN\n",
+        "time\tunit\tforce (kN)\n0\tms\t1\n0.5\tms\t-2\n1\tms\t0\n",
+        "time force [kN]\n0 ms 1\n0.5 ms -2\n1 ms 0\n",
+    ] {
+        let found = Reader::new().from_reader("x.csv", text.as_bytes()).unwrap();
+        let [Record::Trace(force)] = &found.records[..] else { panic!("{text}") };
+        assert_eq!(
+            (force.axis.clone(), force.meta.name.as_str()),
+            (Axis::time(0.0, 0.5e-3, 3), "force"),
+            "{text}"
+        );
+        assert_eq!((&force.values[..], force.meta.unit.symbol()), (&[1e3, -2e3, 0.0][..], "N"), "{text}");
+        assert!(has_finding(&found.findings, "units-in-cells", &["time (ms)"]), "{:?}", found.findings);
+        assert!(!has_finding(&found.findings, "axis-unit-assumed", &[]), "{:?}", found.findings);
+    }
+    // What is no unit, or has another in its name, stays a column of words.
+    let plain = read_with(&Reader::new(), "time (s),unit,x\n0,m,1\n0.5,m,2\n1,m,3\n").unwrap();
+    assert_eq!(plain.records[0].axis(), &Axis::time(0.0, 0.5, 3));
+    assert!(has_finding(&plain.findings, "columns-of-words", &["columns=unit (m)"]), "{:?}", plain.findings);
+    let glued = "time,level\n0ms,4\n0.5ms,5\n1ms,6\n";
+    let why = read_with(&Reader::new(), glued).unwrap_err();
+    assert!(why.advice().ends_with("name [ms]"), "{}", why.advice());
+    // Done as it says.
+    let mended = glued.replace("ms", "").replacen("time", "time [ms]", 1);
+    assert_eq!(of(mended).records[0].axis(), &Axis::time(0.0, 0.5e-3, 3));
 }
 
 #[test]
@@ -960,6 +1043,17 @@ fn a_unit_above_all_is_that_of_those_without_one_and_said_of_several() {
     assert_eq!((values(&two.records[0]), values(&two.records[1])), (&[9.80665; 2][..], &[19.6133; 2][..]));
     assert!(has_finding(&two.all_findings(), "unit-for-all", &["unit=g", "n=2"]));
     assert!(!has_finding(&one.all_findings(), "unit-for-all", &[]));
+}
+
+#[test]
+fn a_rate_with_a_comma_before_three_digits_is_named_as_what_it_may_be() {
+    let found = of("Sampling rate,\"51,200\"\nacc (g),force (N)\n1,2\n3,1\n2,2\n");
+    assert!(
+        has_finding(&found.findings, "abscissa-unsaid", &["variable=51,200", "rate=51200"]),
+        "{:?}",
+        found.findings
+    );
+    assert_eq!(found.records[0].axis().kind, AxisKind::Index);
 }
 
 #[test]

@@ -1,14 +1,19 @@
 //! Columns of text beside columns of numbers: the name of a frame, a state, `7 / 12`, a date in a spelling
-//! that is no clock.
+//! that is no clock; the unit of the values before it.
 
 use super::clock;
 use super::decoded::{Text, in_line, shorten};
 use super::encoding;
 use super::lines::{Fields, Line, Lines, Separator, fields};
+use super::names::Name;
 use super::numbers::complex;
+use super::preamble::{UNIT, key};
+use super::unit_words::symbol;
 use crate::{Source, number};
 use std::collections::HashSet;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+use std::ops::Range;
+use vibro_record::units::Unit;
 use vibro_record::{Error, Finding, Result};
 
 /// Rows that tell which columns hold text.
@@ -21,11 +26,19 @@ const STATE: usize = 10;
 /// What is left of a text without its columns of text.
 pub struct LeftOut {
     pub source: Source,
-    /// Names the columns, and what they hold.
-    pub found: Finding,
+    /// Name the columns, and what they hold.
+    pub found: Vec<Finding>,
     /// Whether their text changes: rows of several channels may stand below each other, or it may be the
     /// time, unless the times of what is left rise.
     pub changes: bool,
+}
+
+/// The line of names above the rows.
+struct Head {
+    /// One a column: blank where a column of text has none.
+    names: Vec<String>,
+    /// Its bytes in what is kept.
+    at: Range<usize>,
 }
 
 /// What the cells of a column of text hold.
@@ -50,52 +63,132 @@ struct Held {
 /// # Errors
 /// If the words of a column change often: rows of several channels or sensors may stand below each other.
 pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
-    let lines = |text| Lines::new(text, 0, 1, &["#", "%"]).filter(|line| !line.is_blank());
     let head: Vec<Line> = lines(&text.head).filter(|line| line.remark.is_none()).collect();
     let Some((separator, first, columns)) = columns(&head) else {
         return Ok(None);
     };
     let bytes = text.source.all()?;
     let whole = encoding::decode(&bytes);
-    let (mut names, mut held) = (Vec::new(), Vec::new());
-    held.resize_with(columns.len(), Held::default);
-    let (mut kept, mut ended, mut rows) = (String::with_capacity(whole.len()), 1, 0);
-    for line in lines(&whole) {
-        let cells = fields(line.text, separator).unwrap_or_default();
-        // Line numbers stay those of the file.
-        kept.extend((ended..line.number).map(|_| '\n'));
-        ended = line.number;
-        if cells.len() != columns.len() || line.remark.is_some() && line.number > first {
-            kept += line.text;
-            continue;
-        }
-        if line.number < first {
-            names = cells.iter().map(|(_, name)| name.clone().into_owned()).collect();
-        } else {
-            rows += 1;
-            for (i, (at, cell)) in cells.iter().enumerate().filter(|(i, _)| columns[*i]) {
-                match Cell::of(cell) {
-                    Cell::Value => return Ok(None),
-                    Cell::Blank => {}
-                    Cell::Text | Cell::Neither => held[i].take(cell, &line, *at),
-                }
-            }
-        }
-        without(&mut kept, &line, &cells, separator, &columns);
-    }
-    kept.push('\n');
+    let Some(mut scan) = Scan::of(&whole, separator, first, &columns) else { return Ok(None) };
+    let rows = scan.rows;
     let named = |held: &&mut Held| held.names || held.returns * STATE > rows;
-    if let Some(why) = held.iter_mut().find(named).and_then(|held| held.mixed.take()) {
+    if let Some(why) = scan.held.iter_mut().find(named).and_then(|held| held.mixed.take()) {
         return Err(why);
     }
-    let said = |(i, held): (usize, &Held)| {
-        let name = names.get(i).filter(|name: &&String| !name.is_empty()).cloned();
-        Some(format!("{} ({})", name.unwrap_or_else(|| format!("column {}", i + 1)), held.said()?))
-    };
-    let listed: Vec<String> = held.iter().enumerate().filter_map(said).collect();
-    let found = Finding::note("columns-of-words").name("columns", listed.join(", "));
-    let source = text.source.with_bytes(kept)?;
-    Ok(Some(LeftOut { source, found, changes: held.iter().any(|held| held.changes > 0) }))
+    let found = scan.named_with_units(separator, &columns);
+    let source = text.source.with_bytes(scan.kept)?;
+    Ok(Some(LeftOut { source, found, changes: scan.held.iter().any(|held| held.changes > 0) }))
+}
+
+/// The text without its columns of text, and what these hold.
+struct Scan {
+    kept: String,
+    held: Vec<Held>,
+    head: Option<Head>,
+    rows: usize,
+}
+
+impl Scan {
+    /// `None` where one of the columns of text holds a number, too.
+    fn of(whole: &str, separator: Separator, first: u64, columns: &[bool]) -> Option<Scan> {
+        let (mut kept, mut ended, mut rows) = (String::with_capacity(whole.len()), 1, 0);
+        let (mut head, mut held) = (None, Vec::new());
+        held.resize_with(columns.len(), Held::default);
+        for line in lines(whole) {
+            // A bracket belongs to the name before it.
+            let above = line.number < first && separator == Separator::Blank;
+            let name = above.then(|| line.text.replace(" [", "[").replace(" (", "("));
+            let line = Line { text: name.as_deref().unwrap_or(line.text), ..line };
+            let cells = fields(line.text, separator).unwrap_or_default();
+            // Line numbers stay those of the file.
+            kept.extend((ended..line.number).map(|_| '\n'));
+            ended = line.number;
+            let (begin, is_row) = (kept.len(), line.number >= first);
+            if cells.len() != columns.len() || line.remark.is_some() && line.number > first {
+                kept += line.text;
+            } else {
+                rows += usize::from(is_row);
+                for (i, (at, cell)) in cells.iter().enumerate().filter(|(i, _)| columns[*i] && is_row) {
+                    match Cell::of(cell) {
+                        Cell::Value => return None,
+                        Cell::Blank => {}
+                        Cell::Text | Cell::Neither => held[i].take(cell, &line, *at),
+                    }
+                }
+                without(&mut kept, &line, &cells, separator, columns);
+            }
+            if !is_row && let Some(names) = one_a_column(&cells, columns) {
+                head = Some(Head { names, at: begin..kept.len() });
+            }
+        }
+        kept.push('\n');
+        Some(Scan { kept, held, head, rows })
+    }
+
+    /// Gives the names the units that stand in cells of their own behind the values, and says what the
+    /// columns of text hold.
+    fn named_with_units(&mut self, separator: Separator, columns: &[bool]) -> Vec<Finding> {
+        let units: Vec<Option<&str>> = (0..columns.len()).map(|i| self.unit_behind(i, columns)).collect();
+        let name = |i: usize| self.head.as_ref().map_or("", |head| &head.names[i]);
+        let numbered =
+            |i: usize| if name(i).is_empty() { format!("column {}", i + 1) } else { name(i).to_owned() };
+        let is_unit = |i: usize| i > 0 && units[i - 1].is_some();
+        let words = self.held.iter().enumerate().filter(|(i, _)| !is_unit(*i));
+        let words: Vec<String> =
+            words.filter_map(|(i, held)| Some(format!("{} ({})", numbered(i), held.said()?))).collect();
+        let with_units = units.iter().enumerate();
+        let with_units: Vec<String> =
+            with_units.filter_map(|(i, unit)| Some(format!("{} ({})", numbered(i), (*unit)?))).collect();
+        let found = [("columns-of-words", words), ("units-in-cells", with_units)];
+        let head = self.head.as_ref().filter(|_| units.iter().any(Option::is_some));
+        let head = head.map(|head| (head.at.clone(), head.with(&units, separator, columns)));
+        let said = found.into_iter().filter(|(_, columns)| !columns.is_empty());
+        let said =
+            said.map(|(code, columns)| Finding::note(code).name("columns", columns.join(", "))).collect();
+        if let Some((at, line)) = head {
+            self.kept.replace_range(at, &line);
+        }
+        said
+    }
+
+    /// The unit of the values of a column without one, where the cells behind them hold it and nothing else.
+    fn unit_behind(&self, i: usize, columns: &[bool]) -> Option<&str> {
+        let names = &self.head.as_ref()?.names;
+        let values = !columns[i] && !names[i].is_empty() && Name::parse(&names[i]).unit.is_none();
+        let held = self.held.get(i + 1).filter(|held| columns[i + 1] && held.changes == 0 && values)?;
+        let is_unit = names[i + 1].is_empty() || UNIT.contains(&key(&names[i + 1]).as_str());
+        let unit =
+            Some(held.first.as_str()).filter(|unit| unit.starts_with(char::is_alphabetic) && is_unit)?;
+        Unit::parse(symbol(unit)).map(|_| unit)
+    }
+}
+
+fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+    Lines::new(text, 0, 1, &["#", "%"]).filter(|line| !line.is_blank())
+}
+
+/// The cells of a line of names, one a column; columns of text may have none.
+fn one_a_column(cells: &Fields, columns: &[bool]) -> Option<Vec<String>> {
+    let mut names = cells.iter().map(|(_, name)| name.clone().into_owned());
+    if cells.len() == columns.len() {
+        return Some(names.collect());
+    }
+    let values = columns.iter().filter(|text| !**text).count();
+    let mut next = |text: &bool| if *text { String::new() } else { names.next().unwrap_or_default() };
+    (cells.len() == values).then(|| columns.iter().map(&mut next).collect())
+}
+
+impl Head {
+    /// The names of columns of values, with the units behind them.
+    fn with(&self, units: &[Option<&str>], separator: Separator, columns: &[bool]) -> String {
+        let mark = if let Separator::Char(mark) = separator { char::from(mark) } else { ' ' };
+        let values = self.names.iter().zip(units).zip(columns).filter(|(_, text)| !**text);
+        let cell = |((name, unit), _): ((&String, &Option<&str>), &bool)| {
+            let name = unit.map_or(name.clone(), |unit| format!("{name}[{unit}]"));
+            if name.contains([mark, '"']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
+        };
+        values.map(cell).collect::<Vec<_>>().join(&mark.to_string())
+    }
 }
 
 impl Held {
@@ -131,7 +224,7 @@ impl Held {
 
 /// Adds a line with blanks in place of its cells of text and the marks behind them: all others stay in their
 /// columns.
-fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
+pub fn without(kept: &mut String, line: &Line, cells: &Fields, separator: Separator, text: &[bool]) {
     let begin = kept.len();
     kept.push_str(&line.text[..cells[0].0]);
     for (i, (at, _)) in cells.iter().enumerate() {

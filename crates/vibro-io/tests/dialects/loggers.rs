@@ -43,7 +43,7 @@ pub const ALL: &[Dialect] = &[
         outcome: read(
             &[ch("Accel_x", "m/s²", 0, 1.0, 5e-7), ch("Accel_y", "m/s²", 1, 9.80665, 5e-7)],
             X::Even(0.0),
-            &["axis-clock"],
+            &["axis-clock", "columns-count"],
         ),
     },
     Dialect {
@@ -508,6 +508,23 @@ pub const ALL: &[Dialect] = &[
             &[ch("column 1", "", 0, 1.0, 5e-7), ch("column 2", "", 1, 1.0, 5e-7)],
             X::Numbered,
             &["abscissa-unsaid", "two-channels", "unit-unsaid"],
+        ),
+    },
+    Dialect {
+        of: "PASCO Capstone",
+        oddity: "runs side by side, each behind times of its own",
+        file: "runs.csv",
+        text: || {
+            let head = "Time (s) Run #1,Force (N) Run #1,Time (s) Run #2,Force (N) Run #2\n";
+            table(head, |i| {
+                let time = fixed(at(0.0, i), 4);
+                format!("{time},{},{time},{}", fixed(value(0, i), 6), fixed(value(1, i), 6))
+            })
+        },
+        outcome: read(
+            &[ch("Force Run #1", "N", 0, 1.0, 5e-7), ch("Force Run #2", "N", 1, 1.0, 5e-7)],
+            X::Even(0.0),
+            &[],
         ),
     },
 ];

@@ -106,7 +106,7 @@ pub const ALL: &[Dialect] = &[
                 ch("label", "", 0, 0.0, 1.0),
             ],
             X::Even(0.0),
-            &["axis-clock", "columns-of-words", "unit-against-name"],
+            &["axis-clock", "columns-count", "columns-of-words", "unit-against-name"],
         ),
     },
     Dialect {

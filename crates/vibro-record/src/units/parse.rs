@@ -37,7 +37,7 @@ const SYMBOLS: &[(&str, [i8; 6], f64, bool)] = &[
     ("nT", [0, 1, -2, -1, 0, 0], 1e-9, false),
     ("Hz", [0, 0, -1, 0, 0, 0], 1.0, true),
     ("cps", [0, 0, -1, 0, 0, 0], 1.0, false),
-    ("rpm cpm CPM", [0, 0, -1, 0, 0, 0], 1.0 / 60.0, false),
+    ("rpm RPM Rpm cpm CPM Cpm", [0, 0, -1, 0, 0, 0], 1.0 / 60.0, false),
     ("K", [0, 0, 0, 0, 1, 0], 1.0, false),
     ("in inch", [1, 0, 0, 0, 0, 0], 0.0254, false),
     ("ips IPS", [1, 0, -1, 0, 0, 0], 0.0254, false),
@@ -315,7 +315,9 @@ mod tests {
         check("rad/s²", Quantity::AngularAcceleration, 1.0);
         check("1/s", Quantity::Frequency, 1.0);
         check("cps", Quantity::Frequency, 1.0);
-        check("rpm", Quantity::Frequency, 1.0 / 60.0);
+        for text in ["rpm", "RPM", "Rpm", "cpm", "CPM", "Cpm", "1/min"] {
+            check(text, Quantity::Frequency, 1.0 / 60.0);
+        }
         assert_eq!(Unit::parse("deg/s").unwrap().si().symbol(), "rad/s");
         assert_eq!(Unit::parse("rad/s").unwrap().times_seconds(1), Unit::of(Quantity::Angle));
         assert_eq!(Unit::parse("m/rad").unwrap().si().symbol(), "m·rad^-1");
