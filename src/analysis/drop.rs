@@ -211,6 +211,9 @@ impl Series {
             ..ImpactsOptions::default()
         };
         let (train, found) = Train::of(&trace, &how, self.drop.full_flight())?;
+        if let Some(first) = train.intervals.first() {
+            self.drop.possible(*first, "the first interval")?;
+        }
         self.trains.push(train);
         // Times alone matter here.
         let of_trace = trace.meta.findings.iter().filter(|found| found.code != Trace::UNCALIBRATED);

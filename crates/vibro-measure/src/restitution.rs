@@ -118,18 +118,18 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         }
         // What follows a drop may be no train of bounces; the drop answers nevertheless.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {
-            let grown =
-                trains.iter().enumerate().find_map(|(i, train)| Some((i + 1, flights::longer(train)?)));
-            let doubt = |(train, n)| Finding::doubt("drop-flights-grow").count("n", n).count("train", train);
-            findings.push(grown.map_or_else(|| Finding::caution("flight-times-ignored"), doubt));
-            by.iter_mut().filter(|_| grown.is_some()).for_each(|way| way.restitution.std = None);
+            let doubt = grown(&trains).or(drop.as_ref().and_then(|drop| drop.unlike(&trains)));
+            by.iter_mut().filter(|_| doubt.is_some()).for_each(|way| way.restitution.std = None);
+            findings.push(doubt.unwrap_or_else(|| Finding::caution("flight-times-ignored")));
         }
         Err(error) => return Err(error),
     }
     if contact_std > 0.0 {
         let by_contact =
             |(way, part): (&MethodAnswer, &f64)| 1e3 * contact_std * part * way.restitution.value;
-        let matters = |at: (&MethodAnswer, &f64)| at.0.restitution.std.is_some_and(|s| by_contact(at) > s);
+        let matters = |at: (&MethodAnswer, &f64)| {
+            at.0.restitution.std.is_some_and(|s| LONG_CONTACT * by_contact(at) > s)
+        };
         let moved: Vec<f64> = by.iter().zip(&bias).map(by_contact).collect();
         if contact > 0.0 {
             let seen = Finding::note("contact-time-seen").number("duration", contact);
@@ -169,6 +169,16 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
 
 /// Longest contact in s that is allowed for where none is stated and none is seen.
 const LONGEST: f64 = 1e-3;
+
+/// What is doubtful where too many flights of a train are longer than the first.
+fn grown(trains: &[Train]) -> Option<Finding> {
+    let first = |(i, train): (usize, &Train)| Some((i + 1, flights::longer(train)?));
+    let (train, n) = trains.iter().enumerate().find_map(first)?;
+    Some(Finding::doubt("drop-flights-grow").count("n", n).count("train", train))
+}
+
+/// A soft ball touches so many times as long: where that moves R by its uncertainty, the contact is asked for.
+const LONG_CONTACT: f64 = 5.0;
 
 /// How long an impact lasts and its standard uncertainty, in s: as stated, or as all records show it.
 /// Otherwise anywhere between nothing and the longest with equal chance, and the answer at its one end.

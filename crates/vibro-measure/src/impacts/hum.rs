@@ -25,6 +25,8 @@ const HARMONICS: usize = 7;
 const TOLERANCE: f64 = 0.5;
 /// Mains frequencies wander, so longer records are fitted in pieces of this length, in s.
 const PIECE: f64 = 10.0;
+/// Impacts that come this much faster than the hum are fitted by none of its harmonics.
+const FASTER: f64 = 1.5 * HARMONICS as f64;
 /// The noise between impacts must fall to this part of what it was, or it was no hum.
 const WORTH: f64 = 0.8;
 
@@ -55,7 +57,7 @@ pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<
     let harmonics = hums.iter().map(|h| h.harmonics).max()?;
     let mean = |f: fn(&Hum) -> f64| hums.iter().map(f).sum::<f64>() / hums.len() as f64;
     let found = Hum { frequency: mean(|h| h.frequency), amplitude: mean(|h| h.amplitude), harmonics };
-    if let Some(impacts) = burst_rate(&cleaned, rate)
+    if let Some(impacts) = burst_rate(&cleaned, rate, 1.0 / (FASTER * found.frequency))
         && (impacts > 0.9 * found.frequency || (impacts / found.frequency - 0.5).abs() < 0.01)
     {
         let either = Finding::caution("hum-or-impacts").number("frequency", found.frequency);
@@ -68,11 +70,13 @@ pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<
     Some(found)
 }
 
-/// Bursts a second in what remains without the hum, from the median of their distances.
-fn burst_rate(cleaned: &[f64], rate: f64) -> Option<f64> {
+/// Bursts a second in what remains without the hum, from the median of their distances. What follows a burst
+/// within a `pause` in s is its ringing.
+fn burst_rate(cleaned: &[f64], rate: f64, pause: f64) -> Option<f64> {
     let found = background(cleaned);
     let centred: Vec<f64> = cleaned.iter().map(|v| v - found.level).collect();
-    let starts: Vec<f64> = bursts(&centred, found.reach, None).0.iter().map(|b| b.start as f64).collect();
+    let pause = Some((pause * rate) as usize);
+    let starts: Vec<f64> = bursts(&centred, found.reach, pause).0.iter().map(|b| b.start as f64).collect();
     let steps: Vec<f64> = starts.windows(2).map(|w| w[1] - w[0]).collect();
     (steps.len() > 1).then(|| rate / median(&steps))
 }

@@ -2,7 +2,7 @@
 //! before.
 
 use super::fit::FlightNoise;
-use super::{MethodAnswer, Train, above_zero, not_negative, repeated, together};
+use super::{GROSS, MethodAnswer, Train, above_zero, not_negative, repeated, together};
 use crate::Estimate;
 use crate::mean::{average, scatter};
 use vibro_math::Noise;
@@ -72,6 +72,21 @@ impl Drop {
         trains.iter().all(|t| t.intervals.first().is_some_and(|first| self.intervals.contains(first)))
     }
 
+    /// What is doubtful where the second flight of a train, over the first, is not the R that the first gives.
+    pub(super) fn unlike(&self, trains: &[Train]) -> Option<Finding> {
+        let unlike = |train: &Train| {
+            let [first, second, ..] = train.intervals[..] else { return None };
+            let (by_fall, by_flights) = (self.restitution(first), second / first);
+            let apart = (by_fall - by_flights).abs() > GROSS * by_fall.max(by_flights);
+            apart.then(|| {
+                let found = Finding::doubt("methods-far-apart").name("first", "drop");
+                let found = found.number("first_value", by_fall).name("second", "flight times");
+                found.number("second_value", by_flights)
+            })
+        };
+        trains.iter().find_map(unlike)
+    }
+
     fn check(&self) -> Result<()> {
         above_zero("a height", self.height)?;
         above_zero("an acceleration of free fall", self.gravity)?;
@@ -85,19 +100,25 @@ impl Drop {
         }
         for (i, interval) in self.intervals.iter().enumerate() {
             above_zero("an interval", *interval)?;
-            let r = self.restitution(*interval);
-            if r > 1.0 {
-                let (drop, height) = (i + 1, self.height);
-                let [interval, most] = [*interval, interval / r].map(|time| quantity(time, "s", 4));
-                let why = format!(
-                    "the interval of drop {drop}, {interval}, gives R = {r:.3}: after a fall of {height} m it is {most} at most"
-                );
-                let hint =
-                    "the height in metres, and the interval in seconds from the first impact to the second";
-                return Err(Error::refused(why).hint(hint));
-            }
+            self.possible(*interval, &format!("the interval of drop {}", i + 1))?;
         }
         Ok(())
+    }
+
+    /// Refuses an `interval`, named so, after which R is above 1.
+    ///
+    /// # Errors
+    /// If it is longer than the fall allows.
+    pub fn possible(&self, interval: f64, named: &str) -> Result<()> {
+        let (r, height) = (self.restitution(interval), self.height);
+        if r.is_nan() || r <= 1.0 {
+            return Ok(());
+        }
+        let [interval, most] = [interval, interval / r].map(|time| quantity(time, "s", 4));
+        let why =
+            format!("{named}, {interval}, gives R = {r:.3}: after a fall of {height} m it is {most} at most");
+        let hint = "the height in metres, and the interval in seconds from the first impact to the second";
+        Err(Error::refused(why).hint(hint))
     }
 
     /// `(u_R/R)² = (u_Δt/Δt)² + (u_h/2h)² + (u_g/2g)²`. Every drop shares the height, and each has its own

@@ -10,7 +10,7 @@ use crate::impacts::{QUIETER, Sound};
 
 /// Steps of ln R, and least R.
 pub const STEP: f64 = 0.015;
-const LEAST: f64 = 0.03;
+pub const LEAST: f64 = 0.03;
 /// Largest R of a bounce: a superball returns with 0.92, steel on an anvil with 0.97. Sounds whose intervals
 /// shrink less are evenly spaced.
 pub const LARGEST: f64 = 0.985;
@@ -203,7 +203,13 @@ impl Pairs<'_> {
         let evidence = |at: &usize| told[*at].all();
         let most = pairs().max_by(|a, b| evidence(a).total_cmp(&evidence(b)));
         let most = most.filter(|at| evidence(at).is_finite())?;
-        let trains = pairs().filter(|at| *at != most);
+        // Sounds of one impact begin trains that are one.
+        let same = |at: usize| {
+            let apart = |i: usize, j: usize| (self.sounds[i].time - self.sounds[j].time).abs();
+            let flights = (self.flight(at / n, at % n) - self.flight(most / n, most % n)).abs();
+            apart(at / n, most / n) < SHADOW && flights < 6.0 * TIMING
+        };
+        let trains = pairs().filter(|at| *at != most && !same(*at));
         let trains = trains.map(|at| (evidence(&at), Rival::Train(at / n, at % n)));
         let falls = pairs().map(|at| (self.fall(at / n, at % n), Rival::Fall(at / n, at % n)));
         let rival = trains.chain(falls).max_by(|a, b| a.0.total_cmp(&b.0));

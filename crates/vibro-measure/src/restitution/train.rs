@@ -1,6 +1,6 @@
 //! A train of bounces as it is heard: which of the sounds of a record are the bounces of one falling body.
 
-use super::pairs::{FallRecord, Rival, SHADOW};
+use super::pairs::{FallRecord, LEAST, Rival, SHADOW};
 use super::plausible::{Plausible, plausible};
 use super::untold::Untold;
 use crate::Estimate;
@@ -167,9 +167,22 @@ fn choose(
         let why = format!("two impacts, and the third, expected at {expected}, is not heard");
         return refused(why, &train);
     }
+    if let Some(full) = heard.full
+        && flight < LEAST * full
+    {
+        let (r, flight) = (flight / full, quantity(flight, "s", 3));
+        let why =
+            format!("the first flight of {flight} is R = {r:.4} by the height: it may be that of an echo");
+        return refused(why, &train);
+    }
     let of = |code, n: usize| (n > 0).then(|| Finding::note(code).count("n", n));
+    let louder = sounds[..before].iter().filter(|sound| sound.height > sounds[a].height).count();
+    let of_handling = (louder > 0).then(|| Finding::caution("louder-before").count("n", before));
+    let of_handling =
+        of_handling.map(|found| found.count("louder", louder)).or(of("handling-ignored", before));
+    let one = (train.impacts.len() == 2 && train.release == 0).then(|| Finding::caution("one-flight"));
     let echoes = of("echoes-ignored", train.echoes).map(|found| found.number("delay", SHADOW));
-    let findings = [of("handling-ignored", before), echoes, of("sounds-ignored", other)];
+    let findings = [of_handling, echoes, of("sounds-ignored", other), one];
     Ok((train.impacts, findings.into_iter().flatten().collect()))
 }
 
