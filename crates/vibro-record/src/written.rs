@@ -132,7 +132,8 @@ impl<'de> Node<'de> {
             DeValue::String(text) => visitor.visit_str(&text),
             DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
                 Ok(number) => visitor.visit_i64(number),
-                Err(_) => Err(de::Error::invalid_type(Unexpected::Other(number.as_str()), &visitor)),
+                // Beyond all whole numbers; as a number it has a range of its own.
+                Err(_) => visitor.visit_f64(number.as_str().parse().unwrap_or(f64::INFINITY)),
             },
             DeValue::Float(number) => match number.as_str().parse() {
                 Ok(number) => visitor.visit_f64(number),
@@ -288,28 +289,58 @@ impl<'a> Written<'a> {
     /// # Errors
     /// If it is no TOML, with its line and what can be written in place of it.
     pub fn parse(&self) -> Result<DeTable<'a>, Error> {
-        DeTable::parse(self.text).map(Spanned::into_inner).map_err(|error| {
-            let span = error.span().unwrap_or(0..0);
-            let line = line_at(self.text, span.start);
-            let head = uncommented(line);
-            let told = |found: &str, expected: &str, hint: String| {
-                Error::usage(found, expected).excerpt(self.text, span.clone()).hint(hint)
-            };
-            let before = &self.text[..start_of_line(self.text, span.start)];
-            let stands_twice = is_toml(line) && !line.is_empty() && is_toml(before);
-            if stands_twice {
-                told(line, "every key once in a table", "remove this line, or the other one".to_owned())
-            } else if let Some(meant) = head_of_tables(head) {
-                told(line, "two brackets on both sides", format!("write {meant}"))
-            } else if let Some(key) = head.strip_suffix('=') {
-                let key = key.trim_end();
-                told(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
-            } else if let Some((expected, meant)) = respelt(head) {
-                told(head, &expected, format!("write {meant}"))
-            } else {
-                told(error.message(), "", String::new())
-            }
-        })
+        DeTable::parse(self.text)
+            .map(Spanned::into_inner)
+            .map_err(|error| self.no_toml(error.message(), error.span().unwrap_or(0..0)))
+    }
+
+    /// What keeps a text from being TOML, and what can be written in place of it.
+    fn no_toml(&self, why: &str, span: Range<usize>) -> Error {
+        if let Some(open) = self.unclosed(span.start) {
+            return open;
+        }
+        let line = line_at(self.text, span.start);
+        let head = with_number(line).unwrap_or(uncommented(line));
+        let told = |found: &str, expected: &str, hint: String| {
+            Error::usage(found, expected).excerpt(self.text, span.clone()).hint(hint)
+        };
+        let before = &self.text[..start_of_line(self.text, span.start)];
+        let stands_twice = is_toml(line) && !line.is_empty() && is_toml(before);
+        if stands_twice {
+            told(line, "every key once in a table", "remove this line, or the other one".to_owned())
+        } else if let Some(meant) = head_of_tables(head) {
+            told(line, "two brackets on both sides", format!("write {meant}"))
+        } else if let Some(key) = head.strip_suffix('=') {
+            let key = key.trim_end();
+            told(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
+        } else if let Some((expected, meant)) = respelt(head) {
+            told(head, &expected, format!("write {meant}"))
+        } else {
+            told(why, "", String::new())
+        }
+    }
+
+    /// Of a list without its closing bracket, which the parser misses in the line `at` further down: the line
+    /// that opens it.
+    fn unclosed(&self, at: usize) -> Option<Error> {
+        let begin = start_of_line(self.text, at.min(self.text.len()));
+        let (above, line) = (self.text[..begin].trim_end(), line_at(self.text, begin));
+        if is_toml(above) || !(line.is_empty() || is_toml(uncommented(line))) {
+            return None;
+        }
+        let starts = above.rmatch_indices('\n').map(|(end, _)| end + 1).chain([0]);
+        let open = starts.into_iter().find(|start| is_toml(&self.text[..*start]))?;
+        let head = uncommented(line_at(self.text, open));
+        let meant = if start_of_line(above, above.len()) == open { respelt(head) } else { None };
+        let closed =
+            || is_toml(&format!("{above}\n]")).then(|| ("a bracket that closes the list".to_owned(), "]"));
+        let (expected, hint) = match meant {
+            Some((expected, meant)) => (expected, format!("write {meant}")),
+            None => closed().map(|(expected, mark)| {
+                (expected, format!("write {mark} in a line of its own before {line}"))
+            })?,
+        };
+        Some(Error::usage(head, expected).excerpt(self.text, open..open + head.len()).hint(hint))
     }
 
     /// A table of it, at `span`, as a type.
@@ -370,7 +401,11 @@ impl<'a> Written<'a> {
                 let key = head.split_once('=').map_or("", |(key, _)| key.trim());
                 let meant = values(key, stated, Some(&kind)).into_iter().find(|(_, meant)| takes(meant));
                 let (expected, hint) = meant.map(|(expected, meant)| (expected, with(&meant))).unzip();
-                told(head, &expected.unwrap_or_else(|| kind.words("\"")), hint.unwrap_or_default())
+                let huge =
+                    matches!(kind, Kind::Whole(..)) && stated.parse::<f64>().is_ok_and(|n| n.abs() > 1e15);
+                let none = || if huge { format!("put # in front of it: # {head}") } else { String::new() };
+                let expected = expected.unwrap_or_else(|| kind.words("\""));
+                told(head, &expected, hint.unwrap_or_else(none))
             }
             What::Other(words) => told(&words, "", String::new()),
         }
@@ -417,7 +452,9 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
     let word = bare.to_lowercase();
     let is = |words: [&str; 4]| words.contains(&&*word);
     let is_name = bare.starts_with(char::is_alphabetic);
-    let of_number = match bare {
+    let number = meant_number(key, bare);
+    let of_number = match &number {
+        Some(meant) if bare.contains(',') && !meant.contains('.') => "digits without commas between them",
         _ if bare.contains(',') => "a number with a decimal point",
         _ if bare.starts_with('.') => "a digit before the point",
         _ if bare.ends_with('.') => "a digit behind the point",
@@ -425,6 +462,11 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
         _ => "a number in the unit of this key, without it",
     };
     let words = kind.map_or_else(String::new, |kind| kind.words("\""));
+    let list = stated.strip_prefix('[').map(|rest| rest.strip_suffix(']').unwrap_or(rest).trim());
+    let closed = |inner: String| format!("[{inner}]");
+    let between_blanks = |inner: &&str| !inner.contains([',', ';', '"', '\'']) && inner.contains(' ');
+    let by_blanks = |inner: &str| closed(inner.split_whitespace().collect::<Vec<_>>().join(", "));
+    let none = kind.is_none() && key.ends_with("_pass") && is(["no", "off", "none", "false"]);
     let two = bare.split_once([':', '-', ';']).map(|(low, high)| format!("[{low}, {high}]"));
     let first = if let Some(Kind::Names(names)) = kind { names.first() } else { None };
     let quoted = |text: String| format!("\"{text}\"");
@@ -435,11 +477,14 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
         (&*words, near),
         ("no mark behind a value", stated.strip_suffix([',', ';']).map(str::to_owned)),
         ("a whole number", kind.filter(|_| whole).and_then(|kind| kind.meant(key, bare))),
-        (of_number, meant_number(key, bare)),
+        (of_number, number.clone()),
+        (CORNER, none.then(|| quoted("none".to_owned()))),
         ("true or false", is(["yes", "on", "1", "true"]).then(|| "true".to_owned())),
         ("true or false", is(["no", "off", "0", "false"]).then(|| "false".to_owned())),
         (&words, is(["no", "off", "0", "false"]).then(|| quoted("none".to_owned()))),
         ("commas between values", stated.starts_with('[').then(|| stated.replace(';', ","))),
+        ("commas between values", list.filter(between_blanks).map(by_blanks)),
+        ("a bracket that closes the list", list.map(|inner| closed(inner.replace(';', ",")))),
         ("two values between square brackets", two),
         ("a path between single quotes", bare.contains('\\').then(|| format!("'{bare}'"))),
         ("text between quotes", (is_name || is_text).then(|| quoted(bare.to_owned()))),
@@ -448,6 +493,9 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
     ];
     all.into_iter().filter_map(|(expected, meant)| Some((expected.to_owned(), meant?))).collect()
 }
+
+/// What a key of a low-pass takes.
+const CORNER: &str = "a corner in Hz, or \"none\"";
 
 /// What is meant by a line that is no TOML, with what was expected.
 fn respelt(line: &str) -> Option<(String, String)> {
@@ -483,6 +531,14 @@ fn uncommented(line: &str) -> &str {
         c == '#' && open.is_none()
     };
     line.split(is_comment).next().unwrap_or_default().trim_end()
+}
+
+/// A line whose value is a word with a number behind it, `name = Run #1`: that is no comment.
+fn with_number(line: &str) -> Option<&str> {
+    let (before, number) = line.rsplit_once(" #")?;
+    let (_, word) = before.split_once('=')?;
+    let is_number = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+    (is_number && word.trim_start().starts_with(char::is_alphabetic)).then_some(line)
 }
 
 /// The head of one of several tables that is meant by a line whose brackets are no pairs.
