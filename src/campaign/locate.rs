@@ -69,6 +69,25 @@ mod tests {
             ("prior.gap = [1; 2]", &["write prior.gap = [1, 2]"]),
             ("parameters = ['#gap']", &["parameters = ['#gap'];"]),
             ("starts = three", &["text between quotes", "write starts = \"three\""]),
+            ("prior.gap = [1; 2\nstarts = 3", &["prior.gap = [1; 2;", "write prior.gap = [1, 2]"]),
+            ("prior.gap = [1, 2", &["prior.gap = [1, 2;", "write prior.gap = [1, 2]"]),
+            ("prior.gap = [1 2]", &["commas between values", "write prior.gap = [1, 2]"]),
+            (
+                "parameters = [\n  \"gap\",\n  \"k2\"\nstarts = 3",
+                &[
+                    "parameters = [;",
+                    "a bracket that closes",
+                    "write ] in a line of its own before starts = 3",
+                ],
+            ),
+            ("parameters = Run #1", &["parameters = Run #1;", "write parameters = \"Run #1\""]),
+            ("starts = three #1st", &["write starts = \"three\""]),
+            ("starts = 99999999999999999999999", &["a whole number", "put # in front"]),
+            ("scatter = 51,200.5", &["write scatter = 51200.5"]),
+            (
+                "low_pass = no",
+                &["low_pass = no;", "a corner in Hz, or \"none\"", "write low_pass = \"none\""],
+            ),
             ("prior.gap = 1:2", &["two values between square brackets", "write prior.gap = [1, 2]"]),
         ] {
             let read = written(text, &[]);

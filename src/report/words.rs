@@ -195,7 +195,7 @@ fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
         // An optional part is there where all of its facts are.
         let mut facts = inside.split('{').skip(1).filter_map(|part| part.split('}').next());
         match close {
-            '}' => out.push_str(&shown(inside, finding).unwrap_or_else(|| "?".to_owned())),
+            '}' => out.push_str(&shown(inside, finding).unwrap_or_else(|| UNKNOWN.to_owned())),
             ']' => out.push_str(&voice.setting(inside)),
             _ if facts.all(|fact| shown(fact, finding).is_some()) => {
                 out.push_str(&filled(inside, finding, voice));
@@ -207,14 +207,17 @@ fn filled(template: &str, finding: &Finding, voice: Voice) -> String {
     out + rest
 }
 
-/// What stands for a pair of braces; `None` where the fact is missing.
+/// What stands for a number that could not be computed (NaN), and for a fact that is missing.
+const UNKNOWN: &str = "unknown";
+
+/// What stands for a pair of braces; `None` where the fact is missing, or holds no number.
 fn shown(inside: &str, finding: &Finding) -> Option<String> {
     let (name, how) = inside.split_at(inside.find([' ', '.', ':', '?']).unwrap_or(inside.len()));
     if name == "subject" {
         return finding.subject.clone();
     }
     if let Some(std) = how.strip_prefix(" ± ") {
-        return Some(estimate(finding.get(name)?, finding.get(std)));
+        return Some(estimate(finding.get(name).filter(|value| !value.is_nan())?, finding.get(std)));
     }
     let (digits, how) = match how.strip_prefix('.') {
         Some(rest) => {
@@ -228,6 +231,9 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
         Fact::Number(value) => std::slice::from_ref(value),
         Fact::Numbers(values) => values,
     };
+    if !all.is_empty() && all.iter().all(|value| value.is_nan()) {
+        return None;
+    }
     let one = all.first() == Some(&1.0);
     if let Some(nouns) = how.strip_prefix(':') {
         let (singular, plural) =
@@ -244,6 +250,7 @@ fn shown(inside: &str, finding: &Finding) -> Option<String> {
         None => how,
     };
     let show = |v: &f64| match unit {
+        _ if v.is_nan() => UNKNOWN.to_owned(),
         "%" => format!("{} %", trimmed(&significant(100.0 * v, digits))),
         "" if v.fract() == 0.0 && v.abs() < 1e15 => v.to_string(),
         "" => trimmed(&significant(*v, digits)),
@@ -290,6 +297,9 @@ mod tests {
             said("{part %} on {lines Hz}: {n:entry/entries}", &found),
             "3.12 % on 5 Hz, 10.5 Hz: 3 entries"
         );
+        let unknown = Finding::doubt("x").number("std", f64::NAN).numbers("parts", [0.5, f64::NAN]);
+        assert_eq!(said("off by {std s}<, ± {std s}>: {parts %}", &unknown), "off by unknown: 50 %, unknown");
+        assert_eq!(said("{gap s}", &Finding::note("x").number("gap", 8.88e-16)), "0 s");
     }
 
     #[test]

@@ -108,13 +108,14 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
     findings.extend(of_trains);
     match by_flights {
         Ok((way, _)) => {
-            by.extend(way);
             // ln R is (ln Δt_n − ln Δt₁)/(n − 1), and a contact c adds c/Δt to each logarithm.
             let of = |t: &Train| match t.intervals[..] {
                 [first, .., last] => Some(1e-3 * (1.0 / last - 1.0 / first) / (t.intervals.len() - 1) as f64),
                 _ => None,
             };
-            bias.push(average(&trains.iter().filter_map(of).collect::<Vec<f64>>()));
+            // Without flights there is no answer by them, and no bias of it.
+            bias.extend(way.iter().map(|_| average(&trains.iter().filter_map(of).collect::<Vec<f64>>())));
+            by.extend(way);
         }
         // What follows a drop may be no train of bounces; the drop answers nevertheless.
         Err(error) if measured.drop.is_some() && error.exit_code() == 1 => {

@@ -32,10 +32,25 @@ pub fn typed(path: impl AsRef<Path>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::shown;
+    use super::{shown, typed};
 
     #[test]
     fn a_name_stays_on_its_line_and_runs_one_way() {
         assert_eq!(shown("µ a\nb\u{202e}c.csv"), "µ a\u{fffd}b\u{fffd}c.csv");
+    }
+
+    /// As sh reads it: between single quotes nothing but these counts, between double ones `$` still does.
+    #[test]
+    fn a_name_is_typed_so_that_a_shell_leaves_it_alone() {
+        for (name, expected) in [
+            ("a.csv", "a.csv"),
+            ("Run 1.csv", "\"Run 1.csv\""),
+            ("cost $5.csv", "'cost $5.csv'"),
+            ("$HOME.csv", "'$HOME.csv'"),
+            ("3\".csv", "'3\".csv'"),
+            ("don't.csv", "\"don't.csv\""),
+        ] {
+            assert_eq!(typed(name), expected);
+        }
     }
 }

@@ -1,12 +1,13 @@
 //! Values that a person writes as TOML. What is wrong with one is told by its place and by the kind that its
 //! type asks for; of the words of a parser none is read.
 
+mod node;
+
 use crate::kind::{Kind, meant_number};
 use crate::{Error, nearest};
-use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer, StrDeserializer};
-use serde::de::{self, DeserializeOwned, Deserializer, Expected, IntoDeserializer, Unexpected, Visitor};
-use serde::forward_to_deserialize_any;
-use std::fmt;
+pub use node::named;
+use node::{Node, What};
+use serde::de::DeserializeOwned;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -22,294 +23,64 @@ pub struct Written<'a> {
     pub meant: &'a [(&'a str, &'a str)],
 }
 
-/// What is wrong, and where.
-#[derive(Debug)]
-struct Fault {
-    what: What,
-    span: Option<Range<usize>>,
-}
-
-#[derive(Debug)]
-enum What {
-    /// A key that is not among these.
-    UnknownKey(String, &'static [&'static str]),
-    /// A name of a quantity as a key that is not among these.
-    UnknownName(String, Kind),
-    MissingKey(&'static str),
-    /// A key that stands there under two of its names.
-    Twice(&'static str),
-    /// A value of another kind.
-    Value(Kind),
-    /// In the words of the type.
-    Other(String),
-}
-
-impl From<What> for Fault {
-    fn from(what: What) -> Fault {
-        Fault { what, span: None }
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?}", self.what)
-    }
-}
-
-impl std::error::Error for Fault {}
-
-impl de::Error for Fault {
-    fn custom<T: fmt::Display>(words: T) -> Fault {
-        What::Other(words.to_string()).into()
-    }
-
-    fn invalid_type(_: Unexpected<'_>, expected: &dyn Expected) -> Fault {
-        What::Value(Kind::Other(expected.to_string())).into()
-    }
-
-    fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Fault {
-        Fault::invalid_type(found, expected)
-    }
-
-    fn invalid_length(_: usize, expected: &dyn Expected) -> Fault {
-        Fault::invalid_type(Unexpected::Seq, expected)
-    }
-
-    fn unknown_variant(_: &str, names: &'static [&'static str]) -> Fault {
-        What::Value(Kind::Names(names)).into()
-    }
-
-    fn unknown_field(key: &str, known: &'static [&'static str]) -> Fault {
-        What::UnknownKey(key.to_owned(), known).into()
-    }
-
-    fn missing_field(key: &'static str) -> Fault {
-        What::MissingKey(key).into()
-    }
-
-    fn duplicate_field(key: &'static str) -> Fault {
-        What::Twice(key).into()
-    }
-}
-
-/// A key or a value with its place.
-struct Node<'de> {
-    value: DeValue<'de>,
-    span: Range<usize>,
-    is_key: bool,
-}
-
-impl<'de> Node<'de> {
-    fn of(value: Spanned<DeValue<'de>>) -> Node<'de> {
-        Node { span: value.span(), value: value.into_inner(), is_key: false }
-    }
-
-    fn table(rows: DeTable<'de>, span: &Range<usize>) -> Node<'de> {
-        Node { value: DeValue::Table(rows), span: span.clone(), is_key: false }
-    }
-
-    /// Reads it as what its type asks for; what is wrong with the value itself has its place and this kind.
-    fn read<V: Visitor<'de>>(self, kind: Option<Kind>, visitor: V) -> Result<V::Value, Fault> {
-        let span = self.span.clone();
-        let name = self.value.as_str().filter(|_| self.is_key).map(str::to_owned);
-        self.visit(visitor).map_err(|mut fault| {
-            if fault.span.is_none() {
-                fault.span = Some(span);
-                fault.what = match (fault.what, kind, name) {
-                    (What::Value(of_type), kind, Some(name)) => {
-                        What::UnknownName(name, kind.unwrap_or(of_type))
-                    }
-                    (What::Value(_), Some(kind), None) => What::Value(kind),
-                    (what, ..) => what,
-                };
-            }
-            fault
-        })
-    }
-
-    fn visit<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.value {
-            DeValue::String(text) => visitor.visit_str(&text),
-            DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
-                Ok(number) => visitor.visit_i64(number),
-                Err(_) => Err(de::Error::invalid_type(Unexpected::Other(number.as_str()), &visitor)),
-            },
-            DeValue::Float(number) => match number.as_str().parse() {
-                Ok(number) => visitor.visit_f64(number),
-                Err(_) => Err(de::Error::invalid_type(Unexpected::Other(number.as_str()), &visitor)),
-            },
-            DeValue::Boolean(truth) => visitor.visit_bool(truth),
-            DeValue::Datetime(_) => Err(de::Error::invalid_type(Unexpected::Other("a date"), &visitor)),
-            DeValue::Array(all) => {
-                let mut all = SeqDeserializer::new(all.into_iter().map(Node::of));
-                let read = visitor.visit_seq(&mut all)?;
-                all.end().map(|()| read)
-            }
-            DeValue::Table(rows) => {
-                let mut rows = rows_of(rows);
-                let read = visitor.visit_map(&mut rows)?;
-                rows.end().map(|()| read)
-            }
-        }
-    }
-}
-
-type Rows<'de, I> = MapDeserializer<'de, I, Fault>;
-
-/// Keys and values in their order.
-fn rows_of(rows: DeTable<'_>) -> Rows<'_, impl Iterator<Item = (Node<'_>, Node<'_>)>> {
-    let key =
-        |key: Spanned<_>| Node { span: key.span(), value: DeValue::String(key.into_inner()), is_key: true };
-    MapDeserializer::new(rows.into_iter().map(move |(name, value)| (key(name), Node::of(value))))
-}
-
-impl<'de> IntoDeserializer<'de, Fault> for Node<'de> {
-    type Deserializer = Self;
-
-    fn into_deserializer(self) -> Self {
-        self
-    }
-}
-
-/// Methods that ask for a value of a kind.
-macro_rules! asks {
-    ($($name:ident: $kind:expr),*) => {
-        $(fn $name<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-            self.read(Some($kind), visitor)
-        })*
-    };
-}
-
-impl<'de> Deserializer<'de> for Node<'de> {
-    type Error = Fault;
-
-    asks! {
-        deserialize_f32: Kind::Number, deserialize_f64: Kind::Number,
-        deserialize_i8: Kind::Whole(i8::MIN.into(), i8::MAX.into()),
-        deserialize_i16: Kind::Whole(i16::MIN.into(), i16::MAX.into()),
-        deserialize_i32: Kind::Whole(i32::MIN.into(), i32::MAX.into()),
-        deserialize_i64: Kind::Whole(i64::MIN, i64::MAX),
-        deserialize_u8: Kind::Whole(0, u8::MAX.into()), deserialize_u16: Kind::Whole(0, u16::MAX.into()),
-        deserialize_u32: Kind::Whole(0, u32::MAX.into()), deserialize_u64: Kind::Whole(0, i64::MAX),
-        deserialize_bool: Kind::Truth, deserialize_str: Kind::Text, deserialize_string: Kind::Text,
-        deserialize_seq: Kind::List
-    }
-
-    forward_to_deserialize_any! {
-        char bytes byte_buf unit unit_struct identifier ignored_any
-    }
-
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        self.read(None, visitor)
-    }
-
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        visitor.visit_some(self)
-    }
-
-    fn deserialize_newtype_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        visitor: V,
-    ) -> Result<V::Value, Fault> {
-        visitor.visit_newtype_struct(self)
-    }
-
-    fn deserialize_tuple<V: Visitor<'de>>(self, n: usize, visitor: V) -> Result<V::Value, Fault> {
-        self.read(Some(Kind::Values(n)), visitor)
-    }
-
-    fn deserialize_tuple_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        n: usize,
-        visitor: V,
-    ) -> Result<V::Value, Fault> {
-        self.deserialize_tuple(n, visitor)
-    }
-
-    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.value {
-            // A list would pass for the fields of a struct in their order.
-            DeValue::Table(_) => self.read(Some(Kind::Table), visitor),
-            _ => Err(Fault { what: What::Value(Kind::Table), span: Some(self.span) }),
-        }
-    }
-
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        _: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Fault> {
-        self.deserialize_map(visitor)
-    }
-
-    fn deserialize_enum<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        names: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Fault> {
-        struct Named<V>(V);
-        impl<'de, V: Visitor<'de>> Visitor<'de> for Named<V> {
-            type Value = V::Value;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                self.0.expecting(f)
-            }
-
-            fn visit_str<E: de::Error>(self, name: &str) -> Result<V::Value, E> {
-                self.0.visit_enum(StrDeserializer::new(name))
-            }
-
-            fn visit_map<A: de::MapAccess<'de>>(self, rows: A) -> Result<V::Value, A::Error> {
-                self.0.visit_enum(MapAccessDeserializer::new(rows))
-            }
-        }
-        self.read(Some(Kind::Names(names)), Named(visitor))
-    }
-}
-
-/// A value by its name.
-///
-/// # Errors
-/// With the names that are known.
-pub fn named<T: DeserializeOwned>(name: &str) -> Result<T, Kind> {
-    T::deserialize(StrDeserializer::<Fault>::new(name)).map_err(|fault| match fault.what {
-        What::Value(kind) => kind,
-        other => Kind::Other(format!("{other:?}")),
-    })
-}
-
 impl<'a> Written<'a> {
     /// Its keys and values.
     ///
     /// # Errors
     /// If it is no TOML, with its line and what can be written in place of it.
     pub fn parse(&self) -> Result<DeTable<'a>, Error> {
-        DeTable::parse(self.text).map(Spanned::into_inner).map_err(|error| {
-            let span = error.span().unwrap_or(0..0);
-            let line = line_at(self.text, span.start);
-            let head = uncommented(line);
-            let told = |found: &str, expected: &str, hint: String| {
-                Error::usage(found, expected).excerpt(self.text, span.clone()).hint(hint)
-            };
-            let before = &self.text[..start_of_line(self.text, span.start)];
-            let stands_twice = is_toml(line) && !line.is_empty() && is_toml(before);
-            if stands_twice {
-                told(line, "every key once in a table", "remove this line, or the other one".to_owned())
-            } else if let Some(meant) = head_of_tables(head) {
-                told(line, "two brackets on both sides", format!("write {meant}"))
-            } else if let Some(key) = head.strip_suffix('=') {
-                let key = key.trim_end();
-                told(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
-            } else if let Some((expected, meant)) = respelt(head) {
-                told(head, &expected, format!("write {meant}"))
-            } else {
-                told(error.message(), "", String::new())
-            }
-        })
+        DeTable::parse(self.text)
+            .map(Spanned::into_inner)
+            .map_err(|error| self.no_toml(error.message(), error.span().unwrap_or(0..0)))
+    }
+
+    /// What keeps a text from being TOML, and what can be written in place of it.
+    fn no_toml(&self, why: &str, span: Range<usize>) -> Error {
+        if let Some(open) = self.unclosed(span.start) {
+            return open;
+        }
+        let line = line_at(self.text, span.start);
+        let head = with_number(line).unwrap_or(uncommented(line));
+        let told = |found: &str, expected: &str, hint: String| {
+            Error::usage(found, expected).excerpt(self.text, span.clone()).hint(hint)
+        };
+        let before = &self.text[..start_of_line(self.text, span.start)];
+        let stands_twice = is_toml(line) && !line.is_empty() && is_toml(before);
+        if stands_twice {
+            told(line, "every key once in a table", "remove this line, or the other one".to_owned())
+        } else if let Some(meant) = head_of_tables(head) {
+            told(line, "two brackets on both sides", format!("write {meant}"))
+        } else if let Some(key) = head.strip_suffix('=') {
+            let key = key.trim_end();
+            told(&format!("{key} has no value"), "", format!("put # in front of it: # {key} ="))
+        } else if let Some((expected, meant)) = respelt(head) {
+            told(head, &expected, format!("write {meant}"))
+        } else {
+            told(why, "", String::new())
+        }
+    }
+
+    /// Of a list without its closing bracket, which the parser misses in the line `at` further down: the line
+    /// that opens it.
+    fn unclosed(&self, at: usize) -> Option<Error> {
+        let begin = start_of_line(self.text, at.min(self.text.len()));
+        let (above, line) = (self.text[..begin].trim_end(), line_at(self.text, begin));
+        if is_toml(above) || !(line.is_empty() || is_toml(uncommented(line))) {
+            return None;
+        }
+        let starts = above.rmatch_indices('\n').map(|(end, _)| end + 1).chain([0]);
+        let open = starts.into_iter().find(|start| is_toml(&self.text[..*start]))?;
+        let head = uncommented(line_at(self.text, open));
+        let meant = if start_of_line(above, above.len()) == open { respelt(head) } else { None };
+        let closed =
+            || is_toml(&format!("{above}\n]")).then(|| ("a bracket that closes the list".to_owned(), "]"));
+        let (expected, hint) = match meant {
+            Some((expected, meant)) => (expected, format!("write {meant}")),
+            None => closed().map(|(expected, mark)| {
+                (expected, format!("write {mark} in a line of its own before {line}"))
+            })?,
+        };
+        Some(Error::usage(head, expected).excerpt(self.text, open..open + head.len()).hint(hint))
     }
 
     /// A table of it, at `span`, as a type.
@@ -370,7 +141,11 @@ impl<'a> Written<'a> {
                 let key = head.split_once('=').map_or("", |(key, _)| key.trim());
                 let meant = values(key, stated, Some(&kind)).into_iter().find(|(_, meant)| takes(meant));
                 let (expected, hint) = meant.map(|(expected, meant)| (expected, with(&meant))).unzip();
-                told(head, &expected.unwrap_or_else(|| kind.words("\"")), hint.unwrap_or_default())
+                let huge =
+                    matches!(kind, Kind::Whole(..)) && stated.parse::<f64>().is_ok_and(|n| n.abs() > 1e15);
+                let none = || if huge { format!("put # in front of it: # {head}") } else { String::new() };
+                let expected = expected.unwrap_or_else(|| kind.words("\""));
+                told(head, &expected, hint.unwrap_or_else(none))
             }
             What::Other(words) => told(&words, "", String::new()),
         }
@@ -417,7 +192,9 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
     let word = bare.to_lowercase();
     let is = |words: [&str; 4]| words.contains(&&*word);
     let is_name = bare.starts_with(char::is_alphabetic);
-    let of_number = match bare {
+    let number = meant_number(key, bare);
+    let of_number = match &number {
+        Some(meant) if bare.contains(',') && !meant.contains('.') => "digits without commas between them",
         _ if bare.contains(',') => "a number with a decimal point",
         _ if bare.starts_with('.') => "a digit before the point",
         _ if bare.ends_with('.') => "a digit behind the point",
@@ -425,6 +202,11 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
         _ => "a number in the unit of this key, without it",
     };
     let words = kind.map_or_else(String::new, |kind| kind.words("\""));
+    let list = stated.strip_prefix('[').map(|rest| rest.strip_suffix(']').unwrap_or(rest).trim());
+    let closed = |inner: String| format!("[{inner}]");
+    let between_blanks = |inner: &&str| !inner.contains([',', ';', '"', '\'']) && inner.contains(' ');
+    let by_blanks = |inner: &str| closed(inner.split_whitespace().collect::<Vec<_>>().join(", "));
+    let none = kind.is_none() && key.ends_with("_pass") && is(["no", "off", "none", "false"]);
     let two = bare.split_once([':', '-', ';']).map(|(low, high)| format!("[{low}, {high}]"));
     let first = if let Some(Kind::Names(names)) = kind { names.first() } else { None };
     let quoted = |text: String| format!("\"{text}\"");
@@ -435,11 +217,14 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
         (&*words, near),
         ("no mark behind a value", stated.strip_suffix([',', ';']).map(str::to_owned)),
         ("a whole number", kind.filter(|_| whole).and_then(|kind| kind.meant(key, bare))),
-        (of_number, meant_number(key, bare)),
+        (of_number, number.clone()),
+        (CORNER, none.then(|| quoted("none".to_owned()))),
         ("true or false", is(["yes", "on", "1", "true"]).then(|| "true".to_owned())),
         ("true or false", is(["no", "off", "0", "false"]).then(|| "false".to_owned())),
         (&words, is(["no", "off", "0", "false"]).then(|| quoted("none".to_owned()))),
         ("commas between values", stated.starts_with('[').then(|| stated.replace(';', ","))),
+        ("commas between values", list.filter(between_blanks).map(by_blanks)),
+        ("a bracket that closes the list", list.map(|inner| closed(inner.replace(';', ",")))),
         ("two values between square brackets", two),
         ("a path between single quotes", bare.contains('\\').then(|| format!("'{bare}'"))),
         ("text between quotes", (is_name || is_text).then(|| quoted(bare.to_owned()))),
@@ -448,6 +233,9 @@ fn values(key: &str, stated: &str, kind: Option<&Kind>) -> Vec<(String, String)>
     ];
     all.into_iter().filter_map(|(expected, meant)| Some((expected.to_owned(), meant?))).collect()
 }
+
+/// What a key of a low-pass takes.
+const CORNER: &str = "a corner in Hz, or \"none\"";
 
 /// What is meant by a line that is no TOML, with what was expected.
 fn respelt(line: &str) -> Option<(String, String)> {
@@ -483,6 +271,14 @@ fn uncommented(line: &str) -> &str {
         c == '#' && open.is_none()
     };
     line.split(is_comment).next().unwrap_or_default().trim_end()
+}
+
+/// A line whose value is a word with a number behind it, `name = Run #1`: that is no comment.
+fn with_number(line: &str) -> Option<&str> {
+    let (before, number) = line.rsplit_once(" #")?;
+    let (_, word) = before.split_once('=')?;
+    let is_number = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+    (is_number && word.trim_start().starts_with(char::is_alphabetic)).then_some(line)
 }
 
 /// The head of one of several tables that is meant by a line whose brackets are no pairs.

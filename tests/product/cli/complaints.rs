@@ -21,6 +21,9 @@ fn unreadable_files() {
     has(&complaint(&["info", text(&at("empty.txt", b""))], 2), &["empty.txt", "empty", "try:"]);
     has(&complaint(&["info", text(folder.path())], 2), &["folder", "try:"]);
     has(&complaint(&["info", text(&folder.path().join("absent.txt"))], 2), &["absent.txt", "no such file"]);
+    // A name that holds the word FILE stays as it is.
+    let log = at("LOGFILE.csv", b"operator: me\nnothing here\n");
+    has(&complaint(&["response", text(&log)], 2), &[&format!("try: vibro info {}", text(&log))]);
     let noise: Vec<u8> = (0..4000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
     has(&complaint(&["info", text(&at("noise.bin", &noise))], 2), &["noise.bin", "not a format", "--format"]);
     has(&complaint(&["info", text(&at("word.txt", b"1\n2\nx\n"))], 2), &["line 3", "\"x\"", "a number"]);

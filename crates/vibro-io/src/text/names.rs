@@ -214,8 +214,8 @@ impl Name {
     pub fn against_unit(&self, naturals: bool, whole: impl Fn() -> bool) -> Option<&'static str> {
         let unit = self.unit.as_deref()?;
         let quantity = Unit::parse(unit)?.quantity();
-        let force = || self.name.to_lowercase().contains(Quantity::Force.name());
-        let count = unit == NATURAL && (self.may_count() || naturals && !force()) && whole();
+        let force = || FORCES.iter().any(|word| self.name.to_lowercase().contains(word));
+        let count = unit == NATURAL && !force() && (self.may_count() || naturals) && whole();
         let warm = self.name == "T" || TEMPERATURES.contains(&self.last_word().as_str());
         if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
     }
@@ -325,6 +325,9 @@ const COUNT_WORDS: [&str; 9] =
 
 /// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
 pub(super) const NATURAL: &str = "N";
+
+/// Words in the name of a force: its N is newton.
+const FORCES: [&str; 3] = ["force", "load", "kraft"];
 
 /// Words that end the name of a temperature, whose bare degrees are of an unknown scale and no angle.
 const TEMPERATURES: [&str; 4] = ["temperature", "temp", "temperatur", "température"];

@@ -429,6 +429,10 @@ fn two_clocks_in_one_file_are_refused() {
     };
     let why = read_text(text(2e-4, 0.0)).unwrap_err().to_string();
     assert!(why.contains("\"Time A\" and \"Time B\" run over 0.0049 and 0.0098"), "{why}");
+    // One that runs a hundredth faster drifts apart, here by less than the digits of the first.
+    let row = |i: i32| format!("{:.4},{:.3},{}\n", 1e-4 * f64::from(i), 0.101 * f64::from(i), 2 * i % 5);
+    let drifts = read_text("t (s),elapsed (ms),a (g)\n".to_owned() + &(0..50).map(row).collect::<String>());
+    assert!(has_finding(&drifts.unwrap().findings, "columns-rise-evenly", &["columns=elapsed"]));
     // The same clock read elsewhere is no other.
     assert!(read_text(text(1e-4, 0.0)).is_ok() && read_text(text(1e-4, 7.0)).is_ok());
 }
@@ -444,6 +448,7 @@ fn rows_of_several_channels_are_refused_and_whole_numbers_are_read() {
     for (head, number) in [
         ("t (s),which,a (g)\n", (|i| 1 + i % 2) as fn(i32) -> i32),
         ("t (s),Sensor ID,a (g)\n", |i| if i % 3 == 0 { 7 } else { 9 }),
+        ("t (s),Sensor ID,a (g)\n", |i| 7 + i / 10 % 3),
     ] {
         let why = of(head, number).unwrap_err().to_string();
         assert!(why.contains("and back"), "{why}");
@@ -456,6 +461,32 @@ fn rows_of_several_channels_are_refused_and_whole_numbers_are_read() {
         ("t (s),n,a (g)\n", |i| i),
     ] {
         assert!(of(head, number).is_ok(), "{head}");
+    }
+}
+
+#[test]
+fn an_abscissa_by_name_may_stand_behind_an_empty_column() {
+    for head in ["note,t [s],a [g]", ",t [s],a [g]"] {
+        let found = of(format!("{head}\n,0,5\n,0.5,6\n,1,7\n"));
+        assert_eq!((found.records.len(), found.records[0].axis()), (1, &Axis::time(0.0, 0.5, 3)), "{head}");
+        assert_eq!(found.records[0].meta().name, "a");
+    }
+}
+
+#[test]
+fn rates_of_a_filter_are_no_sampling_rate() {
+    let found = of("Sample rate: 1000 Hz\nforce,acc\nN,g\n100 Hz,100 Hz\n1,2\n2,3\n0,1\n");
+    assert_eq!((found.records.len(), found.records[0].axis()), (2, &Axis::time(0.0, 1e-3, 3)));
+}
+
+/// `frame` counts pictures, too; a load in newtons is one by its name and by its decimals.
+#[test]
+fn the_load_on_a_frame_is_a_force() {
+    for rows in ["0,1.5\n1,2.5\n2,0.5\n", "0,12\n1,-7\n2,3\n"] {
+        let found = of(format!("t (s),Load frame (N)\n{rows}"));
+        let meta = found.records[0].meta();
+        let against = has_finding(&meta.findings, "unit-against-name", &[]);
+        assert_eq!((meta.quantity, against), (Quantity::Force, false), "{rows}");
     }
 }
 
@@ -616,6 +647,7 @@ fn columns_of_one_word_are_left_out_and_said() {
         (|i| if i < 30 { String::new() } else { "gps".to_owned() }, true),
         (|i| if i < 20 { "ax" } else { "ay" }.to_owned(), true),
         (|i| if i % 2 == 0 { "ax" } else { "ay" }.to_owned(), false),
+        (|i| ["ax", "ay", "az"][i as usize / 5 % 3].to_owned(), false),
         (|i| format!("{} / 2", i % 2 + 1), false),
         (|i| if i == 39 { "5".to_owned() } else { "gps".to_owned() }, false),
         (|i| format!("{i}-2j"), false),

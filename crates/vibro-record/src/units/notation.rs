@@ -123,7 +123,10 @@ pub fn engineering(largest: f64) -> i32 {
     decade(largest, 10).div_euclid(3) * 3
 }
 
-/// A quantity in a sentence, with an SI prefix where one fits.
+/// Times in s below this are what rounding leaves of 0: no clock shows them.
+const ROUNDING: f64 = 1e-15;
+
+/// A quantity in a sentence, with an SI prefix where one fits; a time that rounding leaves of 0 is 0.
 ///
 /// ```
 /// use vibro_record::units::notation::quantity;
@@ -131,8 +134,10 @@ pub fn engineering(largest: f64) -> i32 {
 /// assert_eq!(quantity(-0.25, "m/s", 2), "−0.25 m/s");
 /// assert_eq!(quantity(3e-6, "1", 2), "3.0×10⁻⁶");
 /// assert_eq!(quantity(0.0104, "FS", 3), "10.4×10⁻³ FS");
+/// assert_eq!(quantity(8.88e-16, "s", 3), "0 s");
 /// ```
 pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
+    let value = if unit == "s" && value.abs() < ROUNDING { 0.0 } else { value };
     let exponent = engineering(value);
     let unit = if unit == "1" { "" } else { unit };
     if exponent == 0 || unit.is_empty() || !value.is_finite() {
