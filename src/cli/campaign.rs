@@ -159,7 +159,8 @@ impl Run {
                 json!({ "warnings": warnings, "results": answer.result, "files": files, "folder": folder }),
             )?;
         } else {
-            complain::warn(&graded(&answer.findings, Voice::Campaign));
+            let report = format!("{}, or --json", shown(folder.join(REPORT)));
+            complain::warn(&graded(&answer.findings, Voice::Campaign), &report);
             let tables = answer.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
             let files = files.len();
             print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", shown(&folder)))?;

@@ -3,7 +3,8 @@
 use super::{CommandRow, print, rows};
 use crate::error::{Error, Hint};
 use crate::record::{Kind, Severity, nearest, typed};
-use crate::report::words::Voice;
+use crate::report::words::{Voice, foremost};
+use crate::units::notation::counted;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command as Typed};
 use serde_json::json;
@@ -263,8 +264,24 @@ fn object(error: &str, exit_code: u8) {
     let _ = print::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
 }
 
-/// Prints findings for a person; JSON carries them itself.
-pub(crate) fn warn(findings: &[(Severity, String)]) {
+/// Prints the findings that a person reads first, and in one line how many more there are and what to type or
+/// to open for all of them.
+pub(crate) fn warn(findings: &[(Severity, String)], all_in: &str) {
+    let (first, rest) = findings.split_at(foremost(findings));
+    warn_all(first);
+    if rest.is_empty() {
+        return;
+    }
+    let of = |wanted: Severity| match rest.iter().filter(|(severity, _)| *severity == wanted).count() {
+        0 => None,
+        n => Some(counted(n, wanted.name())),
+    };
+    let more: Vec<String> = [Severity::Caution, Severity::Note].into_iter().filter_map(of).collect();
+    line(&format!("and {} more; all findings: {all_in}", more.join(", ")));
+}
+
+/// Prints all findings, where nothing else shows them.
+pub(crate) fn warn_all(findings: &[(Severity, String)]) {
     for (severity, sentence) in findings {
         line(&format!("{}: {sentence}", severity.name()));
     }

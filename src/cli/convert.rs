@@ -75,7 +75,7 @@ impl CommandArgs for Convert {
         target.write(&recording.records, Storage { binary: self.binary, precision }, &mut bytes)?;
         let Some(file) = file else {
             let about = recording.all_findings().into_iter().chain(changes).map(|f| (String::new(), f));
-            complain::warn(&graded(&about.collect::<Vec<_>>(), Voice::Command));
+            complain::warn_all(&graded(&about.collect::<Vec<_>>(), Voice::Command));
             print::text(&String::from_utf8_lossy(&bytes))?;
             return Ok(0);
         };

@@ -63,7 +63,7 @@ impl CommandArgs for Info {
             put(&mut answer.result, &about, Voice::Command);
             print::object(answer.result)?;
         } else {
-            complain::warn(&graded(&about, Voice::Command));
+            complain::warn(&graded(&about, Voice::Command), "--json");
             print::text(&text)?;
         }
         Ok(code)

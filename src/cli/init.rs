@@ -169,7 +169,7 @@ impl super::CommandArgs for Check {
             put(&mut answer, &commented, Voice::Campaign);
             print::object(answer)?;
         } else {
-            complain::warn(&graded(&commented, Voice::Campaign));
+            complain::warn(&graded(&commented, Voice::Campaign), "--json");
             let shown = typed(&self.campaign);
             print::text(&format!(
                 "{shown}: no fault, {} found\nnext: vibro run {shown}\n",

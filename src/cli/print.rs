@@ -41,7 +41,7 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
         object(answer.result)?;
         return Ok(code);
     }
-    complain::warn(&graded(&answer.findings, Voice::Command));
+    complain::warn(&graded(&answer.findings, Voice::Command), "--json");
     let shown = answer.tables.iter().chain(&answer.details).filter(|t| !t.rows.is_empty());
     let mut all = shown.map(Table::text).collect::<Vec<_>>().join("\n");
     for file in written {
