@@ -8,7 +8,7 @@ use crate::model::Parameter;
 use crate::record::{Severity, Step};
 use crate::report::Page;
 use crate::report::Picture;
-use crate::report::words::{Voice, graded};
+use crate::report::words::{Voice, foremost, graded};
 use crate::units::notation::{counted, shortest};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -32,8 +32,7 @@ pub fn page(
     page = page.answers(&shortened(&all.headlines));
     let mut worst = graded(&all.findings, Voice::Campaign);
     worst.retain(|(severity, _)| *severity > Severity::Note);
-    let doubts = worst.iter().filter(|(severity, _)| *severity == Severity::Doubt).count();
-    let shown = doubts.clamp(MATTER, MOST).min(worst.len());
+    let shown = foremost(&worst).min(MOST);
     page = page.findings(&worst[..shown]);
     if worst.len() > shown {
         let more = counted(worst.len() - shown, "more caution");
@@ -95,8 +94,7 @@ fn constant(of: Parameter, value: f64) -> String {
 const WHAT_IF: &str = "Curves: motions with one impact a cycle and without impacts, as the model has them for these values. A contact stiffness is taken into account to first \
     order, and curves end where the contact lasts longer than 2.5 % of a cycle.";
 
-/// Findings that the page begins with: so many, or all doubts up to the most.
-const MATTER: usize = 3;
+/// Most findings that the page begins with.
 const MOST: usize = 8;
 
 fn history(steps: &[Step]) -> String {

@@ -35,11 +35,11 @@ pub struct Check {
 }
 
 impl super::CommandArgs for Init {
-    /// Writes the campaign; to one that is there it adds tables for recordings that it does not name.
+    /// Writes the campaign. To an existing one it appends tables for recordings that have none.
     fn run(&self, json: bool) -> Result<u8> {
         let within = Folder::from(self.folder.as_path()).allow_outside(self.allow_outside);
         let path = within.path(Path::new(Proposal::FILE))?;
-        // A link within the folder stays one.
+        // A symbolic link is followed, so that its target is written and the link is kept.
         let linked = within.occupant(&path) == Occupant::Special;
         let path = if linked { path.canonicalize().unwrap_or(path) } else { path };
         let name = path.file_name().map_or_else(String::new, shown);
@@ -53,7 +53,7 @@ impl super::CommandArgs for Init {
             Some(known) => {
                 let end = if known.text().ends_with('\n') { "" } else { "\n" };
                 let text = format!("{end}{}", proposal.tables());
-                // What cannot stand behind the rest is not written.
+                // Check that the extended file parses before it is written.
                 analysis::parse(&within, &path, known.text().to_owned() + &text)?;
                 text
             }
@@ -75,6 +75,7 @@ impl super::CommandArgs for Init {
                 "guessed": keys(&proposal, |known| matches!(known, KeyStatus::Guessed(_))),
                 "missing": keys(&proposal, |known| matches!(known, KeyStatus::Open(_) | KeyStatus::Missing(_))),
                 "left": proposal.left,
+                "refused": refused(&proposal),
                 "warnings": [],
                 "findings": [],
             }))?;
@@ -94,8 +95,8 @@ impl super::CommandArgs for Init {
     }
 }
 
-/// The error of a campaign that cannot be read, with another advice where the file has no table of one:
-/// another program has made it.
+/// The error of an unreadable campaign. Where the file has no table of a campaign, another program wrote it,
+/// and the advice is to move it.
 fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
     let bytes = within.read(path).unwrap_or_default();
     let text = String::from_utf8_lossy(&bytes);
@@ -107,7 +108,7 @@ fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
     error.hint(format!("mv {} {}", typed(path), typed(&renamed)))
 }
 
-/// The keys that are known in one way.
+/// The keys of all tables with this status.
 fn keys(proposal: &Proposal, of: impl Fn(KeyStatus) -> bool) -> Vec<Value> {
     let of = &of;
     let rows = |table: &Table| -> Vec<Value> {
@@ -117,7 +118,16 @@ fn keys(proposal: &Proposal, of: impl Fn(KeyStatus) -> bool) -> Vec<Value> {
     proposal.tables.iter().flat_map(rows).collect()
 }
 
-/// Tells what was found, guessed and is missing.
+/// The records that give no answer yet: their file or pattern, code and reason of the refusal.
+fn refused(proposal: &Proposal) -> Vec<Value> {
+    let refused = proposal.tables.iter().filter_map(|table| {
+        let refusal = table.refused.as_ref()?;
+        Some(json!({ "file": table.files, "code": refusal.code, "reason": refusal.in_words() }))
+    });
+    refused.collect()
+}
+
+/// Prints which tables are proposed, with guessed and missing keys.
 pub fn tell(proposal: &Proposal) {
     let mut series: Vec<(&str, &str)> = Vec::new();
     for table in &proposal.tables {
@@ -128,8 +138,8 @@ pub fn tell(proposal: &Proposal) {
         series.push((table.section, table.name()));
         let filled = if table.lacks() { ", left out until it is filled in" } else { "" };
         complain::line(&format!("{} -> [[{}]]{filled}", table.in_words(), table.section));
-        if !table.refused.is_empty() {
-            complain::line(&format!("  {}", table.refused));
+        if let Some(refused) = &table.refused {
+            complain::line(&format!("  {}", refused.in_words()));
         }
         for TableKey { key, value, known } in &table.rows {
             match known {
@@ -144,7 +154,7 @@ pub fn tell(proposal: &Proposal) {
 impl super::CommandArgs for Check {
     const VOICE: Voice = Voice::Campaign;
 
-    /// Checks keys, values and files.
+    /// Checks keys, values, files and channels without computing.
     fn run(&self, json: bool) -> Result<u8> {
         let of_folder = self.campaign.join(Proposal::FILE);
         if self.campaign.is_dir() && !of_folder.exists() {
@@ -169,7 +179,7 @@ impl super::CommandArgs for Check {
             put(&mut answer, &commented, Voice::Campaign);
             print::object(answer)?;
         } else {
-            complain::warn(&graded(&commented, Voice::Campaign));
+            complain::warn(&graded(&commented, Voice::Campaign), "--json");
             let shown = typed(&self.campaign);
             print::text(&format!(
                 "{shown}: no fault, {} found\nnext: vibro run {shown}\n",

@@ -86,7 +86,8 @@ pub fn sentences(findings: &[About], voice: Voice, notes: bool) -> Vec<String> {
     all.map(|(_, sentence)| sentence).collect()
 }
 
-/// As [`sentences`], each behind its severity.
+/// As [`sentences`], each behind its severity. Of one severity those come first that move an answer most, by
+/// the largest percentage that the sentence shows; the others stay in the order in which they were found.
 pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
     let mut groups: Vec<(&Finding, Vec<&str>)> = Vec::new();
     for (record, finding) in findings {
@@ -108,9 +109,21 @@ pub fn graded(findings: &[About], voice: Voice) -> Vec<(Severity, String)> {
                 None => said.push(new),
             }
         }
+        said.sort_by(|a, b| b.share().total_cmp(&a.share()));
         all.extend(said.iter().map(|said| (severity, said.whole())));
     }
     all
+}
+
+/// Findings that a person reads first, at the command line and at the head of a report.
+const FOREMOST: usize = 3;
+
+/// How many of these, as [`graded`] sorts them, a person reads first: three, or all doubts where there are
+/// more. A single one behind these is read with them, since the line that counts it would be as long.
+pub fn foremost(findings: &[(Severity, String)]) -> usize {
+    let doubts = findings.iter().filter(|(severity, _)| *severity == Severity::Doubt).count();
+    let first = doubts.max(FOREMOST);
+    if findings.len() <= first + 1 { findings.len() } else { first }
 }
 
 /// A sentence with the records that it is about, and those of which it holds with other numbers.
@@ -131,6 +144,12 @@ impl Sentence<'_> {
         let alike = a.subject == b.subject && a.facts.iter().filter(name).eq(b.facts.iter().filter(name));
         let apart = a.severity < Severity::Doubt && !self.of.contains(&"") && !other.of.iter().any(about);
         a.code == b.code && (self.text == other.text || alike && apart)
+    }
+
+    /// The largest part of one that it shows as a percentage, 0 without any.
+    fn share(&self) -> f64 {
+        let all = std::iter::once(self.finding).chain(self.like.iter().map(|(finding, _)| *finding));
+        all.flat_map(shares).fold(0.0, f64::max)
     }
 
     fn whole(&self) -> String {
@@ -159,13 +178,29 @@ fn names(records: &[&str]) -> String {
 
 /// The numbers in which a finding differs from another one of its code, as the sentence shows them.
 fn differing(from: &Finding, finding: &Finding) -> Vec<String> {
-    let template = SENTENCES.get(finding.code.as_ref()).copied().unwrap_or_default();
-    let places = template.split('{').skip(1).filter_map(|part| part.split('}').next());
-    let shown = places.filter(|place| !place.contains('?')).filter_map(|place| {
+    let shown = places(finding).filter(|place| !place.contains('?')).filter_map(|place| {
         let (own, other) = (shown(place, finding)?, shown(place, from));
         (Some(&own) != other.as_ref()).then_some(own)
     });
     shown.collect()
+}
+
+/// What stands in each pair of braces of the sentence of a finding.
+fn places(finding: &Finding) -> impl Iterator<Item = &'static str> {
+    let template = SENTENCES.get(finding.code.as_ref()).copied().unwrap_or_default();
+    template.split('{').skip(1).filter_map(|part| part.split('}').next())
+}
+
+/// The numbers of a finding that its sentence shows as percentages.
+fn shares(finding: &Finding) -> impl Iterator<Item = f64> {
+    let names = places(finding).filter_map(|place| place.strip_suffix(" %")?.split('.').next());
+    names
+        .flat_map(|name| match finding.fact(name) {
+            Some(Fact::Number(value)) => std::slice::from_ref(value),
+            Some(Fact::Numbers(values)) => values,
+            _ => &[],
+        })
+        .map(|share| share.abs())
 }
 
 /// Puts `findings` and `warnings` into an answer: each finding with its record as subject where it names none
@@ -308,6 +343,36 @@ mod tests {
         let found = found.map(|finding| (String::new(), finding));
         assert_eq!(sentences(&found, Voice::Command, true), ["c", "b", "a"]);
         assert_eq!(sentences(&found, Voice::Command, false), ["c", "b"]);
+    }
+
+    #[test]
+    fn what_moves_an_answer_most_comes_first() {
+        let contact = |parts: f64| Finding::caution("contact-time-unsaid").numbers("parts", [0.01, parts]);
+        let found = [
+            Finding::note("answer-moves").number("change", 9.0),
+            Finding::caution("no-mass-named"),
+            contact(0.02),
+            Finding::caution("model-not-chosen").number("part", -1.48),
+            Finding::doubt("x-doubt"),
+            Finding::caution("frf-one-blow"),
+        ];
+        let graded = graded(&found.map(|finding| (String::new(), finding)), Voice::Command);
+        let starts = ["x-doubt", "? is not stated", "Contact time", "No sweep", "The function", "Against"];
+        for ((_, sentence), start) in graded.iter().zip(starts) {
+            assert!(sentence.starts_with(start), "{sentence}");
+        }
+    }
+
+    #[test]
+    fn three_are_read_first_and_all_doubts() {
+        let first = |doubts: usize, others: usize| {
+            let all = [(Severity::Doubt, doubts), (Severity::Caution, others)];
+            let all = all.iter().flat_map(|(severity, n)| vec![(*severity, String::new()); *n]);
+            foremost(&all.collect::<Vec<_>>())
+        };
+        assert_eq!([first(0, 0), first(0, 2), first(1, 9), first(5, 9), first(9, 0)], [0, 2, 3, 5, 9]);
+        // One line that says "one more" is no shorter than that one.
+        assert_eq!([first(0, 4), first(0, 5), first(4, 1)], [4, 3, 5]);
     }
 
     #[test]

@@ -624,3 +624,18 @@ fn what_a_campaign_is_told_to_write_works() {
         assert!(said.contains(&format!("{wrong}; expected ")) && !said.contains("try: write"), "{said}");
     }
 }
+
+#[test]
+fn three_findings_are_printed_and_the_rest_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    let kinds = ["pulse", "impacts", "decay", "frf", "spectrum"];
+    let table = |kind: &str| format!("# [[{kind}]]\n# file = \"{kind}.csv\"\n");
+    for (tables, printed, last) in [(5, 3, Some("and 2 notes more; all findings: --json")), (4, 4, None)] {
+        fs::write(&path, kinds[..tables].iter().map(|kind| table(kind)).collect::<String>()).unwrap();
+        let said = String::from_utf8(vibro(&["check", text(&path)]).stderr).unwrap();
+        assert_eq!(said.lines().filter(|line| line.starts_with("note: ")).count(), printed, "{said}");
+        assert_eq!(said.lines().nth(printed), last, "{said}");
+        assert_eq!(json(&["check", text(&path)])["findings"].as_array().unwrap().len(), tables);
+    }
+}
