@@ -10,13 +10,13 @@ use super::kind::Analysis;
 use super::source::Source;
 use super::source::{file_name, name_of};
 use crate::campaign::Entry;
-use crate::error::{Error, Result};
+use crate::error::{Error, Hint, Result};
 use crate::measure::impacts::ImpactsOptions;
 use crate::measure::restitution::{Drop, GRAVITY, Measured, Restitution, Train, Velocities, restitution};
 use crate::record::{Finding, Trace, shown};
 use crate::report::files::Names;
 use crate::report::layout::{Shown, table};
-use crate::report::words::About;
+use crate::report::words::{About, Voice};
 use crate::report::{Cell, Plot, Table};
 use crate::units::notation::significant;
 use serde::Deserialize;
@@ -224,7 +224,7 @@ impl Series {
         Ok(())
     }
 
-    /// Leaves out a record that allows no answer, where others may.
+    /// Leaves out a record of a command line that allows no answer, where others may.
     ///
     /// # Errors
     /// The error of the record, where it is none of its data.
@@ -232,7 +232,8 @@ impl Series {
         if error.exit_code() != 1 {
             return Err(error);
         }
-        let left = Finding::caution("drop-left-out").name("why", error.to_string());
+        let why = error.text_with(|key, value| Voice::Command.set(key, value), Hint::to_string);
+        let left = Finding::caution("drop-left-out").name("why", why);
         self.findings.push((file_name(file), left));
         self.refused.get_or_insert(error);
         Ok(())
