@@ -137,12 +137,13 @@ pub fn build(
     Ok(built)
 }
 
-/// Refuses rows of several channels or sensors below each other, which a column numbers.
+/// Refuses rows of several channels or sensors below each other, which a column numbers. Where all columns
+/// go in turns, they are values.
 fn of_one_channel(table: &[Column]) -> Result<()> {
-    let numbers = |c: &Column| Some((c.label(), c.numbers_channels()?));
-    let Some((name, [one, next])) = table.iter().filter(|_| table.len() > 1).find_map(numbers) else {
-        return Ok(());
-    };
+    let turns: Vec<Option<[f64; 2]>> = table.iter().map(Column::numbers_channels).collect();
+    let first = turns.iter().position(Option::is_some).filter(|_| turns.contains(&None));
+    let Some((at, [one, next])) = first.and_then(|at| Some((at, turns[at]?))) else { return Ok(()) };
+    let name = table[at].label();
     let found = format!("{name:?} goes from {} to {} and back", short(one), short(next));
     Err(Error::usage(found, "rows of one channel or sensor")
         .hint("write the rows of each number to a file of their own, or take out the column"))

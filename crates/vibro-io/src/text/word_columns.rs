@@ -182,8 +182,7 @@ impl Head {
     /// The names of columns of values, with the units behind them.
     fn with(&self, units: &[Option<&str>], separator: Separator, columns: &[bool]) -> String {
         let mark = if let Separator::Char(mark) = separator { char::from(mark) } else { ' ' };
-        let values = self.names.iter().zip(units.iter().copied()).zip(columns);
-        let values = values.filter(|(_, text)| !**text);
+        let values = self.names.iter().zip(units.iter().copied()).zip(columns).filter(|(_, text)| !**text);
         let cell = |((name, unit), _): ((&String, Option<&str>), &bool)| {
             let name = unit.map_or(name.clone(), |unit| format!("{name}[{unit}]"));
             if name.contains([mark, '"']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
