@@ -207,9 +207,10 @@ fn long() -> String {
 }
 
 fn command() -> Typed {
-    let json = Arg::new("json").action(ArgAction::SetTrue).global(true);
+    let json = Arg::new("json").action(ArgAction::SetTrue).global(true).help_heading(OUTPUT);
     let size = |text: &str| Limit::parse(text).ok_or(Kind::Other("a size such as 2GB or 500MB".to_owned()));
-    let memory = Arg::new("max_memory").long("max-memory").value_name("SIZE").global(true);
+    let memory =
+        Arg::new("max_memory").long("max-memory").value_name("SIZE").global(true).help_heading(OUTPUT);
     let memory = memory.value_parser(size).help(MEMORY);
     let commands = rows().map(|row| {
         let example = format!("Example:\n  vibro {}", row.example);
@@ -293,9 +294,10 @@ fn options(command: Typed) -> Typed {
         let own = arg.get_value_names().is_none_or(|names| names[0] != id.to_uppercase().as_str());
         let kind = kind(&arg);
         let arg = read_by_type(arg.long(long));
+        let arg = if WRITES.contains(&id.as_str()) { arg.help_heading(OUTPUT) } else { arg };
         if takes && !own { arg.value_name(kind) } else { arg }
     };
-    let command = command.mut_args(option).mut_subcommands(options);
+    let command = command.mut_args(option).mut_subcommands(options).next_help_heading(OUTPUT);
     let has = |name: &str| command.get_arguments().any(|arg| arg.get_id() == name);
     let style = Arg::new("style").long("style").value_name("STYLE").help(STYLES).hide_possible_values(true);
     let style = style.value_parser(["report", "paper", "slide"]).display_order(order + 1);
@@ -304,6 +306,10 @@ fn options(command: Typed) -> Typed {
     let more = [(has("out"), style), (WRITES.iter().any(|name| has(name)), replace)];
     command.args(more.into_iter().filter(|(wanted, _)| *wanted).map(|(_, arg)| arg))
 }
+
+/// Heading in the help of the options of what is printed and written. Those of how files are read have theirs
+/// at their struct; an analysis' own have none and stand first.
+const OUTPUT: &str = "Output";
 
 /// Options of commands that write files.
 const WRITES: [&str; 4] = ["out", "output", "each_cycle", "write_lists"];

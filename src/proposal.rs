@@ -50,8 +50,26 @@ pub struct Table {
     pub guess: bool,
     /// Its keys in order.
     pub rows: Vec<TableKey>,
-    /// Why its records give no answer yet, and what to try; empty where they do.
-    pub refused: String,
+    /// Why its records give no answer yet; `None` where they do.
+    pub refused: Option<Refusal>,
+}
+
+/// Why records give no answer.
+#[derive(Debug, Default, Clone, PartialEq, Serialize)]
+pub struct Refusal {
+    /// Code of the refusal; empty where it has none.
+    pub code: String,
+    /// In words.
+    pub why: String,
+    /// What to try; empty where nothing would help.
+    pub hint: String,
+}
+
+impl Refusal {
+    /// The reason and what to try.
+    pub fn in_words(&self) -> String {
+        if self.hint.is_empty() { self.why.clone() } else { format!("{}; try: {}", self.why, self.hint) }
+    }
 }
 
 /// A key of a table.
@@ -95,7 +113,7 @@ impl KeyStatus {
 impl Table {
     /// A table without keys.
     fn new(section: &'static str, about: &'static str, files: &str) -> Table {
-        let (files, refused) = (files.to_owned(), String::new());
+        let (files, refused) = (files.to_owned(), None);
         Table { section, about, files, guess: false, rows: Vec::new(), refused }
     }
 
@@ -204,8 +222,8 @@ impl Table {
             };
         }
         let mut about = format!("# {}\n", shown(self.in_words()));
-        if !self.refused.is_empty() {
-            let _ = writeln!(about, "# {}", shown(&self.refused));
+        if let Some(refused) = &self.refused {
+            let _ = writeln!(about, "# {}", shown(refused.in_words()));
         }
         if !self.lacks() {
             return about + &text;

@@ -12,7 +12,7 @@ use serde_json::Value;
 #[derive(Debug, Clone, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
-#[cfg_attr(feature = "cli", derive(clap::Args))]
+#[cfg_attr(feature = "cli", derive(clap::Args), command(next_help_heading = "Reading of files"))]
 pub struct Reading {
     /// File format, instead of detecting it
     pub format: Option<String>,
@@ -48,7 +48,7 @@ pub struct Reading {
 /// Which record of a file is meant, and its calibration.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-#[cfg_attr(feature = "cli", derive(clap::Args))]
+#[cfg_attr(feature = "cli", derive(clap::Args), command(next_help_heading = "Channel"))]
 pub struct Channel {
     /// Record of the file, by name or by number from 1 [default: the only one]
     #[serde(deserialize_with = "channel")]

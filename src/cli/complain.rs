@@ -9,6 +9,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command as Typed};
 use serde_json::json;
 use std::error::Error as _;
+use std::ffi::OsString;
 use std::io::Write;
 use std::path::Path;
 
@@ -20,7 +21,7 @@ pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
 /// Prints several errors as [`error`] does one. The exit code is the largest.
 pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
     let spoken = |error: &Error| {
-        let text = error.text_with(|key, value| voice.set(key, value), spelt);
+        let text = error.text_with(|key, value| voice.set(key, value), |hint| spelt(hint, error));
         let help = voice == Voice::Command && error.is_bare_usage();
         if help { format!("{text}\n  try: {} --help", Words::typed().command) } else { text }
     };
@@ -58,11 +59,11 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     error(&plain(complaint), Voice::Command, json)
 }
 
-/// What to try, as it is typed here.
-fn spelt(hint: &Hint) -> String {
+/// What to try after an error, as it is typed here.
+fn spelt(hint: &Hint, error: &Error) -> String {
     let words = || std::env::args_os().skip(1);
     match hint {
-        Hint::OfFile(command) => match words().skip(1).find(|word| Path::new(word).is_file()) {
+        Hint::OfFile(command) => match file_of(error, words().skip(1)) {
             Some(file) => format!("{command} {}", typed(file)),
             None => hint.to_string(),
         },
@@ -73,6 +74,13 @@ fn spelt(hint: &Hint) -> String {
         Hint::Name { meant, .. } => typed(meant),
         Hint::Words(words) => words.clone(),
     }
+}
+
+/// Of the words that were typed the file that an error is about; the first file where it names none of them.
+fn file_of(error: &Error, words: impl Iterator<Item = OsString>) -> Option<OsString> {
+    let files: Vec<OsString> = words.filter(|word| Path::new(word).is_file()).collect();
+    let about = |file: &&OsString| error.subject().is_some_and(|subject| Path::new(file).ends_with(subject));
+    files.iter().find(about).or(files.first()).cloned()
 }
 
 /// The command that was typed.
@@ -290,4 +298,25 @@ pub(crate) fn warn_all(findings: &[(Severity, String)]) {
 /// One line on standard error.
 pub fn line(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", print::printable(text));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Place;
+    use std::path::PathBuf;
+
+    #[test]
+    fn a_hint_names_the_file_that_the_error_is_about() {
+        let folder = tempfile::tempdir().unwrap();
+        let [first, second] = ["a.csv", "b.csv"].map(|name| folder.path().join(name));
+        for file in [&first, &second] {
+            std::fs::write(file, "1\n").unwrap();
+        }
+        let words = [&first, Path::new("--rate"), &second].map(|word| word.as_os_str().to_owned());
+        let named = |error: &Error| file_of(error, words.clone().into_iter()).map(PathBuf::from);
+        assert_eq!(named(&Error::input(Place::file(&second), "x", "")), Some(second.clone()));
+        assert_eq!(named(&Error::refused("the record rings").of_record("b.csv")), Some(second));
+        assert_eq!(named(&Error::refused("the record rings")), Some(first));
+    }
 }

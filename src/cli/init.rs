@@ -75,6 +75,7 @@ impl super::CommandArgs for Init {
                 "guessed": keys(&proposal, |known| matches!(known, KeyStatus::Guessed(_))),
                 "missing": keys(&proposal, |known| matches!(known, KeyStatus::Open(_) | KeyStatus::Missing(_))),
                 "left": proposal.left,
+                "refused": refused(&proposal),
                 "warnings": [],
                 "findings": [],
             }))?;
@@ -117,6 +118,15 @@ fn keys(proposal: &Proposal, of: impl Fn(KeyStatus) -> bool) -> Vec<Value> {
     proposal.tables.iter().flat_map(rows).collect()
 }
 
+/// The records that give no answer yet: their file or pattern, code and reason of the refusal.
+fn refused(proposal: &Proposal) -> Vec<Value> {
+    let refused = proposal.tables.iter().filter_map(|table| {
+        let refusal = table.refused.as_ref()?;
+        Some(json!({ "file": table.files, "code": refusal.code, "reason": refusal.in_words() }))
+    });
+    refused.collect()
+}
+
 /// Tells what was found, guessed and is missing.
 pub fn tell(proposal: &Proposal) {
     let mut series: Vec<(&str, &str)> = Vec::new();
@@ -128,8 +138,8 @@ pub fn tell(proposal: &Proposal) {
         series.push((table.section, table.name()));
         let filled = if table.lacks() { ", left out until it is filled in" } else { "" };
         complain::line(&format!("{} -> [[{}]]{filled}", table.in_words(), table.section));
-        if !table.refused.is_empty() {
-            complain::line(&format!("  {}", table.refused));
+        if let Some(refused) = &table.refused {
+            complain::line(&format!("  {}", refused.in_words()));
         }
         for TableKey { key, value, known } in &table.rows {
             match known {

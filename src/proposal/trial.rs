@@ -3,7 +3,7 @@
 use super::alike::{CHANNELS, share};
 use super::folder::{FileSeries, short};
 use super::found::FoundTables;
-use super::{KeyStatus, Proposal, Table};
+use super::{KeyStatus, Proposal, Refusal, Table};
 use crate::analysis::{self, Answer, AnswerCache, Evidence};
 use crate::campaign::Reading;
 use crate::measure::restitution::Train;
@@ -53,17 +53,6 @@ pub(super) const STEPS: usize = 5;
 /// work and 80 bytes each in memory.
 const VALUES: usize = 1 << 27;
 
-/// Why records give no answer.
-#[derive(Debug, Default)]
-struct Refusal {
-    /// In words.
-    why: String,
-    /// What to try; empty where nothing would help.
-    hint: String,
-    /// Whether the records are drops all the same: their bounces are not told from other sounds.
-    drops: bool,
-}
-
 impl From<Option<Finding>> for Refusal {
     fn from(found: Option<Finding>) -> Refusal {
         let said = |name: &str| match found.as_ref().and_then(|found| found.fact(name)) {
@@ -71,7 +60,7 @@ impl From<Option<Finding>> for Refusal {
             _ => String::new(),
         };
         let why = Some(said("why")).filter(|why| !why.is_empty()).unwrap_or_else(|| "no answer".to_owned());
-        Refusal { why, hint: said("hint"), drops: said("refusal") == Train::UNTOLD }
+        Refusal { why, hint: said("hint"), code: said("refusal") }
     }
 }
 
@@ -254,11 +243,10 @@ impl Trial<'_> {
 
     /// The table of a drop whose bounces are not told from other sounds yet, with what to try.
     fn untold(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
-        let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|refusal| refusal.drops)?;
-        let hint = if refusal.hint.is_empty() { String::new() } else { format!("; try: {}", refusal.hint) };
+        let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|r| r.code == Train::UNTOLD)?;
         let table = series.bounces(k, name).missing("height", "0.5", HEIGHT);
         let rows = table.rows.into_iter().filter(|row| !matches!(row.known, KeyStatus::Open(_))).collect();
-        Some(Table { rows, refused: refusal.why + &hint, ..table })
+        Some(Table { rows, refused: Some(refusal), ..table })
     }
 
     /// A table that answers; else why its file does not.

@@ -21,7 +21,7 @@ use super::residuals::NO_SUPPORT;
 use contact::Rebound;
 use fit::{FittedPulse, Samples};
 use normalised::{Normalised, locate};
-use result::contact_estimates;
+use result::{UNKNOWN, contact_estimates, undamped};
 use vibro_record::units::Quantity;
 use vibro_record::units::notation::shortest;
 use vibro_record::{Error, Finding, Result, Trace};
@@ -164,7 +164,6 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let duration = result.duration.value;
     let mut say = |holds: bool, finding: Finding| found.extend(holds.then_some(finding));
     say(xi + spread >= 0.5, Finding::caution("pulse-no-inner-peak").number("xi", xi));
-    say(xi - spread < 0.0, Finding::caution("pulse-no-damping").number("xi", xi));
     say(widening.is_some() && whiteness.rejected(), whiteness.coloured("pulse-residuals-coloured"));
     if let Some(filter) = filter {
         let near = Finding::caution("pulse-near-corner").number("duration", duration);
@@ -186,6 +185,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     found.extend(more.then(|| gained(&result)));
     found.extend(unexplained.then(|| Finding::doubt("pulse-unexplained")));
     result = if more || unexplained { result.doubted() } else { result };
+    found.extend(undamped(&result.xi));
     result = result.by_clock(trace.meta.clock);
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
@@ -210,9 +210,6 @@ fn gained(result: &PulseResult) -> Finding {
     let gained = Finding::doubt("pulse-gains-energy").number("restitution", result.restitution.value);
     if result.xi.value.is_nan() { gained } else { gained.number("xi", result.xi.value) }
 }
-
-/// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.
-const UNKNOWN: f64 = 0.1;
 
 #[cfg(test)]
 mod tests;

@@ -34,6 +34,8 @@ struct Inner {
     settings: Vec<(&'static str, String)>,
     /// Code of a refusal that others than a person read.
     code: Option<&'static str>,
+    /// File or record of a refusal, which has no place in the input.
+    record: Option<PathBuf>,
 }
 
 /// What to try.
@@ -120,7 +122,8 @@ impl Place {
 impl Error {
     fn new(kind: Failure, place: Place, found: String, expected: String) -> Self {
         let (excerpt, hint, settings) = (String::new(), String::new().into(), Vec::new());
-        Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings, code: None }))
+        let (code, record) = (None, None);
+        Error(Box::new(Inner { kind, place, found, expected, excerpt, hint, settings, code, record }))
     }
 
     /// Input at `place` is not what it should be.
@@ -312,8 +315,14 @@ impl Error {
     pub fn of_record(mut self, name: &str) -> Self {
         if self.0.kind == Failure::Refused {
             self.0.found = format!("{name}: {}", self.0.found);
+            self.0.record = Some(name.into());
         }
         self
+    }
+
+    /// The file or the record that it is about, where it names one.
+    pub fn subject(&self) -> Option<&Path> {
+        self.0.place.path.as_deref().or(self.0.record.as_deref())
     }
 
     /// Whether it is wrong usage, of no place in a file, that neither advice nor a setting stands beside.

@@ -125,6 +125,13 @@ fn drops_whose_bounces_are_not_told_yet_are_drops_with_what_to_try() {
     write(&root.path().join("two.csv"), "sound [V]", 8000.0, 3.75, &mut sound);
     let answer = json(&["init", text(root.path())]);
     assert_eq!(answer["missing"][0]["key"], "height", "{answer}");
+    let refused = &answer["refused"][0];
+    assert_eq!(
+        (&refused["file"], &refused["code"]),
+        (&"two.csv".into(), &"bounces-untold".into()),
+        "{answer}"
+    );
+    assert!(refused["reason"].as_str().unwrap().contains("two trains of bounces"), "{answer}");
     let written = fs::read_to_string(root.path().join("campaign.toml")).unwrap();
     let (_, refused) = written.split_once("two trains of bounces").expect("why it is left out");
     assert!(refused.contains("`span = [") && refused.contains("#[[drop]]"), "{written}");

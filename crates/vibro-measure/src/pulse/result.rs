@@ -308,15 +308,31 @@ pub fn two_times(
             let near = Finding::doubt("pulse-ratio-near-zero").number("rho", rho).number("std", spread);
             findings.push(near.number("xi", least));
         }
-        let no_damping = Finding::caution("pulse-no-damping").number("xi", damping(rho));
-        findings.extend((rho + 2.0 * spread >= 0.5).then_some(no_damping));
     }
     let contact = |times: &[f64]| KelvinVoigt::lasting(times[1], damping(times[0] / times[1]));
     let covariance = |i: usize, j: usize| if i == j { variance } else { 0.0 };
     let times = [time_to_peak, duration];
     contact_estimates((&times, &times), covariance, contact, mass, 2, "closed form from two times")
-        .map(|estimates| PulseResult { findings, ..estimates })
+        .map(|estimates| {
+            // Times that are taken as exact do not show that there is no damping.
+            let known = estimates.xi.std.is_some();
+            findings.extend(undamped(&estimates.xi).filter(|_| known));
+            PulseResult { findings, ..estimates }
+        })
         .ok_or_else(|| Error::refused("the two times belong to no contact"))
+}
+
+/// Half of the interval in which ξ lies where it has no uncertainty, as behind an unknown instrument.
+pub(super) const UNKNOWN: f64 = 0.1;
+
+/// That ξ may be zero: by its uncertainty, or, where it has none, by what an unknown instrument may move it.
+pub(super) fn undamped(xi: &Estimate) -> Option<Finding> {
+    let found = Finding::caution("pulse-no-damping").number("xi", xi.value);
+    let (reach, found) = match xi.std {
+        Some(std) => (2.0 * std, found.number("std", std)),
+        None => (UNKNOWN, found.number("allowed", UNKNOWN)),
+    };
+    (xi.value < reach).then_some(found)
 }
 
 /// ξ of a contact whose peak comes after this part of its duration.
