@@ -51,7 +51,7 @@ pub struct Compare {
     out: Option<PathBuf>,
 }
 
-/// A campaign file, or that of a folder; an empty one where the folder has none.
+/// Opens a campaign file, or the campaign of a folder. A folder without a campaign gives an empty one.
 fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
     let of_folder = path.join(Proposal::FILE);
     if !path.is_dir() {
@@ -63,7 +63,7 @@ fn opened(within: &Folder, path: &Path) -> Result<Campaign> {
     }
 }
 
-/// The campaign; one proposed for what lies in its folder where it has no file.
+/// The campaign itself, or, where it has no file, the one proposed for the recordings of its folder.
 fn proposed(campaign: Campaign, kept: &AnswerCache, json: bool) -> Result<Campaign> {
     if campaign.is_file() {
         return Ok(campaign);
@@ -77,7 +77,7 @@ fn proposed(campaign: Campaign, kept: &AnswerCache, json: bool) -> Result<Campai
 }
 
 impl Run {
-    /// The campaign of a file, with its own folder for results.
+    /// A run of this campaign with the default folder for results.
     pub fn of(campaign: PathBuf) -> Run {
         Run { campaign, out: None, allow_outside: false, again: false, watch: false }
     }
@@ -96,9 +96,9 @@ impl super::CommandArgs for Run {
         let is_folder = self.campaign.is_dir();
         let folder = if is_folder { self.campaign.as_path() } else { folder_of(&self.campaign) };
         loop {
-            // What changes while it runs is for the next run.
+            // Stamps are taken before the run: a change during it starts the next one.
             let before = self.stamps(folder);
-            // A campaign that is being written may have a fault for a moment.
+            // An editor may save an incomplete campaign for a moment: keep watching.
             if let Err(error) = self.once(json) {
                 complain::error(&error, Voice::Campaign, json);
             }
@@ -106,25 +106,25 @@ impl super::CommandArgs for Run {
             while self.stamps(folder) == before {
                 std::thread::sleep(PAUSE);
             }
-            // What is still being written lands within another pause.
+            // Wait once more, so that a file that is still being written is complete.
             std::thread::sleep(PAUSE);
         }
     }
 }
 
-/// Time between two looks at a folder that is watched.
+/// Interval between two checks of a watched folder.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// Size and time of each file that is watched.
+/// Size and modification time of each watched file.
 type Stamps = BTreeMap<PathBuf, Option<(u64, SystemTime)>>;
 
 impl Run {
-    /// Where files lie, and whether names may lead outside the folder of the campaign.
+    /// Access to files, with or without names that lead outside the folder of the campaign.
     fn within(&self) -> Folder {
         Folder::default().allow_outside(self.allow_outside)
     }
 
-    /// The files of a folder, but for results, and those that its campaign names.
+    /// Stamps of the recordings of a folder and of the files that its campaign names; results are excluded.
     fn stamps(&self, folder: &Path) -> Stamps {
         let within = self.within().at(folder);
         let named = opened(&within, &self.campaign).and_then(|campaign| analysis::files(&campaign));
@@ -133,8 +133,7 @@ impl Run {
         all.map(|path| (path.clone(), within.stamp(&path))).collect()
     }
 
-    /// Does all that the campaign asks for. Gives the exit code: 1 where nothing that was asked for could be
-    /// answered.
+    /// Runs the campaign once. Gives the exit code: 1 where no record could be answered.
     fn once(&self, json: bool) -> Result<u8> {
         let campaign = opened(&self.within(), &self.campaign)?;
         let folder = self.out.clone().unwrap_or_else(|| campaign.out());
@@ -187,5 +186,5 @@ impl super::CommandArgs for Compare {
     }
 }
 
-/// Names of what `vibro compare` writes.
+/// Names of the files that `vibro compare` writes.
 const COMPARISON: Names = Names::Numbered(&["overlay", "pairs", "peaks", "fit", "fit_points"]);

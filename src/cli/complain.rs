@@ -1,4 +1,4 @@
-//! Complaints go to standard error, in one form. A closed standard error is no reason to fail.
+//! Errors and findings on standard error, in one form. A closed standard error is ignored.
 
 use super::{CommandRow, print, rows};
 use crate::error::{Error, Hint};
@@ -13,7 +13,7 @@ use std::ffi::OsString;
 use std::io::Write;
 use std::path::Path;
 
-/// Prints an error, with `json` as an object on standard output as well, and gives its exit code.
+/// Prints an error, with `json` also as an object on standard output, and gives its exit code.
 pub fn error(error: &Error, voice: Voice, json: bool) -> u8 {
     errors(std::slice::from_ref(error), voice, json)
 }
@@ -36,7 +36,7 @@ pub fn errors(all: &[Error], voice: Voice, json: bool) -> u8 {
     code
 }
 
-/// Prints what can be typed where no command was, with `json` as an object on standard output as well.
+/// Prints the short list of commands where none was typed, with `json` also an object on standard output.
 pub fn nothing(commands: &str, json: bool) -> u8 {
     line(commands.trim_end());
     if json {
@@ -45,8 +45,8 @@ pub fn nothing(commands: &str, json: bool) -> u8 {
     2
 }
 
-/// Prints what clap has to say: help and version are no error, anything else is wrong usage, with `json` as
-/// an object on standard output as well.
+/// Prints a message of clap. Help and version go to standard output; anything else is a usage error, with
+/// `json` also an object on standard output.
 pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     if !complaint.use_stderr() {
         // A closed pipe behind --help is no reason to complain.
@@ -59,7 +59,7 @@ pub fn usage(complaint: &clap::Error, json: bool) -> u8 {
     error(&plain(complaint), Voice::Command, json)
 }
 
-/// What to try after an error, as it is typed here.
+/// The hint of an error, with the words that were typed filled in.
 fn spelt(hint: &Hint, error: &Error) -> String {
     let words = || std::env::args_os().skip(1);
     match hint {
@@ -76,7 +76,7 @@ fn spelt(hint: &Hint, error: &Error) -> String {
     }
 }
 
-/// Of the words that were typed the file that an error is about; the first file where it names none of them.
+/// The typed file that an error is about; the first typed file where the error names none of them.
 fn file_of(error: &Error, words: impl Iterator<Item = OsString>) -> Option<OsString> {
     let files: Vec<OsString> = words.filter(|word| Path::new(word).is_file()).collect();
     let about = |file: &&OsString| error.subject().is_some_and(|subject| Path::new(file).ends_with(subject));
@@ -85,10 +85,10 @@ fn file_of(error: &Error, words: impl Iterator<Item = OsString>) -> Option<OsStr
 
 /// The command that was typed.
 struct Words {
-    /// It and what it is part of: `vibro model orbit`.
+    /// Its full name: `vibro model orbit`.
     command: String,
     row: Option<&'static CommandRow>,
-    /// Its own commands and arguments.
+    /// Its definition: subcommands and arguments.
     own: Typed,
 }
 
@@ -106,15 +106,15 @@ impl Words {
         found
     }
 
-    /// The names of its own commands and options.
+    /// Names of its subcommands and options.
     fn names(&self) -> Vec<String> {
         let parts = self.own.get_subcommands().map(|part| part.get_name().to_owned());
         let options = self.own.get_arguments().filter_map(|arg| Some(format!("--{}", arg.get_long()?)));
         parts.chain(options).collect()
     }
 
-    /// How an argument is typed: an option with what it takes, or the name of a place; of one that is not
-    /// known, what was typed.
+    /// An argument as it is typed: an option with the name of its value, or the name of a positional
+    /// argument. An unknown one is returned unchanged.
     fn argument(&self, named: &str) -> String {
         let name = |arg: &Arg| arg.get_value_names().unwrap_or_default().join(" ");
         let is = |arg: &&Arg| match arg.get_long() {
@@ -133,7 +133,7 @@ impl Words {
     }
 }
 
-/// Words of the field, and the commands that are meant by them.
+/// Terms of the field that are no commands, with the command for each.
 const WORDS: [(&str, &str); 11] = [
     ("modes", "modal"),
     ("hammer", "modal"),
@@ -148,7 +148,7 @@ const WORDS: [(&str, &str); 11] = [
     ("plot", "run"),
 ];
 
-/// The commands that have an option.
+/// Names of the commands that take an option.
 fn commands_with(option: &str) -> Vec<String> {
     let has = |command: &clap::Command| {
         let name = option.strip_prefix("--");
@@ -157,7 +157,7 @@ fn commands_with(option: &str) -> Vec<String> {
     super::command().get_subcommands().filter(|c| has(c)).map(|c| c.get_name().to_owned()).collect()
 }
 
-/// What clap complains of, in our form: of its words none is read.
+/// A complaint of clap as an error of ours, made from its kind and context; its text is not used.
 fn plain(complaint: &clap::Error) -> Error {
     let context = |kind| complaint.get(kind).map(ToString::to_string).unwrap_or_default();
     let words = Words::typed();
@@ -211,13 +211,13 @@ fn plain(complaint: &clap::Error) -> Error {
     }
 }
 
-/// A command that is not known.
+/// The error of an unknown command.
 fn unknown_command(words: &Words, name: &str) -> Error {
     let Words { command, .. } = words;
     let called = WORDS.iter().find(|(word, _)| *word == name && command == "vibro").map(|(_, own)| *own);
     let own = words.names();
     let near = called.or_else(|| nearest(name, own.iter().map(String::as_str)));
-    // What was typed behind it stays.
+    // The hint keeps the arguments that were typed after the command.
     let behind = std::env::args_os().skip_while(|word| *word != *name).skip(1);
     let rest = || behind.map(typed).collect::<Vec<_>>().join(" ");
     let hint = match near {
@@ -229,7 +229,7 @@ fn unknown_command(words: &Words, name: &str) -> Error {
     Error::usage(format!("no command is called {name:?}"), "").hint(hint)
 }
 
-/// A word behind a command that has no place there.
+/// The error of an argument that the command does not take.
 fn unknown_argument(words: &Words, argument: &str) -> Error {
     let option = argument.split([' ', '=']).next().unwrap_or_default();
     if Path::new(argument).exists() {
@@ -250,7 +250,7 @@ fn unknown_argument(words: &Words, argument: &str) -> Error {
     Error::usage(format!("{of} no {what} {argument}"), expected).hint(hint)
 }
 
-/// A value that an argument cannot take: of a kind of ours, or none of these names.
+/// The error of a value that an argument cannot take: not of its kind, or not one of its names.
 fn wrong_value(command: &str, argument: &str, value: &str, kind: Option<&Kind>, names: &[String]) -> Error {
     let option = argument.split(' ').next().unwrap_or_default();
     let meant = match kind {
@@ -266,14 +266,14 @@ fn wrong_value(command: &str, argument: &str, value: &str, kind: Option<&Kind>, 
     Error::usage(format!("{option} is {value}"), expected).hint(hint)
 }
 
-/// What a program reads in place of an answer.
+/// Prints an error as a JSON object, for programs.
 fn object(error: &str, exit_code: u8) {
-    // There is nobody left to tell of a failure to print a failure.
+    // If standard output fails too, there is no way left to report it.
     let _ = print::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
 }
 
-/// Prints the findings that a person reads first, and in one line how many more there are and what to type or
-/// to open for all of them.
+/// Prints the findings that a person reads first, then one line with the number of the others and where all
+/// findings are.
 pub(crate) fn warn(findings: &[(Severity, String)], all_in: &str) {
     let (first, rest) = findings.split_at(foremost(findings));
     warn_all(first);
@@ -288,14 +288,14 @@ pub(crate) fn warn(findings: &[(Severity, String)], all_in: &str) {
     line(&format!("and {} more; all findings: {all_in}", more.join(", ")));
 }
 
-/// Prints all findings, where nothing else shows them.
+/// Prints all findings. For output that has no other place for them.
 pub(crate) fn warn_all(findings: &[(Severity, String)]) {
     for (severity, sentence) in findings {
         line(&format!("{}: {sentence}", severity.name()));
     }
 }
 
-/// One line on standard error.
+/// Prints one line on standard error.
 pub fn line(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", print::printable(text));
 }

@@ -1,4 +1,4 @@
-//! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY, on the way filtered and integrated.
+//! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY, with optional filters and integration.
 
 use super::{CommandArgs, complain, print};
 use crate::analysis::Answer;
@@ -36,13 +36,13 @@ pub struct Convert {
     reading: Reading,
 }
 
-/// Memory that a file takes while it is written, as a multiple of the values; measured of ten million samples
-/// with twenty digits.
+/// Peak memory while a file is written, as a multiple of its values. Measured with ten million samples of
+/// twenty digits.
 const BESIDE: [(Target, f64); 5] =
     [(Target::Uff, 3.0), (Target::Csv, 4.5), (Target::Tsv, 4.5), (Target::Npy, 2.2), (Target::Wav, 1.2)];
 
 impl CommandArgs for Convert {
-    /// Writes the file and prints what is in it.
+    /// Converts the file and prints what was written.
     fn run(&self, json: bool) -> Result<u8> {
         let piped = self.output == Path::new("-");
         let target = if piped { Target::Csv } else { Target::of(&self.output)? };
@@ -93,7 +93,7 @@ impl CommandArgs for Convert {
     }
 }
 
-/// What is done to time traces on the way.
+/// Filters and integrations applied to time traces before they are written.
 #[derive(Debug, clap::Args)]
 struct TraceProcessing {
     /// Corner in Hz of a zero-phase Butterworth low-pass of order 4
@@ -115,16 +115,16 @@ struct TraceProcessing {
     excitation: Option<f64>,
 }
 
-/// Order of one pass of every filter here.
+/// Filter order of one pass.
 const ORDER: usize = 4;
 
 impl TraceProcessing {
-    /// Whether anything is to be done.
+    /// Whether any processing is requested.
     fn wanted(&self) -> bool {
         self.integrate != 0 || self.smoothing.is_some() || self.low_pass.is_some() || self.high_pass.is_some()
     }
 
-    /// Does it to all records; gives what was done.
+    /// Processes all records in place; gives a finding for each step.
     ///
     /// # Errors
     /// If options contradict each other, a record is no time trace, or it cannot be filtered or integrated.
@@ -209,8 +209,8 @@ impl TraceProcessing {
     }
 }
 
-/// A channel that is named after its quantity takes the name of the new one: no displacement is called
-/// velocity.
+/// Renames a channel that bears the name of its quantity: a velocity integrated to displacement must not
+/// stay "velocity".
 fn renamed(mut made: Trace, from: &Trace) -> Trace {
     let (before, after) = (from.meta.quantity, made.meta.quantity);
     if Quantity::from_name(&made.meta.name) == Some(before) && after != Quantity::Other {

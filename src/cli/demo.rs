@@ -71,7 +71,8 @@ impl super::CommandArgs for Demo {
     }
 }
 
-/// Writes the files of an example, all or none. One that is there with another content is left, and named.
+/// Writes the files of an example, all or none. A file that exists with other content is kept and named in
+/// the error.
 fn write(demo: &Example, folder: &Path) -> Result<()> {
     let mut outputs: BTreeMap<PathBuf, Output> = BTreeMap::new();
     let elsewhere = format!("--out {}", typed(print::unused(folder)));
@@ -91,7 +92,7 @@ fn write(demo: &Example, folder: &Path) -> Result<()> {
     outputs.into_values().try_for_each(|output| output.commit().map(drop))
 }
 
-/// Programs that open a page, on one system or another.
+/// Programs that open a web page, on Linux, macOS and Windows.
 const OPENERS: [&str; 3] = ["xdg-open", "open", "explorer"];
 
 impl super::CommandArgs for Open {

@@ -20,12 +20,12 @@ pub struct Info {
     reading: Reading,
 }
 
-/// Notes of a file that are shown to a person, and characters of each.
+/// Number of notes of a file that are printed, and characters of each.
 const NOTES: usize = 8;
 const WIDE: usize = 90;
 
 impl CommandArgs for Info {
-    /// Lists what can be listed and complains of the rest; gives the exit code of the first failure.
+    /// Lists each file and reports those that cannot be read; gives the exit code of the first failure.
     fn run(&self, json: bool) -> Result<u8> {
         let (within, reader) = (Folder::default(), self.reading.reader()?);
         let (mut files, mut errors, mut about) = (Vec::new(), Vec::new(), Vec::new());
@@ -34,7 +34,7 @@ impl CommandArgs for Info {
             let surveyed = print::busy(json, "reading", |_| reader.survey(path));
             let (format, records, mut findings) = match surveyed {
                 Ok(found) => found,
-                // The other files are still worth listing; the first failure decides the exit code.
+                // One unreadable file does not stop the list.
                 Err(error) => {
                     let failed = complain::error(&error, Voice::Command, false);
                     code = if code == 0 { failed } else { code };
@@ -101,7 +101,7 @@ fn line(text: &mut String, r: &Header) {
     let _ = writeln!(text, "  {name}: {complex}{kind}{what}, {n} values from {start}, {step}, {max}");
 }
 
-/// A number to six digits, with its unit.
+/// A number with six significant digits and its unit.
 fn known(value: f64, unit: &str) -> String {
     let six = format!("{value:.5e}");
     let digits: f64 = six.parse().unwrap_or(value);

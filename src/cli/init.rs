@@ -35,11 +35,11 @@ pub struct Check {
 }
 
 impl super::CommandArgs for Init {
-    /// Writes the campaign; to one that is there it adds tables for recordings that it does not name.
+    /// Writes the campaign. To an existing one it appends tables for recordings that have none.
     fn run(&self, json: bool) -> Result<u8> {
         let within = Folder::from(self.folder.as_path()).allow_outside(self.allow_outside);
         let path = within.path(Path::new(Proposal::FILE))?;
-        // A link within the folder stays one.
+        // A symbolic link is followed, so that its target is written and the link is kept.
         let linked = within.occupant(&path) == Occupant::Special;
         let path = if linked { path.canonicalize().unwrap_or(path) } else { path };
         let name = path.file_name().map_or_else(String::new, shown);
@@ -53,7 +53,7 @@ impl super::CommandArgs for Init {
             Some(known) => {
                 let end = if known.text().ends_with('\n') { "" } else { "\n" };
                 let text = format!("{end}{}", proposal.tables());
-                // What cannot stand behind the rest is not written.
+                // Check that the extended file parses before it is written.
                 analysis::parse(&within, &path, known.text().to_owned() + &text)?;
                 text
             }
@@ -95,8 +95,8 @@ impl super::CommandArgs for Init {
     }
 }
 
-/// The error of a campaign that cannot be read, with another advice where the file has no table of one:
-/// another program has made it.
+/// The error of an unreadable campaign. Where the file has no table of a campaign, another program wrote it,
+/// and the advice is to move it.
 fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
     let bytes = within.read(path).unwrap_or_default();
     let text = String::from_utf8_lossy(&bytes);
@@ -108,7 +108,7 @@ fn foreign(within: &Folder, path: &Path, error: Error) -> Error {
     error.hint(format!("mv {} {}", typed(path), typed(&renamed)))
 }
 
-/// The keys that are known in one way.
+/// The keys of all tables with this status.
 fn keys(proposal: &Proposal, of: impl Fn(KeyStatus) -> bool) -> Vec<Value> {
     let of = &of;
     let rows = |table: &Table| -> Vec<Value> {
@@ -127,7 +127,7 @@ fn refused(proposal: &Proposal) -> Vec<Value> {
     refused.collect()
 }
 
-/// Tells what was found, guessed and is missing.
+/// Prints which tables are proposed, with guessed and missing keys.
 pub fn tell(proposal: &Proposal) {
     let mut series: Vec<(&str, &str)> = Vec::new();
     for table in &proposal.tables {
@@ -154,7 +154,7 @@ pub fn tell(proposal: &Proposal) {
 impl super::CommandArgs for Check {
     const VOICE: Voice = Voice::Campaign;
 
-    /// Checks keys, values and files.
+    /// Checks keys, values, files and channels without computing.
     fn run(&self, json: bool) -> Result<u8> {
         let of_folder = self.campaign.join(Proposal::FILE);
         if self.campaign.is_dir() && !of_folder.exists() {

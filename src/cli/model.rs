@@ -1,4 +1,4 @@
-//! `vibro model`: what the motion of a rig should be.
+//! `vibro model`: predicted motion of a rig.
 
 use super::{CommandArgs, print};
 use crate::analysis::Answer;
@@ -35,7 +35,7 @@ enum Question {
     Map(ModelArgs<map::Keys>),
 }
 
-/// What is asked, and where results go.
+/// The keys of an analysis, and the folder for results.
 #[derive(Debug, Args)]
 pub struct ModelArgs<K: Args> {
     #[command(flatten)]

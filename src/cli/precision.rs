@@ -1,4 +1,4 @@
-//! `vibro precision`: speed against accuracy, and where methods break.
+//! `vibro precision`: speed and accuracy of methods, and their limits.
 
 use super::{CommandArgs, print};
 use crate::analysis::Answer;
@@ -40,13 +40,13 @@ pub struct Precision {
     out: Option<PathBuf>,
 }
 
-/// Names of what is written: one chart a scene, one map a method.
+/// Names of written files: one chart a scene, one failure map a method.
 const NAMES: Names = Names::Named(&["precision", "failures"]);
 
 const FAMILIES: [Family; 2] = [Family::Models, Family::Estimators];
 
 impl CommandArgs for Precision {
-    /// Measures, or takes up what was measured, and prints it.
+    /// Benchmarks the methods, or reads earlier results, and prints them.
     fn run(&self, json: bool) -> Result<u8> {
         let output = print::results(&Folder::default(), self.out.as_deref(), NAMES)?;
         let mut results = match &self.results {

@@ -1,4 +1,4 @@
-//! Standard output: one JSON object, or text; progress for a person at a terminal.
+//! Standard output as one JSON object or as text; a progress bar for a person at a terminal.
 
 use super::complain;
 use crate::analysis::{Answer, Progress};
@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// Writes the figures and files of an answer where there is a folder for them, and prints it: as JSON, or its
-/// tables. Gives the exit code.
+/// Writes figures and files into the folder for results, if there is one, and prints the answer as JSON or
+/// as tables. Gives the exit code.
 ///
 /// # Errors
 /// If a file or standard output cannot be written.
@@ -51,15 +51,15 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     Ok(code)
 }
 
-/// Endings of files, which no folder for results has: what is read, is written, or comes from other programs.
+/// File name endings that a folder for results must not have: `--out book.xlsx` is a mistake for a file.
 const FILES: &str = "csv tsv txt dat asc uff unv ufb wav npy mat h5 hdf5 tdms lvm zip xlsx xlsm xls ods \
                      svg png jpg pdf html json toml md";
 
-/// A folder to write into, with figures in the style that was asked for, and what to type where something is
+/// A folder for results, with the chosen style of figures. `elsewhere` is the hint where an existing file is
 /// in the way.
 ///
 /// # Errors
-/// As [`Output::new`]; if the folder, which is not there yet, is named like a file.
+/// As [`Output::new`]; if a new folder has the name of a file.
 pub fn output(folder: Folder, owner: Owner, elsewhere: String) -> Result<Output> {
     let OutputSettings { medium, replace } = WRITTEN.get().copied().unwrap_or_default();
     let root = folder.root();
@@ -75,7 +75,7 @@ pub fn output(folder: Folder, owner: Owner, elsewhere: String) -> Result<Output>
     Ok(output)
 }
 
-/// A path like this one, of which there is nothing.
+/// A similar path that does not exist yet: `results_2`.
 pub fn unused(path: &Path) -> PathBuf {
     let stem = path.file_stem().map_or_else(|| "results".to_owned(), shown);
     let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", shown(ending)));
@@ -83,8 +83,8 @@ pub fn unused(path: &Path) -> PathBuf {
     names.find(|path| !path.exists()).unwrap_or_default()
 }
 
-/// The folder for the results of a command, if one is named: nothing of a person's may stand there under the
-/// names of its files.
+/// The folder for the results of a command, if one is named. Checks that no file of a person has one of the
+/// names that the command writes.
 ///
 /// # Errors
 /// As [`Output::new`] and [`Output::expect`].
@@ -95,14 +95,14 @@ pub fn results(folder: &Folder, out: Option<&Path>, names: Names) -> Result<Opti
     Ok(Some(output))
 }
 
-/// One file that a command writes.
+/// A single file that a command writes.
 pub struct File {
     output: Output,
     name: String,
 }
 
 impl File {
-    /// Looks, before anything is computed, whether the file can be written.
+    /// Checks, before anything is computed, that the file can be written.
     ///
     /// # Errors
     /// If its folder does not exist, its name cannot be one, or it must not be replaced.
@@ -118,7 +118,7 @@ impl File {
         file.expect().map(|()| file)
     }
 
-    /// Looks again, once more is known of what is read.
+    /// Checks again, once all files that are read are known: none of them may be replaced.
     ///
     /// # Errors
     /// If it must not be replaced.
@@ -127,7 +127,7 @@ impl File {
         self.output.expect(|known| known == self.name)
     }
 
-    /// Writes it whole; gives its path.
+    /// Writes the file as a whole; gives its path.
     ///
     /// # Errors
     /// As [`Output::write`] and [`Output::commit`].
@@ -139,21 +139,21 @@ impl File {
     }
 }
 
-/// The folder in which a file lies.
+/// The folder of a file; `.` for a bare name.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// How this program writes files.
+/// Options for all files that the program writes.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OutputSettings {
-    /// The style of all figures.
+    /// Style of all figures.
     pub medium: Medium,
-    /// Whether files that are not vibro's are replaced, too.
+    /// Whether files that vibro did not write are replaced.
     pub replace: bool,
 }
 
-/// What was typed of it.
+/// These options, set once from the command line.
 pub static WRITTEN: OnceLock<OutputSettings> = OnceLock::new();
 
 /// Prints one JSON object.
@@ -176,13 +176,14 @@ pub fn text(text: &str) -> Result<()> {
     }
 }
 
-/// Text without control characters but line breaks and tabs: a name from a file must not steer a terminal.
+/// Replaces control characters other than line breaks and tabs: a name in a file must not control the
+/// terminal.
 pub(crate) fn printable(text: &str) -> String {
     let breaks = |c: char| c == '\n' || c == '\t';
     text.chars().map(|c| if is_unprintable(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// Works with a bar on standard error, where that is a terminal and no JSON was asked for.
+/// Runs the work with a progress bar on standard error; without one if that is no terminal or `json` is set.
 ///
 /// # Errors
 /// Those of the work.
@@ -198,7 +199,7 @@ pub fn busy<T>(json: bool, what: &'static str, work: impl FnOnce(&ProgressBar) -
     }
     bar.set_message(what);
     let done = work(&bar);
-    // Before a complaint, too.
+    // Clear the bar before an error is printed, too.
     bar.finish_and_clear();
     done
 }

@@ -1,4 +1,4 @@
-//! Commands on the record of a file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
+//! Commands on one measurement file: `vibro spectrum`, `impacts`, `modal`, `pulse`, `restitution`, `drill`.
 
 use super::sweep::{SweepPlace, of_script};
 use super::{CommandArgs, complain, print};
@@ -19,7 +19,7 @@ use clap::Args;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Which record, how its file is read, and where results go.
+/// Channel, reading of the file, and folder for results.
 #[derive(Debug, Args)]
 pub struct RecordArgs {
     #[command(flatten)]
@@ -31,7 +31,7 @@ pub struct RecordArgs {
     out: Option<PathBuf>,
 }
 
-/// A file, and how it is measured.
+/// A file with the keys of its analysis.
 #[derive(Debug, Args)]
 pub struct MeasuredFile<K: Args> {
     /// Measurement file
@@ -82,7 +82,7 @@ pub struct Restitution {
 }
 
 impl RecordArgs {
-    /// Where files lie, of which these are read, and the folder for results.
+    /// Registers the files that are read, and opens the folder for results, which must not replace them.
     fn results<'a>(
         &self,
         files: impl IntoIterator<Item = &'a PathBuf>,
@@ -94,7 +94,7 @@ impl RecordArgs {
         Ok((folder, output))
     }
 
-    /// Measures the record of a file, with a bar of progress.
+    /// Measures the record of a file, with a progress bar.
     fn measured<T>(
         &self,
         folder: &Folder,
@@ -132,7 +132,7 @@ impl<K: Args> MeasuredFile<K> {
 }
 
 impl<K: Args + OfFile + Analysis> CommandArgs for MeasuredFile<K> {
-    /// Prints what is found in one record.
+    /// Prints the answer of one record.
     fn run(&self, json: bool) -> Result<u8> {
         let (folder, output) = self.record.results([&self.file], K::FILES)?;
         print::answer(self.by(&folder, json, K::measure)?, output, json)
@@ -153,7 +153,7 @@ impl CommandArgs for Impacts {
     }
 }
 
-/// What timeav printed: a mean and the times. It knew nothing of the rest.
+/// Output of the script timeav: the mean interval and the times of impacts. It had no uncertainty.
 fn of_timeav(trace: &Trace) -> Result<Answer> {
     let found = legacy::contact_times(trace)?;
     let n = found.times.len();
@@ -181,7 +181,7 @@ fn of_timeav(trace: &Trace) -> Result<Answer> {
 }
 
 impl MeasuredFile<frf::Keys> {
-    /// The receptance of a sweep, where the file is its list or a campaign.
+    /// The receptance of a sweep, if the file is a list of a sweep or a campaign.
     fn sweep(&self, folder: &Folder) -> Result<Option<frf::Function>> {
         let typed = self.file.to_string_lossy();
         let SweepPlace { path, name, campaign } = SweepPlace::of(&typed);

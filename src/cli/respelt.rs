@@ -1,5 +1,5 @@
-//! What was typed, as the commands take it: patterns of file names become names where no shell did that, and
-//! options that once had the name of another one get their own, with a note.
+//! Rewrites the typed words before they are parsed: patterns of file names are expanded where the shell did
+//! not, and renamed options are replaced, with a note.
 
 use super::complain;
 use crate::analysis::matching;
@@ -8,7 +8,7 @@ use crate::record::without_unit;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Command, old and new spelling.
+/// Command, old spelling, new spelling.
 const OLD: [(&str, &str, &str); 8] = [
     ("drill", "--from", "--beam-from"),
     ("drill", "--fit", "--fit-duration"),
@@ -20,12 +20,12 @@ const OLD: [(&str, &str, &str); 8] = [
     ("model choose", "--noise", "--noise-floor"),
 ];
 
-/// Commands that take several files: a pattern may mean many of them, elsewhere it means one. A file to write
-/// is never meant by a pattern.
+/// Commands that take several files. For others a pattern must match a single file. The name of a file to
+/// write is never expanded.
 const SEVERAL: [&str; 2] = ["info", "restitution"];
 
-/// The files that a pattern stands for, in the order of their numbers; a word that means none as it is. As in
-/// a shell, a hidden file is meant by its dot only.
+/// Files that match a pattern, in the order of their numbers; a word without a match is kept. As in a shell,
+/// a hidden file needs an explicit dot.
 fn named(word: OsString, command: &str) -> Vec<OsString> {
     let pattern =
         word.to_str().filter(|w| w.contains(['*', '?']) && !w.starts_with('-') && !Path::new(w).exists());
@@ -36,13 +36,13 @@ fn named(word: OsString, command: &str) -> Vec<OsString> {
     if meant { files.into_iter().map(PathBuf::into_os_string).collect() } else { vec![word] }
 }
 
-/// Whether standard input is named more than once: it has one record.
+/// Whether standard input is named more than once; it can be read only once.
 pub fn pipes() -> bool {
     std::env::args_os().filter(|word| word == "-").count() > 1
 }
 
-/// Numbers of options with the unit that stands behind them as a word of its own, so that it is seen where it
-/// belongs: `--height 0.4 m`.
+/// Joins a number and the unit typed after it, so that the error about the unit names its option: `--height
+/// 0.4 m`.
 fn with_units(mut typed: Vec<OsString>) -> Vec<OsString> {
     let is_unit =
         |unit: &str| without_unit("mass", &format!("1{unit}")).is_some() && !Path::new(unit).exists();
@@ -60,7 +60,7 @@ fn with_units(mut typed: Vec<OsString>) -> Vec<OsString> {
     typed
 }
 
-/// What was typed, in the spelling of today.
+/// The typed words with patterns expanded and current spellings.
 pub fn args() -> impl Iterator<Item = OsString> {
     let typed = with_units(std::env::args_os().collect());
     let words = typed.iter().skip(1).filter_map(|word| word.to_str()).filter(|word| !word.starts_with('-'));
@@ -68,7 +68,7 @@ pub fn args() -> impl Iterator<Item = OsString> {
     let first = command.split(' ').next().unwrap_or_default().to_owned();
     let of = move |row: &&(&str, &str, &str)| command == row.0 || command.starts_with(&format!("{} ", row.0));
     let rows: Vec<_> = OLD.iter().filter(of).collect();
-    // What stands behind an option may be its value.
+    // A word after an option may be its value and is not rewritten.
     let mut free = true;
     let named = move |word: OsString| {
         let is_option = word.to_str().is_some_and(|w| w.starts_with('-'));

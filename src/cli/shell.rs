@@ -1,4 +1,4 @@
-//! `vibro completions` and `vibro man`: from the same definition as the help.
+//! `vibro completions` and `vibro man`, generated from the definition of the commands.
 
 use super::print;
 use crate::error::{Error, Result};

@@ -1,4 +1,5 @@
-//! `vibro response`, `vibro waterfall`, `vibro excitation`: the jobs of sinesw3, sinesw and sineswpf.
+//! `vibro response`, `vibro waterfall`, `vibro excitation`: what the thesis' scripts sinesw3, sinesw and
+//! sineswpf did.
 
 use super::{CommandArgs, init, print};
 use crate::analysis::AnswerCache;
@@ -20,7 +21,7 @@ use ndarray::Array2;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// A stepped-sine sweep, and what its analyser stored.
+/// A stepped-sine sweep, and the settings with which its analyser stored spectra.
 #[derive(Debug, clap::Args)]
 pub struct SweepSource {
     /// List file, hand-over file, campaign.toml#name, a folder, or time traces: one file a step, or a
@@ -37,7 +38,7 @@ pub struct SweepSource {
     fmin: Option<f64>,
 }
 
-/// How a response is taken from a spectrum.
+/// How the response amplitude is taken from a spectrum.
 #[derive(Debug, clap::Args)]
 pub struct ResponseArgs {
     #[command(flatten)]
@@ -71,13 +72,13 @@ pub struct ExcitationArgs {
     write_lists: Option<Vec<PathBuf>>,
 }
 
-/// The finding that an answer is that of a script of the thesis.
+/// The finding that the answer repeats a script of the thesis.
 pub fn of_script(script: &str) -> Finding {
     Finding::caution("legacy-script").name("script", script)
 }
 
 impl SweepSource {
-    /// A sweep of the time traces that are named, or that lie in the folder that is.
+    /// A sweep of time traces: the named files, or those of the named folder.
     fn proposed(&self, folder: &Folder) -> Result<Option<Proposal>> {
         let any = folder.clone().allow_outside(true);
         let typed: Vec<&Path> = self.paths.iter().map(Path::new).collect();
@@ -94,7 +95,7 @@ impl SweepSource {
             all => {
                 let files: Result<Vec<_>> = all.iter().map(|path| matching(&any, path)).collect();
                 let mut files = files?.concat();
-                // A shell names 10 before 2.
+                // Sort by number: a shell lists step10 before step2.
                 if files.is_sorted() {
                     in_order(&mut files);
                 }
@@ -103,12 +104,12 @@ impl SweepSource {
         })
     }
 
-    /// Where files lie, and whether names may lead outside the folder of the list.
+    /// Access to files, with or without names that lead outside the folder of the list.
     fn folder(&self) -> Folder {
         Folder::default().allow_outside(self.allow_outside)
     }
 
-    /// The files of the sweep, and how to read them.
+    /// The files of the sweep and their reader.
     fn listed(&self, folder: &Folder) -> Result<Listed> {
         let SweepPlace { path, name, campaign } = SweepPlace::of(&self.paths[0]);
         let mut listed = if let Some(proposal) = self.proposed(folder)? {
@@ -135,7 +136,7 @@ impl SweepSource {
     }
 }
 
-/// A list of a sweep, or a campaign and the name of a sweep in it.
+/// A sweep by its list file, or by a campaign and the sweep's name.
 pub struct SweepPlace<'a> {
     pub path: &'a str,
     pub name: Option<&'a str>,
@@ -177,7 +178,7 @@ impl CommandArgs for ResponseArgs {
     }
 }
 
-/// Names of what `vibro response` and `vibro waterfall` write.
+/// Names of the files that `vibro response` and `vibro waterfall` write.
 const RESPONSE: Names = Names::Numbered(&["response", "receptance"]);
 const WATERFALL: Names = Names::Numbered(&["waterfall", "map"]);
 
@@ -191,7 +192,7 @@ impl ResponseArgs {
     }
 }
 
-/// What sinesw3 printed: a frequency and a largest line. It knew nothing of the rest.
+/// Output of the script sinesw3: frequency and amplitude of the largest line. It had no uncertainty.
 fn largest_lines(sweep: &Sweep) -> Result<Answer> {
     let unit = sweep.unit().quantity().symbol();
     let points = legacy::response(sweep)?;
@@ -261,7 +262,7 @@ impl CommandArgs for WaterfallArgs {
 }
 
 impl CommandArgs for ExcitationArgs {
-    /// Prints the excitation of each point.
+    /// Prints the excitation frequency of each point.
     fn run(&self, json: bool) -> Result<u8> {
         let folder = self.sweep.folder();
         folder.reads(Path::new(SweepPlace::of(&self.sweep.paths[0]).path));
@@ -310,7 +311,7 @@ impl CommandArgs for ExcitationArgs {
 }
 
 impl ExcitationArgs {
-    /// The hand-over files, of which none is written yet.
+    /// Opens the hand-over files and checks that they can be written.
     fn lists(&self, folder: &Folder) -> Result<Vec<print::File>> {
         let Some([force, response]) = self.write_lists.as_deref() else { return Ok(Vec::new()) };
         if plain(force) == plain(response) {
@@ -330,7 +331,7 @@ impl ExcitationArgs {
             let found = "hand-over files of a sweep without force names";
             return Err(Error::usage(found, "a list file with them").setting("write_lists"));
         }
-        // The spectra are known by now.
+        // Only now is it known which spectra are read; none of them may be replaced.
         files.iter().try_for_each(print::File::expect)?;
         let folder = Path::new(SweepPlace::of(&self.sweep.paths[0]).path).parent().unwrap_or(Path::new(""));
         let write = |(file, names): (print::File, &Vec<PathBuf>)| {

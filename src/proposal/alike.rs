@@ -1,4 +1,4 @@
-//! Files that are alike: a few are tried, and stand for the others where they agree.
+//! Groups of similar files: a few are analysed, and represent the others where they agree.
 
 use super::folder::FileSeries;
 use super::found::FoundTables;
@@ -8,28 +8,28 @@ use crate::read::{Folder, Header};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Channels of a file that are tried.
+/// Channels of a file that are analysed.
 pub(super) const CHANNELS: usize = 8;
 
-/// Files that are tried each. Of more that are alike so many are, at even distances.
+/// Size up to which every file of a group is analysed; of larger groups this many, at even distances.
 const FEW: usize = 8;
 
-/// Files that are tried of those that are alike and do not agree: 20 s of work with functions of noise.
+/// Number of files analysed in a group that does not agree: 20 s of work with averaged frequency responses.
 const MOST: usize = 256;
 
-/// Files of one kind in a row, at least, on average: in a mixture of two kinds by chance there are two.
+/// Least mean run length of files of one kind; a random mixture of two kinds has a mean of two.
 const IN_A_ROW: usize = 8;
 
-/// Values that are tried side by side at most, 80 bytes each in memory: larger files are tried one after the
+/// Most values analysed in parallel, at 80 bytes of memory each; larger files are analysed one after the
 /// other.
 const TOGETHER: usize = 1 << 25;
 
-/// How many files of so many values one core tries before another begins.
+/// Files of this many values that one core analyses before another core starts.
 pub(super) fn share(values: usize) -> usize {
     if values.saturating_mul(rayon::current_num_threads()) > TOGETHER { usize::MAX } else { 1 }
 }
 
-/// What each series is, in order. Series are tried side by side, and so are their files.
+/// The tables of each series, in order. Series and their files are analysed in parallel.
 pub(super) fn all<'a>(
     series: &'a [FileSeries],
     folder: &'a Folder,
@@ -79,14 +79,14 @@ pub(super) fn all<'a>(
     found.into_iter().flatten().zip(series).map(stated).collect()
 }
 
-/// At most `few` of so many files, at even distances.
+/// At most `few` of `n` files, at even distances.
 pub(super) fn spread(n: usize, few: usize) -> Vec<usize> {
     if n <= few { (0..n).collect() } else { (0..few).map(|k| k * (n - 1) / (few - 1)).collect() }
 }
 
-/// Tries a few of `n` files. Where they do not agree it tries many, and where kinds stand in rows, their ends
-/// by halving. Files between two that agree are like them; in a mixture nothing is known of them. Gives the
-/// number of tries, too. What it tries does not depend on the number of cores.
+/// Analyses a few of `n` files. Where they do not agree it analyses more; where kinds occur in runs, it
+/// finds their ends by bisection. Files between two that agree are taken as alike; in a mixture they stay
+/// unknown. Gives the number of analyses, too. The choice does not depend on the number of cores.
 fn tried<T: Clone + Send + Sync>(
     (n, share): (usize, usize),
     agree: impl Fn(&T, &T) -> bool,
@@ -117,7 +117,7 @@ fn tried<T: Clone + Send + Sync>(
 }
 
 impl FileSeries {
-    /// Some of its files, by their places.
+    /// A series of some of its files, by index.
     pub(super) fn part(&self, places: Vec<usize>) -> FileSeries {
         let pattern = self.pattern.clone().filter(|_| places.len() == self.files.len());
         FileSeries {
@@ -127,12 +127,13 @@ impl FileSeries {
         }
     }
 
-    /// The name of a file for tables.
+    /// The name of a file in tables.
     fn label<'a>(&'a self, file: &'a str) -> &'a str {
         if self.files.len() > 1 { file } else { &self.name }
     }
 
-    /// What its files are together, where each is known or was not tried.
+    /// The tables of all its files; each file was analysed, is like its neighbours, or is named as not
+    /// tried.
     fn gathered(&self, own: &[Option<FoundTables>], tries: usize) -> FoundTables {
         if let (Some(pattern), [Some(one), more @ ..]) = (&self.pattern, own)
             && own.len() > FEW
@@ -155,13 +156,12 @@ impl FileSeries {
         found
     }
 
-    /// Values of a file that are tried.
+    /// Number of values of a file that are analysed.
     pub(super) fn values(&self) -> usize {
         self.headers.iter().take(CHANNELS).map(|header| header.n).sum()
     }
 
-    /// What files have in common that are probably of one kind: names but for numbers, channels, and about as
-    /// many values.
+    /// Key of files that are probably of one kind: names without numbers, channels, and approximate length.
     fn kin(&self) -> String {
         let channel =
             |h: &Header| format!("\n{}|{}|{}|{:?}|{}", h.name, h.unit, h.kind, h.rate, h.n.max(1).ilog2());
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    /// How many of `n` files of these kinds are tried, and what is known of each.
+    /// Number of analyses for `n` files of these kinds, and what is then known of each.
     fn tries(n: usize, kind: impl Fn(usize) -> usize + Sync) -> (usize, Vec<Option<usize>>) {
         let count = AtomicUsize::new(0);
         let counted = |k| {
@@ -194,7 +194,7 @@ mod tests {
         for n in [FEW, FEW + 1, 250, 5000, 100_000] {
             assert_eq!(tries(n, |_| 0), (FEW, vec![Some(0); n]), "{n}");
         }
-        // Of a mixture all are tried, or a budget is spent and nothing is said of the others.
+        // All files of a mixture are analysed, or the budget is spent and the others stay unknown.
         let mixed = |k: usize| (k * k) % 7 % 2;
         for n in [2, FEW, MOST] {
             assert_eq!(tries(n, mixed), (n, (0..n).map(|k| Some(mixed(k))).collect()));
@@ -208,7 +208,7 @@ mod tests {
         for at in [1, 7, 249, 2500, 4999] {
             let kind = |k| usize::from(k >= at);
             let (n, known) = tries(5000, kind);
-            // Halving 5000/255 files takes five steps.
+            // Bisecting 5000/255 files takes five steps.
             assert!(
                 n <= FEW + MOST + 5 && known == (0..5000).map(|k| Some(kind(k))).collect::<Vec<_>>(),
                 "{at}: {n}"

@@ -10,53 +10,54 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// What lies in a folder.
+/// Contents of a folder.
 #[derive(Debug, Default)]
 pub(super) struct Inventory {
     /// Names and paths of list files.
     pub lists: Vec<(String, String)>,
-    /// Files that belong together, in order.
+    /// Series of files, in order.
     pub series: Vec<FileSeries>,
     /// Files that are no recordings, and why.
     pub left: Vec<(String, String)>,
 }
 
-/// Files of the same channels whose names differ in one number, or whatever their names are; or one file.
+/// A series of files with the same channels: their names differ in one number, or their contents belong
+/// together. Or a single file.
 #[derive(Debug, Clone)]
 pub struct FileSeries {
-    /// What their names have in common.
+    /// The common part of their names.
     pub name: String,
-    /// Paths within the folder, numbers by value.
+    /// Paths within the folder, sorted by the value of their number.
     pub files: Vec<String>,
-    /// Channels of the first.
+    /// Channels of the first file.
     pub headers: Vec<Header>,
-    /// Pattern that means all of them and no other file.
+    /// Pattern that matches all of them and no other file.
     pub pattern: Option<String>,
-    /// Whether its files are told by what they hold, not by their names.
+    /// Whether contents, not names, made it a series.
     pub alike: bool,
-    /// What is stated of the files.
+    /// Reading options stated for the files.
     pub reading: Reading,
 }
 
 /// A file and its channels.
 type Member = (PathBuf, Vec<Header>);
 
-/// Whether a file tells its own times, and its channels.
+/// Whether a file states its sampling times, and its channels.
 type Surveyed = (bool, Result<Vec<Header>>);
 
-/// What files of one kind have in common.
+/// Key by which files are grouped into a series.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct FileKind {
     /// Their name, with `*` for the number in which they differ.
     name: String,
     /// Their channels in words.
     channels: String,
-    /// Whether they tell their own times.
+    /// Whether the files state their sampling times.
     timed: bool,
 }
 
 impl FileKind {
-    /// The pattern that means these files, and no other of `every` one.
+    /// A pattern that matches these files and no other of `every`.
     fn pattern(&self, files: &[String], every: &[String], numbers: &Numbers) -> Option<String> {
         let [before, after] = apart(&files[0], numbers);
         let meant = |own: &&String| {
@@ -67,7 +68,7 @@ impl FileKind {
     }
 }
 
-/// Channels of the first of several files; those of several names go by their numbers.
+/// Channels of the first of several files; channels whose names differ between files go by number.
 pub(super) fn named_alike(files: &[&[Header]]) -> Vec<Header> {
     let mut headers = files[0].to_vec();
     for (k, header) in headers.iter_mut().enumerate() {
@@ -78,14 +79,14 @@ pub(super) fn named_alike(files: &[&[Header]]) -> Vec<Header> {
     headers
 }
 
-/// Whether no channel of a file has a time.
+/// Whether no channel of a file has a time axis.
 fn untimed(headers: &[Header]) -> bool {
     headers.iter().all(|h| h.kind == "trace" && h.rate.is_none())
 }
 
 impl Inventory {
-    /// Lists and sorts the files of a folder that no table of `known` names; a sampling rate that is stated
-    /// is that of files without one.
+    /// Surveys the files of a folder that `known` does not name. A stated sampling rate applies to files
+    /// without one.
     ///
     /// # Errors
     /// If a folder cannot be listed.
@@ -110,7 +111,7 @@ impl Inventory {
         let mut found = Inventory { left, ..Inventory::default() };
         progress.start("reading files", paths.len());
         found.take_lists(&mut paths, folder, &within);
-        // Of an archive or a workbook without a main part each is a recording.
+        // An archive or workbook without a main part: each part is a recording.
         let parts = |path: PathBuf| match reader.parts(&path) {
             Ok(parts) if !parts.is_empty() => parts,
             _ => vec![path],
@@ -150,7 +151,7 @@ impl Inventory {
         Ok(found)
     }
 
-    /// Takes list files, and the files that they name, out of the paths.
+    /// Removes list files, and the files that they name, from the paths.
     fn take_lists(&mut self, paths: &mut Vec<PathBuf>, folder: &Folder, within: &impl Fn(&Path) -> String) {
         let list = |path: &PathBuf| Some((path.clone(), SweepList::from_path(path, folder).ok()?));
         let lists: Vec<(PathBuf, SweepList)> = paths.par_iter().filter_map(list).collect();
@@ -162,7 +163,7 @@ impl Inventory {
         }
     }
 
-    /// The files of each kind, in the order of their first; those without a time go to what is left.
+    /// The files grouped by kind, in the order of the first of each; files without a time axis are left out.
     fn kinds(
         &mut self,
         surveyed: impl Iterator<Item = (PathBuf, Surveyed)>,
@@ -199,7 +200,7 @@ impl Inventory {
         kinds
     }
 
-    /// Names files of one name in several folders or archives by their paths.
+    /// Uses the path as name where several folders or archives hold files of one name.
     fn name_apart(&mut self) {
         let names: Vec<String> = self.series.iter().map(|series| series.name.clone()).collect();
         for series in &mut self.series {
@@ -213,7 +214,7 @@ impl Inventory {
 }
 
 impl FileSeries {
-    /// The table of a stepped sweep, where each file holds a force and responses.
+    /// The table of a stepped sweep, if each file holds a force and responses.
     pub(super) fn sweep(&self) -> Option<Table> {
         let (force, responses) = self.force_and_responses()?;
         let table = Table::new("sweep", "a stepped sweep, one file a step", &self.in_words());
@@ -237,7 +238,7 @@ impl FileSeries {
         })
     }
 
-    /// The channel of force and all others, where there is just one.
+    /// The force channel and the others, if there is exactly one force.
     pub(super) fn force_and_responses(&self) -> Option<(usize, Vec<usize>)> {
         let traces: Vec<usize> =
             (0..self.headers.len()).filter(|k| self.headers[*k].kind == "trace").collect();
@@ -251,7 +252,8 @@ impl FileSeries {
         (!responses.is_empty()).then_some((force, responses))
     }
 
-    /// The components of a channel that is the length of a vector: without a sign its tones are doubled.
+    /// The components of a channel that is the magnitude of a vector: the magnitude has no sign, so its
+    /// tones appear at twice their frequency.
     pub(super) fn components(&self, k: usize) -> Option<&str> {
         let found = self.headers[k].findings.iter().find(|found| found.code == MAGNITUDE)?;
         match found.fact("components")? {
@@ -260,14 +262,14 @@ impl FileSeries {
         }
     }
 
-    /// A channel by its name, or by its number where that means no other.
+    /// A channel by its name; by its number where the name is ambiguous.
     pub(super) fn channel(&self, k: usize) -> serde_json::Value {
         let name = &self.headers[k].name;
         let same = self.headers.iter().filter(|h| h.name == *name).count();
         if name.is_empty() || same > 1 { (k + 1).into() } else { name.as_str().into() }
     }
 
-    /// Its files in words.
+    /// Its files as text.
     pub(super) fn in_words(&self) -> String {
         match self.files.as_slice() {
             [one] => one.clone(),
@@ -280,12 +282,12 @@ impl FileSeries {
     }
 }
 
-/// A file's name without folder and ending.
+/// A file name without folder and ending.
 pub(super) fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
 }
 
-/// The name of a series of files, or of one.
+/// The name of a series or of a single file.
 pub(super) fn name(files: &[String]) -> String {
     match files {
         [one] => stem(Path::new(one)),
@@ -294,7 +296,7 @@ pub(super) fn name(files: &[String]) -> String {
     }
 }
 
-/// What stands before and behind each number of a name, which is none of its folder or its ending.
+/// The text before and after each number of a file name; folder and ending are not searched.
 fn runs(name: &str) -> Vec<[String; 2]> {
     let from = name.rfind('/').map_or(0, |at| at + 1);
     let to = name[from..].rfind('.').map_or(name.len(), |at| from + at);
@@ -307,7 +309,7 @@ fn digits_at(name: &str, at: usize) -> bool {
     name.as_bytes()[at].is_ascii_digit()
 }
 
-/// How many of the names have a number in the same place between the same words.
+/// How many of the names have a number between the same two texts.
 type Numbers = HashMap<[String; 2], usize>;
 
 fn numbers(names: &[String]) -> Numbers {
@@ -316,8 +318,8 @@ fn numbers(names: &[String]) -> Numbers {
     numbers
 }
 
-/// What stands before and behind the number by which a name differs from others that are like it but for one
-/// number; else behind the last. A name without a number is all before.
+/// The text before and after the number that varies among similar names; else around the last number. A name
+/// without a number is all before.
 fn apart(name: &str, numbers: &Numbers) -> [String; 2] {
     let mut runs = runs(name);
     let varies = |run: &[String; 2]| numbers.get(run).is_some_and(|n| *n > 1);
@@ -327,38 +329,38 @@ fn apart(name: &str, numbers: &Numbers) -> [String; 2] {
     }
 }
 
-/// Whether two names differ in one number alone.
+/// Whether two names differ in exactly one number.
 pub(super) fn alike(one: &str, other: &str) -> bool {
     let both = numbers(&[one.to_owned(), other.to_owned()]);
     one != other && apart(one, &both) == apart(other, &both)
 }
 
-/// The name of a series: what stands before its numbers, without marks at its end.
+/// The name of a series: the text before its number, without trailing separators.
 fn common(before: &str) -> String {
     let name = before.trim_end_matches(|c: char| !c.is_alphanumeric());
     let name = name.rsplit('/').next().unwrap_or(name);
     if name.is_empty() { "series".to_owned() } else { name.to_owned() }
 }
 
-/// Channels that make files of one kind.
+/// Channels that files of one kind share.
 fn signature(headers: &[Header]) -> String {
     let one = |h: &Header| [h.unit.as_str(), h.kind].join("|");
     headers.iter().map(one).collect::<Vec<_>>().join("\n")
 }
 
-/// Channels and sampling rates of files that are alike. Rates that are counted from times differ in their
-/// sixth digit.
+/// Channels and sampling rates as a key of similar files. Rates computed from times differ in the sixth
+/// digit and are rounded.
 pub(super) fn columns(headers: &[Header]) -> String {
     let rate = |h: &Header| h.rate.map_or_else(String::new, |rate| format!("{rate:.4e}"));
     headers.iter().map(rate).chain([signature(headers)]).collect::<Vec<_>>().join("\n")
 }
 
-/// The first line of an error, without the file's own name.
+/// The first line of an error, without the name of its file.
 pub(super) fn short(error: &Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();
     let found = line.split_once(": ").map_or(line, |(_, rest)| rest);
-    // What is to stand there helps who wrote the file, not who sorts a folder.
+    // What was expected helps the author of a file, not the person who sorts a folder: it is cut off.
     found.split("; expected ").next().unwrap_or(found).to_owned()
 }
 

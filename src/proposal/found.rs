@@ -1,35 +1,35 @@
-//! What files are.
+//! The tables proposed for files.
 
 use super::Table;
 
-/// The tables of files, and those that stand in none.
+/// Proposed tables, and the files without one.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct FoundTables {
     /// Tables of a campaign.
     pub tables: Vec<Table>,
-    /// Files that stand in no table, and why.
+    /// Files without a table, with the reason.
     pub left: Vec<(String, String)>,
 }
 
 impl FoundTables {
-    /// One table.
+    /// A single table.
     pub fn table(table: Table) -> FoundTables {
         FoundTables { tables: vec![table], ..FoundTables::default() }
     }
 
-    /// No table, and why.
+    /// A file without a table, with the reason.
     pub fn left(file: impl Into<String>, why: impl Into<String>) -> FoundTables {
         FoundTables { left: vec![(file.into(), why.into())], ..FoundTables::default() }
     }
 
-    /// Adds what more files are.
+    /// Adds those of further files.
     pub fn add(&mut self, more: FoundTables) {
         self.tables.extend(more.tables);
         self.left.extend(more.left);
     }
 
-    /// The same of another file or of a pattern: its name, with which names of tables begin, how a table
-    /// names it, and how a person is told.
+    /// The same for another file or for a pattern: prefix of the tables' names, value of `file`, and the
+    /// files as text.
     pub fn renamed(&self, from: &str, [name, file, words]: [&str; 3]) -> FoundTables {
         let table = |table: &Table| {
             let mut table = Table { files: words.to_owned(), ..table.clone() };
@@ -48,7 +48,8 @@ impl FoundTables {
         FoundTables { tables: self.tables.iter().map(table).collect(), left: left.collect() }
     }
 
-    /// Whether two files without their names have the same tables; why they have none may differ in numbers.
+    /// Whether two files, names aside, have the same tables. The reasons why they have none may differ in
+    /// numbers.
     pub fn agrees(&self, other: &FoundTables) -> bool {
         self.tables == other.tables && self.left.len() == other.left.len()
     }

@@ -1,4 +1,5 @@
-//! Files of one folder that hold alike records under odd names: steps of one sweep, drops of one series.
+//! Joins files of one folder that belong together despite their names: steps of one sweep, drops of one
+//! series.
 
 use super::alike::spread;
 use super::folder::{FileSeries, columns, name, named_alike};
@@ -13,17 +14,17 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Part by which steps of one sweep differ in length, at most: a step is stopped by hand, or by a clock.
+/// Largest relative difference in length between steps of one sweep, which a hand or a clock stops.
 const LENGTH: f64 = 0.01;
-/// Part of the power of a force that its strongest sine has, at least, in a step of a sweep: a shaker that is
-/// driven through a resonance distorts, but its sine stays the larger part.
+/// Least share of the strongest sine in the power of the force of a sweep step. A shaker distorts at
+/// resonance, but the sine stays the larger part.
 const SINE: f64 = 0.5;
-/// Files that tell whether to look at all.
+/// Number of files that decide whether the others are read at all.
 const FEW: usize = 8;
-/// Drops of names of their own that are looked at, one by one.
+/// Most drops with unrelated names that are read one by one.
 const MOST: usize = 64;
 
-/// The series, those joined whose files are alike but for their names.
+/// The series, with those joined that are alike but for their names.
 pub(super) fn all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCache) -> Vec<FileSeries> {
     let mut families: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, one) in series.iter().enumerate() {
@@ -54,9 +55,8 @@ pub(super) fn all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCache) 
     all.into_iter().flatten().collect()
 }
 
-/// Sweeps that are made of several of these series of steps. Frequencies tell which: a series that goes
-/// through those of a sweep once more is another sweep, and one of other frequencies, or of a few, belongs to
-/// it.
+/// Sweeps made of several series of steps. Frequencies decide: a series that covers the frequencies of a
+/// sweep again is a sweep of its own; one with other frequencies, or with a few, belongs to it.
 fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<usize>, FileSeries)> {
     let n = |k: usize| members[k].files.len();
     let Some(base) = (0..members.len()).rev().max_by_key(|k| n(*k)) else { return Vec::new() };
@@ -84,7 +84,7 @@ fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<
         match takers[..] {
             [] => sets.push(vec![k]),
             [one] => sets[one].push(k),
-            // Whose step it is nobody can tell.
+            // A step that could belong to several sweeps is joined to none.
             [..] => {}
         }
     }
@@ -101,8 +101,8 @@ fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<
     several.filter(|(_, one)| one.files.len() >= STEPS).collect()
 }
 
-/// A series of drops and the drops under other names that agree with it. Where two series have numbers in
-/// their names, names tell them apart.
+/// A numbered series of drops with the drops under other names that agree with it. Where two series are
+/// numbered, names keep them apart and nothing is joined.
 fn drops(trial: &Trial<'_>, members: &[&FileSeries]) -> Option<(Vec<usize>, FileSeries)> {
     let (several, alone): (Vec<usize>, Vec<usize>) =
         (0..members.len()).partition(|k| members[*k].files.len() > 1);
@@ -125,7 +125,7 @@ fn drops(trial: &Trial<'_>, members: &[&FileSeries]) -> Option<(Vec<usize>, File
 }
 
 impl Trial<'_> {
-    /// Frequency of the force of each file in Hz, where it is a sine.
+    /// Force frequency of each file in Hz, if the force is a sine.
     fn frequencies(&self, force: usize, files: &[&String]) -> Vec<Option<f64>> {
         let Ok(reader) = self.reading.reader() else { return vec![None; files.len()] };
         let reader = reader.within(self.folder);
@@ -139,21 +139,20 @@ impl Trial<'_> {
 }
 
 impl FileSeries {
-    /// What files have in common that may be one series, however they are called: folder, columns and
-    /// sampling rate.
+    /// Key of files that may form a series under any names: folder, columns and sampling rate.
     fn family(&self) -> String {
         let folder = Path::new(&self.files[0]).parent();
         format!("{folder:?}\n{:?}\n{}", self.reading.stated(), columns(&self.headers))
     }
 
-    /// The direction of a sweep that its names say.
+    /// Direction of a sweep, if its names say `up` or `down`.
     pub(super) fn way(&self) -> Option<String> {
         let name = self.files[0].rsplit('/').next().unwrap_or_default().to_lowercase();
         let mut words = name.split(|c: char| !c.is_alphanumeric());
         words.find(|word| ["up", "down"].contains(word)).map(str::to_owned)
     }
 
-    /// All files of several series as one.
+    /// Several series merged into one.
     fn of_all(members: &[&FileSeries]) -> FileSeries {
         let headers = named_alike(&members.iter().map(|one| one.headers.as_slice()).collect::<Vec<_>>());
         let mut files: Vec<PathBuf> = members.iter().flat_map(|one| &one.files).map(PathBuf::from).collect();
@@ -166,7 +165,7 @@ impl FileSeries {
     }
 }
 
-/// The files beside those of a sweep that look like more of its steps; the frequency of their force tells.
+/// Files beside those of a sweep that look like further steps of it, judged by the frequency of their force.
 pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
     let first = files.first()?;
     let parent = first.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -175,7 +174,7 @@ pub fn more_steps(within: &Folder, files: &[PathBuf]) -> Option<Finding> {
     let headers = |path: &PathBuf| reader.survey(path).ok().map(|(_, headers, _)| headers);
     let own: Vec<Header> = headers(first)?;
     let named: BTreeSet<PathBuf> = files.iter().map(|file| plain(file)).collect();
-    // Files much larger or smaller are not even opened.
+    // Files of a much different size are skipped without opening them.
     let sizes = files.iter().filter_map(|file| Some(folder.stamp(file)?.0));
     let (least, most) = sizes.fold((u64::MAX, 0), |(a, b), size| (a.min(size), b.max(size)));
     let near = |path: &PathBuf| {

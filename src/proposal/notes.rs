@@ -1,30 +1,30 @@
-//! What a person wrote down beside the recordings: lines that state a height, a mass or a sensitivity. They
-//! are shown, and never used.
+//! Notes beside the recordings: lines that state a height, a mass or a sensitivity. They are shown beside
+//! the keys and never used as values.
 
 use crate::read::Folder;
 use crate::record::shown;
 
-/// Beginnings of the names of files of notes, in small letters.
+/// First words of the names of note files, in lower case.
 const NAMES: [&str; 5] = ["readme", "note", "notiz", "liesmich", "lisez"];
-/// Bytes of such a file, at most.
+/// Largest size of a note file in bytes.
 const LONGEST: u64 = 1 << 16;
-/// Characters of a line that are shown.
+/// Characters shown of a line.
 const SHOWN: usize = 60;
-/// What a line is about, and the words that say so.
+/// Keys that a line may state, with the words that indicate each.
 const WORDS: [(&str, &[&str]); 3] =
     [("height", &["height"]), ("mass", &["mass", "kg"]), ("sensitivity", &["sensitivity", "mv/"])];
 
 /// A line of notes that states a number.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(super) struct Note {
-    /// File and line.
+    /// File name and line number.
     pub place: String,
-    /// The line.
+    /// Text of the line.
     pub text: String,
 }
 
 impl Note {
-    /// Lines of the notes of a folder that state what a key of a table may be.
+    /// Lines of the notes of a folder that may state the value of a key.
     pub fn all(folder: &Folder) -> Vec<Note> {
         let is_notes = |name: &String| {
             let name = name.to_lowercase();
@@ -49,7 +49,7 @@ impl Note {
         self.text.contains(|c: char| c.is_ascii_digit()) && WORDS.iter().any(|(key, _)| self.is_of(key))
     }
 
-    /// Whether it is about a key of a table.
+    /// Whether the line is about this key.
     pub fn is_of(&self, key: &str) -> bool {
         let text = self.text.to_lowercase();
         WORDS.iter().any(|(of, words)| *of == key && words.iter().any(|word| text.contains(word)))

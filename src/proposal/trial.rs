@@ -1,4 +1,4 @@
-//! Records of unknown kind, tried with one analysis after another.
+//! Identifies records by trying one analysis after another.
 
 use super::alike::{CHANNELS, share};
 use super::folder::{FileSeries, short};
@@ -13,44 +13,44 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
 
-/// What a fall is measured by.
+/// Hint for the missing height of a drop.
 const HEIGHT: &str = "height of the fall in m";
 
-/// Seconds beyond which a hump is no contact.
+/// Longest contact in s; a longer hump is no contact pulse.
 const LONGEST_CONTACT: f64 = 0.1;
 
-/// What is said of a decay whose amplitude falls by as much in every swing.
+/// Findings of a decay with friction, whose amplitude falls by a constant step per swing.
 const FRICTION: [&str; 2] = [code::DECAY_UNEXPLAINED, code::DECAY_CHANGES];
 
-/// Segments side by side that a function should have at least, and samples of a segment that are enough.
+/// Least number of segments for a frequency response, and the samples of a segment that are sufficient.
 const AVERAGES: usize = 4;
 const LONG: usize = 8192;
 
-/// Share of a record from the beginning of its decay on that is the decay, at least, where impacts in a row
-/// are possible too.
+/// Least share of the record after its start that a decay must take, where a train of impacts is also
+/// possible.
 const MOSTLY: f64 = 0.2;
 
-/// Part of a record before a decay that begins at once.
+/// Largest share of the record before a decay that starts at once.
 const AT_ONCE: f64 = 0.01;
 
-/// Square of the crest factor of a sine: 2, and what noise adds; a square wave has 1.
+/// Square of the crest factor of a sine: 2, plus an allowance for noise; a square wave has 1.
 const SINE: Range<f64> = 1.8..2.7;
 
-/// Restitution beyond which nothing returns: a ringing body repeats, it does not bounce.
+/// Restitution above which a body does not bounce: it rings.
 const LOSSLESS: f64 = 0.99;
 
-/// Spread of the intervals of impacts in a row, as a part of one, at most: a machine jitters, and steps of a
-/// person do by a tenth, while flights of bounces shrink from a half on.
+/// Largest relative spread of the intervals of a train of impacts. Machines jitter, footsteps vary by a
+/// tenth, while intervals of bouncing spread by a half or more.
 const STEADY: f64 = 0.25;
 
-/// What stands in names of channels with the pulses of a crank.
+/// Words in the names of channels with crank pulses.
 const TACHO: [&str; 4] = ["tach", "rpm", "crank", "drehzahl"];
 
-/// Files that may be steps of a sweep.
+/// Number of files from which a series may be a sweep.
 pub(super) const STEPS: usize = 5;
 
-/// Values of a file that are tried: five minutes of eight channels at 51.2 kHz are 123 million, some minutes'
-/// work and 80 bytes each in memory.
+/// Most values of a file that are analysed. Five minutes of eight channels at 51.2 kHz are 123 million:
+/// minutes of work and 80 bytes of memory each.
 const VALUES: usize = 1 << 27;
 
 impl From<Option<Finding>> for Refusal {
@@ -64,10 +64,10 @@ impl From<Option<Finding>> for Refusal {
     }
 }
 
-/// The table of a channel of a series, under a name.
+/// Makes the table for a channel of a series.
 type Kind = fn(&FileSeries, usize, &str) -> Table;
 
-/// Tries what a record can be measured for.
+/// Tries analyses on records.
 #[derive(Clone, Copy)]
 pub(super) struct Trial<'a> {
     pub folder: &'a Folder,
@@ -76,7 +76,7 @@ pub(super) struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// The answers of the records of tables; else why there is none.
+    /// The answers of tables, or the reason why there is none.
     fn answers(&self, tables: &[Table]) -> Result<Answer, Refusal> {
         let path = self.folder.root().join(Proposal::FILE);
         let text: String = tables.iter().map(|table| table.stated(self.reading).tried().toml(&[])).collect();
@@ -85,19 +85,19 @@ impl Trial<'_> {
         answered.map_err(|error| Refusal { why: short(&error), ..Refusal::default() })?.map_err(Refusal::from)
     }
 
-    /// The first of the tables that answers sensibly and without a doubt.
+    /// The first table with a plausible answer and no doubt.
     fn first(&self, tables: &[Table]) -> Option<Table> {
         let sure = |table| Some((table, self.sensibly(from_ref(table))?));
         let mut answering = tables.iter().filter_map(sure);
         let (first, heard) = answering.next()?;
         let other = if is_brief(&heard) || first.lacks() { answering.next() } else { None };
-        // What rests before its first impact is a fall; what decays from the beginning on is none.
+        // A record at rest before its first impact is a drop; one that decays from its start is not.
         let other =
             other.filter(|(_, heard)| !first.lacks() || begins(heard).is_some_and(|part| part < AT_ONCE));
         Some(other.map_or(first, |(table, _)| table).clone())
     }
 
-    /// A decay that no modes explain, as one with friction.
+    /// A decay without a modal fit, such as one with friction.
     fn unexplained(&self, tables: &[Table]) -> Option<Table> {
         let friction = |table: &&Table| {
             let doubts = |heard: &Answer| {
@@ -112,7 +112,7 @@ impl Trial<'_> {
         tables.iter().find(friction).cloned()
     }
 
-    /// The answers of the tables, where they are sensible and without a doubt.
+    /// The answers of the tables, if they are plausible and without a doubt.
     fn sensibly(&self, tables: &[Table]) -> Option<Answer> {
         let sure = |heard: &Answer| {
             heard.findings.iter().all(|(_, f)| f.severity < Severity::Doubt) && sensible(tables, heard)
@@ -120,7 +120,7 @@ impl Trial<'_> {
         self.answers(tables).ok().filter(sure)
     }
 
-    /// The tables of a sweep, if a series is one; a few of its files tell whether to read all.
+    /// The tables of a sweep, if a series is one; a few files decide whether all are read.
     pub fn sweep(&self, series: &FileSeries, few: &FileSeries) -> Option<FoundTables> {
         let table = series.sweep().filter(|_| series.files.len() >= STEPS)?;
         let answer = |table: &Table| self.answers(from_ref(table)).ok();
@@ -134,7 +134,7 @@ impl Trial<'_> {
             _ => format!("{} {}", series.name, series.channel(k).to_string().trim_matches('"')),
         };
         let jumps = |i: usize| matches!(heard.evidence.get(i), Some(Evidence::Sweep { jumps: true, .. }));
-        // A motion that jumps is not that of linear modes.
+        // A response that jumps has no linear modes.
         let modes = responses.iter().enumerate().filter(|(i, _)| !jumps(*i)).map(|(_, k)| {
             let table = Table::new("frf", "its modes", &series.in_words()).found("sweep", name(*k));
             table.found("name", format!("{}, modes", name(*k)))
@@ -142,7 +142,7 @@ impl Trial<'_> {
         Some(FoundTables { tables: [table].into_iter().chain(modes).collect(), ..FoundTables::default() })
     }
 
-    /// The tables of repeated drops, if a few files of a series are such.
+    /// The tables of repeated drops, if a few files of a series are drops.
     pub fn drops(&self, series: &FileSeries, few: &FileSeries) -> Option<FoundTables> {
         if series.files.len() < 2 || series.headers.len() != 1 || series.values() > VALUES {
             return None;
@@ -156,7 +156,7 @@ impl Trial<'_> {
                 None => series.files.iter().map(one).collect::<Vec<Table>>(),
             }
         };
-        // Repeated drops of one body agree. Of those that names do not join each is one.
+        // Repeated drops of one body agree. Where names do not group them, each must be a drop by itself.
         let each = |heard: &Answer| {
             let of = |evidence: &Evidence| matches!(evidence, Evidence::Drops { files, .. } if *files == few.files.len());
             !few.alike || heard.evidence.first().is_some_and(of)
@@ -166,7 +166,7 @@ impl Trial<'_> {
         Some(FoundTables { tables: drops(series, kind), ..FoundTables::default() })
     }
 
-    /// What one file is.
+    /// The tables of one file.
     pub fn file(&self, series: &FileSeries, name: &str) -> FoundTables {
         let file = &series.files[0];
         let mut found = FoundTables::default();
@@ -208,10 +208,11 @@ impl Trial<'_> {
         found
     }
 
-    /// What one channel is.
+    /// The table of one channel.
     fn channel(&self, series: &FileSeries, k: usize, name: &str) -> FoundTables {
         let [pulse, others @ ..] = series.of_channel(k, name);
-        // A pulse stands alone, and a doubt about its filter or contact law tells of no other kind.
+        // A pulse is the only event of its record. A doubt about the filter or the contact law does not make
+        // it another kind.
         let alone = |heard: Answer| {
             let short =
                 |e: &Evidence| matches!(e, Evidence::Pulse { duration } if *duration < LONGEST_CONTACT);
@@ -231,8 +232,8 @@ impl Trial<'_> {
         self.answering(table.open("tones", "", what))
     }
 
-    /// Whether the records of a table are one motion: a decay that is most of them, or impacts in a row.
-    /// Each bounce of a fall rings down, too, and bounces are impacts in a row.
+    /// Whether a table explains the record as one motion: a decay that fills most of it, or a steady train
+    /// of impacts. Needed since each bounce rings down, and bounces are impacts in a row.
     fn is_one(&self, table: &Table) -> bool {
         let one = |of: &Evidence| match of {
             Evidence::Impacts { spread, .. } => *spread < STEADY,
@@ -241,7 +242,7 @@ impl Trial<'_> {
         self.answers(from_ref(table)).is_ok_and(|heard| !is_brief(&heard) && heard.evidence.iter().all(one))
     }
 
-    /// The table of a drop whose bounces are not told from other sounds yet, with what to try.
+    /// The table of a drop whose bounces cannot be told from other sounds yet, with the reason and a hint.
     fn untold(&self, series: &FileSeries, k: usize, name: &str) -> Option<Table> {
         let refusal = self.answers(&[series.bounces(k, name)]).err().filter(|r| r.code == Train::UNTOLD)?;
         let table = series.bounces(k, name).missing("height", "0.5", HEIGHT);
@@ -249,7 +250,7 @@ impl Trial<'_> {
         Some(Table { rows, refused: Some(refusal), ..table })
     }
 
-    /// A table that answers; else why its file does not.
+    /// The table if it gives an answer, else the reason.
     fn answering(&self, table: Table) -> FoundTables {
         match self.answers(from_ref(&table)) {
             Ok(_) => FoundTables::table(table),
@@ -257,7 +258,7 @@ impl Trial<'_> {
         }
     }
 
-    /// The function between two channels: of noise, else of blows.
+    /// The frequency response between two channels: of noise, else of hammer blows.
     fn function(&self, series: &FileSeries, name: &str, [force, response]: [usize; 2]) -> FoundTables {
         let file = &series.files[0];
         let called = format!("{name} {}", series.headers[response].name);
@@ -282,7 +283,7 @@ impl Trial<'_> {
         }
     }
 
-    /// Velocities beside a channel of two levels: a drill and the pulses of its crank.
+    /// A hammer drill: velocities beside a two-level channel, the pulses of its crank.
     fn drill(&self, series: &FileSeries, name: &str) -> Vec<Table> {
         let file = &series.files[0];
         let is_velocity = |h: &Header| h.quantity == "velocity" || h.unit == "V";
@@ -298,7 +299,7 @@ impl Trial<'_> {
         let shares: Vec<f64> = recording.records.iter().map(at_two_levels).collect();
         let most = (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
         let Some(pulses) = most.filter(|k| shares[*k] > 0.9) else { return Vec::new() };
-        // A contact circuit beside what drives it.
+        // A two-level contact circuit beside the channel of its excitation.
         let called = series.headers[pulses].name.to_lowercase();
         if !TACHO.iter().any(|word| called.contains(word))
             && let [sine] = (0..series.headers.len()).filter(|k| *k != pulses).collect::<Vec<_>>()[..]
@@ -343,7 +344,7 @@ impl FileSeries {
             .open("height_std", "", "its standard uncertainty in m")
     }
 
-    /// The table of a fall with one rebound.
+    /// The table of a drop with one rebound.
     fn fall(&self, k: usize, name: &str) -> Table {
         let table = self.channel_table(k, name, "drop", "a fall and one rebound").surmised();
         let table = table.missing("height", "0.5", HEIGHT);
@@ -369,7 +370,7 @@ impl FileSeries {
         if several { table.found("channel", self.channel(k)) } else { table }
     }
 
-    /// What one channel may be, a pulse before all others.
+    /// The possible tables of one channel, a pulse first.
     fn of_channel(&self, k: usize, name: &str) -> [Table; 5] {
         let table = |section, about| self.channel_table(k, name, section, about).surmised();
         let low_pass =
@@ -385,8 +386,8 @@ impl FileSeries {
     }
 }
 
-/// Whether this share of the steps of each sweep or more have an uncertainty, and one at least: one that is
-/// clipped makes no other kind of the rest.
+/// Whether at least this share of the steps of each sweep, and one step, has an uncertainty: a clipped step
+/// does not make it another kind.
 fn settled(heard: &Answer, share: f64) -> bool {
     let most = |of: &Evidence| match of {
         Evidence::Sweep { steps, sure, .. } => *sure as f64 >= share * *steps as f64 && *sure > 0,
@@ -395,20 +396,20 @@ fn settled(heard: &Answer, share: f64) -> bool {
     !heard.evidence.is_empty() && heard.evidence.iter().all(most)
 }
 
-/// Part of the record before a decay begins; nothing where the answer is no decay.
+/// Share of the record before a decay begins; `None` if the answer is no decay.
 fn begins(heard: &Answer) -> Option<f64> {
     let Some(Evidence::Decay { start, last, .. }) = heard.evidence.first() else { return None };
     Some(start / last)
 }
 
-/// Whether the answer is a decay that takes a small part of its record: where impacts in a row ring down, one
-/// of them is a decay, too.
+/// Whether the answer is a decay that takes a small part of its record, as the ringing of one of several
+/// impacts.
 fn is_brief(heard: &Answer) -> bool {
     matches!(heard.evidence.first(), Some(Evidence::Decay { start, end, last }) if end - start < MOSTLY * (last - start))
 }
 
-/// Whether impacts are as their tables have them: three or more in a row, few of them missed; two in a fall
-/// with one rebound; and none that return with the speed with which they came.
+/// Whether impacts are plausible for their tables: three or more in a row with few missed, or two in a drop
+/// with one rebound, and no rebound as fast as the approach.
 fn sensible(tables: &[Table], heard: &Answer) -> bool {
     let rebound = tables.iter().any(Table::lacks);
     match heard.evidence.first() {
@@ -420,7 +421,7 @@ fn sensible(tables: &[Table], heard: &Answer) -> bool {
     }
 }
 
-/// Whether a trace reaches as far as a sine of its power does, noise included.
+/// Whether the peak of a trace is that of a sine of the same power, noise included.
 fn is_sine(record: &Record) -> bool {
     let Record::Trace(trace) = record else { return false };
     let n = trace.values.len() as f64;
@@ -430,7 +431,7 @@ fn is_sine(record: &Record) -> bool {
     reach > 0.0 && SINE.contains(&(reach * reach / power))
 }
 
-/// Share of the values that lie in the lowest or highest tenth of the range, where some do in each.
+/// Share of values in the lowest and highest tenth of the range, if both have some.
 fn at_two_levels(record: &Record) -> f64 {
     let Record::Trace(trace) = record else { return 0.0 };
     let ends = |(a, b): (f64, f64), v: &f64| (a.min(*v), b.max(*v));

@@ -17,7 +17,7 @@ pub enum Cell {
         /// Standard uncertainty in the unit of the value.
         std: Option<f64>,
     },
-    /// No result.
+    /// No value.
     Missing,
 }
 
@@ -54,7 +54,7 @@ impl Cell {
         }
     }
 
-    /// Usable uncertainty.
+    /// The standard uncertainty, if it is finite and above zero.
     pub(super) fn std(&self) -> Option<f64> {
         match self {
             Cell::Estimate { std, .. } => std.filter(|s| s.is_finite() && *s > 0.0),

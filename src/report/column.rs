@@ -1,4 +1,4 @@
-//! A column of a table, and how its cells are written under each other.
+//! A column of a table, and the alignment of its cells.
 
 use super::Cell;
 use crate::units::notation::{
@@ -16,19 +16,19 @@ pub struct Column {
     pub unit: String,
 }
 
-/// A column in words.
+/// A column as text.
 pub(super) struct Formatted {
     pub head: String,
     pub cells: Vec<String>,
     pub numeric: bool,
 }
 
-/// The power of ten by which a column is scaled.
+/// The power of ten that divides all numbers of a column.
 pub(super) fn power(column: &Column, cells: &[&Cell]) -> i32 {
     let values = cells.iter().filter_map(|c| c.value()).filter(|v| v.is_finite());
     let largest = values.map(f64::abs).fold(0.0, f64::max);
-    // A degree, a radian and a per cent are scaled already. Counts and other bare numbers are not rescaled,
-    // as no unit would say so; a power of ten stands with the number instead.
+    // Angles and percentages are not scaled. Counts and other numbers without a unit are not either, since
+    // the head has no unit to show the scale; such a number keeps its own power of ten.
     let bare = matches!(column.unit.as_str(), "°" | "rad" | "%" | "" | "1");
     if bare { 0 } else { engineering(largest) }
 }
@@ -64,10 +64,10 @@ impl Formatted {
         }
     }
 
-    /// Head and cells, all of one width.
+    /// Head and cells, padded to one width.
     pub fn aligned(&self) -> Vec<String> {
         let count = |text: &str| text.chars().count();
-        // Characters up to the decimal point of the value: these are made equal first.
+        // Characters before the decimal point, by which the cells are aligned.
         let whole = |text: &str| text.find(['.', ' ', '×']).map_or(count(text), |at| count(&text[..at]));
         let point = self.cells.iter().map(|c| whole(c)).max().unwrap_or(0);
         let lead = |cell: &String| if self.numeric { point - whole(cell) } else { 0 };
@@ -82,15 +82,15 @@ impl Formatted {
     }
 }
 
-/// Significant digits for measured values of unknown uncertainty: three, or as many up to five as tell them
-/// apart.
+/// Significant digits of measured values without an uncertainty: three, or up to five where that
+/// distinguishes them.
 fn told_apart(values: &[f64]) -> usize {
     let different = |digits| values.iter().map(|v| significant(*v, digits)).collect::<BTreeSet<_>>().len();
     (3..5).find(|digits| different(*digits) == different(5)).unwrap_or(5)
 }
 
-/// Decimals that show all values to `digits` significant digits of the largest, or fewer where all are round;
-/// `None` where the values differ so much that small ones would lose their digits.
+/// Decimals that show the largest value with `digits` significant digits, fewer where all values are round.
+/// `None` where small values would lose their digits.
 fn common_decimals(values: &[f64], digits: usize) -> Option<usize> {
     let sizes = || values.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
     let (smallest, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
@@ -100,12 +100,12 @@ fn common_decimals(values: &[f64], digits: usize) -> Option<usize> {
     let needed = values.iter().map(|v| decimals_needed(*v, digits)).max().unwrap_or(0);
     let room = digits as i32 - 1 - largest.log10().floor() as i32;
     let decimals = needed.min(usize::try_from(room.max(0)).unwrap_or(0));
-    // The smallest keeps two digits.
+    // The smallest value keeps two digits.
     let kept = smallest * 10f64.powi(decimals as i32) >= 10.0 || decimals == needed;
     (kept && (1e-3..1e9).contains(&largest)).then_some(decimals)
 }
 
-/// A value with its uncertainty to two digits, without a power of ten of its own: the column has one.
+/// A value with two digits of its uncertainty. It has no power of ten of its own, since the column has one.
 fn uncertain(value: f64, std: f64) -> String {
     match usize::try_from(1 - std.log10().floor() as i32) {
         Ok(decimals) if (1e-6..0.1).contains(&std) && value.abs() < 0.1 => {

@@ -9,10 +9,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
-/// Resolution of the PNG figures in dots an inch: enough for print.
+/// Resolution of PNG figures in dots per inch, for print.
 const DPI: f64 = 300.0;
 
-/// A figure as it stands in files.
+/// A figure drawn as SVG and PNG.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Picture {
     /// Its width in mm.
@@ -52,7 +52,7 @@ pub fn figures(
     Ok(drawn)
 }
 
-/// Matrix as CSV: a column of line frequencies, then one column a spectrum, headed by its excitation
+/// A matrix as CSV: the frequencies of the lines, then a column a spectrum, headed by its excitation
 /// frequency.
 pub(crate) fn matrix_csv(matrix: &Waterfall) -> String {
     let mut text = String::from("frequency [Hz]");
@@ -73,11 +73,11 @@ pub(crate) fn matrix_csv(matrix: &Waterfall) -> String {
     text
 }
 
-/// Files that an analysis makes: name and content.
+/// Files of an analysis: name and content.
 pub type Files = Vec<(String, Vec<u8>)>;
 
-/// Records as CSV and UFF: binary where the text of data set 58 has too few digits for the abscissa. A
-/// finding says why there is no UFF where that has too few, too.
+/// Records as CSV and UFF. UFF is binary where the text form has too few digits for the abscissa. Where
+/// binary has too few as well, UFF is omitted and a finding says why.
 ///
 /// # Errors
 /// If there is nothing to write, or it cannot be written.
@@ -100,18 +100,18 @@ pub fn records(name: &str, records: &[Record]) -> Result<(Files, Option<Finding>
     Ok((files, None))
 }
 
-/// Names of the figures and tables of one kind of record, without endings. Behind them a campaign marks the
-/// files of each record.
+/// Names of the figures and tables of one kind of record, without endings. In a campaign the number or name
+/// of the record follows.
 #[derive(Debug, Clone, Copy)]
 pub enum Names {
-    /// By the numbers of the records, from 1.
+    /// Followed by the number of the record, from 1.
     Numbered(&'static [&'static str]),
-    /// By the names of the records.
+    /// Followed by the name of the record.
     Named(&'static [&'static str]),
 }
 
 impl Names {
-    /// Whether a file may be one of them.
+    /// Whether a file name belongs to this set.
     pub fn has(&self, file: &str) -> bool {
         let Some((name, ending)) = file.rsplit_once('.') else { return false };
         let (Names::Numbered(stems) | Names::Named(stems)) = self;
@@ -127,14 +127,14 @@ impl Names {
 /// Endings of figures and tables.
 const ENDINGS: [&str; 4] = ["svg", "png", "csv", "uff"];
 
-/// Greek letters from α to ω as they are spelled in file names.
+/// Names of the Greek letters α to ω in file names.
 const GREEK: [&str; 25] = [
     "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu",
     "nu", "xi", "omicron", "pi", "rho", "sigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
 ];
 
-/// A name as part of a file name that every system takes: ASCII letters and digits, Greek letters by their
-/// names, everything else one `_`.
+/// A name as part of a portable file name: ASCII letters and digits, names of Greek letters, and `_` for any
+/// other characters.
 pub(crate) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars().flat_map(char::to_lowercase) {
@@ -149,7 +149,7 @@ pub(crate) fn slug(name: &str) -> String {
     slug.trim_end_matches('_').to_owned()
 }
 
-/// Names as parts of file names, each once.
+/// Names as parts of file names, made unique.
 pub(crate) fn slugs<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut slugs: Vec<String> = Vec::new();
     for (i, name) in names.enumerate() {
@@ -184,7 +184,8 @@ mod tests {
             let found = crate::read::Reader::new().from_reader("x.uff", bytes).unwrap();
             found.records[0].axis().values()
         };
-        // Text of six digits, then single precision (half a unit in the last place is 4.9e-4 there).
+        // The first file is text with six digits, the second binary in single precision (half a unit in the
+        // last place is 4.9e-4 there).
         for (step, off) in [(10.0, 0.05), (0.01, 5e-4)] {
             let (files, finding) = records("x", &gaps(step)).unwrap();
             assert_eq!(finding, None);

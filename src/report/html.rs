@@ -1,4 +1,4 @@
-//! One page that holds a whole report, to be explored: no network, no other file.
+//! The report as one interactive page without network access or other files.
 
 use super::files::Picture;
 use super::table::Table;
@@ -13,8 +13,8 @@ use std::fmt::Write;
 use std::io::Write as _;
 use vibro_figure::{Figure, Matrices, escaped};
 
-/// A report in the order in which it is read. Figures are drawn by a script, so that they can be searched and
-/// turned; a reader without scripts sees them as they are printed.
+/// A report in reading order. A script draws the figures, so that they can be zoomed and rotated; without
+/// scripts a reader sees the printed version.
 ///
 /// ```
 /// use vibroimpact::report::{Page, Table};
@@ -33,7 +33,7 @@ pub struct Page {
     whatif: Option<Value>,
 }
 
-/// Rows beyond which a table is folded.
+/// Number of rows above which a table is collapsed.
 const LONG: usize = 12;
 
 impl Page {
@@ -60,7 +60,7 @@ impl Page {
         self.element(&format!("<p>{}</p>", escaped(text)))
     }
 
-    /// Adds what is said of the answers: doubts in the open, all else folded.
+    /// Adds findings: doubts are visible, others collapsed.
     pub fn findings(self, all: &[(Severity, String)]) -> Page {
         let list = |of: &dyn Fn(Severity) -> bool| {
             let said = all.iter().filter(|(severity, _)| of(*severity));
@@ -87,7 +87,7 @@ impl Page {
         ))
     }
 
-    /// Adds a table; a long one is folded.
+    /// Adds a table; a long one is collapsed.
     pub fn table(self, table: &Table) -> Page {
         let html = table.html();
         if table.rows.len() <= LONG {
@@ -110,7 +110,7 @@ impl Page {
         let width = picture.width.round();
         let inside = match (data, files.first()) {
             (None, _) => svg.clone(),
-            // A map would be half of the page.
+            // Without scripts a map is only named: its picture would make up half of the page.
             (Some(data), Some(file)) if figure.has_map() => {
                 self.place(data, &format!("<p>The map is in {}.</p>\n", escaped(file)))
             }
@@ -122,24 +122,25 @@ impl Page {
         ))
     }
 
-    /// The place of a figure that the script draws, with what stands there without a script.
+    /// The element in which the script draws a figure, with the printed version for a reader without
+    /// scripts.
     fn place(&mut self, data: Value, without: &str) -> String {
         self.figures.push(data);
         let number = self.figures.len() - 1;
         format!("<div class=\"panels\" data-figure=\"{number}\"></div>\n<noscript>\n{without}</noscript>\n")
     }
 
-    /// Adds sliders for the parameters of a rig, with the curves and the motion that it would have. `start`
-    /// holds `rig` with its keys in SI units, `force` in N, `stiffness` of the contact in N/m (0: rigid),
-    /// `frequency` of the motion, `from` and `to` in Hz, `low` and `high` of amplitudes in mm, and
-    /// `measured`: `name`, `mass`, `down`, lists `x` in Hz and `y` in mm.
+    /// Adds sliders for the parameters of a rig, with the predicted curves and motion. `start` holds `rig`
+    /// with its keys in SI units, `force` in N, contact `stiffness` in N/m (0: rigid), `frequency` of the
+    /// motion, `from` and `to` in Hz, `low` and `high` of amplitudes in mm, and `measured`: `name`, `mass`,
+    /// `down`, lists `x` in Hz and `y` in mm.
     pub fn what_if(mut self, start: Value) -> Page {
         self.whatif = Some(start);
         self.element("<div id=\"what-if\"></div>\n<noscript><p>This part needs scripts.</p></noscript>")
     }
 
-    /// Adds a part that is shown on demand, such as where the data came from: pairs of a name and a text, the
-    /// text as it is in lines.
+    /// Adds a collapsed part, such as the sources of the data: pairs of name and text. Line breaks of the
+    /// text are kept.
     pub fn details<'a>(self, name: &str, pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Page {
         let mut list = String::new();
         for (name, text) in pairs {
@@ -187,7 +188,7 @@ impl Page {
     }
 }
 
-/// Adds bytes that gzip packed, as base64: markup in names cannot end the script.
+/// Adds gzip data as base64, so that markup in names cannot end the script element.
 fn packed(out: &mut String, id: &str, bytes: &[u8]) {
     let _ =
         writeln!(out, "<script type=\"application/gzip\" id=\"{id}\">{}</script>", STANDARD.encode(bytes));
@@ -216,7 +217,7 @@ const SCRIPTS: [&str; 6] = [
     include_str!("assets/page/page.js"),
 ];
 
-/// Text with what stands between backticks as code.
+/// Text as HTML; parts between backticks become code.
 fn code(text: &str) -> String {
     if text.matches('`').count() % 2 == 1 {
         return text.to_owned();
@@ -251,7 +252,7 @@ mod tests {
             .details("Where <from>", [("file", "C:\\a<b>\nsecond")])
     }
 
-    /// The page without its own scripts, which hold no word of a file.
+    /// The page without the scripts of the project, which hold no text from files.
     fn without_scripts(html: &str) -> String {
         SCRIPTS
             .iter()
@@ -267,7 +268,7 @@ mod tests {
         assert_eq!(html.matches("</script>").count(), 1);
         assert!(!html.contains("href=\"javascript:"));
         assert!(html.contains("href=\"./figures/a b.svg\"") && html.contains("href=\"./javascript:x\""));
-        // All but the void elements and the document type is XML, which the parser of usvg can check.
+        // Apart from void elements and the document type the page is XML, which the parser of usvg checks.
         let body = html.replace("<!DOCTYPE html>", "").replace("<br>", "<br/>");
         let body = body
             .replace("charset=\"utf-8\">", "charset=\"utf-8\"/>")

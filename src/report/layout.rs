@@ -1,16 +1,16 @@
-//! Parts that tables and figures of all analyses share.
+//! Parts of tables and figures that several analyses use.
 
 use super::{Cell, Figure, Ink, Marker, Panel, Plot, Series, Stroke, Table};
 
-/// A column: name, unit, and what it shows of an item.
+/// A column: name, unit, and the cell for an item.
 pub type Shown<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
 
-/// A table without rows yet.
+/// A table without rows.
 pub fn headed(title: impl Into<String>, columns: &[(&str, &str)]) -> Table {
     columns.iter().fold(Table::new(title), |table, (name, unit)| table.column(*name, *unit))
 }
 
-/// One row an item.
+/// A table with one row per item.
 pub fn table<T>(
     title: impl Into<String>,
     items: impl IntoIterator<Item = T>,
@@ -20,7 +20,7 @@ pub fn table<T>(
     items.into_iter().fold(head, |table, item| table.row(columns.iter().map(|c| c.2(&item))))
 }
 
-/// A title, with the record's name where it has one.
+/// A title, followed by the name of the record if it has one.
 pub fn titled(what: &str, name: &str) -> String {
     if name.is_empty() { what.to_owned() } else { format!("{what}, {name}") }
 }
@@ -30,7 +30,7 @@ pub fn pair(value: f64, std: Option<f64>) -> Cell {
     Cell::Estimate { value, std }
 }
 
-/// Adds a line through places to a plot; nothing where there are none.
+/// Adds a line through points to a plot; nothing without points.
 pub fn line(
     plot: Plot,
     name: &str,
@@ -42,7 +42,7 @@ pub fn line(
     if x.is_empty() { plot } else { plot.with(Series::line(name, x, y).ink(ink).stroke(stroke)) }
 }
 
-/// Adds points at places to a plot; nothing where there are none.
+/// Adds markers at points to a plot; nothing without points.
 pub fn points(
     plot: Plot,
     name: &str,
@@ -54,7 +54,7 @@ pub fn points(
     if x.is_empty() { plot } else { plot.with(Series::points(name, x, y).ink(ink).marker(marker)) }
 }
 
-/// Letters (a), (b), … before the titles of the plots of a figure that has several.
+/// Puts (a), (b), … before the titles of plots, if a figure has several.
 pub fn lettered(mut figure: Figure) -> Figure {
     if figure.panels.len() > 1 {
         for (letter, panel) in ('a'..='z').zip(&mut figure.panels) {
@@ -66,7 +66,7 @@ pub fn lettered(mut figure: Figure) -> Figure {
     figure
 }
 
-/// A text with a capital at its beginning.
+/// A text with a capital first letter.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())

@@ -1,5 +1,5 @@
-//! The one writer: a folder whose files appear together or not at all, and in which nothing of a person's is
-//! replaced.
+//! The only writer of files: all files of a folder appear together or not at all, and files of a person are
+//! not replaced.
 
 use super::Medium;
 use crate::error::{Error, Place, Result};
@@ -10,31 +10,30 @@ use std::path::{Component, Path, PathBuf};
 
 /// Folder into which files are written.
 ///
-/// Files are written beside their places under temporary names, and get their names together in
-/// [`Output::commit`]. A program that is killed before leaves the old results as they were; one that is
-/// killed in between leaves the file [`Output::INCOMPLETE`]. Nothing is forced to the disk: a power failure
-/// in the seconds after may still lose the new content.
+/// Files are written beside their places under temporary names and renamed together in [`Output::commit`]. A
+/// program that is killed before leaves the old results; one that is killed while renaming leaves the file
+/// [`Output::INCOMPLETE`]. There is no fsync: a power failure within seconds may lose the new content.
 ///
-/// A file that this run has opened as a measurement is never replaced. One that vibro did not write there, or
-/// that was changed since, is replaced only where [`Output::replace`] says so. The folder's [`Manifest`]
-/// tells them apart.
+/// A file that this run read as a measurement is never replaced. A file that vibro did not write, or that
+/// was changed since, is replaced only with [`Output::replace`]. The folder's [`Manifest`] records what
+/// vibro wrote.
 #[derive(Debug)]
 pub struct Output {
-    /// What its figures are drawn for.
+    /// Medium of the figures.
     pub medium: Medium,
-    /// What to try where something stands in the way.
+    /// Hint where an existing file is in the way.
     pub elsewhere: String,
     folder: Folder,
     owner: Owner,
     replace: bool,
     files: Vec<StagedFile>,
-    /// What a file held that is extended.
+    /// Digest of the earlier content of a file that is extended.
     extended: Option<Digest>,
-    /// The right to write into the folder, from the first file on.
+    /// Lock of the folder, taken with the first file.
     lock: Option<Lock>,
 }
 
-/// A file that has no name yet.
+/// A file under its temporary name.
 #[derive(Debug)]
 struct StagedFile {
     name: String,
@@ -42,26 +41,26 @@ struct StagedFile {
     staged: Staged,
 }
 
-/// What has the name of a file that is to be written.
+/// What exists under the name of a file to be written.
 #[derive(Debug, PartialEq, Eq)]
 enum Present {
-    /// The same bytes.
+    /// A file with the same bytes.
     Same,
-    /// Nothing, or what may be replaced.
+    /// Nothing, or a file that may be replaced.
     Replaceable,
 }
 
 impl Output {
-    /// The file that marks a folder in which old and new results stand side by side.
+    /// Marker of a folder with a mixture of old and new results.
     pub const INCOMPLETE: &str = "INCOMPLETE.txt";
-    /// The file in which answers are kept for the next run.
+    /// File with the answers that the next run reuses.
     pub const KEPT: &str = ".vibro.kept";
 
-    /// A folder, made with its parents when the first file is written, so that a job that fails before leaves
-    /// nothing.
+    /// A folder. It is created, with its parents, when the first file is written, so that a job that fails
+    /// earlier leaves nothing behind.
     ///
     /// # Errors
-    /// If a file has its name.
+    /// If there is a file of that name.
     pub fn new(folder: impl Into<Folder>, owner: Owner) -> Result<Output> {
         let folder: Folder = folder.into();
         let root = folder.root();
@@ -73,7 +72,7 @@ impl Output {
         Ok(Output { medium, elsewhere, folder, owner, replace: false, files, extended: None, lock: None })
     }
 
-    /// States whether files that are not vibro's are replaced, too. Default: they are not.
+    /// Whether files that vibro did not write are replaced. Default: no.
     pub fn replace(self, replace: bool) -> Output {
         Output { replace, ..self }
     }
@@ -86,10 +85,10 @@ impl Output {
     /// The path of a file of this name.
     ///
     /// # Errors
-    /// If it is no plain name of a file, or one that vibro keeps for itself.
+    /// If it is no plain file name, or one that vibro reserves.
     pub fn path(&self, name: &str) -> Result<PathBuf> {
         let parts: Vec<Component<'_>> = Path::new(name).components().collect();
-        // A backslash or a colon would mean something else on another system.
+        // Backslash and colon separate parts of a path on Windows.
         if !matches!(parts[..], [Component::Normal(_)]) || name.contains(['/', '\\', ':', '\0']) {
             return Err(unusable(name, "is no plain name"));
         }
@@ -103,31 +102,32 @@ impl Output {
         self.folder.root().join(name)
     }
 
-    /// Names of the files written, in order and each once.
+    /// Names of the files written, in order, each once.
     pub fn written(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|file| file.name.as_str())
     }
 
-    /// Looks, before anything is computed, whether a file stands in the way that has a name which may be
+    /// Checks, before anything is computed, that no existing file is in the way of the names that may be
     /// written.
     ///
     /// # Errors
-    /// If one must not be replaced.
+    /// If a file must not be replaced.
     pub fn expect(&self, may: impl Fn(&str) -> bool) -> Result<()> {
         let manifest = Manifest::of(&self.folder);
         let mut names = self.folder.names().into_iter().filter(|name| OWN.contains(&&**name) || may(name));
         names.try_for_each(|name| self.present(&manifest, &name, None).map(drop))
     }
 
-    /// As [`Output::expect`], of one file whose bytes are known: the same bytes are in nobody's way.
+    /// As [`Output::expect`], for one file with known bytes: an existing file with the same bytes is no
+    /// obstacle.
     ///
     /// # Errors
-    /// As there.
+    /// As for [`Output::expect`].
     pub fn expect_bytes(&self, name: &str, bytes: &[u8]) -> Result<()> {
         self.present(&Manifest::of(&self.folder), name, Some(&Sha256::digest(bytes).into())).map(drop)
     }
 
-    /// Writes a file, or writes it anew.
+    /// Writes a file; a second call with the same name replaces the first.
     ///
     /// # Errors
     /// If `name` is no plain name of a file, or that of a folder; if another program writes there, or the
@@ -147,8 +147,8 @@ impl Output {
         Ok(())
     }
 
-    /// Adds text at the end of a file that a person keeps and that held `before` when it was read. Nothing
-    /// else is written with it.
+    /// Appends text to a file of a person that held `before` when it was read. No other file is written with
+    /// it.
     ///
     /// # Errors
     /// As [`Output::write`]; if the file changed meanwhile.
@@ -158,7 +158,7 @@ impl Output {
         self.write(name, before.to_owned() + addition)
     }
 
-    /// What has a name; a folder must not.
+    /// What exists under a name. A folder there is an error.
     fn occupant(&self, name: &str) -> Result<Occupant> {
         match self.folder.occupant(&self.at(name)) {
             Occupant::Folder => {
@@ -168,10 +168,10 @@ impl Output {
         }
     }
 
-    /// Whether what has a name may be replaced.
+    /// Whether the file under a name may be replaced.
     ///
     /// # Errors
-    /// If it must not be replaced by a file of the digest `new`, or by any.
+    /// If it must not be replaced by a file with the digest `new`, or by any file.
     fn present(&self, manifest: &Manifest, name: &str, new: Option<&Digest>) -> Result<Present> {
         let path = self.at(name);
         let in_the_way = |what: &str| {
@@ -213,12 +213,12 @@ impl Output {
         Ok(Present::Replaceable)
     }
 
-    /// Gives the files their names, which it returns in the order in which they were written. Of a campaign,
-    /// what the last run wrote and this one did not goes.
+    /// Renames the files to their names, which it returns in the order of writing. For a campaign, files of
+    /// the last run that this one did not write are removed.
     ///
     /// # Errors
-    /// If what has a name must not be replaced; nothing is changed then. If the system refuses; the folder is
-    /// then marked as incomplete.
+    /// If an existing file must not be replaced: then nothing is changed. If the system refuses: then the
+    /// folder is marked as incomplete.
     pub fn commit(mut self) -> Result<Vec<String>> {
         let names: Vec<String> = self.written().map(str::to_owned).collect();
         if names.is_empty() {
@@ -227,7 +227,7 @@ impl Output {
         self.expect(|_| false)?;
         let before = Manifest::of(&self.folder);
         let stale = self.stale(&before);
-        // A program that is killed leaves some of the old files and some of the new: all are vibro's.
+        // If the program is killed here, old and new files are mixed; the manifest lists both as vibro's.
         let (mut meanwhile, mut after, mut changed) = (before.clone(), before.clone(), Vec::new());
         for name in &stale {
             after.forget(name);
@@ -237,7 +237,7 @@ impl Output {
                 meanwhile.add(self.owner, &name, digest);
                 changed.push(staged);
             } else if !before.knows(self.owner, &name, &digest) {
-                // The same bytes, but a person's.
+                // The bytes are the same, but the file is a person's: it stays out of the manifest.
                 continue;
             }
             after.forget(&name);
@@ -251,14 +251,14 @@ impl Output {
         changed.into_iter().try_for_each(Staged::place)?;
         stale.iter().try_for_each(|name| self.folder.remove(&self.at(name)))?;
         self.remember(&meanwhile, &after)?;
-        // What another kind of command left half stays marked.
+        // A marker left by another kind of command stays.
         if self.folder.own_file(Output::INCOMPLETE).is_some_and(|held| held == mark.as_bytes()) {
             self.folder.remove(&path)?;
         }
         Ok(names)
     }
 
-    /// What an earlier run of a campaign wrote and this one does not, as it was left.
+    /// Files that an earlier run of a campaign wrote, that nobody changed, and that this run does not write.
     fn stale(&self, manifest: &Manifest) -> Vec<String> {
         let as_left = |(name, known): &(&str, &Digest)| {
             let path = self.at(name);
@@ -279,10 +279,10 @@ impl Output {
     }
 }
 
-/// Files by which a folder of results is kept in order.
+/// Files for the bookkeeping of a folder of results.
 const OWN: [&str; 2] = [Output::INCOMPLETE, Manifest::FILE];
 
-/// What the file says that marks a folder, of a command and of a campaign.
+/// Text of the marker file, for a command and for a campaign.
 const MARKS: [&str; 2] = [
     "Old and new results stand side by side here: run the same command again.\n",
     "Old and new results of a campaign stand side by side here: run it again.\n",

@@ -1,4 +1,4 @@
-//! Tables of results: one content for the terminal, for other programs and for the page.
+//! Tables of results: the same content for the terminal, for CSV and for the page.
 
 use super::column::{Formatted, power};
 use super::{Cell, Column};
@@ -32,7 +32,7 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// Rows, each with a cell for every column; a row that is too short ends with missing cells.
     pub rows: Vec<Vec<Cell>>,
-    /// What its words mean, below it.
+    /// Explanation of its terms, shown below it.
     pub note: String,
 }
 
@@ -48,7 +48,7 @@ impl Table {
         self
     }
 
-    /// Explains its words below it.
+    /// Adds an explanation of its terms below it.
     pub fn note(self, note: impl Into<String>) -> Table {
         Table { note: note.into(), ..self }
     }
@@ -59,13 +59,13 @@ impl Table {
         self
     }
 
-    /// Adds a row, in a loop.
+    /// Adds a row in place, for use in a loop.
     pub fn push(&mut self, cells: impl IntoIterator<Item = Cell>) {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// For the terminal: columns set apart by blanks, words to the left, numbers with their decimal points
-    /// under each other.
+    /// As text for the terminal: columns separated by blanks, words left-aligned, numbers aligned at their
+    /// decimal points.
     pub fn text(&self) -> String {
         let columns: Vec<Vec<String>> = self.formatted().iter().map(Formatted::aligned).collect();
         let mut out = String::new();
@@ -76,7 +76,8 @@ impl Table {
             let _ = writeln!(out, "{}", self.title);
         }
         for row in self.lines(&columns, "  ") {
-            // A hyphen can be copied into other programs, a typographic minus cannot.
+            // ASCII hyphen instead of a typographic minus, so that numbers can be pasted into other
+            // programs.
             let _ = writeln!(out, "{}", row.trim_end().replace('\u{2212}', "-"));
         }
         if !self.note.is_empty() {
@@ -85,8 +86,8 @@ impl Table {
         out
     }
 
-    /// For other programs (RFC 4180): every number with all its digits, missing ones empty, and a column `…
-    /// std` beside each column with uncertainties.
+    /// As CSV (RFC 4180): full precision, empty cells for missing numbers, and a column `… std` after each
+    /// column with uncertainties.
     pub fn csv(&self) -> String {
         let number = |value: Option<f64>| value.map_or_else(String::new, exact);
         let shown = |cell: &Cell| match cell {
@@ -105,7 +106,7 @@ impl Table {
         self.lines(&columns, ",").map(|line| line + "\n").collect()
     }
 
-    /// Head and rows of these columns, each a line.
+    /// Head and rows of these columns, one line each.
     fn lines(&self, columns: &[Vec<String>], between: &str) -> impl Iterator<Item = String> {
         (0..=self.rows.len()).map(move |line| {
             let cells: Vec<&str> = columns.iter().filter_map(|c| c.get(line).map(String::as_str)).collect();
@@ -113,7 +114,7 @@ impl Table {
         })
     }
 
-    /// For a page: a `table` element with its title as caption.
+    /// As HTML: a `table` element with the title as caption.
     pub fn html(&self) -> String {
         let columns = self.formatted();
         if columns.is_empty() {
@@ -153,12 +154,12 @@ impl Table {
     fn formatted(&self) -> Vec<Formatted> {
         let mut columns: Vec<(&Column, Vec<&Cell>)> =
             self.columns.iter().enumerate().map(|(i, c)| (c, self.cells(i).collect())).collect();
-        // A column without a value is not shown.
+        // A column without values is omitted.
         let filled =
             |cell: &&Cell| matches!(cell, Cell::Text(text) if !text.is_empty()) || cell.value().is_some();
         columns.retain(|(_, cells)| cells.is_empty() || cells.iter().any(filled));
         let shown = |(column, cells): &(&Column, Vec<&Cell>)| {
-            // A limit has the unit of what it limits.
+            // A limit (`< x`) takes the unit and scale of its column.
             let limited =
                 |c: &&(&Column, Vec<&Cell>)| c.0.unit == column.unit && column.name == "upper limit";
             let (of, values) = columns.iter().find(limited).map_or((*column, cells), |(c, v)| (*c, v));
@@ -168,7 +169,7 @@ impl Table {
     }
 }
 
-/// The shortest text that reads back as the same number.
+/// The shortest decimal that reads back as the same number.
 fn exact(value: f64) -> String {
     if value.abs() >= 1e15 || value != 0.0 && value.abs() < 1e-4 {
         format!("{value:e}")
