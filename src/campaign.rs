@@ -178,12 +178,20 @@ impl Campaign {
         Ok(format!("{all:?}"))
     }
 
+    /// The comment above a table that cannot run yet.
+    pub(crate) const FILL_IN: &str =
+        "Fill in what is missing and remove the # in front of the table and its keys.";
+
     /// What its comments leave out: tables that lack a value, and files that were not used.
     pub(crate) fn commented(&self) -> Vec<Finding> {
         let lines: Vec<&str> = self.text.lines().collect();
         let comment = |line: &&str| line.strip_prefix('#').map(|text| text.trim_start().to_owned());
         // Of a table in a comment, keys that need not be stated are comments themselves.
         let below = |i: usize| lines[i..].iter().map_while(comment).filter(|text| !text.starts_with('#'));
+        let above = |i: usize, n: usize| comment(lines.get(i.checked_sub(n)?)?);
+        // Why its records give no answer stands between what they are and the line above the table.
+        let refused =
+            |i: usize| above(i, 1).filter(|text| text == Campaign::FILL_IN).and(above(i, 3)).and(above(i, 2));
         let table = |i: usize| {
             let head = comment(&lines[i])
                 .filter(|text| text.starts_with("[[") && text.trim_end().ends_with("]]"))?;
@@ -203,7 +211,11 @@ impl Campaign {
             let found = Finding::note("table-in-comment").about(file.unwrap_or(&head));
             // One that was only proposed has no lines to look at.
             let found = if self.is_file() { found.count("line", i + 1) } else { found };
-            Some(if lacking.is_empty() { found } else { found.name("keys", lacking.join(", ")) })
+            Some(match refused(i) {
+                Some(why) => found.name("why", why.trim_end_matches('.')),
+                None if lacking.is_empty() => found,
+                None => found.name("keys", lacking.join(", ")),
+            })
         };
         let unused = lines.iter().position(|line| *line == "# Not used:");
         let unused = unused.into_iter().flat_map(|i| below(i + 1)).filter_map(|line| {

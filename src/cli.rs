@@ -285,6 +285,8 @@ fn options(command: Typed) -> Typed {
     let option = |arg: Arg| {
         order += 1;
         let takes = arg.get_action().takes_values();
+        // Options of all commands stand behind their own.
+        let order = if arg.is_global_set() { usize::MAX } else { order };
         let arg = arg.allow_negative_numbers(takes).display_order(order);
         if arg.get_index().is_some() {
             return arg;
@@ -294,7 +296,7 @@ fn options(command: Typed) -> Typed {
         let own = arg.get_value_names().is_none_or(|names| names[0] != id.to_uppercase().as_str());
         let kind = kind(&arg);
         let arg = read_by_type(arg.long(long));
-        let arg = if WRITES.contains(&id.as_str()) { arg.help_heading(OUTPUT) } else { arg };
+        let arg = if id == "out" { arg.help_heading(OUTPUT) } else { arg };
         if takes && !own { arg.value_name(kind) } else { arg }
     };
     let command = command.mut_args(option).mut_subcommands(options).next_help_heading(OUTPUT);

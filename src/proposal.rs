@@ -230,9 +230,7 @@ impl Table {
         }
         let rows = text.trim_end().replace('\n', "\n#");
         let rows = format!("#{}\n", rows.trim_end_matches('#').trim_end());
-        format!(
-            "{about}# Fill in what is missing and remove the # in front of the table and its keys.\n{rows}"
-        )
+        format!("{about}# {}\n{rows}", Campaign::FILL_IN)
     }
 }
 

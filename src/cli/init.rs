@@ -19,10 +19,10 @@ pub struct Init {
     /// Folder of recordings
     #[arg(index = 1, default_value = ".")]
     folder: PathBuf,
-    #[command(flatten)]
-    reading: Reading,
     /// Take files outside the folder, too, where links lead to them
     allow_outside: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 #[derive(Debug, clap::Args)]

@@ -178,7 +178,8 @@ fn grown(trains: &[Train]) -> Option<Finding> {
     Some(Finding::doubt("drop-flights-grow").count("n", n).count("train", train))
 }
 
-/// A soft ball touches so many times as long: where that moves R by its uncertainty, the contact is asked for.
+/// A soft ball touches so many times as long: where that moves R by its uncertainty, the contact is asked
+/// for.
 const LONG_CONTACT: f64 = 5.0;
 
 /// How long an impact lasts and its standard uncertainty, in s: as stated, or as all records show it.

@@ -72,7 +72,7 @@ impl Drop {
         trains.iter().all(|t| t.intervals.first().is_some_and(|first| self.intervals.contains(first)))
     }
 
-    /// What is doubtful where the second flight of a train, over the first, is not the R that the first gives.
+    /// What is doubtful where the second flight over the first is not the R that the first gives.
     pub(super) fn unlike(&self, trains: &[Train]) -> Option<Finding> {
         let unlike = |train: &Train| {
             let [first, second, ..] = train.intervals[..] else { return None };
