@@ -28,7 +28,8 @@ fn answer(drops: &Drops) -> Option<Restitution> {
 #[ignore = "Monte Carlo: cargo test --release -- --ignored"]
 fn drops_in_rooms_are_covered_or_refused() {
     let cases = 24;
-    for room in [Room::Ordinary, Room::Hard, Room::Dull] {
+    // Bodies that hardly bounce show few impacts: four of five series are answered.
+    for (room, part) in [(Room::Ordinary, 0.97), (Room::Hard, 0.97), (Room::Dull, 0.8)] {
         let score = |seed: u64| {
             let drops = room.drops(seed);
             let found = answer(&drops)?.restitution;
@@ -39,9 +40,11 @@ fn drops_in_rooms_are_covered_or_refused() {
         let inside = scores.iter().filter(|z| z.abs() < 1.96).count();
         let largest = scores.iter().fold(0.0, |most: f64, z| z.abs().max(most));
         println!("drops, {room:?} room: {n} of {cases} answered, {inside} within 1.96, largest {largest:.1}");
-        // Of 24 series 97 in 100 are answered, but for two and a half standard deviations of 0.8; 95 % of
-        // these are covered, but for as many of 1.1.
-        assert!(n as f64 >= 0.97 * cases as f64 - 2.1, "{room:?}: {n}");
+        // Such a part of 24 series is answered, but for two and a half standard deviations; 95 % of these are
+        // covered, but for as many of 1.1.
+        let count = cases as f64;
+        let least = part * count - 2.5 * (count * part * (1.0 - part)).sqrt();
+        assert!(n as f64 >= least, "{room:?}: {n}");
         assert!(
             inside as f64 >= 0.95 * n as f64 - 2.7 && largest < 4.0,
             "{room:?}: {inside} of {n}, {scores:?}"
