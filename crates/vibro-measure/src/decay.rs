@@ -87,8 +87,8 @@ impl Sines {
         let size = strongest.map_or(0.0, |(group, m)| group.sines[m].amplitude.norm());
         for (group, m) in self.asked() {
             let mut mode = mode(group, m, self.n, self.rate, unit);
-            mode.amplitude = mode.amplitude.by_loss(trace.meta.lost(mode.frequency.value));
-            mode.frequency = mode.frequency.by_clock(trace.meta.clock);
+            mode.amplitude = mode.amplitude.with_relative(trace.meta.lost(mode.frequency.value));
+            mode.frequency = mode.frequency.with_relative(trace.meta.clock);
             if decays(group, m) {
                 let doubted = self
                     .odd

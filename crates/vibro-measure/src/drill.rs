@@ -139,7 +139,7 @@ pub fn drill_each(
     // Where speeds are too small, so is what they add up to: no uncertainty is stated.
     let metres = |mean: Mean, method| {
         let known = mean.std.filter(|_| faults.clipped == 0);
-        Estimate::new(mean.value, known, "m", mean.n, method).by_clock(options.clock)
+        Estimate::new(mean.value, known, "m", mean.n, method).with_relative(options.clock)
     };
     let noise_floor = still.and_then(|still| NoiseFloor::new(velocity, scaled(still), rate, options.margin));
     let slow = [
@@ -150,7 +150,7 @@ pub fn drill_each(
     ];
     let slow: Vec<&str> = slow.into_iter().filter(|(_, wanders)| *wanders).map(|(name, _)| name).collect();
     let mut result = Drill {
-        speed: speed.by_clock(options.clock),
+        speed: speed.with_relative(options.clock),
         speed_variation: scatter(&speeds),
         cycles: whole.len(),
         averaged,

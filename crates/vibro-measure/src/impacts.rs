@@ -202,9 +202,9 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     let median_interval = median(&steps);
     let mut answer = Impacts {
         n: times.len(),
-        interval: of(fitted.mean, std, "s").by_clock(trace.meta.clock),
+        interval: of(fitted.mean, std, "s").with_relative(trace.meta.clock),
         frequency: of(1.0 / fitted.mean, std.map(|s| s / fitted.mean.powi(2)), "Hz")
-            .by_clock(trace.meta.clock),
+            .with_relative(trace.meta.clock),
         median_interval,
         spread: spread(&kept, &counted),
         serial_correlation: Some(fitted.correlation).filter(|r| r.is_finite()),

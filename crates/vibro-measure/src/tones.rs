@@ -400,8 +400,8 @@ impl SineFit {
                 findings.extend((widening > COLOURED).then(|| coloured.number("factor", widening)));
                 findings.extend(tone.widened(lines, other));
             }
-            tone.frequency = tone.frequency.by_clock(trace.meta.clock);
-            tone.amplitude = tone.amplitude.by_loss(trace.meta.lost(frequency));
+            tone.frequency = tone.frequency.with_relative(trace.meta.clock);
+            tone.amplitude = tone.amplitude.with_relative(trace.meta.lost(frequency));
             tone
         };
         let tones = self.omega.iter().zip(self.linear.chunks_exact(2)).enumerate().map(tone).collect();

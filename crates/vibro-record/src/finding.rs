@@ -197,16 +197,10 @@ impl Estimate {
         Estimate { value, std: std.filter(|s| s.is_finite()), unit, n, method: method.into() }
     }
 
-    /// The same of a value that is proportional to the sampling rate or to its inverse, whose relative
-    /// standard uncertainty is `clock`.
-    pub fn by_clock(mut self, clock: f64) -> Estimate {
-        self.std = self.std.map(|std| std.hypot(clock * self.value));
-        self
-    }
-
-    /// The same of an amplitude of which interpolation may have taken up to this part.
-    pub fn by_loss(mut self, lost: f64) -> Estimate {
-        self.std = self.std.map(|std| std.hypot(lost * self.value));
+    /// The same with a further relative standard uncertainty: that of the sampling rate, to which the value
+    /// or its inverse is proportional, or what interpolation may have taken of it.
+    pub fn with_relative(mut self, relative: f64) -> Estimate {
+        self.std = self.std.map(|std| std.hypot(relative * self.value));
         self
     }
 }

@@ -74,16 +74,6 @@ impl Column {
             && values.iter().enumerate().all(|(i, v)| *v == first + i as f64)
     }
 
-    pub fn label(&self) -> String {
-        if self.name.name.is_empty() { format!("column {}", self.at) } else { self.name.name.clone() }
-    }
-}
-
-/// Most channels or sensors whose rows stand below each other, and words for what numbers them.
-const TURNS: usize = 64;
-const NUMBERED: [&str; 9] = ["channel", "chan", "ch", "sensor", "node", "device", "probe", "id", "kanal"];
-
-impl Column {
     /// Two values of a column that numbers the channel or the sensor of each row, the first and one that
     /// follows: whole numbers in turns, or few of them that come back under a name that says so.
     pub fn numbers_channels(&self) -> Option<[f64; 2]> {
@@ -107,7 +97,15 @@ impl Column {
         let named = || NUMBERED.contains(&self.name.last_word().as_str()) && 4 * known.len() <= values.len();
         (known.len() > 1 && (in_turns() || named())).then(|| [first, known[1]])
     }
+
+    pub fn label(&self) -> String {
+        if self.name.name.is_empty() { format!("column {}", self.at) } else { self.name.name.clone() }
+    }
 }
+
+/// Most channels or sensors whose rows stand below each other, and words for what numbers them.
+const TURNS: usize = 64;
+const NUMBERED: [&str; 9] = ["channel", "chan", "ch", "sensor", "node", "device", "probe", "id", "kanal"];
 
 /// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
 const REPEATS: f64 = 0.05;

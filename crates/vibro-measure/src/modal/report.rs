@@ -100,7 +100,7 @@ impl Candidate<'_> {
         let method = format!("rational fit{together}, {}", fit.noise);
         let phases = !measured.magnitude_only;
         let estimate = |value, std: Option<f64>, unit| Estimate::new(value, std, unit, n, method.clone());
-        let frequency = estimate(own.frequency, std[0], "Hz").by_clock(options.clock);
+        let frequency = estimate(own.frequency, std[0], "Hz").with_relative(options.clock);
         let zeta = estimate(own.zeta, std[1], "1");
         let constant = if phases { signed(own.constant) } else { own.constant.norm() };
         let modal_constant = estimate(constant, std[2], "1/kg");

@@ -105,7 +105,7 @@ impl PulseResult {
         ];
         let all = once.into_iter().map(|of| (of, 1.0)).chain([(self.stiffness.as_mut(), 2.0)]);
         for (estimate, power) in all.filter_map(|(of, power)| Some((of?, power))) {
-            *estimate = estimate.clone().by_clock(power * clock);
+            *estimate = estimate.clone().with_relative(power * clock);
         }
         self
     }

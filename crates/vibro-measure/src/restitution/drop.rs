@@ -152,7 +152,7 @@ impl Drop {
         let of = if n == 1 { "one drop".to_owned() } else { format!("the mean of {n} drops") };
         let restitution = Estimate::new(value, std, "1", n, format!("(Δt/2)√(g/2h) of {of}"));
         // A ratio of flights does not depend on the clock; one flight against a height does.
-        let restitution = restitution.by_clock(self.clock);
+        let restitution = restitution.with_relative(self.clock);
         Ok(MethodAnswer { method: "drop", restitution })
     }
 

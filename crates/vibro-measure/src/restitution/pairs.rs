@@ -73,9 +73,10 @@ pub enum Rival {
 /// √(2π).
 const TURN: f64 = 2.506_628_274_631_000_5;
 
-/// Standard deviation of the logarithm of a flight behind another.
-fn scatter(expected: f64) -> f64 {
-    (SCATTER * SCATTER + 6.0 * TIMING * TIMING / (expected * expected)).sqrt()
+/// Standard deviation of the logarithm of a flight that should last `expected`, where R or the height
+/// scatters it by this part.
+fn spread(expected: f64, scatter: f64) -> f64 {
+    (scatter * scatter + 6.0 * TIMING * TIMING / (expected * expected)).sqrt()
 }
 
 /// What speaks for a pair of impacts, over all ln R.
@@ -232,7 +233,7 @@ impl Pairs<'_> {
     /// The next impact behind a pair, for R.
     fn next(&self, j: usize, k: usize, r: f64) -> Next {
         let flight = self.flight(j, k) * r;
-        let range = (4.0 * scatter(flight)).exp();
+        let range = (4.0 * spread(flight, SCATTER)).exp();
         let loud = self.sounds[k].height * r > HEARD * self.heard.reach;
         let within = self.sounds[k].time + flight * range < self.heard.ends.1;
         Next { flight, range, stands_out: loud && within }
@@ -275,7 +276,7 @@ impl Pairs<'_> {
 
     /// What a flight tells that should last `expected`.
     fn timed(flight: f64, expected: f64, scatter: f64) -> f64 {
-        let std = scatter.hypot(6f64.sqrt() * TIMING / expected);
+        let std = spread(expected, scatter);
         let z = (flight / expected).ln() / std;
         -0.5 * z * z - (TURN * std * flight).ln()
     }

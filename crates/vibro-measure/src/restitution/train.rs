@@ -148,23 +148,8 @@ fn choose(
     let before = train.impacts[0];
     let other = n - train.impacts.len() - before - train.echoes;
     let foreign = before - train.release + other;
-    if train.impacts.len() == 2 && foreign > 0 {
-        let others = counted(foreign, "other sound");
-        let why = format!("one flight beside {others}: no second flight shows that it is that of a bounce");
-        return refused(why, &train);
-    }
-    // More impacts than two show by themselves that they are those of one fall.
     let flight = time(b) - time(a);
-    if train.impacts.len() == 2 && flight < SHADOW {
-        let flight = quantity(flight, "s", 3);
-        let why = format!("one flight, of {flight}: the second sound may be the echo of the first");
-        return refused(why, &train);
-    }
-    if train.impacts.len() == 2
-        && let Some(expected) = train.expected
-    {
-        let expected = quantity(expected, "s", 3);
-        let why = format!("two impacts, and the third, expected at {expected}, is not heard");
+    if let Some(why) = unconfirmed(&train, foreign, flight) {
         return refused(why, &train);
     }
     if let Some(full) = heard.full
@@ -184,6 +169,27 @@ fn choose(
     let echoes = of("echoes-ignored", train.echoes).map(|found| found.number("delay", SHADOW));
     let findings = [of_handling, echoes, of("sounds-ignored", other), one];
     Ok((train.impacts, findings.into_iter().flatten().collect()))
+}
+
+/// Why a train of one `flight` in s is not told, with so many `foreign` sounds beside it: more impacts than
+/// two show by themselves that they are those of one fall.
+fn unconfirmed(train: &Plausible, foreign: usize, flight: f64) -> Option<String> {
+    if train.impacts.len() > 2 {
+        return None;
+    }
+    if foreign > 0 {
+        let others = counted(foreign, "other sound");
+        return Some(format!(
+            "one flight beside {others}: no second flight shows that it is that of a bounce"
+        ));
+    }
+    let shown = |time| quantity(time, "s", 3);
+    if flight < SHADOW {
+        let flight = shown(flight);
+        return Some(format!("one flight, of {flight}: the second sound may be the echo of the first"));
+    }
+    let expected = shown(train.expected?);
+    Some(format!("two impacts, and the third, expected at {expected}, is not heard"))
 }
 
 /// Two times in s with as many digits, three at least, as show that they differ.
