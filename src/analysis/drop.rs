@@ -159,8 +159,8 @@ pub struct Series {
     /// File and trace of each drop with a record.
     records: Vec<(String, Plot)>,
     findings: Vec<About>,
-    /// Why the first record that is left out allows no answer.
-    refused: Option<Error>,
+    /// Each record that is left out, and why it allows no answer.
+    refused: Vec<(String, Error)>,
 }
 
 impl Series {
@@ -182,7 +182,7 @@ impl Series {
             contact_time: keys.contact_time,
             records,
             findings,
-            refused: None,
+            refused: Vec::new(),
         }
     }
 
@@ -235,7 +235,7 @@ impl Series {
         let why = error.text_with(|key, value| Voice::Command.set(key, value), Hint::to_string);
         let left = Finding::caution("drop-left-out").name("why", why);
         self.findings.push((file_name(file), left));
-        self.refused.get_or_insert(error);
+        self.refused.push((file_name(file), error));
         Ok(())
     }
 
@@ -247,11 +247,11 @@ impl Series {
     ///
     /// # Errors
     /// If they allow none.
-    pub fn answer(self, name: &str) -> Result<Answer> {
-        if self.is_empty()
-            && let Some(error) = self.refused
-        {
-            return Err(error);
+    pub fn answer(mut self, name: &str) -> Result<Answer> {
+        if self.is_empty() && !self.refused.is_empty() {
+            let several = self.refused.len() > 1;
+            let (file, error) = self.refused.swap_remove(0);
+            return Err(if several { error.of_record(&file) } else { error });
         }
         let files = self.records.len();
         let drop = self.drop.beginning(&self.trains);

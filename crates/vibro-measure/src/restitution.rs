@@ -159,6 +159,9 @@ pub fn restitution(measured: &Measured) -> Result<Restitution> {
         return Err(settings.into_iter().fold(none.hint(hint), Error::setting));
     };
     let agree = agreement(&by, &mut findings);
+    if agree == Some(false) {
+        findings.extend(first_unheard(&by));
+    }
     let restitution = if agree == Some(false) {
         Estimate::new(f64::NAN, None, "1", by.len(), "methods disagree: see `by`")
     } else {
@@ -229,6 +232,16 @@ fn agreement(by: &[MethodAnswer], findings: &mut Vec<Finding>) -> Option<bool> {
         }
     }
     agree
+}
+
+/// What answers that disagree say of a record that begins with the second impact: its first flight is that
+/// after two, and the height gives the square of R.
+fn first_unheard(by: &[MethodAnswer]) -> Option<Finding> {
+    let of = |method: &str| by.iter().find(|way| way.method == method).map(|way| way.restitution.value);
+    let (drop, flights) = (of("drop")?, of("flight times")?);
+    let is_square = (drop / flights.powi(2) - 1.0).abs() < GROSS;
+    let found = Finding::caution("first-impact-unheard").number("drop", drop);
+    is_square.then(|| found.number("flights", flights))
 }
 
 /// Mean of repeated values and its standard uncertainty: the larger of their scatter (Student's, from three

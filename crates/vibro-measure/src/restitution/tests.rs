@@ -253,6 +253,26 @@ fn answers_far_apart_disagree_without_uncertainties() {
     }
 }
 
+/// After a fall of 0.57 m with R = 0.8 the flights are 2 √(2h/g) Rⁿ: a record that begins with the second
+/// impact has R² for the first of them.
+#[test]
+fn a_record_that_begins_with_the_second_impact_is_told_by_the_square() {
+    let flight = |n: i32| 2.0 * (2.0 * 0.57 / GRAVITY).sqrt() * 0.8f64.powi(n);
+    for first in [1, 2] {
+        let intervals: Vec<f64> = (first..first + 5).map(flight).collect();
+        let d = Drop { height_std: Some(0.002), ..drop(0.57, intervals[0]) };
+        let train = Train { intervals, onset_std: Some(1e-4), ..Train::default() };
+        let found = of(&Measured {
+            drop: Some(d),
+            trains: vec![train],
+            contact_time: Some(0.0),
+            ..Measured::default()
+        });
+        assert_eq!(found.agree, Some(first == 1), "{found:?}");
+        assert_eq!(finding(&found, "first-impact-unheard").is_some(), first == 2, "{:?}", found.findings);
+    }
+}
+
 #[test]
 fn what_cannot_be_compared_is_left_open() {
     let train = Train { intervals: vec![0.144, 0.03], ..Train::default() };

@@ -57,8 +57,9 @@ impl Untold {
         match self.heard.full {
             None => refused
                 .hint("state the height of the fall, which tells them apart; or ".to_owned() + cut)
-                .setting("height"),
-            Some(_) => refused.hint(cut),
+                .setting("height")
+                .setting("span"),
+            Some(_) => refused.hint(cut).setting("span"),
         }
     }
 
