@@ -10,7 +10,57 @@
 //! SI throughout: m, m/s, m/s², N, kg, s; frequencies in Hz unless a name says ω (rad/s). Spectra are
 //! one-sided, and every [`record::Spectrum`] names its [`record::Scaling`].
 //!
-//! # Example
+//! # Read a file
+//! ```
+//! use vibroimpact::read::Reader;
+//! let text = (0..2048).map(|i| format!("{};{}\n", f64::from(i) / 1024.0, (0.5 * f64::from(i)).sin()));
+//! let text = "t [s];v [mm/s]\n".to_owned() + &text.collect::<String>();
+//! let recording = Reader::new().from_reader("laser.csv", text.as_bytes())?;
+//! let velocity = recording.trace(Some("v"), None)?;
+//! assert_eq!((velocity.rate(), velocity.meta.unit.symbol()), (Some(1024.0), "m/s"));
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
+//! A path goes to `Reader::from_path`; what was assumed of a file is in `recording.all_findings()`.
+//!
+//! # A spectrum with its uncertainty
+//! ```
+//! use vibroimpact::measure::spectral::{SpectralOptions, spectral};
+//! use vibroimpact::record::{Axis, Meta, Trace, Traces};
+//! use vibroimpact::units::Unit;
+//! let values = (0..2048).map(|i| 1e-3 * (0.5 * f64::from(i)).sin()).collect();
+//! let meta = Meta::new("laser", Unit::parse("m/s").unwrap());
+//! let trace = Trace { meta, axis: Axis::time(0.0, 1.0 / 1024.0, 2048), values };
+//! let options = SpectralOptions { tones: Some(1), ..SpectralOptions::default() };
+//! let found = spectral(&mut Traces::from_memory(vec![trace])?, &options, |_| ())?;
+//! let tone = &found.tones[0];
+//! assert!((tone.frequency.value - 0.5 * 1024.0 / std::f64::consts::TAU).abs() < 1e-6); // Hz
+//! println!("{} of {}", tone.amplitude, tone.frequency); // with standard uncertainty and unit
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
+//!
+//! # Orbits of a rig
+//! ```
+//! use vibroimpact::model::{Rig, orbits};
+//! let found = orbits(&Rig::thesis(), 0.5, 11.0)?; // N, Hz
+//! let real = |orbit: &&vibroimpact::model::Orbit| {
+//!     orbit.validity.admissible && orbit.validity.stable == Some(true)
+//! };
+//! let orbit = found.orbits.iter().find(real).unwrap();
+//! println!("impacts at {} m/s", orbit.approach_velocity);
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
+//!
+//! # Draw a figure
+//! ```
+//! use vibroimpact::figure::{AxisSpec, Figure, Plot, Series};
+//! let (hertz, metres) = (vec![9.0, 10.0, 11.0], vec![1e-3, 14e-3, 2e-3]);
+//! let plot = Plot::new(AxisSpec::frequency(), AxisSpec::new("amplitude", "m").log());
+//! let figure = Figure::single("Response of mass 1").panel(plot.with(Series::line("up", hertz, metres)));
+//! assert!(figure.draw().svg().starts_with("<svg"));
+//! # Ok::<(), vibroimpact::Error>(())
+//! ```
+//!
+//! # Answers of a campaign
 //! The response of mass 1 in the example campaign, taken from velocity to displacement:
 //! ```
 //! use vibroimpact::analysis::{named, open};

@@ -232,14 +232,16 @@ impl Trial<'_> {
         self.answering(table.open("tones", "", what))
     }
 
-    /// Whether a table explains the record as one motion: a decay that fills most of it, or a steady train
-    /// of impacts. Needed since each bounce rings down, and bounces are impacts in a row.
+    /// Whether a table explains the record as one motion: a decay that fills most of it and that no other
+    /// event follows, or a steady train of impacts. Each bounce rings down, and bounces are impacts in a row.
     fn is_one(&self, table: &Table) -> bool {
         let one = |of: &Evidence| match of {
             Evidence::Impacts { spread, .. } => *spread < STEADY,
             _ => true,
         };
-        self.answers(from_ref(table)).is_ok_and(|heard| !is_brief(&heard) && heard.evidence.iter().all(one))
+        let alone = |heard: &Answer| !heard.findings.iter().any(|(_, found)| found.code == code::DECAY_CUT);
+        self.answers(from_ref(table))
+            .is_ok_and(|heard| !is_brief(&heard) && alone(&heard) && heard.evidence.iter().all(one))
     }
 
     /// The table of a drop whose bounces cannot be told from other sounds yet, with the reason and a hint.

@@ -3,6 +3,14 @@
 //! A [`Figure`] is data: panels with axes and series, no drawing. [`Figure::draw`] makes a [`Drawing`] of it,
 //! which is written as SVG or PNG. Drawing needs nothing but the figure, so that many can be drawn at once;
 //! the same figure gives the same bytes on every machine.
+//!
+//! ```
+//! use vibro_figure::{AxisSpec, Figure, Plot, Series};
+//! let (time, force) = (vec![0.0, 1e-4, 2e-4, 3e-4], vec![0.0, 80.0, 60.0, 0.0]);
+//! let plot = Plot::new(AxisSpec::new("time", "s"), AxisSpec::new("force", "N"));
+//! let drawing = Figure::single("Contact").panel(plot.with(Series::line("hammer", time, force))).draw();
+//! assert!(drawing.svg().contains("Contact"));
+//! ```
 
 pub mod colour;
 

@@ -240,7 +240,7 @@ fn first_unheard(by: &[MethodAnswer]) -> Option<Finding> {
     let of = |method: &str| by.iter().find(|way| way.method == method).map(|way| way.restitution.value);
     let (drop, flights) = (of("drop")?, of("flight times")?);
     let is_square = (drop / flights.powi(2) - 1.0).abs() < GROSS;
-    let found = Finding::caution("first-impact-unheard").number("drop", drop);
+    let found = Finding::doubt("first-impact-unheard").number("drop", drop);
     is_square.then(|| found.number("flights", flights))
 }
 

@@ -28,5 +28,7 @@ pub const DRILL_MEAN_VELOCITY: &str = "drill-mean-velocity";
 pub const PULSE_NOT_ALONE: &str = "pulse-not-alone";
 /// A decay is not that of its modes.
 pub const DECAY_UNEXPLAINED: &str = "decay-unexplained";
+/// Another event follows a decay.
+pub const DECAY_CUT: &str = "decay-cut";
 /// The damping of a decay changes with its amplitude.
 pub const DECAY_CHANGES: &str = "decay-changes";

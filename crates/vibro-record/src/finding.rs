@@ -1,11 +1,12 @@
 //! What an analysis, a model or a reader reports, as data: numbers with their uncertainty, and what a person
 //! should know of them.
 
+use crate::units::notation::estimate;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
-use std::fmt::Formatter;
+use std::fmt::{Display, Formatter};
 
 /// How much a finding weighs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -202,5 +203,13 @@ impl Estimate {
     pub fn with_relative(mut self, relative: f64) -> Estimate {
         self.std = self.std.map(|std| std.hypot(relative * self.value));
         self
+    }
+}
+
+impl Display for Estimate {
+    /// The value with two digits of its uncertainty, and the unit: `5.51446 ± 0.00045 Hz`.
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&estimate(self.value, self.std))?;
+        if matches!(self.unit, "" | "1") { Ok(()) } else { write!(f, " {}", self.unit) }
     }
 }

@@ -3,6 +3,16 @@
 //! A record is a [`Trace`] (samples over time), a [`Spectrum`] (lines over frequency, with its scaling) or an
 //! [`Frf`] (receptance, mobility or accelerance). Values are SI. Each record carries its [`Meta`]: the
 //! channel, every step that made it, and the doubts that a person must hear before trusting it.
+//!
+//! ```
+//! use vibro_record::units::Unit;
+//! use vibro_record::{Axis, Estimate, Meta, Trace};
+//! let meta = Meta::new("laser", Unit::parse("m/s").unwrap());
+//! let trace = Trace { meta, axis: Axis::time(0.0, 1e-3, 3), values: vec![0.0, 0.2, 0.1] };
+//! assert_eq!((trace.rate(), trace.axis.at(2)), (Some(1000.0), 2e-3));
+//! let frequency = Estimate::new(5.51446, Some(0.00045), "Hz", 8, "line fit of 8 periods");
+//! assert_eq!(frequency.to_string(), "5.51446 ± 0.00045 Hz");
+//! ```
 
 mod axis;
 mod clock;

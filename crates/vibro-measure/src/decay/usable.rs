@@ -4,7 +4,7 @@ use crate::clipping::clipped;
 use crate::mean::average;
 use num_complex::Complex64;
 use std::ops::Range;
-use vibro_record::{Error, Finding, Result, Scaling, Trace, Window};
+use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, code};
 use vibro_signal::fft::Transform;
 use vibro_signal::spectrum;
 
@@ -117,7 +117,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
             .setting("band"));
     }
     if begins.is_some() && end == limit {
-        findings.push(Finding::caution("decay-cut").number("end", trace.axis.at(limit)));
+        findings.push(Finding::caution(code::DECAY_CUT).number("end", trace.axis.at(limit)));
     }
     Ok(Usable { part: start..end, block, limit, findings })
 }
