@@ -152,6 +152,7 @@ impl Waterfall {
         let [x, depth, up] = self.axes()?;
         Some(json!({
             "kind": "waterfall",
+            "record": self.record,
             "x": x.data(),
             "depth": depth.data(),
             "up": up.data(),

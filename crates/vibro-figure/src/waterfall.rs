@@ -34,6 +34,8 @@ pub struct Waterfall {
     height: AxisSpec,
     pub(super) frequency: Vec<f64>,
     pub(super) rows: Vec<(f64, Vec<f64>)>,
+    /// Name of the record whose spectra it shows: a line of that name on the page leads to them.
+    pub(super) record: String,
 }
 
 impl Waterfall {
@@ -58,7 +60,13 @@ impl Waterfall {
             .map(|(e, row)| (*e, row.to_vec()))
             .collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(Waterfall { x: AxisSpec::frequency(), height, frequency: frequency.to_vec(), rows })
+        let (frequency, record) = (frequency.to_vec(), String::new());
+        Ok(Waterfall { x: AxisSpec::frequency(), height, frequency, rows, record })
+    }
+
+    /// Names the record whose spectra it shows, as the lines of other figures name it.
+    pub fn of(self, record: impl Into<String>) -> Waterfall {
+        Waterfall { record: record.into(), ..self }
     }
 
     /// Shows this range of frequencies (Hz) only.

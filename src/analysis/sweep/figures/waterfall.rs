@@ -20,7 +20,8 @@ pub fn waterfall(matrix: &Matrix, fmax: Option<f64>) -> Result<Figure> {
     let height = AxisSpec::new(format!("{} amplitude", capital(matrix.quantity.name())), matrix.unit.clone());
     let ShownRange { low, high, left_out } = shown(matrix, fmax, SEEN)?;
     let scene = Waterfall::new(&matrix.frequency, &matrix.excitation, &matrix.magnitude, height)?
-        .frequencies(low, high);
+        .frequencies(low, high)
+        .of(&matrix.name);
     Ok(Figure::double(format!("Waterfall, {}", matrix.name)).height(120.0).panel(scene).caption(left_out))
 }
 

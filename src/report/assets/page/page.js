@@ -89,7 +89,8 @@ async function start() {
   const data = await unpacked(document.getElementById("data").textContent);
   const { figures, matrices, whatif } = JSON.parse(new TextDecoder().decode(data));
   // The spectra of a sweep are those of its waterfall.
-  const spectra = (name) => figures.find((f) => f.title === `Waterfall, ${name}` && f.panels[0]?.kind === "waterfall")?.panels[0];
+  const waterfalls = figures.flatMap((figure) => figure.panels).filter((panel) => panel?.kind === "waterfall");
+  const spectra = (name) => waterfalls.find((waterfall) => waterfall.record === name);
   draw = (host) => {
     if (drawn.get(host) === host.clientWidth) return;
     drawn.set(host, host.clientWidth);
