@@ -39,9 +39,8 @@ const HEAD: usize = 1 << 16;
 const JUMPS: &str = "modal-sweep-jumps";
 
 /// How modes are found, and how the function is taken where a file has two channels.
-///
-/// The latter keys are those of [`spectrum::Keys`] again: a struct that both share would be flattened, and
-/// serde does not refuse unknown keys beside a flattened struct, which a campaign must.
+// The latter keys are those of `spectrum::Keys` again: a struct that both share would be flattened, and
+// serde does not refuse unknown keys beside a flattened struct, which a campaign must.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
