@@ -1,6 +1,10 @@
 //! The spectra of a sweep, read together.
 
-use super::{Folder, Format, Reader, Recording, SweepList, level};
+use crate::folder::Folder;
+use crate::format::Format;
+use crate::level;
+use crate::reader::{Reader, Recording};
+use crate::sweep_list::SweepList;
 use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{

@@ -16,12 +16,12 @@ mod layout;
 mod scale;
 mod segment;
 
-use super::Source;
 use super::missing;
 use crate::assemble;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held, rises};
 use crate::options::Options;
+use crate::source::Source;
 use axes::AbscissaChannel;
 use description::Value;
 use layout::RawData;

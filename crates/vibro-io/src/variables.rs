@@ -4,13 +4,14 @@
 //! records of their struct or group, and say abscissa and unit ([`names`], [`axes`]).
 
 mod axes;
+pub mod matlab;
 pub mod names;
 
-use super::Source;
 use super::missing;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held};
 use crate::options::Options;
+use crate::source::Source;
 use axes::Axes;
 use names::{Dialect, Scoped};
 use rayon::prelude::*;

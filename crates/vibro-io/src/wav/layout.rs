@@ -4,10 +4,10 @@
 //! (RF64) and ITU-R BS.2088 (BW64) for the `ds64` chunk.
 
 use super::scales::Scales;
-use crate::Source;
 use crate::assemble::fewer;
 use crate::binary::NumberType;
 use crate::source::ReadSeek;
+use crate::source::Source;
 use crate::text::encoding;
 use std::io::{Read, SeekFrom};
 use vibro_record::units::notation::counted;
