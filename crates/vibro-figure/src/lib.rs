@@ -20,6 +20,7 @@ mod legend;
 mod medium;
 mod notes;
 mod path;
+mod pixels;
 mod plot;
 mod png;
 mod series;

@@ -2,7 +2,7 @@
 
 use super::leakage::Leakage;
 use super::noise::{LineNoise, MARGIN, STEPS, of_segments, smoothed};
-use super::selection::Peak;
+use super::peak::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};

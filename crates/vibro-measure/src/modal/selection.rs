@@ -1,5 +1,6 @@
 //! Which lines belong to which peak, which peaks are modes, and on which lines they are fitted.
 
+use super::peak::Peak;
 use super::rational::{Rational, rational, residual_sum};
 use super::{Measured, Pole};
 use crate::peaks::local_maxima;
@@ -265,15 +266,6 @@ pub(super) fn complete(
         break;
     }
     sound
-}
-
-/// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its
-/// valleys.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Peak {
-    pub at: usize,
-    pub width: f64,
-    pub rise: f64,
 }
 
 /// Peaks that are fitted together, and the lines to which they are.
