@@ -1,6 +1,6 @@
 //! A spectral line below the line distance: frequency and amplitude of a sine between lines.
 
-use super::noise::border;
+use vibro_math::border;
 use vibro_record::Window;
 use vibro_signal::window::{line_shape, noise_correlation};
 

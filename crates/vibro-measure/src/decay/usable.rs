@@ -4,7 +4,7 @@ use crate::clipping::clipped;
 use crate::mean::average;
 use num_complex::Complex64;
 use std::ops::Range;
-use vibro_record::{Error, Finding, Result, Scaling, Trace, Window};
+use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, upper_median};
 use vibro_signal::fft::Transform;
 use vibro_signal::spectrum;
 
@@ -55,8 +55,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let over = |k: &usize| {
         let (from, to) = ((k / 2).min(k.saturating_sub(LEAST)).max(1), (2 * k).max(k + LEAST));
         let mut around = lines[from..to.min(lines.len())].to_vec();
-        let middle = around.len() / 2;
-        lines[*k] / around.select_nth_unstable_by(middle, f64::total_cmp).1.max(f64::MIN_POSITIVE)
+        lines[*k] / upper_median(&mut around).max(f64::MIN_POSITIVE)
     };
     let tops = (low.max(1)..high.min(lines.len().saturating_sub(1)))
         .filter(|k| lines[*k] >= lines[k - 1] && lines[*k] >= lines[k + 1]);

@@ -4,7 +4,7 @@
 use super::survey::State;
 use crate::Estimate;
 use crate::mean::Mean;
-use crate::noise::border;
+use vibro_math::border;
 use vibro_record::{Error, Result, median};
 
 /// Neighbours on each side whose median is the expected interval: a machine that runs up changes little over
