@@ -27,8 +27,8 @@ const SEEN: f64 = 0.01;
 const STRETCHES: (usize, f64) = (5, 1.2);
 /// How often the levels of a steady mode may seem to change.
 const CHANGED: f64 = 1e-3;
-/// Relative standard uncertainty of its damping ratio below which a stretch counts: it is then more than three
-/// of them above 0.
+/// Relative standard uncertainty of its damping ratio below which a stretch counts: the ratio is then more
+/// than three of them above 0.
 const KNOWN: f64 = 0.3;
 
 /// Modes of the free decay that a record holds.

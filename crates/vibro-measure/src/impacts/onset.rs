@@ -155,7 +155,8 @@ pub struct Matched {
     pub variance: f64,
 }
 
-/// Variance of the residuals of a pulse, in medians of all, beyond which the pulse tells nothing of the noise.
+/// Variance of the residuals of a pulse, in medians of all, beyond which the pulse tells nothing of the
+/// noise.
 const OUTLYING: f64 = 4.0;
 
 /// Most knots of an average pulse.
