@@ -6,6 +6,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::fmt::Write as _;
 use std::hint::black_box;
+use vibroimpact::math::Noise;
 use vibroimpact::read::Reader;
 
 /// How the numbers are printed.
@@ -22,11 +23,9 @@ enum Style {
 /// Numbers between −1 and 1, one a line.
 fn column(lines: usize, style: Style) -> String {
     let mut text = String::with_capacity(lines * 14);
-    let mut state = 1u64;
+    let mut noise = Noise::new(1);
     for _ in 0..lines {
-        // Knuth's MMIX generator: any spread of digits will do.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let value = (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0;
+        let value = noise.between(-1.0, 1.0);
         let printed = format!("{value:.6e}");
         let (mantissa, exponent) = printed.split_once('e').unwrap_or((&printed, "0"));
         let exponent: i32 = exponent.parse().unwrap_or(0);

@@ -12,6 +12,7 @@ mod print;
 mod record;
 mod respelt;
 mod shell;
+mod stdout;
 mod sweep;
 
 use crate::analysis::{decay, frf, spectrum};

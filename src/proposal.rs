@@ -9,6 +9,7 @@ mod found;
 mod joined;
 mod notes;
 mod trial;
+mod workload;
 
 use folder::{FileSeries, Inventory};
 pub use joined::more_steps;

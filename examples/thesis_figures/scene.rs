@@ -59,12 +59,7 @@ pub fn peak(low: f64, high: f64, value: impl Fn(f64) -> Option<f64>) -> (f64, f6
 /// Place between `low` and `high` at which `test` ceases to be what it is at `low`.
 pub fn border(low: f64, high: f64, test: impl Fn(f64) -> bool) -> f64 {
     let at_low = test(low);
-    let (mut a, mut b) = (low, high);
-    for _ in 0..60 {
-        let middle = f64::midpoint(a, b);
-        if test(middle) == at_low { a = middle } else { b = middle }
-    }
-    f64::midpoint(a, b)
+    vibroimpact::math::border(low, high, |x| test(x) == at_low)
 }
 
 /// The axis of ν.

@@ -1,7 +1,7 @@
 //! `vibro run` and `vibro compare`: what a campaign asks for.
 
 use super::print::folder_of;
-use super::{complain, init, print};
+use super::{complain, init, print, stdout};
 use crate::analysis::sweep::modelled;
 use crate::analysis::{self, AnswerCache, CampaignOutcome, REPORT};
 use crate::campaign::{Campaign, FitEntry, Reading};
@@ -154,7 +154,7 @@ impl Run {
         if json {
             let warnings = sentences(&answer.findings, Voice::Campaign, false);
             let folder = folder.display().to_string();
-            print::object(
+            stdout::object(
                 json!({ "warnings": warnings, "results": answer.result, "files": files, "folder": folder }),
             )?;
         } else {
@@ -162,7 +162,7 @@ impl Run {
             complain::warn(&graded(&answer.findings, Voice::Campaign), &report);
             let tables = answer.tables.iter().map(Table::text).collect::<Vec<String>>().join("\n");
             let files = files.len();
-            print::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", shown(&folder)))?;
+            stdout::text(&format!("{tables}\n{files} files in {}; open {REPORT} there\n", shown(&folder)))?;
         }
         Ok(u8::from(!answered && !campaign.is_empty()))
     }

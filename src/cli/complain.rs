@@ -1,6 +1,6 @@
 //! Errors and findings on standard error, in one form. A closed standard error is ignored.
 
-use super::{CommandRow, print, rows};
+use super::{CommandRow, rows, stdout};
 use crate::error::{Error, Hint};
 use crate::record::{Kind, Severity, nearest, typed};
 use crate::report::words::{Voice, foremost};
@@ -269,7 +269,7 @@ fn wrong_value(command: &str, argument: &str, value: &str, kind: Option<&Kind>, 
 /// Prints an error as a JSON object, for programs.
 fn object(error: &str, exit_code: u8) {
     // If standard output fails too, there is no way left to report it.
-    let _ = print::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
+    let _ = stdout::object(json!({ "error": error, "exit_code": exit_code, "warnings": [] }));
 }
 
 /// Prints the findings that a person reads first, then one line with the number of the others and where all
@@ -297,7 +297,7 @@ pub(crate) fn warn_all(findings: &[(Severity, String)]) {
 
 /// Prints one line on standard error.
 pub fn line(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", print::printable(text));
+    let _ = writeln!(std::io::stderr(), "{}", stdout::printable(text));
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `vibro convert`: any readable file to UFF-58, CSV, WAV or NPY, with optional filters and integration.
 
-use super::{CommandArgs, complain, print};
+use super::{CommandArgs, complain, print, stdout};
 use crate::analysis::Answer;
 use crate::campaign::{Channel, Reading};
 use crate::error::{Error, Result};
@@ -76,7 +76,7 @@ impl CommandArgs for Convert {
         let Some(file) = file else {
             let about = recording.all_findings().into_iter().chain(changes).map(|f| (String::new(), f));
             complain::warn_all(&graded(&about.collect::<Vec<_>>(), Voice::Command));
-            print::text(&String::from_utf8_lossy(&bytes))?;
+            stdout::text(&String::from_utf8_lossy(&bytes))?;
             return Ok(0);
         };
         let existed = self.output.exists();

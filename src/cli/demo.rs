@@ -2,7 +2,7 @@
 
 use super::campaign::Run;
 use super::print::folder_of;
-use super::{complain, print};
+use super::{complain, print, stdout};
 use crate::analysis;
 use crate::error::{Error, Place, Result};
 use crate::proposal::Proposal;
@@ -43,9 +43,9 @@ impl super::CommandArgs for Demo {
             let lines: Vec<String> =
                 DEMOS.iter().map(|demo| format!("  {:14} {}", demo.name, demo.about)).collect();
             if json {
-                print::object(json!({ "demos": all, "warnings": [], "findings": [] }))?;
+                stdout::object(json!({ "demos": all, "warnings": [], "findings": [] }))?;
             } else {
-                print::text(&format!("{}\nnext: vibro demo {}\n", lines.join("\n"), DEMOS[0].name))?;
+                stdout::text(&format!("{}\nnext: vibro demo {}\n", lines.join("\n"), DEMOS[0].name))?;
             }
             return Ok(0);
         };
@@ -60,9 +60,9 @@ impl super::CommandArgs for Demo {
         if self.no_run {
             let written = folder.display().to_string();
             if json {
-                print::object(json!({ "written": written, "warnings": [], "findings": [] }))?;
+                stdout::object(json!({ "written": written, "warnings": [], "findings": [] }))?;
             } else {
-                print::text(&format!("wrote {written}\n"))?;
+                stdout::text(&format!("wrote {written}\n"))?;
             }
             return Ok(0);
         }
@@ -123,7 +123,7 @@ impl super::CommandArgs for Open {
                 .hint(format!("open {} in a browser", shown(page))));
         }
         if json {
-            print::object(json!({ "opened": page.display().to_string(), "warnings": [], "findings": [] }))?;
+            stdout::object(json!({ "opened": page.display().to_string(), "warnings": [], "findings": [] }))?;
         }
         Ok(0)
     }

@@ -1,6 +1,6 @@
 //! `vibro info`: what is in a file.
 
-use super::{CommandArgs, complain, print};
+use super::{CommandArgs, complain, print, stdout};
 use crate::analysis::{Answer, file_name};
 use crate::campaign::Reading;
 use crate::error::Result;
@@ -61,10 +61,10 @@ impl CommandArgs for Info {
         if json {
             let mut answer = Answer::of(&json!({ "files": files, "errors": errors }))?;
             put(&mut answer.result, &about, Voice::Command);
-            print::object(answer.result)?;
+            stdout::object(answer.result)?;
         } else {
             complain::warn(&graded(&about, Voice::Command), "--json");
-            print::text(&text)?;
+            stdout::text(&text)?;
         }
         Ok(code)
     }

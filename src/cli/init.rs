@@ -1,7 +1,7 @@
 //! `vibro init` and `vibro check`: a campaign for a folder, and whether it can run.
 
 use super::print::folder_of;
-use super::{complain, print};
+use super::{complain, print, stdout};
 use crate::analysis;
 use crate::analysis::AnswerCache;
 use crate::campaign::Reading;
@@ -69,7 +69,7 @@ impl super::CommandArgs for Init {
         }
         output.commit()?;
         if json {
-            print::object(json!({
+            stdout::object(json!({
                 "written": path.display().to_string(),
                 "found": keys(&proposal, |known| known == KeyStatus::Found),
                 "guessed": keys(&proposal, |known| matches!(known, KeyStatus::Guessed(_))),
@@ -89,7 +89,7 @@ impl super::CommandArgs for Init {
                 (Some(_), false) => "added to the end of",
                 (Some(_), true) => "every recording of the folder stands in",
             };
-            print::text(&format!("{done} {}\nnext: vibro run {}\n", shown(&path), typed(&path)))?;
+            stdout::text(&format!("{done} {}\nnext: vibro run {}\n", shown(&path), typed(&path)))?;
         }
         Ok(0)
     }
@@ -177,11 +177,11 @@ impl super::CommandArgs for Check {
             let mut answer = Map::new();
             answer.insert("files".to_owned(), json!(files));
             put(&mut answer, &commented, Voice::Campaign);
-            print::object(answer)?;
+            stdout::object(answer)?;
         } else {
             complain::warn(&graded(&commented, Voice::Campaign), "--json");
             let shown = typed(&self.campaign);
-            print::text(&format!(
+            stdout::text(&format!(
                 "{shown}: no fault, {} found\nnext: vibro run {shown}\n",
                 counted(files.len(), "file")
             ))?;

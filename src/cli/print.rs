@@ -1,18 +1,17 @@
 //! Standard output as one JSON object or as text; a progress bar for a person at a terminal.
 
-use super::complain;
+use super::{complain, stdout};
 use crate::analysis::{Answer, Progress};
 use crate::error::{Error, Result};
 use crate::read::{Folder, Owner};
-use crate::record::{is_unprintable, shown, typed};
+use crate::record::{shown, typed};
 use crate::report::Picture;
 use crate::report::files::Names;
 use crate::report::words::{Voice, graded, put};
 use crate::report::{Medium, Output, Table, files};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::Value;
 use std::fmt::Write as _;
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -38,7 +37,7 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     if json {
         answer.result.entry("files").or_insert_with(|| written.into());
         put(&mut answer.result, &answer.findings, Voice::Command);
-        object(answer.result)?;
+        stdout::object(answer.result)?;
         return Ok(code);
     }
     complain::warn(&graded(&answer.findings, Voice::Command), "--json");
@@ -47,7 +46,7 @@ pub fn answer(mut answer: Answer, output: Option<Output>, json: bool) -> Result<
     for file in written {
         let _ = writeln!(all, "wrote {file}");
     }
-    text(&all)?;
+    stdout::text(&all)?;
     Ok(code)
 }
 
@@ -156,33 +155,6 @@ pub struct OutputSettings {
 /// These options, set once from the command line.
 pub static WRITTEN: OnceLock<OutputSettings> = OnceLock::new();
 
-/// Prints one JSON object.
-///
-/// # Errors
-/// As [`text`].
-pub fn object(object: impl Into<Value>) -> Result<()> {
-    text(&format!("{:#}\n", object.into()))
-}
-
-/// Prints text.
-///
-/// # Errors
-/// If standard output cannot be written; a closed pipe is no error.
-pub fn text(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(printable(text).as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::io("write", "standard output", e)),
-        _ => Ok(()),
-    }
-}
-
-/// Replaces control characters other than line breaks and tabs: a name in a file must not control the
-/// terminal.
-pub(crate) fn printable(text: &str) -> String {
-    let breaks = |c: char| c == '\n' || c == '\t';
-    text.chars().map(|c| if is_unprintable(c) && !breaks(c) { '\u{fffd}' } else { c }).collect()
-}
-
 /// Runs the work with a progress bar on standard error; without one if that is no terminal or `json` is set.
 ///
 /// # Errors
@@ -218,15 +190,5 @@ impl Progress for ProgressBar {
     fn at(&self, done: usize, all: usize) {
         self.set_length(all as u64);
         self.set_position(done as u64);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::printable;
-
-    #[test]
-    fn escapes_of_a_terminal_are_shown_as_what_they_are() {
-        assert_eq!(printable("a\x1b[31mb\tµ\n\u{9b}"), "a\u{fffd}[31mb\tµ\n\u{fffd}");
     }
 }

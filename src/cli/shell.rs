@@ -1,6 +1,6 @@
 //! `vibro completions` and `vibro man`, generated from the definition of the commands.
 
-use super::print;
+use super::stdout;
 use crate::error::{Error, Result};
 use clap_complete::Shell;
 
@@ -18,7 +18,7 @@ impl super::CommandArgs for Completions {
     fn run(&self, _: bool) -> Result<u8> {
         let mut text = Vec::new();
         clap_complete::generate(self.shell, &mut super::command(), "vibro", &mut text);
-        print::text(&String::from_utf8_lossy(&text))?;
+        stdout::text(&String::from_utf8_lossy(&text))?;
         Ok(0)
     }
 }
@@ -28,7 +28,7 @@ impl super::CommandArgs for Man {
         let mut text = Vec::new();
         let page = clap_mangen::Man::new(super::command());
         page.render(&mut text).map_err(|e| Error::io("write", "the manual page", e))?;
-        print::text(&String::from_utf8_lossy(&text))?;
+        stdout::text(&String::from_utf8_lossy(&text))?;
         Ok(0)
     }
 }

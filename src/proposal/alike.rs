@@ -3,13 +3,11 @@
 use super::folder::FileSeries;
 use super::found::FoundTables;
 use super::trial::Trial;
+use super::workload::share;
 use crate::analysis::{AnswerCache, Progress};
 use crate::read::{Folder, Header};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-
-/// Channels of a file that are analysed.
-pub(super) const CHANNELS: usize = 8;
 
 /// Size up to which every file of a group is analysed; of larger groups this many, at even distances.
 const FEW: usize = 8;
@@ -19,15 +17,6 @@ const MOST: usize = 256;
 
 /// Least mean run length of files of one kind; a random mixture of two kinds has a mean of two.
 const IN_A_ROW: usize = 8;
-
-/// Most values analysed in parallel, at 80 bytes of memory each; larger files are analysed one after the
-/// other.
-const TOGETHER: usize = 1 << 25;
-
-/// Files of this many values that one core analyses before another core starts.
-pub(super) fn share(values: usize) -> usize {
-    if values.saturating_mul(rayon::current_num_threads()) > TOGETHER { usize::MAX } else { 1 }
-}
 
 /// The tables of each series, in order. Series and their files are analysed in parallel.
 pub(super) fn all<'a>(
@@ -154,11 +143,6 @@ impl FileSeries {
             found.add(FoundTables::left(self.part(untried).in_words(), why));
         }
         found
-    }
-
-    /// Number of values of a file that are analysed.
-    pub(super) fn values(&self) -> usize {
-        self.headers.iter().take(CHANNELS).map(|header| header.n).sum()
     }
 
     /// Key of files that are probably of one kind: names without numbers, channels, and approximate length.

@@ -1,8 +1,8 @@
 //! Identifies records by trying one analysis after another.
 
-use super::alike::{CHANNELS, share};
 use super::folder::{FileSeries, short};
 use super::found::FoundTables;
+use super::workload::{CHANNELS, share};
 use super::{KeyStatus, Proposal, Refusal, Table};
 use crate::analysis::{self, Answer, AnswerCache, Evidence};
 use crate::campaign::Reading;

@@ -2,7 +2,7 @@
 //! answer.
 
 #[allow(dead_code)]
-#[path = "../../crates/vibro-demo/src/hammer_drill/noise.rs"]
+#[path = "../../crates/vibro-demo/src/noise.rs"]
 pub mod noise;
 #[path = "../../crates/vibro-demo/src/hammer_drill/record.rs"]
 mod record;
@@ -267,7 +267,7 @@ fn without_a_reference_the_turns_come_from_the_impacts() {
     assert!(out.join("drill_trace.svg").exists());
     // A crank without impacts, and a key of the reference alone.
     let sine = csv(folder.path(), "sine.csv", |i| ((i as f64 * 0.03).sin(), 0.0));
-    let mut noise = noise::Noise::new(3);
+    let mut noise = noise::ShiftedNoise::new(3);
     let rows: Vec<f64> = (0..6000).map(|i| (f64::from(i) * 0.03).sin() + 0.01 * noise.normal()).collect();
     for file in [&sine, &csv(folder.path(), "noisy.csv", |i| (rows[i], 0.0))] {
         let refused = drill(file, &plain);
@@ -440,7 +440,7 @@ fn times_and_pulses_that_no_turn_can_hold_are_refused() {
 #[test]
 fn a_front_impact_and_a_rear_catch_are_two_groups() {
     let folder = tempfile::tempdir().unwrap();
-    let mut noise = noise::Noise::new(5);
+    let mut noise = noise::ShiftedNoise::new(5);
     // 50 turns of 1024 samples. In front, at phase 0.3, from 6.5 to −1.5 m/s; behind, at 0.8, from −6 to 1
     // m/s; all vary by 2 %.
     let turn = record::RATE / 50.0;

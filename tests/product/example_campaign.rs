@@ -5,9 +5,8 @@
 mod analyser;
 #[path = "../../crates/vibro-demo/src/two_mass_rig/campaign.rs"]
 mod campaign;
-#[path = "../../crates/vibro-demo/src/two_mass_rig/noise.rs"]
-mod noise;
 
+use crate::drill::noise;
 use campaign::{Direction, list, measure, truth_header};
 use rayon::prelude::*;
 use std::path::Path;

@@ -7,6 +7,7 @@
 //! - `TRUTH.csv`: what a perfect instrument would have found.
 
 use super::Sink;
+use super::noise::LinearNoise;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use vibro_record::Result;
@@ -21,17 +22,7 @@ const CORNER: f64 = 2000.0;
 /// Steps of the motion in a sample of the bench.
 const STEPS: u32 = 64;
 
-/// Numbers between −1 and 1.
-struct UniformNoise(u64);
-
-impl UniformNoise {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
-fn bench(noise: &mut UniformNoise) -> String {
+fn bench(noise: &mut LinearNoise) -> String {
     let (w, step) = (TAU * FREQUENCY, 1.0 / 1024.0 / f64::from(STEPS));
     let (mut x, mut v, mut force, mut before) = (0.0, 0.0, 0.0, 0.0);
     let mut text = String::from("time [s],force [N],velocity [m/s]\n");
@@ -54,7 +45,7 @@ fn bench(noise: &mut UniformNoise) -> String {
     text
 }
 
-fn decay(noise: &mut UniformNoise) -> String {
+fn decay(noise: &mut LinearNoise) -> String {
     let mut text = String::from("time [s],displacement [mm]\n");
     let w = TAU * FREQUENCY;
     let damped = w * (1.0 - ZETA * ZETA).sqrt();
@@ -78,7 +69,7 @@ fn contact(t: f64) -> f64 {
 }
 
 /// y″ + √2 Ω y′ + Ω² y = Ω² F in small steps.
-fn filtered(noise: &mut UniformNoise) -> String {
+fn filtered(noise: &mut LinearNoise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     let (w, parts) = (TAU * CORNER, 2000);
     let step = 1.0 / 50_000.0 / f64::from(parts);
@@ -94,7 +85,7 @@ fn filtered(noise: &mut UniformNoise) -> String {
     text
 }
 
-fn pulse(noise: &mut UniformNoise) -> String {
+fn pulse(noise: &mut LinearNoise) -> String {
     let mut text = String::from("time [s],acceleration [m/s²]\n");
     for i in 0..200 {
         let t = (f64::from(i) - 50.3) / 50_000.0;
@@ -106,7 +97,7 @@ fn pulse(noise: &mut UniformNoise) -> String {
 
 /// All files.
 pub fn recordings(sink: &mut Sink<'_>) -> Result<()> {
-    let mut noise = UniformNoise(20);
+    let mut noise = LinearNoise(20);
     let truth = format!(
         "what,value,unit\nfrequency of the mass,{FREQUENCY},Hz\nits damping ratio,{ZETA},1\nits mass,{MASS},kg\n\
          frequency of the contact,{CONTACT},Hz\nits damping ratio,{XI},1\n"

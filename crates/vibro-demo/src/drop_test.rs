@@ -7,8 +7,10 @@
 //! - `TRUTH.csv`: what a perfect instrument would have found.
 
 use super::Sink;
+use super::noise::near_normal;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use vibro_math::Noise;
 use vibro_record::Result;
 
 /// Height of the drops in m.
@@ -22,24 +24,6 @@ pub const EXCITATION: f64 = 11.2;
 const GRAVITY: f64 = 9.806_65;
 /// Samples a second of the accelerometer: coarse, so that the files stay small.
 const RATE: f64 = 5000.0;
-
-/// Noise with a seed: splitmix64 (Steele, Lea and Flood 2014), and the sum of twelve uniform numbers less
-/// six, which is close to normal and needs no function of a mathematics library.
-struct NormalNoise(u64);
-
-impl NormalNoise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-    }
-}
 
 /// Times and speeds of the impacts of a ball that falls at time 0.
 fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
@@ -56,11 +40,11 @@ fn bounces(restitution: f64, impacts: usize) -> Vec<(f64, f64)> {
 
 /// Acceleration of the plate in m/s²: pulses of 0.6 ms, then its own decaying ring of 1300 Hz.
 fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
-    let mut noise = NormalNoise(seed);
+    let mut noise = Noise::from_state(seed);
     let mut text = String::from("time (s),acceleration (m/s²)\n");
     for i in 0..(seconds * RATE) as usize {
         let t = from + i as f64 / RATE;
-        let mut a = 2.0 * noise.normal();
+        let mut a = 2.0 * near_normal(&mut noise);
         for (at, speed) in impacts {
             let x = t - at;
             if (0.0..0.6e-3).contains(&x) {
@@ -78,14 +62,14 @@ fn plate(impacts: &[(f64, f64)], from: f64, seconds: f64, seed: u64) -> String {
 /// Contact trace with mains hum: volts, one a line, no header, as the analyser wrote it.
 fn contact(seed: u64) -> (String, usize) {
     let (rate, n) = (128.0, 1024);
-    let mut noise = NormalNoise(seed);
+    let mut noise = Noise::from_state(seed);
     let length = f64::from(n) / rate;
     let times: Vec<f64> =
         (0..n).map(|k| 0.05 + 2.0 * f64::from(k) / EXCITATION).take_while(|t| *t < length - 0.05).collect();
     let mut text = String::new();
     for i in 0..n {
         let t = f64::from(i) / rate;
-        let mut v = 0.02 * noise.normal() + 0.6 * (TAU * 50.02 * t + 0.7).sin();
+        let mut v = 0.02 * near_normal(&mut noise) + 0.6 * (TAU * 50.02 * t + 0.7).sin();
         for at in &times {
             let x = (t - at) * rate;
             if x > -8.0 {
@@ -103,10 +87,10 @@ fn contact(seed: u64) -> (String, usize) {
 /// All files, by name.
 pub fn all() -> Vec<(String, String)> {
     let mut files = Vec::new();
-    let mut scatter = NormalNoise(7);
+    let mut scatter = Noise::from_state(7);
     for drop in 1..=5 {
         // No two impacts are alike: 2 % from drop to drop.
-        let r = RESTITUTION * (1.0 + 0.02 * scatter.normal());
+        let r = RESTITUTION * (1.0 + 0.02 * near_normal(&mut scatter));
         files.push((format!("DROP{drop:02}.CSV"), plate(&bounces(r, 2), 0.3, 0.2, 100 + drop)));
     }
     let train = bounces(LIVELY, 6);

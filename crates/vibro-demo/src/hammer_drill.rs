@@ -4,11 +4,10 @@
 //! - `data/still.wav`: the same laser with the machine at rest;
 //! - `TRUTH.csv`: every impact, as it would be seen without noise and faults.
 
-mod noise;
 mod record;
 mod stroke;
 
-use super::Sink;
+use super::{Sink, noise};
 use std::fmt::Write as _;
 use vibro_io::write::{Precision, wav::write};
 use vibro_record::units::Unit;

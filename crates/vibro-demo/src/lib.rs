@@ -16,6 +16,7 @@
 mod bench;
 pub mod drop_test;
 mod hammer_drill;
+mod noise;
 mod two_mass_rig;
 
 use vibro_record::Result;

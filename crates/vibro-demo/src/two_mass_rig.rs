@@ -9,9 +9,8 @@
 
 mod analyser;
 mod campaign;
-mod noise;
 
-use super::Sink;
+use super::{Sink, noise};
 use campaign::{Direction, list, measure, truth_header};
 use vibro_record::Result;
 

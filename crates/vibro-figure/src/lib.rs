@@ -28,6 +28,7 @@ mod legend;
 mod medium;
 mod notes;
 mod path;
+mod pixels;
 mod plot;
 mod png;
 mod series;

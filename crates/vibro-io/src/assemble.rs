@@ -1,6 +1,6 @@
 //! Values to records: which kind they are, over which axis.
 
-use crate::Options;
+use crate::options::Options;
 use vibro_record::code;
 use vibro_record::units::{self, Quantity, Unit};
 use vibro_record::{

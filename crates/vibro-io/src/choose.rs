@@ -1,9 +1,12 @@
 //! Records of a file as a person names them: one of a recording, or time traces block by block.
 
-use super::{Format, Reader, Recording, Source, packed};
+use crate::format::Format;
 use crate::held::rises;
 use crate::magnitude::MAGNITUDE;
 use crate::options::named;
+use crate::packed;
+use crate::reader::{Reader, Recording};
+use crate::source::Source;
 use crate::text;
 use crate::wav::Wave;
 use std::path::Path;

@@ -10,7 +10,7 @@ pub use manifest::{Manifest, Owner, listed};
 pub use staged::Staged;
 pub use walk::Walk;
 
-use super::{Limit, Source, packed};
+use crate::source::Source;
 use sha2::{Digest as _, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -281,14 +281,11 @@ impl Folder {
         }
     }
 
-    /// A file to be read as a measurement, or a part of one; `-` is standard input.
+    /// A file to be read as a measurement, of which [`Folder::part`] says no part; `-` is standard input.
     ///
     /// # Errors
-    /// As [`Source::file`]; if the file has no such part, or takes more than the limit.
-    pub(crate) fn source(&self, path: &Path, limit: Limit) -> Result<Source> {
-        if let Some((file, name)) = self.part(path) {
-            return packed::part(&self.source(file, limit)?, name, limit);
-        }
+    /// As [`Source::file`].
+    pub(crate) fn source(&self, path: &Path) -> Result<Source> {
         self.reads(path);
         match &self.side {
             Side::Disk => Source::file(path),

@@ -14,11 +14,11 @@ mod file;
 mod lzf;
 mod matlab;
 
-use super::Source;
 use super::format::Format;
 use crate::held::{Contents, Held};
-use crate::mat::dialect;
 use crate::options::Options;
+use crate::source::Source;
+use crate::variables::matlab::MATLAB;
 use crate::variables::names::Dialect;
 use crate::variables::{self, Array, Content, MOST_TEXT};
 use file::{Data, File, Member};
@@ -65,7 +65,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     let root = file.root()?;
     let members = file.members(&root, "")?;
     let (dialect, variables) = if matlab::is(&members) {
-        (&dialect::DIALECT, matlab::variables(&mut file, members, survey)?)
+        (&MATLAB, matlab::variables(&mut file, members, survey)?)
     } else {
         let mut walk = GroupWalk { file: &mut file, survey, variables: Vec::new() };
         let scale = walk.stated("", &root.attributes().unwrap_or_default(), AS_STORED);

@@ -1,7 +1,7 @@
 //! What a reader holds of values: all of them, or, where a survey asks for no more, their ends.
 
-use crate::Options;
 use crate::assemble::{self, NOMINAL, Spectral};
+use crate::options::Options;
 use vibro_record::code;
 use vibro_record::lanes::{Extremes, OPENING};
 use vibro_record::{Axis, AxisKind, Error, Finding, Meta, Record, Result, Values, units};

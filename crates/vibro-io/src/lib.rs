@@ -34,7 +34,7 @@
 //! | `mat` | `mat` | MATLAB level 4 and 5 |
 //! | `tdms` | `tdms` | LabVIEW's and NI-DAQmx' TDMS |
 //! | `lvm` | `lvm` | LabVIEW measurement |
-//! | `uff` | `uff`, `uff58` | Universal File Format, data sets 58 and 58b |
+//! | `uff` | `uff` | Universal File Format, data sets 58 and 58b |
 //! | `csv`, `ascii` | `text` | tables with names; columns of numbers |
 //!
 //! A zip archive or a workbook (features `zip`, `sheets`) is read as the file or sheet in it with the most
@@ -71,7 +71,6 @@ mod sweep_list;
 mod tdms;
 mod text;
 mod uff;
-mod uff58;
 mod variables;
 mod wav;
 

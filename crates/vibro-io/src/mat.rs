@@ -13,15 +13,14 @@
 //! the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and
 //! `Tstart` ([`variables`]). The file knows no units, but a struct may state that of its vector (`Unit`).
 
-pub mod dialect;
 mod level4;
 mod level5;
 
-use super::Source;
 use crate::held::Contents;
 use crate::options::Options;
+use crate::source::Source;
+use crate::variables::matlab::MATLAB;
 use crate::variables::{self, Content};
-use dialect::DIALECT;
 use vibro_record::{Error, Result};
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
@@ -55,7 +54,7 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
         Error::usage(found, "a MAT-file of level 4 or 5")
             .hint("open it in MATLAB and save it again with -v7 or -v6, e.g. save('name.mat', '-v7')")
     })?;
-    variables::contents(source, &DIALECT, parse(&source.all()?, options)?, Vec::new(), options)
+    variables::contents(source, &MATLAB, parse(&source.all()?, options)?, Vec::new(), options)
 }
 
 #[cfg(test)]

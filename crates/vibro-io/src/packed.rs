@@ -7,10 +7,11 @@
 #[cfg(feature = "sheets")]
 mod sheets;
 
-use super::Source;
 use super::text::{self, LONGER};
-use crate::Limit;
+use crate::folder::Folder;
+use crate::limit::Limit;
 use crate::registry::Entry;
+use crate::source::Source;
 use std::cmp::Reverse;
 use std::path::{Path, PathBuf};
 use vibro_record::units::notation::counted;
@@ -135,11 +136,22 @@ fn unpack(packed: Option<&(usize, Member)>) -> String {
     format!("unpack it, and name {name}")
 }
 
+/// A file of a folder to be read as a measurement, or a part of one; `-` is standard input.
+///
+/// # Errors
+/// As [`Source::file`] and [`part`].
+pub fn file_or_part(folder: &Folder, path: &Path, limit: Limit) -> Result<Source> {
+    match folder.part(path) {
+        Some((file, name)) => part(&folder.source(file)?, name, limit),
+        None => folder.source(path),
+    }
+}
+
 /// The part of this name.
 ///
 /// # Errors
 /// As [`main_part`]; if there is no such part.
-pub fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
+fn part(source: &Source, name: &Path, limit: Limit) -> Result<Source> {
     if let Some(part) = parts(source, Some(name), limit)?.and_then(|mut parts| parts.pop()) {
         return Ok(part.source);
     }

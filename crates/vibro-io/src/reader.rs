@@ -5,7 +5,12 @@ use super::held::Contents;
 use super::missing::LISTED;
 use super::options::{Options, POSSIBLE};
 use super::registry::{Entry, TABLE};
-use super::{Folder, Format, Limit, Source, SweepList, foreign, level, magnitude, packed, span};
+use crate::folder::Folder;
+use crate::format::Format;
+use crate::limit::Limit;
+use crate::source::Source;
+use crate::sweep_list::SweepList;
+use crate::{foreign, level, magnitude, packed, span};
 use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -60,9 +65,9 @@ impl Reader {
     /// A file of the reader's folder, or a part of one that is packed, by the path that it had in a folder.
     ///
     /// # Errors
-    /// As [`Folder::source`].
+    /// As [`packed::file_or_part`].
     pub(super) fn source(&self, path: impl AsRef<Path>) -> Result<Source> {
-        self.folder.source(path.as_ref(), self.options.limit)
+        packed::file_or_part(&self.folder, path.as_ref(), self.options.limit)
     }
 
     /// The paths of the tables of an archive or a workbook whose lengths compare, so that one has to be

@@ -1,6 +1,7 @@
 //! The traces of a stepped sine, read together.
 
-use super::{Reader, SweepReader};
+use crate::reader::Reader;
+use crate::sweep::SweepReader;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use vibro_record::units::{Quantity, Unit};

@@ -1,6 +1,10 @@
 //! The spectra of a sweep, read together.
 
-use super::{Folder, Format, Reader, Recording, SweepList, level};
+use crate::folder::Folder;
+use crate::format::Format;
+use crate::level;
+use crate::reader::{Reader, Recording};
+use crate::sweep_list::SweepList;
 use vibro_record::code;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{
@@ -38,6 +42,23 @@ pub struct SweepReader {
     pub format: Option<Format>,
     /// Where the files lie.
     pub folder: Folder,
+}
+
+/// Factor from amplitudes of this scaling to peak amplitudes.
+fn to_peak(scaling: Scaling, found: &mut impl FnMut(Finding)) -> Result<f64> {
+    Ok(match scaling {
+        Scaling::Peak => 1.0,
+        Scaling::Rms => std::f64::consts::SQRT_2,
+        Scaling::Unknown => {
+            found(Finding::caution("peak-assumed"));
+            1.0
+        }
+        other => {
+            let scaled = format!("a spectrum scaled as {}", other.name());
+            return Err(Error::usage(scaled, "peak or RMS amplitudes")
+                .hint("export amplitudes; a density or a coherence has no amplitude of a single line"));
+        }
+    })
 }
 
 impl SweepReader {
@@ -122,30 +143,34 @@ impl SweepReader {
             found(Finding::doubt("decibels-overruled").name("words", words).name("unit", unit.symbol()));
         }
         let scaling = self.scaling.unwrap_or(spectrum.scaling);
-        let peak = match scaling {
-            Scaling::Peak => 1.0,
-            Scaling::Rms => std::f64::consts::SQRT_2,
-            Scaling::Unknown => {
-                found(Finding::caution("peak-assumed"));
-                1.0
-            }
-            other => {
-                let scaled = format!("a spectrum scaled as {}", other.name());
-                return Err(Error::usage(scaled, "peak or RMS amplitudes")
-                    .hint("export amplitudes; a density or a coherence has no amplitude of a single line"));
-            }
-        };
+        let peak = to_peak(scaling, &mut found)?;
         let window = self.window.unwrap_or_else(|| {
             if spectrum.window.is_none() {
                 found(Finding::caution("hann-assumed"));
             }
             spectrum.window.or(Some(Window::Hann))
         });
+        let (factor, unit) = self.factor(&spectrum.meta, force, &mut found)?;
+        let factor = factor * self.calibration.unwrap_or(1.0) * peak;
+        let values = scaled(spectrum, axis, factor)?;
+        if !force {
+            gather(recording, findings);
+        }
+        let mut meta = spectrum.meta.clone();
+        meta.findings.clear(); // said once, for the sweep
+        meta.step("calibrate", &[("factor", &factor), ("unit", &unit)]);
+        meta.quantity = unit.quantity();
+        meta.unit = unit;
+        Ok((meta, values, window))
+    }
+
+    /// Factor from what the reader made of a file to SI units, and the unit.
+    fn factor(&self, meta: &Meta, force: bool, found: &mut impl FnMut(Finding)) -> Result<(f64, Unit)> {
         // The reader has taken a unit that the file states to SI already.
-        let (written, taken) = (&spectrum.meta.unit, factor_to_si(&spectrum.meta));
+        let (written, taken) = (&meta.unit, factor_to_si(meta));
         let meant = self.meant();
         let raw = matches!(written.quantity(), Quantity::Voltage | Quantity::Ratio);
-        let (factor, unit) = match &self.unit {
+        let adopted = match &self.unit {
             Some(stated) if !written.is_known() => (stated.factor(), stated.si()),
             None if !written.is_known() => {
                 let unit = Unit::of(self.quantity.unwrap_or(Quantity::Displacement));
@@ -167,17 +192,7 @@ impl SweepReader {
             }
             _ => (1.0, written.clone()),
         };
-        let factor = factor * self.calibration.unwrap_or(1.0) * peak;
-        let values = scaled(spectrum, axis, factor)?;
-        if !force {
-            gather(recording, findings);
-        }
-        let mut meta = spectrum.meta.clone();
-        meta.findings.clear(); // said once, for the sweep
-        meta.step("calibrate", &[("factor", &factor), ("unit", &unit)]);
-        meta.quantity = unit.quantity();
-        meta.unit = unit;
-        Ok((meta, values, window))
+        Ok(adopted)
     }
 
     /// The quantity that is stated.

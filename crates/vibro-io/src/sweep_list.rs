@@ -11,7 +11,11 @@
 //! ```
 
 use super::text::encoding;
-use super::{Folder, Limit, Source, number};
+use crate::folder::Folder;
+use crate::limit::Limit;
+use crate::number;
+use crate::packed;
+use crate::source::Source;
 use std::path::{Path, PathBuf};
 use vibro_record::{Error, Hint, Place, Result, pattern};
 
@@ -57,7 +61,7 @@ impl SweepList {
             )
             .hint(HOLDS));
         }
-        let source = within.source(path, Limit::default())?;
+        let source = packed::file_or_part(within, path, Limit::default())?;
         if !encoding::is_text(source.head()) {
             return Err(Error::input(Place::file(path), "binary data", "a list file of text")
                 .hint(format!("{HOLDS}; of a measurement file `vibro info` says what is in it")));

@@ -16,12 +16,12 @@ mod layout;
 mod scale;
 mod segment;
 
-use super::Source;
 use super::missing;
 use crate::assemble;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held, rises};
 use crate::options::Options;
+use crate::source::Source;
 use axes::AbscissaChannel;
 use description::Value;
 use layout::RawData;
@@ -78,26 +78,7 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
     if raw.iter().any(|raw| matches!(&raw.kept, KeptValues::Ends(ends) if !ends.finite())) {
         return read(source, options, false);
     }
-    let (mut channels, mut left) = (Vec::new(), None);
-    for (object, raw) in objects.iter().zip(raw) {
-        let [group, name] = &object.path[..] else { continue };
-        let named = |found: Finding| found.name("variable", name.as_str());
-        if let Some(class) = object.unreadable {
-            findings.push(named(Finding::note("variable-passed-over")).name("class", class));
-        } else if raw.is_empty() {
-            findings.push(named(Finding::note("variable-empty")));
-        } else {
-            match changed(object).map_or_else(|| raw.measured(), Err) {
-                Ok(values) => channels.push(Channel { object, group, name, values, clock: None }),
-                Err(scale) => {
-                    findings.push(named(Finding::caution("scale-unknown")).name("scale", scale.as_str()));
-                    left.get_or_insert_with(|| {
-                        format!("no channel with a scale that is known: {name:?} ({scale})")
-                    });
-                }
-            }
-        }
-    }
+    let (mut channels, left) = measured(&objects, raw, &mut findings);
     let all = channels.par_iter_mut();
     let all = all.filter_map(|channel| Some((channel.name, channel.values.values_mut()?)));
     findings.extend(missing::checked(all, options.allow_missing)?);
@@ -127,6 +108,35 @@ pub(super) fn read(source: &Source, options: &Options, survey: bool) -> Result<C
             .hint("export scaled values as text or UFF-58 from the program that recorded them"));
     }
     Ok(Contents { records, findings })
+}
+
+/// The channels with numbers; of the others, findings, and words for the first whose scale is not known.
+fn measured<'a>(
+    objects: &'a [Object],
+    raw: Vec<Raw<'a>>,
+    findings: &mut Vec<Finding>,
+) -> (Vec<Channel<'a>>, Option<String>) {
+    let (mut channels, mut left) = (Vec::new(), None);
+    for (object, raw) in objects.iter().zip(raw) {
+        let [group, name] = &object.path[..] else { continue };
+        let named = |found: Finding| found.name("variable", name.as_str());
+        if let Some(class) = object.unreadable {
+            findings.push(named(Finding::note("variable-passed-over")).name("class", class));
+        } else if raw.is_empty() {
+            findings.push(named(Finding::note("variable-empty")));
+        } else {
+            match changed(object).map_or_else(|| raw.measured(), Err) {
+                Ok(values) => channels.push(Channel { object, group, name, values, clock: None }),
+                Err(scale) => {
+                    findings.push(named(Finding::caution("scale-unknown")).name("scale", scale.as_str()));
+                    left.get_or_insert_with(|| {
+                        format!("no channel with a scale that is known: {name:?} ({scale})")
+                    });
+                }
+            }
+        }
+    }
+    (channels, left)
 }
 
 /// Properties that name the unit of a channel.

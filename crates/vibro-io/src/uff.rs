@@ -6,19 +6,20 @@
 //! …
 //!     -1
 //!     -1
-//!     58            a function: see `uff58`
+//!     58            a function: see [`set58`]
 //! …
 //!     -1
 //! ```
 //! Data sets 58 and 58b become records, data set 164 gives the unit system of those behind it, and every
 //! other set is passed over by name.
 
+pub mod set58;
 pub mod stream;
 
-use super::Source;
-use super::uff58::{self, UnitSystem, codes};
 use crate::held::Contents;
 use crate::options::Options;
+use crate::source::Source;
+use set58::{UnitSystem, codes};
 use stream::{Stream, is_delimiter, set_number};
 use vibro_record::{Finding, Place, Record, Result};
 
@@ -68,14 +69,14 @@ pub(super) fn read(source: &Source, options: &Options, _: bool) -> Result<Conten
         // The delimiter that closes this set may open the next one, where a file has lost one of the two.
         delimited = true;
         if number == 58 {
-            match uff58::read(&mut stream, (line, binary), &system, options, &source.name())? {
+            match set58::read(&mut stream, (line, binary), &system, options, &source.name())? {
                 Ok(record) => {
                     records.push(record);
                     continue;
                 }
                 Err((lines, error)) => {
                     let short = Finding::caution("header-cut-short").count("lines", lines);
-                    findings.push(short.count("of", uff58::LINES));
+                    findings.push(short.count("of", set58::LINES));
                     cut = Some(error);
                 }
             }

@@ -4,13 +4,14 @@
 //! records of their struct or group, and say abscissa and unit ([`names`], [`axes`]).
 
 mod axes;
+pub mod matlab;
 pub mod names;
 
-use super::Source;
 use super::missing;
 use crate::assemble::Spectral;
 use crate::held::{Contents, Held};
 use crate::options::Options;
+use crate::source::Source;
 use axes::Axes;
 use names::{Dialect, Scoped};
 use rayon::prelude::*;
@@ -55,32 +56,7 @@ pub fn contents(
     mut findings: Vec<Finding>,
     options: &Options,
 ) -> Result<Contents> {
-    let (mut arrays, mut notes) = (Vec::new(), Vec::new());
-    for (name, content) in variables {
-        match content {
-            Content::Text(text) => notes.push((name, text)),
-            Content::Other(class) => {
-                let passed = Finding::note("variable-passed-over");
-                let passed = if name.is_empty() { passed } else { passed.name("variable", name) };
-                findings.push(passed.name("class", class));
-            }
-            // MATLAB keeps the inside of objects and functions in a nameless array.
-            Content::Array(_) if name.is_empty() => {}
-            Content::Array(array) => match &array.values {
-                values if values.len() == 0 => {
-                    findings.push(Finding::note("variable-empty").name("variable", name));
-                }
-                Held::Values(Values::Real(values)) if values.len() == 1 => {
-                    notes.push((name, values[0].to_string()));
-                }
-                _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
-                    let found = Finding::note("variable-many-dimensions").name("variable", name);
-                    findings.push(found.count("dimensions", array.dimensions.len()));
-                }
-                _ => arrays.push((name, array)),
-            },
-        }
-    }
+    let (mut arrays, notes) = parted(variables, &mut findings);
     let mut axes = Axes::find(dialect, &mut arrays, &notes, options, &mut findings);
     let units = axes::units(dialect, &notes, &arrays);
     let mut vectors: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
@@ -133,6 +109,40 @@ pub fn contents(
     };
     let records = records.into_iter().map(record).collect::<Result<_>>()?;
     Ok(Contents { records, findings })
+}
+
+/// Variables of each name.
+type Named<T> = Vec<(String, T)>;
+
+/// Vectors and matrices apart from scalars and texts; of what is passed over, findings.
+fn parted(variables: Named<Content>, findings: &mut Vec<Finding>) -> (Named<Array>, Named<String>) {
+    let (mut arrays, mut notes) = (Vec::new(), Vec::new());
+    for (name, content) in variables {
+        match content {
+            Content::Text(text) => notes.push((name, text)),
+            Content::Other(class) => {
+                let passed = Finding::note("variable-passed-over");
+                let passed = if name.is_empty() { passed } else { passed.name("variable", name) };
+                findings.push(passed.name("class", class));
+            }
+            // MATLAB keeps the inside of objects and functions in a nameless array.
+            Content::Array(_) if name.is_empty() => {}
+            Content::Array(array) => match &array.values {
+                values if values.len() == 0 => {
+                    findings.push(Finding::note("variable-empty").name("variable", name));
+                }
+                Held::Values(Values::Real(values)) if values.len() == 1 => {
+                    notes.push((name, values[0].to_string()));
+                }
+                _ if array.dimensions.iter().filter(|d| **d > 1).count() > 2 => {
+                    let found = Finding::note("variable-many-dimensions").name("variable", name);
+                    findings.push(found.count("dimensions", array.dimensions.len()));
+                }
+                _ => arrays.push((name, array)),
+            },
+        }
+    }
+    (arrays, notes)
 }
 
 /// A vector is one record, a matrix one a column; or one a row, where only the rows have the length of the

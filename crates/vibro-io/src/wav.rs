@@ -17,11 +17,12 @@ pub(crate) use scales::{Scale, Scales};
 
 use super::missing::Missing;
 use super::source::ReadSeek;
-use super::{Source, span};
 use crate::binary::NumberType;
 use crate::held::Contents;
 use crate::options::Options;
 use crate::options::named;
+use crate::source::Source;
+use crate::span;
 use layout::WavHeader;
 use std::io::{Read, SeekFrom};
 use std::path::PathBuf;

@@ -7,6 +7,7 @@
 //! assert!(x < 0.0 && v > 0.0);
 //! ```
 
+mod bisection;
 pub mod cis;
 mod least_squares;
 mod noise;
@@ -15,6 +16,7 @@ mod polynomial;
 pub mod root;
 pub mod runge_kutta;
 
+pub use bisection::{bisected, border, try_bisected};
 pub use least_squares::{Fit, Minimum, least_squares, minimise};
 pub use noise::Noise;
 pub use oscillator::Oscillator;

@@ -15,7 +15,13 @@ pub struct Noise(u64);
 impl Noise {
     /// Numbers of this seed.
     pub fn new(seed: u64) -> Noise {
-        Noise(seed.wrapping_mul(0x2545_F491_4F6C_DD1D))
+        Noise::from_state(seed.wrapping_mul(0x2545_F491_4F6C_DD1D))
+    }
+
+    /// Numbers behind this state of splitmix64, as other programs count them. Those of neighbouring states
+    /// overlap where the states are a multiple of its step apart.
+    pub fn from_state(state: u64) -> Noise {
+        Noise(state)
     }
 
     /// Uniform from 0, which is a value, to 1, which is none.

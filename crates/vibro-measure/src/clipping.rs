@@ -29,14 +29,17 @@ pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
     let crest = |run: usize| 0.5 * (high - low) * (1.0 - (PI * (run as f64 / period).min(0.5)).cos());
     let rests = |end: f64| {
         let runs = values.chunk_by(|a, b| a == b).filter(|run| run[0] == end && run.len() > 1);
+        // Far more than the half step by which rounding moves a value.
         runs.into_iter().any(|run| crest(run.len() - 1) > 3.0 * step)
     };
     let crowds = |end: f64| {
+        // The end, and the step next to it.
         let near = |v: &&f64| (**v - end).abs() <= 1.5 * step;
         let (at, near) = (at(end) as f64, values.iter().filter(near).count() as f64);
         let beside = near - at;
         // Under the crest of a sine of rounded values 2.4 times as many lie in the last step as in the one
-        // before, and chance adds to that.
+        // before, and chance adds to that: of the difference from three times as many, whose variance is
+        // at + 9 beside, four standard deviations.
         if rounded { at > 3.0 * beside + 4.0 * (at + 9.0 * beside).sqrt() } else { at > 2.0 }
     };
     let ends: Vec<f64> = repeated.into_iter().filter(|end| rests(*end) || crowds(*end)).collect();

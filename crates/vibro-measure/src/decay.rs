@@ -27,6 +27,9 @@ const SEEN: f64 = 0.01;
 const STRETCHES: (usize, f64) = (5, 1.2);
 /// How often the levels of a steady mode may seem to change.
 const CHANGED: f64 = 1e-3;
+/// Relative standard uncertainty of its damping ratio below which a stretch counts: the ratio is then more
+/// than three of them above 0.
+const KNOWN: f64 = 0.3;
 
 /// Modes of the free decay that a record holds.
 ///
@@ -58,6 +61,7 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
         // As long as the strongest mode is seen, and no longer.
         let wanted = (part.start + (part.len() as f64 * ENOUGH / loss.max(0.1)) as usize).min(limit);
         let change = wanted.max(part.start + 3 * block) as f64 - part.end as f64;
+        // A tenth is not worth another fit.
         if loss > 0.0 && lengths > 0 && change.abs() > 0.1 * part.len() as f64 {
             part.end = (part.end as f64 + change) as usize;
             lengths -= usize::from(!found.is_long());
@@ -103,19 +107,7 @@ impl Sines {
                     );
                 }
             } else if is_strongest(group, m) {
-                let Damped { periods, decay, .. } = group.sines[m];
-                let lost = -(-decay).exp_m1();
-                let why = format!(
-                    "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s",
-                    periods * self.rate / self.n as f64,
-                    100.0 * lost,
-                    100.0 * group.std(m, [0.0, 1.0, 0.0, 0.0]) * (-decay).exp(),
-                    self.n as f64 / self.rate
-                );
-                return Err(Error::refused(why)
-                    .hint("read what follows the release or the blow, or choose the band of the mode")
-                    .setting("span")
-                    .setting("band"));
+                return Err(self.steady(group, m));
             } else if mode.amplitude.value > SEEN * size && group.sines[m].periods > 3.0 {
                 let steady = Finding::note("decay-steady-line").number("frequency", mode.frequency.value);
                 findings.push(steady.number("amplitude", mode.amplitude.value).name("unit", unit));
@@ -153,6 +145,23 @@ impl Sines {
         })
     }
 
+    /// What to say where the strongest line does not decay.
+    fn steady(&self, group: &SineGroup, m: usize) -> Error {
+        let Damped { periods, decay, .. } = group.sines[m];
+        let lost = -(-decay).exp_m1();
+        let why = format!(
+            "the motion does not decay: its strongest line, {:.5} Hz, loses {:.2} ± {:.2} % within {:.4} s",
+            periods * self.rate / self.n as f64,
+            100.0 * lost,
+            100.0 * group.std(m, [0.0, 1.0, 0.0, 0.0]) * (-decay).exp(),
+            self.n as f64 / self.rate
+        );
+        Error::refused(why)
+            .hint("read what follows the release or the blow, or choose the band of the mode")
+            .setting("span")
+            .setting("band")
+    }
+
     /// The strongest mode in stretches of equal length, and what their amplitudes say of its damping.
     fn levels(&self, part: &[f64], start: f64, unit: &'static str) -> (Vec<Level>, Option<Estimate>) {
         // Beside others it is not known so well as to be followed alone.
@@ -176,7 +185,7 @@ impl Sines {
             let mode = mode(&group, 0, n, self.rate, unit);
             // Another mode that is there when this is over is not this one.
             let own = range.contains(&(group.sines[0].periods.max(0.0) as usize));
-            let known = own && mode.zeta.std.is_some_and(|std| std < 0.3 * mode.zeta.value);
+            let known = own && mode.zeta.std.is_some_and(|std| std < KNOWN * mode.zeta.value);
             known.then(|| Level { start: start + (i * n) as f64 / self.rate, mode })
         });
         let levels: Vec<Level> = levels.collect();

@@ -11,12 +11,12 @@ use vibro_signal::filter::{Analogue, Filter};
 /// printed as 0.71; its table A.2 was made with 1/√2).
 const BAND: [f64; 2] = [6.310, 1258.9];
 const BAND_Q: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Transition from acceleration to velocity.
+/// Transition from acceleration to velocity in Hz, and its quality (the same table).
 const TRANSITION: f64 = 15.915;
 const TRANSITION_Q: f64 = 0.64;
 /// Lowest sampling rate in Hz: four times the upper corner, so that the weighting has room to fall.
 const LOWEST_RATE: f64 = 4.0 * 1258.9;
-/// Duration in s over which the scatter of the vibration is taken.
+/// Duration in s over which the scatter of the vibration is taken: six periods of the lower corner.
 const SPAN: f64 = 1.0;
 /// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴
 /// in this time.

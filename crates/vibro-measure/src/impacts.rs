@@ -267,12 +267,16 @@ const PAUSE: f64 = 1.2;
 /// Fewest intervals that show that they are irregular.
 const TELLING: usize = 12;
 
+/// Part of the intervals off every multiple of their median from which on they are irregular: of intervals at
+/// random nine in ten are, and a few of them come near by chance.
+const SCATTERED: f64 = 0.85;
+
 /// Whether no more intervals lie near a multiple of their median than chance brings there: within 5 % on
 /// either side lies one in ten.
 fn irregular(steps: &[f64]) -> bool {
     let median = median(steps);
     let off = |step: &&f64| ((*step / median).round().max(1.0) - *step / median).abs() > REGULAR;
-    steps.len() >= TELLING && steps.iter().filter(off).count() as f64 > 0.85 * steps.len() as f64
+    steps.len() >= TELLING && steps.iter().filter(off).count() as f64 > SCATTERED * steps.len() as f64
 }
 
 /// Standard deviation of the intervals between neighbours without a missed impact between them; `None` of

@@ -1,6 +1,6 @@
 //! A spectral line below the line distance: frequency and amplitude of a sine between lines.
 
-use super::noise::border;
+use vibro_math::border;
 use vibro_record::Window;
 use vibro_signal::window::{line_shape, noise_correlation};
 
@@ -45,7 +45,8 @@ pub fn interpolate(
     let (delta, amplitude) = window.map_or_else(|| log_parabola(lines), |window| solve(lines, window));
     let known = window.zip(noise).filter(|(window, noise)| {
         // At the limit the lines have not the shape of one sine, and slopes mean nothing. Without a window
-        // noise may choose the wrong neighbour: then no small uncertainty is true.
+        // noise may choose the wrong neighbour: then no small uncertainty is true. The difference of two
+        // lines has √2 of the noise, of which 6 are more than four.
         delta.abs() < LIMIT && (*window != Window::Rectangular || (right - left).abs() >= 6.0 * noise)
     });
     let [position_std, amplitude_std] =

@@ -10,6 +10,7 @@ mod leakage;
 #[cfg(test)]
 mod neighbours;
 mod noise;
+mod peak;
 mod rational;
 mod report;
 mod response;

@@ -1,7 +1,8 @@
 //! The noise floor around a spectral line, and the upper limit of a sine that noise hides.
 
 use super::line::interpolate;
-use vibro_record::Window;
+use vibro_math::border;
+use vibro_record::{Window, upper_median};
 use vibro_signal::window::line_shape;
 
 /// Lines on either side that are read where noise is taken for white.
@@ -52,10 +53,9 @@ pub fn around(magnitudes: &[f64], centre: usize, reach: usize, window: Option<Wi
         for (scaled, (leakage, rest)) in scaled.iter_mut().zip(&lines) {
             *scaled = rest / rice_median(leakage / noise);
         }
-        let middle = scaled.len() / 2;
-        let (_, found, _) = scaled.select_nth_unstable_by(middle, f64::total_cmp);
-        let settled = (*found - noise).abs() <= 1e-6 * *found;
-        noise = *found;
+        let found = upper_median(&mut scaled);
+        let settled = (found - noise).abs() <= 1e-6 * found;
+        noise = found;
         if settled || noise == 0.0 {
             break;
         }
@@ -123,19 +123,6 @@ pub(super) fn below(m: f64, nu: f64) -> f64 {
     sum
 }
 
-/// The place between `low` and `high` up to which `is_below` holds, to rounding.
-pub(crate) fn border(mut low: f64, mut high: f64, is_below: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if is_below(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    f64::midpoint(low, high)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,13 +153,11 @@ mod tests {
     fn medians_between_those_of_the_table_are_those_of_rice() {
         for i in 0..=1200 {
             let height = f64::from(i) * 0.01;
-            let (mut low, mut high) = (0.0, 5.0);
-            for _ in 0..50 {
-                let rest = f64::midpoint(low, high);
+            let rest = border(0.0, 5.0, |rest| {
                 let inner = if rest < height { below(height - rest, height) } else { 0.0 };
-                if below(height + rest, height) - inner < 0.5 { low = rest } else { high = rest }
-            }
-            let ratio = rice_median(height) / low;
+                below(height + rest, height) - inner < 0.5
+            });
+            let ratio = rice_median(height) / rest;
             assert!((ratio - 1.0).abs() < 0.01, "{height}: {ratio}");
         }
     }

@@ -1,7 +1,7 @@
 //! Local maxima of a curve, and their vertices between samples.
 
 use super::jump::Point;
-use super::noise::border;
+use vibro_math::border;
 
 /// A maximum of a curve over frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -69,6 +69,19 @@ impl Instrument {
         }
     }
 
+    /// Why the shape of a pulse sampled at `rate` in Hz does not tell one contact from another.
+    fn doubts(&self, rate: f64) -> Vec<Finding> {
+        match self {
+            Instrument::Unknown => vec![Finding::doubt("pulse-instrument-unknown")],
+            // Its rise falls between two samples.
+            Instrument::LowPass(filter) if filter.corner >= 0.5 * rate => {
+                let above = Finding::doubt("pulse-corner-above-half-rate");
+                vec![above.number("corner", filter.corner).number("rate", rate)]
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// The low-pass, if there is one.
     pub fn low_pass(&self) -> Option<&LowPass> {
         if let Instrument::LowPass(filter) = self { Some(filter) } else { None }
@@ -92,15 +105,7 @@ const FEWEST: f64 = 10.0 / 3.0;
 /// determine the parameters; if the mass is not above 0.
 pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     let rate = trace.sampling_rate()?;
-    let quantity = trace.meta.quantity;
-    if matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
-        return Err(Error::refused(format!("the record is one of {quantity}")).hint(
-            "choose a record of acceleration or force; differentiate a velocity once, a displacement twice",
-        ));
-    }
-    if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
-        return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
-    }
+    check(trace, options)?;
     let located = locate(&trace.values)?;
     let seen = located.flanks.1 - located.flanks.0;
     if seen < FEWEST {
@@ -110,17 +115,8 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
         return Err(Error::refused(why).hint("sample faster"));
     }
     let filter = options.instrument.low_pass();
-    let (mut found, mut known) = (Vec::new(), true);
-    if options.instrument == Instrument::Unknown {
-        known = false;
-        found.push(Finding::doubt("pulse-instrument-unknown"));
-    }
-    if let Some(filter) = filter.filter(|f| f.corner >= 0.5 * rate) {
-        // Its rise falls between two samples.
-        known = false;
-        let above = Finding::doubt("pulse-corner-above-half-rate");
-        found.push(above.number("corner", filter.corner).number("rate", rate));
-    }
+    let mut found = options.instrument.doubts(rate);
+    let known = found.is_empty();
     let unlike = |error: Error| {
         let lasts = 1.5e3 * seen / rate;
         Error::refused(format!("no contact of spring and damper fits the pulse, which lasts about {lasts:.3} ms ({error})"))
@@ -129,7 +125,7 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     };
     let scale = Normalised::new(trace, rate, &located, filter)?;
     let (samples, level) = scale.window(&mut found, unlike)?;
-    known = known && level;
+    let known = known && level;
     let main = samples.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
 
     let n = samples.times.len();
@@ -190,6 +186,20 @@ pub fn pulse(trace: &Trace, options: &PulseOptions) -> Result<PulseResult> {
     result.findings = found;
     result.picture = Some(scale.picture(&samples, &fits));
     Ok(result)
+}
+
+/// Whether a trace can be one of a contact, and the mass that of a body.
+fn check(trace: &Trace, options: &PulseOptions) -> Result<()> {
+    let quantity = trace.meta.quantity;
+    if matches!(quantity, Quantity::Displacement | Quantity::Velocity) {
+        return Err(Error::refused(format!("the record is one of {quantity}")).hint(
+            "choose a record of acceleration or force; differentiate a velocity once, a displacement twice",
+        ));
+    }
+    if let Some(mass) = options.mass.filter(|m| !(m.is_finite() && *m > 0.0)) {
+        return Err(Error::usage(format!("a mass of {mass} kg"), "a finite mass above 0"));
+    }
+    Ok(())
 }
 
 /// All models fitted to the samples, that of spring and damper first. Where it leaves white noise, and the

@@ -14,7 +14,7 @@ pub struct Whiteness {
     pub inflation: f64,
 }
 
-/// Below this probability residuals are taken for correlated.
+/// Below this probability residuals are taken for correlated: one white record in a hundred is.
 const REJECTED: f64 = 0.01;
 
 impl Whiteness {

@@ -6,7 +6,7 @@
 //! for one segment this is the detector of H. M. Finn & R. S. Johnson, RCA Review 29 (1968) 414. Of all lines
 //! that are searched, noise alone shows one with a probability of [`FALSE_ALARMS`] at most.
 
-use vibro_record::Window;
+use vibro_record::{Window, upper_median};
 
 /// How often the noise of a record passes for a line.
 pub const FALSE_ALARMS: f64 = 1e-3;
@@ -58,9 +58,10 @@ pub(crate) fn floor(
         return None;
     }
     let lines = (averages * known.len() as f64 / (MEDIAN * window.map_or(2.0, Window::enbw))) as usize;
-    let middle = known.len() / 2;
-    let (_, median, _) = known.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(Floor { power: *median / (1.0 - 1.0 / (9.0 * averages)).powi(3), lines: lines.max(1) })
+    Some(Floor {
+        power: upper_median(&mut known) / (1.0 - 1.0 / (9.0 * averages)).powi(3),
+        lines: lines.max(1),
+    })
 }
 
 impl Floor {
@@ -94,7 +95,6 @@ fn above(ratio: f64, n: f64, m: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise;
     use crate::spectral::{SpectralOptions, spectral};
     use crate::synthetic::{pink, trace};
     use crate::tones::tones;
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn a_tone_3_db_above_the_threshold_is_found() {
         let known = (2.0 * REACH as f64 - 8.0) / (MEDIAN * Window::Hann.enbw());
-        let ratio = noise::border(1.0, 1e3, |r| above(r, 1.0, known as usize) * 999.0 > FALSE_ALARMS);
+        let ratio = vibro_math::border(1.0, 1e3, |r| above(r, 1.0, known as usize) * 999.0 > FALSE_ALARMS);
         // Power of a line of noise of standard deviation 1 is 4 · 1.5/n as A²; between lines Hann takes up to
         // 1.4 dB.
         let amplitude = (2.0 * ratio * 6.0 / 2000.0).sqrt();

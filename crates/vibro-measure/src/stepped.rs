@@ -119,23 +119,29 @@ struct StepReading {
     findings: Vec<Finding>,
 }
 
+/// Sampling rate in Hz of a force and its response.
+///
+/// # Errors
+/// If they are not sampled together, or samples are missing.
+fn rate_of(force: &Trace, response: &Trace) -> Result<f64> {
+    let rate = force.sampling_rate()?;
+    if response.rate() != Some(rate) || response.values.len() != force.values.len() {
+        let error = Error::refused("force and response are not sampled together");
+        return Err(error.hint("export both with one clock"));
+    }
+    if force.values.iter().chain(&response.values).any(|v| !v.is_finite()) {
+        let error = Error::refused("samples are missing");
+        return Err(error.hint("read the part before them").setting("span"));
+    }
+    Ok(rate)
+}
+
 impl StepReading {
     fn of(step: &StepTraces) -> Result<StepReading> {
         let StepTraces { force, response, .. } = step;
         let metas = [&force.meta, &response.meta];
-        let together = || {
-            Error::refused("force and response are not sampled together").hint("export both with one clock")
-        };
-        let rate = force.sampling_rate()?;
+        let rate = rate_of(force, response)?;
         let samples = force.values.len();
-        if response.rate() != Some(rate) || response.values.len() != samples {
-            return Err(together());
-        }
-        if force.values.iter().chain(&response.values).any(|v| !v.is_finite()) {
-            return Err(Error::refused("samples are missing")
-                .hint("read the part before them")
-                .setting("span"));
-        }
         let found = sine(force, None).map_err(|error| error.hint(SHAKER))?;
         let Some(tone) = found.tones.into_iter().next() else {
             return Err(Error::refused("the force holds no sine").hint(SHAKER));

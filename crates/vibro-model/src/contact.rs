@@ -19,6 +19,7 @@
 mod change;
 mod compliant;
 mod modes;
+mod still;
 mod within;
 
 pub use crate::law::{Law, conversion};

@@ -8,6 +8,7 @@ use super::rig::Rig;
 use super::scales;
 use super::steady::NoImpact;
 use serde::Serialize;
+use vibro_math::try_bisected;
 use vibro_record::{Error, Result};
 
 /// The most frequencies of a response.
@@ -187,7 +188,7 @@ fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> Respons
             amplitude = there.amplitude;
             Some(there.possible == here.possible)
         };
-        if let Some(frequency) = halved(a.frequency, b.frequency, same) {
+        if let Some(frequency) = change(a.frequency, b.frequency, same) {
             changes.push(Change { frequency, kind: ChangeKind::NoImpact, amplitude: [amplitude, 0.0] });
         }
     }
@@ -216,7 +217,7 @@ fn locate(
         }
         Some(same)
     };
-    let frequency = halved(from, to.frequency, same)?;
+    let frequency = change(from, to.frequency, same)?;
     let kind = match (was, standing(there.as_ref())) {
         (_, Standing::Gone) => ChangeKind::Fold,
         (Standing::Parted, _) | (_, Standing::Parted) => ChangeKind::Grazing,
@@ -233,12 +234,9 @@ fn locate(
 
 /// Where between `near` and `far` it ceases to be the `same`, to a millionth of the way; `None` where that
 /// cannot be told on the way.
-fn halved(mut near: f64, mut far: f64, mut same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
-    for _ in 0..20 {
-        let middle = f64::midpoint(near, far);
-        if same(middle)? { near = middle } else { far = middle }
-    }
-    Some(f64::midpoint(near, far))
+fn change(near: f64, far: f64, same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
+    const MILLIONTH: usize = 20;
+    try_bisected(near, far, MILLIONTH, same).map(|(near, far)| f64::midpoint(near, far))
 }
 
 #[cfg(test)]

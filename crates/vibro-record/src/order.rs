@@ -30,3 +30,18 @@ pub fn quantile(values: impl IntoIterator<Item = impl Borrow<f64>>, q: f64) -> f
 pub fn median(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
     quantile(values, 0.5)
 }
+
+/// The middle one of these values in their order, of an even number the higher of the middle two; NaN of
+/// none. One of the values always, found without a copy: they are left in another order.
+///
+/// ```
+/// assert_eq!(vibro_record::upper_median(&mut [4.0, 1.0, 3.0, 2.0]), 3.0);
+/// assert!(vibro_record::upper_median(&mut []).is_nan());
+/// ```
+pub fn upper_median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}

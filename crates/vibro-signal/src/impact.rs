@@ -84,17 +84,11 @@ pub struct BlowTransfer {
     pub enbw: f64,
 }
 
-/// Finds the blows in a force, averages those that are clean, and relates the response to the force.
+/// Sampling rate in Hz of a force and its response.
 ///
 /// # Errors
-/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing,
-/// or no blow is clean.
-pub fn from_blows(
-    force: &Trace,
-    response: &Trace,
-    how: &Blows,
-    estimator: Estimator,
-) -> Result<BlowTransfer> {
+/// Those of [`from_blows`] that its traces and its settings have before a blow is found.
+fn rate_of(force: &Trace, response: &Trace, how: &Blows) -> Result<f64> {
     let (rate, other, n) = (force.sampling_rate()?, response.sampling_rate()?, force.values.len());
     if rate != other || n != response.values.len() {
         let (rate, other, m) = (shortest(rate), shortest(other), response.values.len());
@@ -114,22 +108,44 @@ pub fn from_blows(
         let why = format!("blows of {} samples each in a record of {n} samples", how.length);
         return Err(Error::refused(why).hint("take shorter records, or measure longer"));
     }
+    Ok(rate)
+}
+
+/// What to say where no blow is clean.
+///
+/// # Errors
+/// If the force has no sampling rate.
+fn none_clean(blows: &[Blow], force: &Trace, how: &Blows) -> Result<Error> {
+    let named = |b: &Blow| b.rejected.map(|why| format!("{:.3} s: {why}", b.time));
+    let why: Vec<String> = blows.iter().filter_map(named).take(8).collect();
+    let found = format!("0 of {} blows are clean; {}", blows.len(), why.join(", "));
+    let refused = |why| blows.iter().all(|b| b.rejected == Some(why));
+    let error = Error::refused(found);
+    Ok(if refused(OVERLOAD) {
+        error.hint("set a larger range of force and response, and strike again")
+    } else if how.length > spacing(force)? {
+        error.hint("a segment shorter than the time between blows").setting("segment")
+    } else {
+        error.hint("name the channel of the force; strike once a record").setting("reference")
+    })
+}
+
+/// Finds the blows in a force, averages those that are clean, and relates the response to the force.
+///
+/// # Errors
+/// If the traces are of different rate or length or shorter than one record of a blow, samples are missing,
+/// or no blow is clean.
+pub fn from_blows(
+    force: &Trace,
+    response: &Trace,
+    how: &Blows,
+    estimator: Estimator,
+) -> Result<BlowTransfer> {
+    let rate = rate_of(force, response, how)?;
     let blows = find(force, response, how, rate);
     let kept: Vec<usize> = blows.iter().filter(|b| b.rejected.is_none()).map(|b| b.start).collect();
     if kept.is_empty() {
-        let named = |b: &Blow| b.rejected.map(|why| format!("{:.3} s: {why}", b.time));
-        let why: Vec<String> = blows.iter().filter_map(named).take(8).collect();
-        let (clean, all, why) = (kept.len(), blows.len(), why.join(", "));
-        let found = format!("{clean} of {all} blows are clean; {why}");
-        let refused = |why| blows.iter().all(|b| b.rejected == Some(why));
-        let error = Error::refused(found);
-        return Err(if refused(OVERLOAD) {
-            error.hint("set a larger range of force and response, and strike again")
-        } else if how.length > spacing(force)? {
-            error.hint("a segment shorter than the time between blows").setting("segment")
-        } else {
-            error.hint("name the channel of the force; strike once a record").setting("reference")
-        });
+        return Err(none_clean(&blows, force, how)?);
     }
     let (decay, weights) = windows(how, rate)?;
     let transform = Transform::new(how.length);

@@ -5,7 +5,7 @@ use crate::campaign::Campaign;
 use crate::error::{Error, Result};
 use crate::measure::modal::Measured;
 use crate::measure::response::{Response, ResponseOptions};
-use crate::record::{Finding, Meta, Record};
+use crate::record::{Finding, Meta, Record, upper_median};
 use crate::units::{Quantity, Unit};
 use num_complex::Complex64;
 
@@ -92,11 +92,7 @@ impl Function {
 /// Uncertainties none of which lies below the median of the five around it: each comes from a few blocks, and
 /// one that is small by chance would carry the fit.
 fn pooled(std: &[f64]) -> Vec<f64> {
-    let around = |i: usize| {
-        let mut near = std[i.saturating_sub(2)..(i + 3).min(std.len())].to_vec();
-        near.sort_by(f64::total_cmp);
-        near[near.len() / 2]
-    };
+    let around = |i: usize| upper_median(&mut std[i.saturating_sub(2)..(i + 3).min(std.len())].to_vec());
     (0..std.len()).map(|i| std[i].max(around(i))).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Drill records made up from a machine that is known.
 
 use super::draws::{Draws, none_far};
-use crate::drill::noise::Noise;
+use crate::drill::noise::ShiftedNoise;
 use crate::drill::stroke::{Machine, Run, Struck};
 use vibroimpact::measure::Estimate;
 use vibroimpact::measure::drill::{AngleOrigin, Beam, Drill, DrillOptions, Edge, Slices, TurnsFrom, drill};
@@ -85,7 +85,7 @@ struct Case {
 }
 
 /// A machine that turns `slowest` to `slowest` + 20 times a second.
-fn machine(slowest: f64, noise: &mut Noise) -> Machine {
+fn machine(slowest: f64, noise: &mut ShiftedNoise) -> Machine {
     Machine {
         speed: slowest + 20.0 * noise.uniform(),
         speed_scatter: 0.005,
@@ -100,7 +100,7 @@ fn machine(slowest: f64, noise: &mut Noise) -> Machine {
 }
 
 fn case(seed: u64) -> Case {
-    let mut noise = Noise::new(seed);
+    let mut noise = ShiftedNoise::new(seed);
     let machine = machine(40.0, &mut noise);
     let run = machine.run(COUNT as f64 / RATE, &mut noise);
     // A laser from the side: it sees half of the motion, a volt is 2 m/s, and its noise is 5 mm/s.
@@ -237,11 +237,11 @@ struct Chain {
 }
 
 impl Chain {
-    fn new(rho: f64, noise: &mut Noise) -> Chain {
+    fn new(rho: f64, noise: &mut ShiftedNoise) -> Chain {
         Chain { rho, now: noise.normal() }
     }
 
-    fn next(&mut self, noise: &mut Noise) -> f64 {
+    fn next(&mut self, noise: &mut ShiftedNoise) -> f64 {
         let next = self.rho * self.now + (1.0 - self.rho * self.rho).sqrt() * noise.normal();
         std::mem::replace(&mut self.now, next)
     }
@@ -254,7 +254,7 @@ fn samples(turns: usize, speed: f64) -> usize {
 
 /// Adds the intervals of a machine whose turns depend on each other.
 fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
-    let mut noise = Noise::new(seed);
+    let mut noise = ShiftedNoise::new(seed);
     let m = machine(80.0, &mut noise);
     let count = samples(turns, m.speed);
     let mut run = m.run(count as f64 / RATE, &mut noise);
@@ -295,7 +295,7 @@ fn wandering(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 7]) {
 /// Adds the intervals of stroke and drift of a velocity A sin 2πφ + d, both varying from turn to turn: the
 /// stroke is A T/π, the drift d T.
 fn strokes(turns: usize, rho: f64, seed: u64, means: &mut [Coverage; 2]) {
-    let mut noise = Noise::new(seed);
+    let mut noise = ShiftedNoise::new(seed);
     let (speed, amplitude, offset) =
         (80.0 + 20.0 * noise.uniform(), 4.0 + 2.0 * noise.uniform(), 0.1 * noise.uniform());
     let count = samples(turns, speed);

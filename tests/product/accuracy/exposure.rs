@@ -2,7 +2,7 @@
 
 use super::draws::Draws;
 use super::score::Score;
-use crate::drill::noise::Noise;
+use crate::drill::noise::ShiftedNoise;
 use vibroimpact::measure::exposure::{exposure, weighting};
 
 const CASES: u64 = 240;
@@ -14,7 +14,7 @@ const KNOT: f64 = 0.5;
 
 /// Amplitudes 1 + m of a vibration that waxes and wanes: m is straight between knots of variance `scatter`²
 /// that depend on the one before by `rho`.
-fn knots(count: usize, scatter: f64, rho: f64, noise: &mut Noise) -> Vec<f64> {
+fn knots(count: usize, scatter: f64, rho: f64, noise: &mut ShiftedNoise) -> Vec<f64> {
     let mut m = scatter * noise.normal();
     (0..count)
         .map(|_| {
@@ -28,7 +28,7 @@ fn uncertainties_of_an_exposure_are_true(draws: Draws) {
     let mut axis = [Score::default(), Score::default(), Score::default()];
     let (mut total, mut daily) = (Score::default(), Score::default());
     for seed in 1..=draws.of(CASES) {
-        let mut noise = Noise::new(seed);
+        let mut noise = ShiftedNoise::new(seed);
         let seconds = 20.0 + 40.0 * noise.uniform();
         // From axes that know nothing of each other to axes that rise and fall as one.
         let (common, rho) = (noise.uniform(), 0.5 * noise.uniform());

@@ -5,6 +5,7 @@ use super::draws::Draws;
 use super::noise::Noise;
 use super::score::{Score, bounds};
 use std::f64::consts::{PI, TAU};
+use vibroimpact::math::border;
 use vibroimpact::measure::pulse::{Instrument, LowPass, PulseOptions, pulse, two_times};
 use vibroimpact::record::{Axis, Meta, Trace};
 use vibroimpact::units::Unit;
@@ -244,14 +245,9 @@ fn two_times_with_their_uncertainty() {
         let omega = TAU * f;
         let last = end(truth, omega);
         // The peak by bisection of the slope's sign.
-        let (mut low, mut high) = (0.0, last);
-        for _ in 0..60 {
-            let middle = f64::midpoint(low, high);
-            let rising = contact(truth, omega, middle + 1e-12) > contact(truth, omega, middle - 1e-12);
-            if rising { low = middle } else { high = middle }
-        }
+        let peak = border(0.0, last, |t| contact(truth, omega, t + 1e-12) > contact(truth, omega, t - 1e-12));
         let std = last * noise.between(0.001, 0.01);
-        let found = two_times(low + std * noise.normal(), last + std * noise.normal(), Some(std), None)
+        let found = two_times(peak + std * noise.normal(), last + std * noise.normal(), Some(std), None)
             .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         // No more can be had from two times: the bound is their own uncertainty carried over.
         xi.add(&found.xi, truth, found.xi.std.expect("a std"));

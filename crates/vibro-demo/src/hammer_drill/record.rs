@@ -1,6 +1,6 @@
 //! A record as a vibrometer and a pulse pick-up on the crank give it.
 
-use super::noise::Noise;
+use super::noise::ShiftedNoise;
 use super::stroke::{Machine, Struck};
 
 /// Samples a second.
@@ -46,8 +46,9 @@ pub fn record(seconds: f64) -> Record {
         contact: 6e-5,
     };
     let count = (seconds * RATE) as usize;
-    let run = machine.run(seconds, &mut Noise::new(1));
-    let (mut laser, mut second, mut pick_up) = (Noise::new(2), Noise::new(3), Noise::new(4));
+    let run = machine.run(seconds, &mut ShiftedNoise::new(1));
+    let (mut laser, mut second, mut pick_up) =
+        (ShiftedNoise::new(2), ShiftedNoise::new(3), ShiftedNoise::new(4));
     // Half of the motion along the beam, 2 m/s a volt.
     let mut striker: Vec<f64> =
         run.velocity(RATE, count).iter().map(|v| 0.25 * v + NOISE * laser.normal()).collect();
@@ -56,7 +57,7 @@ pub fn record(seconds: f64) -> Record {
         .map(|v| 0.25 * v + NOISE * second.normal())
         .collect();
     let pulse = run.pulse(RATE, count).iter().map(|p| 4.0 * p + 0.3 + 0.01 * pick_up.normal()).collect();
-    let dropouts = drop_out(&mut striker, &mut Noise::new(5));
+    let dropouts = drop_out(&mut striker, &mut ShiftedNoise::new(5));
     let inside = |t: f64| (0.0..count as f64 / RATE).contains(&t);
     Record {
         striker,
@@ -69,7 +70,7 @@ pub fn record(seconds: f64) -> Record {
 
 /// Noise of the vibrometer with the machine at rest.
 pub fn still(seconds: f64) -> Vec<f64> {
-    let mut laser = Noise::new(6);
+    let mut laser = ShiftedNoise::new(6);
     (0..(seconds * RATE) as usize).map(|_| NOISE * laser.normal()).collect()
 }
 
@@ -90,7 +91,7 @@ fn bit(impacts: &[Struck], count: usize, contact: f64) -> Vec<f64> {
 }
 
 /// Loses the laser for 0.1 to 1 ms about three times a second; the decoder gives 0 then.
-fn drop_out(volts: &mut [f64], noise: &mut Noise) -> usize {
+fn drop_out(volts: &mut [f64], noise: &mut ShiftedNoise) -> usize {
     let (mut at, mut count) = (3000, 0);
     while at + 500 < volts.len() {
         let length = 10 + (90.0 * noise.uniform()) as usize;

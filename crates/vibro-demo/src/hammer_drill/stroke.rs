@@ -5,7 +5,7 @@
 //! velocity goes from the one course to the other as half a sine. Duration of a turn, phase of the impact and
 //! speeds vary from turn to turn.
 
-use super::noise::Noise;
+use super::noise::ShiftedNoise;
 use std::f64::consts::PI;
 
 /// Nominal values and their scatter from turn to turn.
@@ -59,7 +59,7 @@ pub struct Run {
 impl Machine {
     /// A run of `duration` seconds and a little more, the first top dead centre before its end of the first
     /// turn.
-    pub fn run(&self, duration: f64, noise: &mut Noise) -> Run {
+    pub fn run(&self, duration: f64, noise: &mut ShiftedNoise) -> Run {
         let mut edges = vec![-noise.uniform() / self.speed];
         let mut impacts = Vec::new();
         while edges[edges.len() - 1] < duration + 1.0 / self.speed {

@@ -5,7 +5,7 @@
 //! integrating converters do; the digital filter behind it keeps the base band. Here that is one windowed
 //! transform of the fast record, of which lines 0 to 400 are kept, so that the jumps of velocity do not fold.
 
-use super::noise::GaussianNoise;
+use super::noise::PairedNoise;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
@@ -50,22 +50,22 @@ const ACCELERATION_OFFSET: f64 = 4e-3;
 const LOWER_LIMIT: f64 = 0.01;
 
 /// Force spectrum, in N.
-pub fn force(signal: &[f64], noise: &mut GaussianNoise) -> Vec<f64> {
+pub fn force(signal: &[f64], noise: &mut PairedNoise) -> Vec<f64> {
     let offset: Vec<f64> = signal.iter().map(|v| v + FORCE_OFFSET).collect();
     spectrum(&FORCE.convert(&offset, noise))
 }
 
 /// Velocity spectrum, in m/s, from the true velocity averaged over each interval.
-pub fn velocity(signal: &[f64], noise: &mut GaussianNoise) -> Vec<f64> {
+pub fn velocity(signal: &[f64], noise: &mut PairedNoise) -> Vec<f64> {
     let corner = TAU * LOWER_LIMIT;
     // The integral has been running for long: offset/corner, and a variance of density/(4·corner).
     let mut drift =
-        ACCELERATION_OFFSET / corner + noise.gaussian() * ACCELERATION_NOISE / (2.0 * corner.sqrt());
+        ACCELERATION_OFFSET / corner + noise.normal() * ACCELERATION_NOISE / (2.0 * corner.sqrt());
     let spread = ACCELERATION_NOISE * (0.5 / INTERVAL).sqrt();
     let drifting: Vec<f64> = signal
         .iter()
         .map(|v| {
-            let acceleration = ACCELERATION_OFFSET + spread * noise.gaussian();
+            let acceleration = ACCELERATION_OFFSET + spread * noise.normal();
             drift += INTERVAL * (acceleration - corner * drift);
             v + drift
         })
@@ -75,13 +75,13 @@ pub fn velocity(signal: &[f64], noise: &mut GaussianNoise) -> Vec<f64> {
 
 impl Input {
     /// Adds hum and noise and rounds to the converter's steps.
-    fn convert(&self, signal: &[f64], noise: &mut GaussianNoise) -> Vec<f64> {
+    fn convert(&self, signal: &[f64], noise: &mut PairedNoise) -> Vec<f64> {
         let step = 2.0 * self.full_scale / 4096.0;
         let phase = TAU * noise.uniform();
         let spread = self.noise * (0.5 / INTERVAL).sqrt();
         let one = |(i, v): (usize, &f64)| {
             let hum = self.hum * (TAU * HUM * i as f64 * INTERVAL + phase).cos();
-            let value = v + hum + spread * noise.gaussian();
+            let value = v + hum + spread * noise.normal();
             (value.clamp(-self.full_scale, self.full_scale - step) / step).round() * step
         };
         signal.iter().enumerate().map(one).collect()

@@ -1,7 +1,7 @@
 //! The rig, the sweeps, and what comes out of them.
 
 use super::analyser::{self, BASE_BAND, BLOCK, INTERVAL, LINES, SAMPLES};
-use super::noise::GaussianNoise;
+use super::noise::PairedNoise;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -133,7 +133,7 @@ impl Point {
         let mean = |x: fn(&State) -> f64| -> Vec<f64> {
             self.states.windows(2).map(|pair| (x(&pair[1]) - x(&pair[0])) / INTERVAL).collect()
         };
-        let noise = |channel| GaussianNoise::new(draw, self.direction as u64, self.number as u64, channel);
+        let noise = |channel| PairedNoise::new(draw, self.direction as u64, self.number as u64, channel);
         let spectra = [
             analyser::force(&force, &mut noise(0)),
             analyser::velocity(&mean(|s| s.x1), &mut noise(1)),

@@ -1,6 +1,6 @@
 use super::*;
+use crate::reader::{Reader, Recording};
 use crate::tests::{has_finding, read_both_ways, texts};
-use crate::{Reader, Recording};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use vibro_record::units::Unit;

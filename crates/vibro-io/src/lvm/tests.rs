@@ -1,11 +1,11 @@
 use super::*;
-use crate::Recording;
+use crate::reader::Recording;
 use crate::tests::{has_finding, texts};
 use proptest::prelude::*;
 use vibro_record::Trace;
 
 fn recording(text: &str) -> Result<Recording> {
-    crate::Reader::new().from_reader("x.lvm", text.as_bytes())
+    crate::reader::Reader::new().from_reader("x.lvm", text.as_bytes())
 }
 
 fn traces(recording: &Recording) -> Vec<&Trace> {
@@ -103,7 +103,7 @@ fn no_row_is_lost() {
     // A row of separators only.
     let gap = text("\t1.0\n\t\n\t3.0\n\t\n");
     assert!(recording(&gap).unwrap_err().to_string().contains("1 missing value at 2 of \"a\""));
-    let kept = crate::Reader::new().allow_missing(true).from_reader("x.lvm", gap.as_bytes()).unwrap();
+    let kept = crate::reader::Reader::new().allow_missing(true).from_reader("x.lvm", gap.as_bytes()).unwrap();
     let values = &traces(&kept)[0].values;
     assert_eq!((values.len(), values[2]), (3, 3.0));
     let said = recording(&text("\t1.0\n\n\t3.0\n")).unwrap_err().to_string();
@@ -130,6 +130,6 @@ proptest! {
         let mut bytes = text.into_bytes();
         let n = bytes.len();
         bytes[at % n] = byte;
-        let _ = crate::Reader::new().from_reader("x.lvm", &bytes[..n - end % n]);
+        let _ = crate::reader::Reader::new().from_reader("x.lvm", &bytes[..n - end % n]);
     }
 }

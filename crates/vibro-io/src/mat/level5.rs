@@ -2,8 +2,8 @@
 //!
 //! Source: The `MathWorks`, "MAT-File Format", chapter 1, "Level 5 MAT-File Format".
 
-use crate::Options;
 use crate::binary::NumberType;
+use crate::options::Options;
 use crate::variables::{Array, Content, MOST_TEXT};
 use flate2::read::ZlibDecoder;
 use std::io::Read;

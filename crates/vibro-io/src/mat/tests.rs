@@ -1,7 +1,7 @@
 use super::*;
-use crate::Format;
-use crate::Reader;
-use crate::Recording;
+use crate::format::Format;
+use crate::reader::Reader;
+use crate::reader::Recording;
 use crate::tests::{has_finding, texts};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -807,7 +807,8 @@ proptest! {
 fn a_packed_variable_is_refused_by_what_it_unpacks_to() {
     // 1000 zeros take 8000 bytes, which are held twice while they are read.
     let file = LITTLE.file(&[packed(&LITTLE.column("x", &[0.0; 1000]))]);
-    let read = |limit| Reader::new().max_memory(crate::Limit(limit)).from_reader("x.mat", file.as_slice());
+    let read =
+        |limit| Reader::new().max_memory(crate::limit::Limit(limit)).from_reader("x.mat", file.as_slice());
     assert!(file.len() < 1000 && read(20_000.0).is_ok());
     let said = read(12_000.0).unwrap_err().to_string();
     assert!(said.contains("x.mat: it needs 16 kB"), "{said}");

@@ -1,7 +1,9 @@
 //! Sheets of workbooks as text: cells between tabs, numbers with all their digits, dates as clocks.
 
 use super::{Member, Workbook, damaged, locked};
-use crate::{Limit, Source, number};
+use crate::limit::Limit;
+use crate::number;
+use crate::source::Source;
 use calamine::{
     Data, ExcelDateTime, ExcelDateTimeType, Ods, OdsError, Reader, Sheet, SheetVisible, Xls, XlsError, Xlsx,
     XlsxError,

@@ -1,7 +1,9 @@
 //! Archives and workbooks, made here, against the text that they hold.
 
+use crate::folder::Folder;
+use crate::limit::Limit;
+use crate::reader::{Reader, Recording};
 use crate::tests::has_finding;
-use crate::{Folder, Limit, Reader, Recording};
 use sha2::{Digest as _, Sha256};
 use std::io::{Cursor, Write};
 use std::path::Path;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::Recording;
+use crate::reader::Recording;
 use crate::tests::{has_finding, read_both_ways};
 use proptest::prelude::*;
 use vibro_record::{AxisKind, Record, Trace};
@@ -436,7 +436,7 @@ fn a_stated_step_against_a_channel_of_times() {
     assert!(has_finding(&said, "vector-against-rate", &["variable=Time", "used=vector", "rate=1"]));
     assert!(has_finding(&said, "axis-unit-assumed", &["unit=s"]));
     // A rate that a person states is above both.
-    let stated = crate::Reader::new().rate(Some(8.0)).from_reader("x.tdms", &differ[..]).unwrap();
+    let stated = crate::reader::Reader::new().rate(Some(8.0)).from_reader("x.tdms", &differ[..]).unwrap();
     assert_eq!(stated.records[0].axis().step(), Some(0.125));
     let agree = group(&[("Time", &[Prop::Text("unit_string", "s")], &times), ("a", &step(0.5), &[1.0; 4])]);
     let mut agree = recording(&agree).unwrap();
@@ -648,7 +648,7 @@ fn values_beyond_the_limit_are_refused_before_they_are_read() {
     let channel = |name| (name, Raw::Of(10, 10), [].as_slice());
     writer.segment(ALL, &[channel("/'g'/'a'"), channel("/'g'/'b'")], &raw);
     let read = |bytes: f64| {
-        let reader = crate::Reader::new().max_memory(crate::Limit(bytes));
+        let reader = crate::reader::Reader::new().max_memory(crate::limit::Limit(bytes));
         reader.from_reader("x.tdms", writer.bytes.as_slice())
     };
     assert_eq!(read(800.0).unwrap().records[0].len(), 50);

@@ -4,10 +4,10 @@
 //! (RF64) and ITU-R BS.2088 (BW64) for the `ds64` chunk.
 
 use super::scales::Scales;
-use crate::Source;
 use crate::assemble::fewer;
 use crate::binary::NumberType;
 use crate::source::ReadSeek;
+use crate::source::Source;
 use crate::text::encoding;
 use std::io::{Read, SeekFrom};
 use vibro_record::units::notation::counted;
@@ -41,10 +41,17 @@ pub struct WavHeader {
     pub findings: Vec<Finding>,
 }
 
+/// The chunks that are read, each with the place of its body.
+#[derive(Default)]
+struct Chunks {
+    format: Option<(u64, Vec<u8>)>,
+    /// With the size of the samples.
+    data: Option<(u64, u64)>,
+    notes: Vec<(String, String)>,
+}
+
 /// Goes from chunk to chunk.
-pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
-    let fault =
-        |at, found: &str, expected: &str| Error::input(Place::byte(source.path(), at), found, expected);
+fn chunks(source: &Source, reader: &mut dyn ReadSeek) -> Result<Chunks> {
     // At most `most` bytes from `at` on: fewer where the file ends.
     let mut bytes = |at: u64, most: u64| {
         let mut bytes = Vec::new();
@@ -54,11 +61,7 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
             .map_err(|e| Error::io("read", source.path(), e))?;
         Ok::<_, Error>(bytes)
     };
-    if !sniff(source.head(), source) {
-        return Err(fault(0, "no wave file", "RIFF, RF64 or BW64, then a size and WAVE"));
-    }
-    let (mut wide, mut format, mut data, mut notes) = (None, None, None, Vec::new());
-    let mut at = 12;
+    let (mut found, mut wide, mut at) = (Chunks::default(), None, 12);
     while at < source.len() {
         let tag = bytes(at, 8)?;
         let Some((id, size)) = chunk(&tag) else { break };
@@ -66,17 +69,17 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
         let mut size = u64::from(size);
         match id {
             b"ds64" => wide = field(&bytes(body, 16)?, 8).map(u64::from_le_bytes),
-            b"fmt " => format = Some((body, bytes(body, size.min(40))?)),
-            b"data" if data.is_none() => {
+            b"fmt " => found.format = Some((body, bytes(body, size.min(40))?)),
+            b"data" if found.data.is_none() => {
                 if size == UNSAID {
                     size = wide.unwrap_or(UNSAID);
                 }
                 if size == 0 && chunk(&bytes(body, 8)?).is_none() {
                     size = UNSAID;
                 }
-                data = Some((body, size));
+                found.data = Some((body, size));
             }
-            b"LIST" => notes.extend(info(&bytes(body, size.min(MOST_TEXT))?)),
+            b"LIST" => found.notes.extend(info(&bytes(body, size.min(MOST_TEXT))?)),
             _ => {}
         }
         at = body.saturating_add(size);
@@ -86,6 +89,17 @@ pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
             at += u64::from(next.first() == Some(&0) || chunk(&next).is_none());
         }
     }
+    Ok(found)
+}
+
+/// What the chunks of a file say.
+pub fn read(source: &Source, reader: &mut dyn ReadSeek) -> Result<WavHeader> {
+    let fault =
+        |at, found: &str, expected: &str| Error::input(Place::byte(source.path(), at), found, expected);
+    if !sniff(source.head(), source) {
+        return Err(fault(0, "no wave file", "RIFF, RF64 or BW64, then a size and WAVE"));
+    }
+    let Chunks { format, data, notes } = chunks(source, reader)?;
     let Some((format_at, format)) = format else {
         return Err(fault(12, "no fmt chunk", "a chunk that says the kind of samples"));
     };

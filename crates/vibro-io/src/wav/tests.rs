@@ -1,7 +1,8 @@
 use super::*;
-use crate::Reader;
+use crate::format::Format;
+use crate::reader::Reader;
+use crate::reader::{Header, Recording};
 use crate::tests::has_finding;
-use crate::{Format, Header, Recording};
 use proptest::prelude::*;
 use vibro_record::units::Quantity;
 

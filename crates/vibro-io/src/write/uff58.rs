@@ -2,13 +2,13 @@
 //!
 //! Each record becomes one data set with eleven header lines of 80 columns and its values in one of the eight
 //! cases of the standard: real or complex, single or double precision, even or uneven abscissa. See
-//! `read::uff58` for the format and its source.
+//! `uff::set58` for the format and its source.
 
 mod header;
 
 use super::listed::{failed, label, parts};
 use crate::number;
-use crate::uff58::Layout;
+use crate::uff::set58::Layout;
 use std::io::{self, Write};
 use vibro_record::{Error, Grid, Record, Result};
 

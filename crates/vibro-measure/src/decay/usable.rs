@@ -4,7 +4,7 @@ use crate::clipping::clipped;
 use crate::mean::average;
 use num_complex::Complex64;
 use std::ops::Range;
-use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, code};
+use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, code, upper_median};
 use vibro_signal::fft::Transform;
 use vibro_signal::spectrum;
 
@@ -50,23 +50,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let (low, high) = band.map_or((LOWEST, lines.len()), |(low, high)| {
         (line(low).max(LOWEST), line(high).saturating_add(1).min(lines.len()))
     });
-    // Drift is high where all lines are, however steep: a mode stands out of the lines from half to twice its
-    // frequency.
-    let over = |k: &usize| {
-        let (from, to) = ((k / 2).min(k.saturating_sub(LEAST)).max(1), (2 * k).max(k + LEAST));
-        let mut around = lines[from..to.min(lines.len())].to_vec();
-        let middle = around.len() / 2;
-        lines[*k] / around.select_nth_unstable_by(middle, f64::total_cmp).1.max(f64::MIN_POSITIVE)
-    };
-    let tops = (low.max(1)..high.min(lines.len().saturating_sub(1)))
-        .filter(|k| lines[*k] >= lines[k - 1] && lines[*k] >= lines[k + 1]);
-    let mut tops: Vec<usize> = tops.collect();
-    tops.sort_by(|a, b| lines[*b].total_cmp(&lines[*a]));
-    tops.truncate(MOST);
-    let strongest = tops.into_iter().max_by(|a, b| over(a).total_cmp(&over(b)));
-    let strongest = strongest.ok_or_else(|| {
-        Error::refused("no line of the spectrum lies there").hint("choose another band").setting("band")
-    })?;
+    let strongest = strongest(&lines, low..high)?;
     let period = n as f64 / strongest as f64;
     let block = ((PERIODS * period) as usize).max(SHORTEST);
     if n < 5 * block {
@@ -120,6 +104,29 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
         findings.push(Finding::caution(code::DECAY_CUT).number("end", trace.axis.at(limit)));
     }
     Ok(Usable { part: start..end, block, limit, findings })
+}
+
+/// The line among these that stands out most of those around it.
+///
+/// # Errors
+/// If none of them is a maximum.
+fn strongest(lines: &[f64], among: Range<usize>) -> Result<usize> {
+    // Drift is high where all lines are, however steep: a mode stands out of the lines from half to twice its
+    // frequency.
+    let over = |k: &usize| {
+        let (from, to) = ((k / 2).min(k.saturating_sub(LEAST)).max(1), (2 * k).max(k + LEAST));
+        let mut around = lines[from..to.min(lines.len())].to_vec();
+        lines[*k] / upper_median(&mut around).max(f64::MIN_POSITIVE)
+    };
+    let tops = (among.start.max(1)..among.end.min(lines.len().saturating_sub(1)))
+        .filter(|k| lines[*k] >= lines[k - 1] && lines[*k] >= lines[k + 1]);
+    let mut tops: Vec<usize> = tops.collect();
+    tops.sort_by(|a, b| lines[*b].total_cmp(&lines[*a]));
+    tops.truncate(MOST);
+    let strongest = tops.into_iter().max_by(|a, b| over(a).total_cmp(&over(b)));
+    strongest.ok_or_else(|| {
+        Error::refused("no line of the spectrum lies there").hint("choose another band").setting("band")
+    })
 }
 
 /// Root mean square of each whole block about its mean.

@@ -17,6 +17,8 @@ use vibro_record::median;
 const MOST: usize = 4;
 /// Smaller jumps count down to this part of the largest of a turn, and of the median turn.
 const PART: f64 = 0.25;
+/// Part of the height of a jump that lies between two samples where the jump takes no longer than one.
+const AT_ONCE: f64 = 0.8;
 /// A jump must be this many times its own uncertainty: of some thousand places a turn none is one by chance.
 const CLEAR: f64 = 6.0;
 
@@ -184,7 +186,7 @@ impl<'a> Jumps<'a> {
             let weight = (1.0 - j.share).powi(2) + j.share * j.share;
             let crossed = 0.5 * (noise[0].0 + noise[1].0) * weight + 0.25 * (before + after);
             // A jump within one sample may lie anywhere in it.
-            let sampling = if j.step.abs() > 0.8 * j.height() { 1.0 / 12.0 } else { 0.0 };
+            let sampling = if j.step.abs() > AT_ONCE * j.height() { 1.0 / 12.0 } else { 0.0 };
             let time = crossed / (j.step * j.step) + sampling;
             let edges = edge * edge * ((1.0 - phase).powi(2) + phase * phase);
             Impact {

@@ -53,6 +53,11 @@ const ROUGH: f64 = 1.6;
 /// Each third of a burst has at least this part of the mean square of all: of ringing that falls below the
 /// height of a spike the last third has less.
 const LAST_PART: f64 = 0.2;
+/// A spike stands this many times as far off the line between its neighbours as the signal changes there.
+const APART: f64 = 4.0;
+/// Part of the height of a spike by which its first sample leaves the one before it, at least. The line
+/// between the neighbours covers an eighth of it at most, half of 1/[`APART`]; a burst may begin lower.
+const ABRUPT: f64 = 0.7;
 /// Samples on both sides of a spike that must be calm: an impact is followed by ringing.
 const CALM: usize = 4;
 /// A spike stands this many standard deviations of the noise off its neighbours, which normal noise never
@@ -148,7 +153,7 @@ impl Velocity<'_> {
             Some((FaultKind::Dropout, end))
         } else if end - i > 1 {
             self.flat(i, end).map(|kind| (kind, end))
-        } else if (v - before?).abs() < 0.7 * self.height {
+        } else if (v - before?).abs() < ABRUPT * self.height {
             None
         } else {
             self.spike(i).map(|end| (FaultKind::Spike, end))
@@ -161,6 +166,7 @@ impl Velocity<'_> {
         let v = self.raw[i];
         let before = &self.raw[i.saturating_sub(AROUND)..i];
         let after = &self.raw[end..(end + AROUND).min(self.raw.len())];
+        // More than one step of the converter, whatever rounding makes of a value.
         let step = |x: Option<&f64>| x.is_some_and(|x| (x - v).abs() > 1.5 * quantum);
         if !(step(before.last()) || step(after.first())) {
             return None;
@@ -188,7 +194,7 @@ impl Velocity<'_> {
                 let calm = calm.max(behind) < self.height;
                 return (n >= SHORT_BURST && calm && self.is_burst(i..i + n)).then_some(i + n);
             }
-            let enough = self.height.max(4.0 * (b - a).abs()).max(4.0 * calm).max(4.0 * behind);
+            let enough = self.height.max(APART * (b - a).abs().max(calm).max(behind));
             let off = |k: usize| (self.raw[i + k] - (a + (b - a) * (k + 1) as f64 / (n + 1) as f64)).abs();
             (0..n).all(|k| off(k) > enough).then_some(i + n)
         })
@@ -286,8 +292,11 @@ pub(crate) fn levels(values: &[f64]) -> Option<(f64, f64)> {
     Some((side(false), side(true)))
 }
 
-/// A pulse stands on its two levels for more than this part of the time; a sine is near the medians of its
-/// halves for a quarter.
+/// Part of the distance of two levels within which a value is on one of them.
+const AT_LEVEL: f64 = 0.1;
+
+/// A pulse stands on its two levels for more than this part of the time; a sine is within [`AT_LEVEL`] of the
+/// medians of its halves for a quarter.
 const PULSED: f64 = 0.8;
 /// Turns of a shaft are as long as their neighbours within this part; what vibrates crosses its middle at any
 /// distance.
@@ -304,7 +313,8 @@ pub(crate) fn check_pulses(
     edges: &[f64],
 ) -> Result<()> {
     let pulsed = |values: &[f64], (low, high): (f64, f64)| {
-        let near = values.iter().filter(|v| (**v - low).abs().min((**v - high).abs()) < 0.1 * (high - low));
+        let near =
+            values.iter().filter(|v| (**v - low).abs().min((**v - high).abs()) < AT_LEVEL * (high - low));
         near.count() as f64 > PULSED * values.len() as f64
     };
     if pulsed(reference, stands) {

@@ -4,7 +4,7 @@
 use super::survey::State;
 use crate::Estimate;
 use crate::mean::Mean;
-use crate::noise::border;
+use vibro_math::border;
 use vibro_record::{Error, Result, median};
 
 /// Neighbours on each side whose median is the expected interval: a machine that runs up changes little over
@@ -159,6 +159,10 @@ pub enum Edge {
 /// of a pick-up stays below.
 const HYSTERESIS: f64 = 0.2;
 
+/// Margins of the hysteresis on both sides of the middle that an edge passes between two samples where it
+/// tells no place between them: three fifths of the height.
+const SHARP: f64 = 1.5;
+
 /// Edges of a reference signal, and what is known of their times.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Edges {
@@ -198,7 +202,7 @@ impl Edges {
                 armed = false;
                 if let Some((first, last, from, to)) = crossed.take() {
                     at.push(0.5 * (first + last));
-                    sharp += usize::from(from < -1.5 * margin && to > 1.5 * margin);
+                    sharp += usize::from(from < -SHARP * margin && to > SHARP * margin);
                     slopes += to - from;
                 }
             }

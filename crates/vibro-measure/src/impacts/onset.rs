@@ -101,7 +101,7 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     let (matched, own) = alike(&flanks)?;
     // The noise from the residuals of all pulses, but for a few outliers.
     let mut left: Vec<f64> = matched.iter().flatten().map(|m| m.variance).collect();
-    let most = 4.0 * median(&left);
+    let most = OUTLYING * median(&left);
     left.retain(|v| *v <= most);
     let variance = average(&left);
     let onset = |(lobe, m): (&Lobe, Option<Matched>)| match m {
@@ -154,6 +154,10 @@ pub struct Matched {
     /// Mean squared residual.
     pub variance: f64,
 }
+
+/// Variance of the residuals of a pulse, in medians of all, beyond which the pulse tells nothing of the
+/// noise.
+const OUTLYING: f64 = 4.0;
 
 /// Most knots of an average pulse.
 const KNOTS: usize = 48;

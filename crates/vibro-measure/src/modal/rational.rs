@@ -2,7 +2,7 @@
 
 use super::leakage::Leakage;
 use super::noise::{LineNoise, MARGIN, STEPS, of_segments, smoothed};
-use super::selection::Peak;
+use super::peak::Peak;
 use super::{Measured, Pole};
 use crate::residuals::{Whiteness, aicc, student};
 use nalgebra::{DMatrix, DVector};
@@ -304,38 +304,7 @@ pub(super) fn rational(
         scaled.start(known, width, &equal.each).ok_or_else(refuse)?.1
     };
     let at = scaled.nearer(&start, &equal)?;
-    let height = |i: usize| scaled.at(&at, i).norm();
-    let rivals = match (&measured.std, &measured.coherence) {
-        (Some(std), _) => {
-            let weight = std[part].iter().map(|s| s / scaled.height).collect();
-            vec![(LineNoise::independent(weight), "noise as stated")]
-        }
-        (None, None) => {
-            let relative = LineNoise::independent((0..lines).map(|i| height(i).max(1e-2)).collect());
-            vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
-        }
-        (None, Some(coherence)) => {
-            // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose
-            // number is left to the fit. That of few averages is hardly known from the line
-            // alone, and one that is small by chance would draw the fit to it.
-            let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
-            let level: Vec<f64> =
-                share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
-            let segments = |(window, spacing)| scaled.of_segments(window, spacing, &at, &level);
-            if let Some(noise) = measured.window.map(|window| (window, measured.spacing())).and_then(segments)
-            {
-                vec![(noise, "noise by the coherence and the window")]
-            } else {
-                let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
-                let share = smoothed(&share);
-                let relative =
-                    share.iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
-                [level, relative]
-                    .map(|each| (LineNoise::independent(each), "noise by the coherence"))
-                    .to_vec()
-            }
-        }
-    };
+    let rivals = rivals(measured, part, &scaled, &at);
     // Minus twice the logarithm of the likelihood.
     let unlikely = |p: &[f64], noise: &LineNoise| {
         let mut left = vec![0.0; scaled.rows()];
@@ -363,6 +332,49 @@ pub(super) fn rational(
         }
     }
     Err(failed)
+}
+
+/// What the noise of the lines may be, with a name each; `at` are parameters that fit nearly.
+fn rivals(
+    measured: &Measured,
+    part: std::ops::Range<usize>,
+    scaled: &Scaled<'_>,
+    at: &[f64],
+) -> Vec<(LineNoise, &'static str)> {
+    let lines = part.len();
+    let height = |i: usize| scaled.at(at, i).norm();
+    match (&measured.std, &measured.coherence) {
+        (Some(std), _) => {
+            let weight = std[part].iter().map(|s| s / scaled.height).collect();
+            vec![(LineNoise::independent(weight), "noise as stated")]
+        }
+        (None, None) => {
+            let relative = LineNoise::independent((0..lines).map(|i| height(i).max(1e-2)).collect());
+            let equal = LineNoise::independent(vec![1.0; lines]);
+            vec![(equal, "equal noise on all lines"), (relative, "noise proportional to the response")]
+        }
+        (None, Some(coherence)) => {
+            // Variance of a line: |H|²(1 − γ²)/(2γ²) over the averages (Bendat & Piersol 2010, 9.90), whose
+            // number is left to the fit. That of few averages is hardly known from the line
+            // alone, and one that is small by chance would draw the fit to it.
+            let share: Vec<f64> = coherence[part].iter().map(|c| (1.0 - c).max(1e-5) / c).collect();
+            let level: Vec<f64> =
+                share.iter().zip(&scaled.values).map(|(s, v)| s * v.norm_sqr().max(1e-12)).collect();
+            let segments = |(window, spacing)| scaled.of_segments(window, spacing, at, &level);
+            if let Some(noise) = measured.window.map(|window| (window, measured.spacing())).and_then(segments)
+            {
+                vec![(noise, "noise by the coherence and the window")]
+            } else {
+                let level: Vec<f64> = smoothed(&level).into_iter().map(f64::sqrt).collect();
+                let share = smoothed(&share);
+                let relative =
+                    share.iter().enumerate().map(|(i, s)| height(i).max(1e-6) * s.sqrt()).collect();
+                [level, relative]
+                    .map(|each| (LineNoise::independent(each), "noise by the coherence"))
+                    .to_vec()
+            }
+        }
+    }
 }
 
 /// A mode must be known better than this part of its damping ratio; else the peak may be anything.

@@ -78,6 +78,7 @@ impl Candidate<'_> {
         // ζωᵣ is known as before, and the constant has the factor that its uncertainty has.
         std[1] *= pole.frequency / own.frequency;
         std[2] *= own.constant.norm() / pole.constant.norm();
+        // Two bandwidths on either side.
         let around = |other: f64| (other - pole.frequency).abs() < 4.0 * pole.zeta * pole.frequency;
         let ahead = group.ahead.filter(|(_, other)| around(*other)).map(|(ahead, _)| ahead);
         let two = Finding::doubt("modal-two-modes").number("ahead", ahead.unwrap_or(f64::NAN));

@@ -1,5 +1,6 @@
 //! Which lines belong to which peak, which peaks are modes, and on which lines they are fitted.
 
+use super::peak::Peak;
 use super::rational::{Rational, rational, residual_sum};
 use super::{Measured, Pole};
 use crate::peaks::local_maxima;
@@ -241,39 +242,40 @@ pub(super) fn complete(
         if better <= 0.0 {
             break;
         }
-        let weight = 1.0 / (1.0 + (-0.5 * better).exp());
-        for (mode, std) in fit.modes.iter().zip(&mut fit.std) {
-            let near = |i: &usize| (more.modes[*i].frequency - mode.frequency).abs();
-            let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { continue };
-            // Nor does a mode that could be anything, but then this one may not be what it seems.
-            if !its[i] {
-                group.ahead = group.ahead.or((better > NO_SUPPORT).then_some((better, mode.frequency)));
-                continue;
-            }
-            let (other, its) = (&more.modes[i], more.std[i]);
-            let turned = (other.constant / mode.constant).arg();
-            let apart = [
-                other.frequency - mode.frequency,
-                other.zeta - mode.zeta,
-                other.constant.norm() - mode.constant.norm(),
-                turned,
-            ];
-            for ((std, its), apart) in std.iter_mut().zip(its).zip(apart) {
-                *std = ((1.0 - weight) * *std * *std + weight * (its * its + apart * apart)).sqrt();
-            }
-        }
+        let ahead = widened(fit, &more, &its, better);
+        group.ahead = group.ahead.or(ahead);
         break;
     }
     sound
 }
 
-/// A peak: its line, its bandwidth in Hz as far as the lines show it, and its height above the higher of its
-/// valleys.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Peak {
-    pub at: usize,
-    pub width: f64,
-    pub rise: f64,
+/// Lets the uncertainties of a fit hold the modes of a fit with one `more` as well, by the weight that its
+/// criterion, lower by `better`, gives it; `sound` are those of its modes that stand. Gives the first mode
+/// that may not be what it seems.
+fn widened(fit: &mut Rational, more: &Rational, sound: &[bool], better: f64) -> Option<(f64, f64)> {
+    let mut ahead = None;
+    let weight = 1.0 / (1.0 + (-0.5 * better).exp());
+    for (mode, std) in fit.modes.iter().zip(&mut fit.std) {
+        let near = |i: &usize| (more.modes[*i].frequency - mode.frequency).abs();
+        let Some(i) = (0..more.modes.len()).min_by(|a, b| near(a).total_cmp(&near(b))) else { continue };
+        // Nor does a mode that could be anything, but then this one may not be what it seems.
+        if !sound[i] {
+            ahead = ahead.or((better > NO_SUPPORT).then_some((better, mode.frequency)));
+            continue;
+        }
+        let (other, its) = (&more.modes[i], more.std[i]);
+        let turned = (other.constant / mode.constant).arg();
+        let apart = [
+            other.frequency - mode.frequency,
+            other.zeta - mode.zeta,
+            other.constant.norm() - mode.constant.norm(),
+            turned,
+        ];
+        for ((std, its), apart) in std.iter_mut().zip(its).zip(apart) {
+            *std = ((1.0 - weight) * *std * *std + weight * (its * its + apart * apart)).sqrt();
+        }
+    }
+    ahead
 }
 
 /// Peaks that are fitted together, and the lines to which they are.
@@ -380,9 +382,10 @@ fn noise(measured: &Measured, at: usize) -> f64 {
     (median(differences) / (scale * f64::sqrt(6.0))).max(0.0)
 }
 
-/// Whether there are too few lines, or bandwidths, between two peaks to fit each alone.
+/// Whether there are too few lines, or bandwidths, between two peaks to fit each alone: their own lines would
+/// overlap by more than eight, or by half of the bandwidths that each needs.
 fn near(f: &[f64], a: &Peak, b: &Peak) -> bool {
-    b.at - a.at < 2 * LINES - 8 || f[b.at] - f[a.at] < 3.0 * (a.width + b.width)
+    b.at - a.at < 2 * LINES - 8 || f[b.at] - f[a.at] < BANDWIDTHS * f64::midpoint(a.width, b.width)
 }
 
 /// Half-power bandwidth as the lines show it: at least half a line.

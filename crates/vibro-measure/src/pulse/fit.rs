@@ -43,6 +43,16 @@ const APART: f64 = 0.05;
 /// Least noise, in parts of the height.
 const DIGITS: f64 = 3e-4;
 
+/// Standard deviations of chance by which one variance must exceed another.
+const SURE: f64 = 4.0;
+
+/// Step of the coarse grid of onsets, in durations of the contact.
+const LEAD: f64 = 0.08;
+
+/// Durations of the contact on either side of a first guess of the onset that the finer grid spans: one and a
+/// half steps of the coarse one.
+const REACH: f64 = 1.5 * LEAD;
+
 /// Samples that the search for a first guess uses.
 const COARSE: usize = 48;
 
@@ -187,7 +197,7 @@ impl Samples<'_> {
         let (inside, before) = (of(&|t| t >= onset && t <= end), of(&|t| t < onset - AROUND));
         // The parameters follow the noise within the contact.
         let free = inside.1 - fit.parameters.len() as f64;
-        let chance = 4.0 * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
+        let chance = SURE * fitted.whiteness.inflation * (2.0 / free.max(1.0) + 2.0 / before.1).sqrt();
         free >= 1.0 && before.1 >= 8.0 && inside.0 / free > (1.0 + chance) * before.0 / before.1
     }
 
@@ -201,7 +211,7 @@ impl Samples<'_> {
             let part = if around.contains(t) { &mut near } else { &mut far };
             *part = (part.0 + r * r, part.1 + 1.0);
         }
-        let limit = (1.0 + 4.0 * (2.0_f64 / near.1).sqrt()).max(2.0);
+        let limit = (1.0 + SURE * (2.0_f64 / near.1).sqrt()).max(2.0);
         near.0 / near.1 > limit * far.0 / far.1
     }
 
@@ -241,7 +251,7 @@ impl Samples<'_> {
         let Some(duration) = KelvinVoigt::new(guess[3], guess[4]).map(|c| c.duration()) else {
             return guess.to_vec();
         };
-        let (reach, steps) = (0.12 * duration, (0.12 * duration / self.step).ceil().clamp(1.0, 10.0));
+        let (reach, steps) = (REACH * duration, (REACH * duration / self.step).ceil().clamp(1.0, 10.0));
         let mut least = (f64::INFINITY, guess.to_vec());
         for onset in -(steps as i32)..=steps as i32 {
             for longer in -2..=2 {
@@ -278,7 +288,7 @@ impl Samples<'_> {
             ContactModel::Yielding => &[[0.4, 0.0], [0.7, 0.0], [0.95, 0.0]],
         };
         let guess = |[shape, loss]: [f64; 2], duration: f64, lead: i32| {
-            let mut p = vec![-delay - 0.08 * f64::from(lead) * duration, 0.0, 1.0];
+            let mut p = vec![-delay - LEAD * f64::from(lead) * duration, 0.0, 1.0];
             match model {
                 ContactModel::KelvinVoigt => {
                     p.extend([shape, KelvinVoigt::lasting(duration, shape)?.frequency()]);

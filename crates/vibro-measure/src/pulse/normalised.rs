@@ -34,6 +34,13 @@ const LEVEL: f64 = 0.5;
 /// Lengths of the pulse that are fitted before and after it, for the baseline.
 const BESIDE: f64 = 2.0;
 
+/// Delays of the low-pass that its tail lasts: of one of the first order e⁻³ is left then.
+const TAIL: f64 = 3.0;
+
+/// Root mean square of what is left after the pulse, in parts of that within it, beyond which the record does
+/// not rest.
+const RESTLESS: f64 = 4.0;
+
 /// Fewest samples up to the falling flank: five parameters and four degrees of freedom.
 const FEWEST: usize = 9;
 
@@ -97,8 +104,8 @@ impl<'a> Normalised<'a> {
         }
         self.faults(from..self.found.low, findings);
         let fitted = first.fit(ContactModel::KelvinVoigt).map_err(unlike)?;
-        let settled = self.index(fitted.end() + 3.0 * delay);
-        let far = self.index(fitted.end() + 3.0 * delay + BESIDE);
+        let settled = self.index(fitted.end() + TAIL * delay);
+        let far = self.index(fitted.end() + TAIL * delay + BESIDE);
         let after = self.samples(settled..far);
         // Mean and root of the mean square of what is left after the pulse.
         let model = fitted.at(&after, &after.times).unwrap_or_default();
@@ -106,7 +113,7 @@ impl<'a> Normalised<'a> {
         let mean = average(&left);
         let rms = average(&left.iter().map(|d| d * d).collect::<Vec<f64>>()).sqrt();
         let inside = (fitted.fit.sum_of_squares() / n as f64).sqrt().max(1e-6);
-        let restless = left.len() >= 4 && rms > 4.0 * inside;
+        let restless = left.len() >= 4 && rms > RESTLESS * inside;
         let level = !restless || mean.abs() <= LEVEL * rms;
         if restless {
             let caution = Finding::caution("pulse-no-rest-after");

@@ -1,10 +1,10 @@
 //! What events change: the stage of a contact, the velocities, the spring of mass 1.
 
 use super::compliant::{Compliant, ContactStage, Mark};
-use crate::flow::State;
+use super::still::Still;
 use crate::forcing::Tick;
 use crate::impact::Impact;
-use crate::motion::{Event, Path, Piece};
+use crate::motion::{Event, Piece};
 
 /// Separation speed in m/s below which a rebound does not part masses that are pressed together.
 const REST_SPEED: f64 = 1e-9;
@@ -116,14 +116,5 @@ impl Compliant {
             }
             _ => {}
         }
-    }
-}
-
-/// A state that lasts no time.
-pub(super) struct Still(pub State);
-
-impl Path for Still {
-    fn state(&self, _: f64) -> State {
-        self.0
     }
 }

@@ -1,8 +1,8 @@
 //! Any motion of the rig with a contact that gives way, or a mass 1 that is loose on its spring: followed
 //! from event to event through its linear modes, and through integrated contacts between them.
 
-use super::change::Still;
 use super::modes::Modes;
+use super::still::Still;
 use super::within::Within;
 use crate::excitation::Excitation;
 use crate::flow::State;

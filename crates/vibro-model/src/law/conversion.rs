@@ -12,6 +12,7 @@
 //! Hertz F = kδ^{3/2} (Johnson 1985, 11.22 to 11.24): largest indentation (5Mv²/4k)^{2/5}, duration 2.9432
 //! times that over v.
 
+use vibro_math::bisected;
 use vibro_record::{Error, Result};
 
 /// Duration of a contact times √(k₃/M), for a damping ratio ζ ≥ 0.
@@ -113,19 +114,8 @@ fn check(restitution: f64) -> Result<f64> {
 }
 
 /// Where a function that crosses `wanted` upwards once between `low` and `high` does so, to the last digit.
-fn solve(mut low: f64, mut high: f64, wanted: f64, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..1100 {
-        let middle = f64::midpoint(low, high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if f(middle) < wanted {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
+fn solve(low: f64, high: f64, wanted: f64, f: impl Fn(f64) -> f64) -> f64 {
+    bisected(low, high, usize::MAX, |x| f(x) < wanted).1
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::*;
 use crate::excitation::{Impulses, Pulses};
 use crate::motion::{Event, Motion};
 use crate::simulate::Simulation;
+use vibro_math::bisected;
 
 /// ν = ω/Ω₁ to a frequency in Hz.
 fn at(rig: &Rig, nu: f64) -> f64 {
@@ -206,12 +207,8 @@ impl Slow<'_> {
             (self.state, self.time) = (self.step(h), self.time + h);
             return None;
         }
-        let (mut low, mut high) = (0.0, h);
-        for _ in 0..40 {
-            let middle = f64::midpoint(low, high);
-            if height(self.step(middle)) >= 0.0 { low = middle } else { high = middle }
-        }
-        (self.state, self.time) = (self.step(high), self.time + high);
+        let (_, event) = bisected(0.0, h, 40, |part| height(self.step(part)) >= 0.0);
+        (self.state, self.time) = (self.step(event), self.time + event);
         self.touching = !self.touching;
         self.touching.then(|| self.state[1] - self.state[3])
     }

@@ -167,6 +167,7 @@ pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
 mod tests {
     use super::*;
     use crate::orbit::orbits;
+    use vibro_math::bisected;
 
     #[test]
     fn it_is_the_fundamental_of_the_upper_orbit() {
@@ -199,11 +200,7 @@ mod tests {
         // The fold is found by halving between a frequency with roots and one without.
         let rig = Rig { restitution: 0.98, ..Rig::thesis() };
         let at = |frequency| shown(&rig, &Sine { force: 0.1, frequency }).unwrap();
-        let (mut low, mut high) = (10.0, 11.0);
-        for _ in 0..60 {
-            let middle = f64::midpoint(low, high);
-            if at(middle).exists { low = middle } else { high = middle }
-        }
+        let (low, high) = bisected(10.0, 11.0, 60, |frequency| at(frequency).exists);
         let (before, behind) = (at(low), at(high));
         assert!(before.exists && !behind.exists);
         // Beside a fold the root goes as the square root of the distance, here one rounding of the frequency.

@@ -8,6 +8,7 @@ use super::truth::{motion, settled};
 use crate::{BorderQuestion, FailureMap, Family, Found, Outcome};
 use std::f64::consts::TAU;
 use std::sync::Arc;
+use vibro_math::bisected;
 use vibro_model::{Rig, Sine, Steady};
 use vibro_record::Result;
 use vibro_record::units::notation::quantity;
@@ -86,12 +87,7 @@ fn chatter(restitution: f64) -> Task {
 fn onset() -> f64 {
     // The first release is at a quarter of a second whatever R is, the next chatter begins behind 0.4 s.
     let rests = |r| motion(&Task { until: 0.3, ..chatter(r) }, None).is_ok_and(|log| !log.sticks.is_empty());
-    let (mut low, mut high) = (0.7, 0.9);
-    for _ in 0..20 {
-        let middle = f64::midpoint(low, high);
-        if rests(middle) { low = middle } else { high = middle }
-    }
-    low
+    bisected(0.7, 0.9, 20, rests).0
 }
 
 /// All scenes; `quick` follows fewer cycles where many are asked for.

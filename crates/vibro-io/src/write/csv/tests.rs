@@ -1,5 +1,5 @@
 use super::*;
-use crate::Reader;
+use crate::reader::Reader;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use vibro_record::units::Unit;

@@ -1,7 +1,7 @@
 //! The eleven header lines of a record.
 
 use super::{Layout, field};
-use crate::uff58::KINDS;
+use crate::uff::set58::KINDS;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{ADDED_DECAY, AVERAGED_WITH, Axis, AxisKind, FROM_BLOWS, Meta, Record, Scaling, Spectrum};
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::Reader;
+use crate::reader::Reader;
 use proptest::prelude::*;
 use vibro_record::units::Unit;
 use vibro_record::{Axis, Frf, Meta};

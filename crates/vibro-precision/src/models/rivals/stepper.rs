@@ -3,6 +3,7 @@
 
 use super::super::task::{Log, Task};
 use crate::Found;
+use vibro_math::bisected;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
 /// Displacements in m and speeds in m/s below which errors are not counted against the state itself.
@@ -118,15 +119,8 @@ impl SolverStep {
         if !(start >= 0.0 && height(self.start + self.duration, &self.end) <= 0.0) {
             return None;
         }
-        let (mut low, mut high) = (0.0, self.duration);
-        for _ in 0..60 {
-            let middle = f64::midpoint(low, high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if height(self.start + middle, &self.at(&f, middle)) > 0.0 { low = middle } else { high = middle }
-        }
-        Some(high)
+        let above = |t| height(self.start + t, &self.at(&f, t)) > 0.0;
+        Some(bisected(0.0, self.duration, 60, above).1)
     }
 }
 

@@ -1,15 +1,11 @@
 //! Records 1 to 11 of data set 58: identification, degrees of freedom, data form, axis characteristics.
 
 use super::codes;
-use super::values::Layout;
+use super::layout::{KINDS, Layout};
 use crate::number;
 use crate::text::encoding;
 use crate::uff::stream::Stream;
 use vibro_record::{Error, Place, Result};
-
-/// Ordinate data types of record 7: code, complex, double precision.
-pub(crate) const KINDS: [(i64, bool, bool); 4] =
-    [(2, false, false), (4, false, true), (5, true, false), (6, true, true)];
 
 /// Lines before the values.
 pub const LINES: usize = 11;

@@ -1,10 +1,10 @@
 //! How MATLAB names what stands in structs and cell arrays, in files of every version.
 
+use super::names::Dialect;
 use crate::format::Format;
-use crate::variables::names::Dialect;
 
 /// The dialect of `run(2).v` and `data{1}.x`.
-pub static DIALECT: Dialect = Dialect {
+pub static MATLAB: Dialect = Dialect {
     format: Format::Mat,
     separator: '.',
     brackets: ['(', ')'],

@@ -2,10 +2,11 @@
 
 use super::codes::{self, FunctionType};
 use super::heading::Heading;
+use super::layout::Layout;
 use super::ordinate::{self, UnitSystem};
-use super::values::Layout;
 use crate::assemble::{self, Abscissa, Spectral, domain, to_si};
-use crate::{Options, missing};
+use crate::missing;
+use crate::options::Options;
 use num_complex::Complex64;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Finding, Meta, Record, Result, Scaling, Values, Window};

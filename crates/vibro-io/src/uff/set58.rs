@@ -20,19 +20,19 @@
 
 pub mod codes;
 mod heading;
+mod layout;
 mod ordinate;
 mod record;
 mod values;
 
-use super::Options;
-use super::uff::stream::Stream;
+use super::stream::Stream;
+use crate::options::Options;
 use heading::Heading;
 use vibro_record::{Error, Finding, Record, Result};
 
-pub(crate) use heading::KINDS;
 pub use heading::LINES;
+pub(crate) use layout::{KINDS, Layout};
 pub use ordinate::UnitSystem;
-pub(crate) use values::Layout;
 
 /// Reads the data set whose number `line` was taken last, with its closing delimiter. Where the header is cut
 /// short: the number of its lines, and a complaint.

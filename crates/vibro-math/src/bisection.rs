@@ -1,0 +1,83 @@
+//! Bisection: where between two arguments something ceases to hold.
+
+/// Halvings after which only rounding is left of an interval between numbers of one size: 52 binary digits,
+/// and eight for a border that is that much smaller than the interval.
+const TO_ROUNDING: usize = 60;
+
+/// What is left of the interval from `inside`, where `holds` is true, to `outside`, where it is not, after so
+/// many halvings: the last argument inside and the first one outside that were found. Either may be the
+/// larger. Ends early where no number lies between.
+///
+/// ```
+/// use vibro_math::bisected;
+/// let (below, above) = bisected(1.0, 2.0, 10, |x| x * x < 2.0);
+/// assert!(below * below < 2.0 && above * above >= 2.0 && above - below == 1.0 / 1024.0);
+/// ```
+pub fn bisected(
+    inside: f64,
+    outside: f64,
+    halvings: usize,
+    mut holds: impl FnMut(f64) -> bool,
+) -> (f64, f64) {
+    try_bisected(inside, outside, halvings, |x| Some(holds(x))).unwrap_or((inside, outside))
+}
+
+/// As [`bisected`]; `None` as soon as `holds` cannot tell.
+pub fn try_bisected(
+    mut inside: f64,
+    mut outside: f64,
+    halvings: usize,
+    mut holds: impl FnMut(f64) -> Option<bool>,
+) -> Option<(f64, f64)> {
+    for _ in 0..halvings {
+        let middle = f64::midpoint(inside, outside);
+        if middle == inside || middle == outside {
+            break;
+        }
+        if holds(middle)? {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    Some((inside, outside))
+}
+
+/// The place between `inside` and `outside` up to which `holds`, to rounding.
+///
+/// ```
+/// let root = vibro_math::border(1.0, 2.0, |x| x * x < 2.0);
+/// assert!((root - 2f64.sqrt()).abs() <= f64::EPSILON);
+/// ```
+pub fn border(inside: f64, outside: f64, holds: impl FnMut(f64) -> bool) -> f64 {
+    let (inside, outside) = bisected(inside, outside, TO_ROUNDING, holds);
+    f64::midpoint(inside, outside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn either_end_may_be_the_larger() {
+        // A power of two times the interval: no rounding.
+        assert_eq!(bisected(0.0, 1.0, 3, |x| x < 0.3), (0.25, 0.375));
+        assert_eq!(bisected(1.0, 0.0, 3, |x| x > 0.3), (0.375, 0.25));
+    }
+
+    #[test]
+    fn it_ends_where_no_number_lies_between() {
+        let mut calls = 0;
+        let (below, above) = bisected(1.0, 2.0, usize::MAX, |x| {
+            calls += 1;
+            x < 1.5
+        });
+        // 52 binary digits between 1 and 2, after each of which one end is another.
+        assert!(below.next_up() == above && calls == 52, "{below} {above} {calls}");
+    }
+
+    #[test]
+    fn what_cannot_be_told_ends_it() {
+        assert_eq!(try_bisected(0.0, 1.0, 20, |x| (x < 0.4).then_some(true)), None);
+    }
+}
