@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Largest relative difference in length between steps of one sweep, which a hand or a clock stops.
+/// Largest relative difference in length between steps of one sweep: a person or a timer stops each record.
 const LENGTH: f64 = 0.01;
 /// Least share of the strongest sine in the power of the force of a sweep step. A shaker distorts at
 /// resonance, but the sine stays the larger part.

@@ -50,11 +50,11 @@ impl Drawing {
     }
 }
 
-/// Pixels of the largest picture: four times a double column as high as wide at 1200 dots per inch, in memory
-/// 1.1 GB.
+/// Most pixels of a picture, 1.1 GB in memory: four squares of a double column's width at 1200 dots per inch.
 const MOST: u64 = 280_000_000;
 
-/// Pixels that are opaque or not there, as a file with its resolution where one is stated.
+/// PNG file of pixels that are fully opaque or fully transparent, with the resolution `dpi` if stated. Partly
+/// transparent pixels would need their colours divided by alpha.
 pub(super) fn encoded(pixmap: &Pixmap, dpi: Option<f64>) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, pixmap.width(), pixmap.height());

@@ -24,13 +24,14 @@ use crate::variables::{self, Content};
 use dialect::DIALECT;
 use vibro_record::{Error, Result};
 
+/// First bytes of an HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// What gives the variables of a file.
+/// Parser that returns the variables of a file by name.
 type Parse = fn(&[u8], &Options) -> Result<Vec<(String, Content)>>;
 
-/// What reads a MAT-file, or which one it is that is not read here; `None` for other files. Level 4 has no
-/// signature: it is found only in a `named` file.
+/// Parser for the level of a MAT-file, or as an error the name of a version without a parser; `None` for
+/// other files. Level 4 has no signature: it is tried only where `named`, for files that end in `.mat`.
 fn level(head: &[u8], named: bool) -> Option<std::result::Result<Parse, &'static str>> {
     const LEVEL_7: &str = "a MAT-file of version 7.3, which is HDF5";
     match head.get(124..128) {

@@ -18,7 +18,7 @@ pub const MOST_POINTS: usize = 1_000_000;
 pub struct Response {
     /// Point by point, the frequency rising.
     pub points: Vec<ResponsePoint>,
-    /// Where motions appear, vanish or change their verdict, the frequency rising.
+    /// Where motions appear, vanish, or change stability or admissibility, the frequency rising.
     pub changes: Vec<Change>,
 }
 
@@ -33,7 +33,7 @@ pub struct ResponsePoint {
     pub no_impact: Option<NoImpact>,
     /// Free motion without losses at this frequency, where there is one.
     pub backbone: Option<Orbit>,
-    /// Why there is no answer, where there is none.
+    /// Reason why this frequency has no motions, where it has none.
     pub refused: Option<String>,
 }
 
@@ -47,7 +47,7 @@ pub enum ChangeKind {
     Flip,
     /// Stability is lost or gained; a slow beat grows.
     NeimarkSacker,
-    /// The impact vanishes.
+    /// The impulse of the impact falls to zero.
     Grazing,
     /// The masses begin or cease to meet a second time.
     #[serde(rename = "second contact")]
@@ -79,10 +79,10 @@ pub struct Change {
 /// with one impact in `cycles` cycles; changes are located between the points to a millionth of their
 /// distance.
 ///
-/// A frequency at which an undamped mass resonates gives a point without motions that says so.
+/// A frequency at which an undamped mass resonates gives a point without motions, with the reason.
 ///
 /// # Errors
-/// If the frequencies are none, or a parameter is impossible at all of them.
+/// If the range of frequencies is invalid, or a parameter is impossible at all of them.
 pub fn response(
     rig: &Rig,
     excitation: &Excitation,
@@ -98,7 +98,7 @@ pub fn response(
     if let Some(ResponsePoint { frequency, .. }) =
         points.first().filter(|_| points.iter().all(|p| p.refused.is_some()))
     {
-        // The reason as it stands at the first.
+        // Returns the error of the first frequency.
         orbits_of(rig, &excitation.at_frequency(*frequency), cycles)?;
     }
     let solve = |frequency: f64| point(rig, excitation, frequency, cycles);
@@ -109,10 +109,10 @@ pub fn response(
     Ok(Response { points, changes })
 }
 
-/// Frequencies with equal distances, by their number.
+/// Equidistant frequencies in Hz, as a function of the index of the point.
 ///
 /// # Errors
-/// If the ends are none, or there are fewer than 2 or more than `most`.
+/// If the range is invalid, or there are fewer than 2 or more than `most` points.
 pub(crate) fn axis(from: f64, to: f64, points: usize, most: usize) -> Result<impl Fn(usize) -> f64 + Sync> {
     if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
         let expected = "finite frequencies above 0, the lower one first";
@@ -141,11 +141,14 @@ fn point(rig: &Rig, excitation: &Excitation, frequency: f64, cycles: u32) -> Res
     point
 }
 
-/// What a motion is at a frequency.
+/// Existence and stability of a motion at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Standing {
+    /// No solution.
     Gone,
+    /// A solution without a positive impulse.
     Parted,
+    /// The masses would pass through each other outside the impact.
     Passing,
     Unstable,
     Stable,
@@ -165,8 +168,8 @@ fn standing(orbit: Option<&Orbit>) -> Standing {
 /// Changes between two neighbouring points.
 fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> ResponsePoint) -> Vec<Change> {
     let mut changes = Vec::new();
-    // From the left, then what appears from the right; of a fold both motions are gone, the upper one tells
-    // it.
+    // From the left, then from the right for motions that appear. At a fold two motions vanish: only the
+    // upper one reports it.
     for (here, there) in [(a, b), (b, a)] {
         for orbit in &here.orbits {
             let next = orbit.continued(&there.orbits);
@@ -194,7 +197,7 @@ fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> Respons
     changes
 }
 
-/// The change of the standing of `orbit` on the way from the frequency `from` (Hz) to the point `to`.
+/// Locates the change of `orbit` between the frequency `from` (Hz) and the point `to`.
 fn locate(
     orbit: &Orbit,
     from: f64,
@@ -231,8 +234,8 @@ fn locate(
     Some(Change { frequency, kind, amplitude: here.peak_to_peak.map(|p| p / 2.0) })
 }
 
-/// Where between `near` and `far` it ceases to be the `same`, to a millionth of the way; `None` where that
-/// cannot be told on the way.
+/// Frequency in Hz between `near` and `far` at which `same` becomes false, by bisection to a millionth of
+/// their distance; `None` where `same` has no answer on the way.
 fn halved(mut near: f64, mut far: f64, mut same: impl FnMut(f64) -> Option<bool>) -> Option<f64> {
     for _ in 0..20 {
         let middle = f64::midpoint(near, far);
