@@ -7,8 +7,8 @@
 //!           variable: kind 15, size, then the same packed by zlib
 //! level 4   variable: type, rows, columns, complex or not, length of the name, name, real and imaginary part
 //! ```
-//! A numeric vector is a record, and so is each column of a matrix; what stands in structs and cell arrays is
-//! named as MATLAB writes it: `bearing.gs`, `run(2).v`, `data{1}.x`. Scalars and texts are notes on the
+//! A numeric vector is a record, and so is each column of a matrix. Variables in structs and cell arrays are
+//! named as MATLAB writes them: `bearing.gs`, `run(2).v`, `data{1}.x`. Scalars and texts are notes on the
 //! records of their struct. The abscissa comes from a vector `t` or `time` (`f`, `freq` or `frequency`) of
 //! the same length, or from scalars such as `fs`, `SampleRate`, `dt`, or `Tinterval` and
 //! `Tstart` ([`variables`]). The file knows no units, but a struct may state that of its vector (`Unit`).
