@@ -125,7 +125,7 @@ pub(super) enum Room {
     /// 3 % at both ends, so that markers are not cut.
     Margin,
     /// None, for the magnitudes of a waterfall: the axis begins at zero, or 60 dB below the largest value.
-    /// Below that, the noise of a hundred spectra behind each other would hide the lines.
+    /// Below that, the noise of a hundred stacked spectra would hide the lines.
     Floor,
     /// This fraction above the data. Below, 6 %, or a limit of zero where the smallest value is at most 0.4
     /// of the largest.

@@ -1,7 +1,7 @@
 //! Pictures as PNG (ISO/IEC 15948).
 //!
-//! Only the bundled font is used and nothing of the time or the machine is written, so equal drawings give
-//! equal bytes everywhere.
+//! Only the bundled font is used, and no date or machine is written: equal drawings give equal bytes
+//! everywhere.
 
 use crate::{Drawing, Image, canvas, font};
 use resvg::tiny_skia::{Color, FilterQuality, Pixmap, PixmapPaint, Transform};
@@ -63,7 +63,7 @@ pub(super) fn encoded(pixmap: &Pixmap, dpi: Option<f64>) -> Vec<u8> {
         let per_metre = (dpi / 0.0254).round() as u32;
         png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
     }));
-    // Line art and cells compress best as they are (clause 12.7 of the standard).
+    // Line art and cells compress best without a filter (clause 12.7 of the standard).
     encoder.set_deflate_compression(png::DeflateCompression::Level(4));
     encoder.set_filter(png::Filter::NoFilter);
     // Writing to memory does not fail.

@@ -78,8 +78,8 @@ mod tests {
     use crate::Reader;
     use vibro_record::Fact;
 
-    /// Findings on the channels of a phone record: three axes, and `last` of them, printed with `decimals`
-    /// decimals.
+    /// Findings on the four channels of a phone record: three axes, and what `last` computes from them.
+    /// Values are printed with `decimals` decimals.
     fn marked(decimals: usize, last: impl Fn([f64; 3]) -> f64) -> Vec<Vec<Finding>> {
         let row = |i: i32| {
             let t = f64::from(i) / 200.0;

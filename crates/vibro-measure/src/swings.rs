@@ -1,7 +1,7 @@
 //! Decides whether the peaks of a record are contacts or the ringing of a structure, for impacts, bounces and
 //! pulses alike.
 //!
-//! Nothing drives a free decay: the modes fitted behind its largest peak predict all later peaks. Each impact
+//! Nothing drives a free decay: the modes fitted after its largest peak predict all later peaks. Each impact
 //! begins a new motion, which the decay of an earlier impact does not predict.
 
 use crate::Estimate;
@@ -15,19 +15,19 @@ use vibro_record::{Axis, Error, Hint, Meta, Trace};
 /// Most modes of the decay: with more, the sum of sines would also fit evenly spaced pulses.
 const MODES: usize = 3;
 /// Largest residual of the modes at a peak of the decay, over the peak. The same limit holds for the RMS of
-/// all samples behind the largest peak.
+/// all samples after the largest peak.
 const LEFT: f64 = 0.5;
 /// Most samples that are fitted, an eighth of them before the largest value: the fit needs memory for eleven
 /// times as many.
 const STRETCH: usize = 1 << 20;
 
-/// Smallest undershoot behind a pulse and next overshoot, over its height, for ringing: those of damping
+/// Smallest undershoot after a pulse and next overshoot, over its height, for ringing: those of damping
 /// ratios up to 0.2.
 const BACK_AND_FORTH: [f64; 2] = [0.5, 0.25];
 /// Largest damping ratio of ringing: there the first undershoot is half of the peak.
 const DAMPED: f64 = 0.2;
 
-/// Error where a single peak is ringing: the signal swings back and forth behind it as wide as the peak. A
+/// Error where a single peak is ringing: the signal swings back and forth after it as wide as the peak. A
 /// blow may leave too few cycles to fit a decay. `height` counts from `baseline`; `flanks` are the positions
 /// at half of it, in samples.
 pub(crate) fn back_and_forth(
@@ -67,7 +67,7 @@ pub(crate) struct Swings {
 }
 
 impl Swings {
-    /// The free decay of `values`, whose baseline is 0, if it explains all peaks behind the largest value and
+    /// The free decay of `values`, whose baseline is 0, if it explains all peaks after the largest value and
     /// these are the majority. Noise peaks reach up to `reach`. `peaks` are ranges of samples; without any,
     /// the largest value is the peak.
     pub fn of(values: &[f64], rate: f64, peaks: &[Range<usize>], reach: f64) -> Option<Swings> {

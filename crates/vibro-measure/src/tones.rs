@@ -44,8 +44,8 @@ const ROUNDING: f64 = 1e-12;
 /// Smallest distance from half the sampling rate, in spectral lines. Nearer, a sine and its image are less
 /// than half a line apart and correlated as two close sines are.
 const IMAGE: f64 = 0.25;
-/// Noise around a line counts as coloured from this ratio on to white noise of the same variance, as
-/// amplitudes.
+/// Smallest ratio, as amplitudes, of the noise around a line to white noise of the same variance at which the
+/// noise is reported as coloured.
 const COLOURED: f64 = 1.5;
 /// Fewest and most lines on either side that give the noise at a sine; between these, half of its line
 /// number. Over that range 1/f² noise still changes threefold after the correction for 1/f.

@@ -124,7 +124,7 @@ impl Flight {
     }
 
     /// The same flight for masses that part from rest against each other. No contact is searched for while
-    /// the gap is known to open: there its rounding error could pass for a contact.
+    /// the gap is known to open: the rounding error of so small a gap could pass for a contact.
     ///
     /// With g = ġ = 0 at the start and a bound M₄ on the fourth derivative, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24:
     /// above 0 up to its root. After a release g̈ is 0 as well: the gap opens like t³ and stays below its
@@ -162,7 +162,7 @@ impl Flight {
         State { x1, v1, x2, v2 }
     }
 
-    /// Gap in m at `t`; negative where nothing stops the masses from passing through each other.
+    /// Gap in m at `t`; negative where the flight, continued past a contact, lets the masses overlap.
     pub fn gap(&self, t: f64) -> f64 {
         let [[x1, ..], [x2, ..]] = self.series(t);
         self.gap + x2 - x1

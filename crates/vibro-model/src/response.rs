@@ -69,7 +69,7 @@ impl ChangeKind {
 pub struct Change {
     /// Frequency in Hz.
     pub frequency: f64,
-    /// What happens there.
+    /// Kind of the change.
     pub kind: ChangeKind,
     /// Half the peak-to-peak values of x₁ and x₂ in m there.
     pub amplitude: [f64; 2],
@@ -259,7 +259,7 @@ mod tests {
         let of = |kind: ChangeKind| {
             found.changes.iter().filter(|c| c.kind == kind).map(|c| c.frequency / unit).collect::<Vec<_>>()
         };
-        // Independent number: A = Δ at ν = 2.168715614919, where the smaller root passes through zero, too.
+        // From an independent calculation: A = Δ at ν = 2.168715614919, where the smaller root is zero too.
         let step = 0.4 / 399.0;
         for kind in [ChangeKind::NoImpact, ChangeKind::Grazing] {
             let near: Vec<_> =
@@ -304,14 +304,15 @@ mod tests {
             let orbit = orbits_of(&rig, &sine.at_frequency(flip.frequency), 1).unwrap().orbits.remove(0);
             let nearest =
                 orbit.multipliers.unwrap().iter().map(|z| (z + 1.0).norm()).fold(f64::INFINITY, f64::min);
-            // Frequency to 1e-6 of 0.01 Hz, multipliers change by some tens a Hz.
+            // Located to 1e-6 of 0.01 Hz; multipliers change by some tens per Hz.
             assert!(nearest < 1e-5, "{nearest}");
         }
     }
 
     #[test]
     fn impulses_have_their_gap_without_motions() {
-        // Independent: no one-impact orbit for F = 0.009 N s between ν ≈ 1.17 and 1.88 (R = 0.7).
+        // From an independent calculation: F = 0.009 N s and R = 0.7 allow no one-impact orbit from ν ≈ 1.17
+        // to 1.88.
         let rig = Rig::thesis();
         let unit = rig.natural_frequencies()[0];
         let train = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 1.0 });

@@ -106,8 +106,8 @@ pub(crate) fn coherence_plot(f: &[f64], coherence: &[f64], ink: Ink) -> Plot {
         .with(Series::line("", f, coherence).ink(ink).stroke(Stroke::Solid))
 }
 
-/// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below it only
-/// fills the frame.
+/// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below that
+/// the phase is noise that fills the frame.
 pub(crate) fn phase_plot(
     f: &[f64],
     values: impl Iterator<Item = Complex64>,

@@ -47,7 +47,7 @@ const CLEAN: usize = 16;
 const ENDS: f64 = 2.3;
 /// Expected height over the noise limit from which the next impact should be heard.
 const HEARD: f64 = 3.0;
-/// Factor of the best evidence over that of a rival from which the rival is ruled out.
+/// Smallest ratio of the best evidence to that of a rival at which the rival is ruled out.
 pub const ODDS: f64 = 20.0;
 
 /// The record of a fall.
@@ -251,7 +251,7 @@ impl Pairs<'_> {
     }
 
     /// Log-likelihood that `i` is the release and `j` the only impact that is heard. All R are equally likely
-    /// on a logarithmic scale. The second impact is too quiet, merges with the first, or lies behind the end
+    /// on a logarithmic scale. The second impact is too quiet, merges with the first, or lies after the end
     /// of the record.
     fn fall(&self, i: usize, j: usize) -> f64 {
         let (Some(full), Some(release)) = (self.heard.full, self.release(i, j)) else {

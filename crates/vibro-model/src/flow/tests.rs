@@ -213,7 +213,7 @@ fn hairbreadth_misses_and_touches_are_told_apart() {
             for sign in [1.0, -1.0] {
                 let moved = rig.gap - smallest + sign * distance;
                 let flight = flight(&rig, &steady, moved, &start, phase);
-                // The duration ends at the last sample, at least ten samples behind the smallest gap.
+                // The duration ends at the last sample, at least ten samples after the smallest gap.
                 let found = first_contact(&flight, f64::from(last) * dt);
                 assert_eq!(found.is_some(), sign < 0.0, "{sign}·1e-{exponent} m: {found:?}");
                 if let Some(found) = found {

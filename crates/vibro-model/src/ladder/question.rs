@@ -75,7 +75,7 @@ pub struct Answer {
     pub value: [f64; 2],
     /// Standard errors of the values.
     pub spread: [f64; 2],
-    /// Whether the simulated motion had settled, or has steady means. Else the answer means nothing.
+    /// Whether the simulated motion had settled, or has steady means. Else the answer is not reliable.
     pub steady: bool,
 }
 

@@ -258,12 +258,12 @@ fn what_parabolas_leave_in_common_is_in_the_uncertainty() {
         groups(&mut all, &residuals, 5, 30, &options(Some((0.14, 0.42))), &Offset { value: 0.0, std: None });
     let [group] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!(group.findings.iter().map(|f| f.code.as_ref()).collect::<Vec<_>>(), ["drill-lack-of-fit"]);
-    // The contact is 5 samples behind the end of 40: x = 1 + 2·5/40 = 1.25.
+    // The contact is 5 samples after the end of 40: x = 1 + 2·5/40 = 1.25.
     let bias = 0.05 * 7f64.sqrt() * 0.5 * 1.25 * (5.0 * 1.25 * 1.25 - 3.0);
     let near = |std: Option<f64>, expected: f64| (std.unwrap() / expected - 1.0).abs() < 0.02;
     assert!(group.before.std.unwrap() < 0.001 && near(group.after.std, bias), "{group:?} {bias}");
     assert!(near(group.energy_given.as_ref().unwrap().std, 0.14 * 1.2 * bias));
-    // R = (v − v′)/3 − v′ over v.
+    // R = ((v − v′)/3 − v′)/v, the ratio of the masses being 1/3.
     assert!(near(group.restitution.as_ref().unwrap().std, (1.0 + 1.0 / 3.0) / 6.0 * bias));
     assert_eq!(group.phase.std, None);
 }
