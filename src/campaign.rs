@@ -1,10 +1,10 @@
-//! `campaign.toml`: rig, files, what the instruments stored, what to compute.
+//! `campaign.toml`: rig, measured files, settings of the instruments, and what to compute.
 //!
 //! ```toml
 //! name = "Two-mass rig on the shaker"
 //! out = "results"                 # folder for results, beside this file
 //!
-//! [rig]                           # keys of a rig file; what is left out is the thesis' rig
+//! [rig]                           # keys of a rig file; a missing key takes the thesis rig's value
 //! gap = 1e-3
 //! restitution = 0.97
 //!
@@ -53,8 +53,7 @@ use toml::de::DeTable;
 /// Folder for results where none is named.
 const RESULTS: &str = "results";
 
-/// A campaign as its file has it: what holds for all records. [`crate::analysis`] reads the records
-/// themselves.
+/// The part of a campaign file that holds for all records. [`crate::analysis`] reads the tables of records.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Campaign {
@@ -66,16 +65,17 @@ pub struct Campaign {
     pub out: Option<PathBuf>,
     /// The rig; needed for an overlay.
     pub rig: Option<Rig>,
-    /// What drives it.
+    /// The excitation of the rig.
     pub excitation: Option<Drive>,
-    /// How the masses' contact gives way; left out, its stiffness is not known.
+    /// Contact law of the masses; without it the contact stiffness is unknown.
     pub contact: Option<ContactKeys>,
     /// How the overlay's predictions are made.
     pub model: ModelEntry,
-    /// Parameters to be found from the responses.
+    /// Parameters to be fitted to the responses.
     pub fit: FitEntry,
     /// What to compute, and how.
     pub compute: Compute,
+    /// Number of tables of records.
     #[serde(skip)]
     sections: usize,
     #[serde(skip)]
@@ -88,24 +88,25 @@ pub struct Campaign {
     faults: Arc<Vec<Fault>>,
 }
 
-/// A table that cannot be. It is left out, and the others are answered.
+/// A table with an error. It is left out, and the other tables are analysed.
 #[derive(Debug)]
 pub struct Fault {
-    /// Its section.
+    /// Section of the table, such as `sweep`.
     pub(crate) section: &'static str,
-    /// Its name for people.
+    /// Name of the table in messages.
     pub(crate) name: String,
-    /// Where it stands, and its file.
+    /// Position of the table in the text, and its file.
     pub(crate) place: (usize, Option<PathBuf>),
-    /// What is wrong, with its line.
+    /// The error, which points at its line.
     pub error: Error,
 }
 
 impl Campaign {
-    /// Reads a campaign file whose records stand in these sections, and checks what holds for all of them.
+    /// Reads a campaign file and checks the tables that hold for all records. `sections` are the names of the
+    /// tables of records.
     ///
     /// # Errors
-    /// If it is not TOML, has an unknown key, or a value that cannot be; each points at its line.
+    /// If the file is not TOML, or has an unknown key or an invalid value; each error points at its line.
     pub fn from_path(within: &Folder, path: &Path, sections: &[&str]) -> Result<Campaign> {
         let other = |found: &str, expected: &str| Error::input(Place::file(path), found, expected);
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) || within.is_folder(path) {
@@ -133,7 +134,7 @@ impl Campaign {
         Campaign::parse(within, path, text, sections)
     }
 
-    /// The text of a campaign, as if it stood in a file.
+    /// Reads the text of a campaign as if it were the file `path`.
     ///
     /// # Errors
     /// As [`Campaign::from_path`].
@@ -162,15 +163,15 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// The whole file.
+    /// All tables of the file.
     fn table(&self) -> Result<DeTable<'_>> {
         locate::written(&self.text, &[]).parse().map_err(|e| e.in_file(&self.path))
     }
 
-    /// What it states but for these sections, without comments and blanks.
+    /// The tables outside the sections `left_out`, without comments and blanks.
     ///
     /// # Errors
-    /// If it is no TOML.
+    /// If the text is not TOML.
     pub(crate) fn stated_without(&self, left_out: impl Fn(&str) -> bool) -> Result<String> {
         let written = locate::written(&self.text, &[]);
         let mut all: toml::Table = written.read(&self.table()?, 0..0)?;
@@ -178,18 +179,18 @@ impl Campaign {
         Ok(format!("{all:?}"))
     }
 
-    /// The comment above a table that cannot run yet.
+    /// Comment above a proposed table that lacks values.
     pub(crate) const FILL_IN: &str =
         "Fill in what is missing and remove the # in front of the table and its keys.";
 
-    /// What its comments leave out: tables that lack a value, and files that were not used.
+    /// Findings on tables in comments, which lack a value, and on files that a proposal did not use.
     pub(crate) fn commented(&self) -> Vec<Finding> {
         let lines: Vec<&str> = self.text.lines().collect();
         let comment = |line: &&str| line.strip_prefix('#').map(|text| text.trim_start().to_owned());
-        // Of a table in a comment, keys that need not be stated are comments themselves.
+        // In a table in a comment, optional keys are comments of their own (`##`) and are skipped.
         let below = |i: usize| lines[i..].iter().map_while(comment).filter(|text| !text.starts_with('#'));
         let above = |i: usize, n: usize| comment(lines.get(i.checked_sub(n)?)?);
-        // Why its records give no answer stands between what they are and the line above the table.
+        // The lines above a refused table: its description, the reason of the refusal, then `FILL_IN`.
         let refused =
             |i: usize| above(i, 1).filter(|text| text == Campaign::FILL_IN).and(above(i, 3)).and(above(i, 2));
         let table = |i: usize| {
@@ -209,7 +210,7 @@ impl Campaign {
             let lacking = keys.iter().filter(|(_, value)| value.is_empty());
             let lacking: Vec<&str> = lacking.map(|(key, _)| key.as_str()).collect();
             let found = Finding::note("table-in-comment").about(file.unwrap_or(&head));
-            // One that was only proposed has no lines to look at.
+            // A proposal that is no file has no line numbers.
             let found = if self.is_file() { found.count("line", i + 1) } else { found };
             Some(match refused(i) {
                 Some(why) => found.name("why", why.trim_end_matches('.')),
@@ -225,17 +226,17 @@ impl Campaign {
         (0..lines.len()).filter_map(table).chain(unused).collect()
     }
 
-    /// The same without the tables that cannot be.
+    /// The same campaign without the tables that have errors.
     pub(crate) fn without(self, faults: Vec<Fault>) -> Campaign {
         Campaign { faults: Arc::new(faults), ..self }
     }
 
-    /// The tables that cannot be.
+    /// The tables with errors.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
     }
 
-    /// Its text.
+    /// Text of the campaign file.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -245,17 +246,17 @@ impl Campaign {
         &self.path
     }
 
-    /// Folder of the campaign file, to which its names are relative.
+    /// Folder of the campaign file, to which file names are relative.
     pub fn folder(&self) -> &Path {
         self.folder.root()
     }
 
-    /// The same, and whether names may lead outside it.
+    /// The same folder with its access rule: whether file names may lead outside it.
     pub fn within(&self) -> &Folder {
         &self.folder
     }
 
-    /// Whether it stands in a file; else it was proposed.
+    /// Whether the campaign is a file; else it is a proposal.
     pub fn is_file(&self) -> bool {
         self.folder.is_file(&self.path)
     }
@@ -263,11 +264,11 @@ impl Campaign {
     /// Folder for results.
     pub fn out(&self) -> PathBuf {
         let out = self.folder().join(self.out.as_deref().unwrap_or(Path::new(RESULTS)));
-        // Without `.` between its parts.
+        // Collecting the components drops `.` between them.
         out.components().collect()
     }
 
-    /// Whether it asks for nothing.
+    /// Whether the campaign has no table of records.
     pub fn is_empty(&self) -> bool {
         self.sections == 0
     }
@@ -291,7 +292,7 @@ impl Campaign {
         Ok(())
     }
 
-    /// Keys of the rig that are not given and were taken from the thesis' rig.
+    /// Rig keys that the file does not state; they take the values of the thesis' rig.
     pub(crate) fn rig_left_out(&self) -> Vec<&'static str> {
         let table = self.table().unwrap_or_default();
         let given = |key: &&str| table_of(&table, "rig").is_none_or(|rig| rig.contains_key(*key));
@@ -306,10 +307,10 @@ impl Campaign {
         self.folder.path(name).map_err(|e| self.fault(entry, e.setting(key)))
     }
 
-    /// Path of a file that a table names under a key, and that is there.
+    /// Path of an existing file that a table names under a key.
     ///
     /// # Errors
-    /// If it leads outside the folder; if it does not exist.
+    /// If it leads outside the folder or does not exist.
     pub(crate) fn file<K>(&self, entry: &Entry<K>, key: &'static str, name: &Path) -> Result<PathBuf> {
         let path = self.path_of(entry, key, name)?;
         if self.folder.exists(&path) {
@@ -324,7 +325,7 @@ impl Campaign {
     }
 }
 
-/// A table of a campaign.
+/// The table of this name; `None` where the key is missing or is no table.
 fn table_of<'a>(all: &'a DeTable<'a>, name: &str) -> Option<&'a DeTable<'a>> {
     all.get(name)?.get_ref().as_table()
 }

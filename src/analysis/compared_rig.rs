@@ -1,4 +1,4 @@
-//! The model that measurements were compared with.
+//! The rig that measurements were compared with, and the start values of its sliders in the report.
 
 use crate::compare::{Overlay, Pair};
 use crate::model::Rig;
@@ -10,11 +10,12 @@ use serde::{Deserialize, Serialize};
 pub struct ComparedRig {
     /// The rig.
     pub rig: Rig,
-    /// What its sliders begin with, where there is something to move.
+    /// Start values of its sliders; `None` where the overlay has no range of frequencies.
     pub sliders: Option<Sliders>,
 }
 
-/// What the sliders of a rig begin with, over what was measured. The page reads it by these names.
+/// Start values of the sliders, and the measured points of the same plot. The script of the page reads the
+/// fields by these names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Sliders {
     rig: Rig,
@@ -27,14 +28,14 @@ pub struct Sliders {
     /// Lowest and highest frequency in Hz.
     from: f64,
     to: f64,
-    /// Ends in mm of the axis of amplitudes.
+    /// Lower and upper limit of the amplitude axis in mm.
     low: f64,
     high: f64,
-    /// Sweeps of one level of force.
+    /// Measured sweeps at one force level.
     measured: Vec<Points>,
 }
 
-/// A measured sweep below the sliders.
+/// A measured sweep in the plot of the sliders.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Points {
     name: String,
@@ -48,10 +49,10 @@ struct Points {
 }
 
 impl Sliders {
-    /// Over the first level of force of an overlay; `None` where it has no range of frequencies.
+    /// Start values from the first force level of an overlay; `None` where it has no range of frequencies.
     pub fn of(rig: &Rig, overlay: &Overlay, stiffness: Option<f64>) -> Option<Sliders> {
         let level = overlay.levels.first()?;
-        let of = |name: &String| {
+        let points = |name: &String| {
             let pairs: Vec<&Pair> = overlay.pairs.iter().filter(|pair| pair.sweep == *name).collect();
             let first = pairs.first()?;
             Some(Points {
@@ -62,7 +63,7 @@ impl Sliders {
                 y: pairs.iter().map(|pair| 1e3 * pair.measured.value).collect(),
             })
         };
-        let measured: Vec<Points> = level.sweeps.iter().filter_map(of).collect();
+        let measured: Vec<Points> = level.sweeps.iter().filter_map(points).collect();
         let all = || measured.iter().flat_map(|sweep| sweep.x.iter().zip(&sweep.y));
         let (frequency, largest) = all().max_by(|a, b| a.1.total_cmp(b.1))?;
         let from = all().map(|(x, _)| *x).fold(f64::INFINITY, f64::min);

@@ -88,7 +88,7 @@ pub struct Keys {
     pub exposure: Option<f64>,
 }
 
-/// What a key without a default says, and how a value of it is written.
+/// Meaning of a key without a default, and an example of its value.
 fn expected(key: &str) -> (&'static str, &'static str) {
     match key {
         "velocity" => ("a channel, by name or number", "1"),
@@ -104,12 +104,12 @@ fn expected(key: &str) -> (&'static str, &'static str) {
     }
 }
 
-/// The value of a key that has no default.
+/// The value of a key that has no default, or the error that it is missing.
 fn needed<T>(key: &'static str, value: Option<T>) -> Result<T> {
     value.ok_or_else(|| missing(&[key], &[]))
 }
 
-/// The complaint that values are missing of a file with these channels.
+/// Error that these keys are missing; the channels of the file are listed to choose from.
 fn missing(keys: &[&'static str], channels: &[Header]) -> Error {
     let one = |(i, header): (usize, &Header)| format!("{} {} [{}]", i + 1, header.name, header.unit);
     let list = channels.iter().enumerate().map(one).collect::<Vec<_>>().join(", ");
@@ -127,7 +127,7 @@ fn missing(keys: &[&'static str], channels: &[Header]) -> Error {
     keys.iter().fold(error, |error, key| error.set(key, value(key)))
 }
 
-/// A drill names its channels, and what they measure, by keys of its own.
+/// Refuses the general keys `channel` and `calibration`: a drill has keys of its own for them.
 fn own_channels(channel: &Channel) -> Result<()> {
     let stated = [("channel", channel.channel.is_some()), ("calibration", channel.calibration.is_some())];
     stated.into_iter().find(|(_, stated)| *stated).map_or(Ok(()), |(key, _)| {
@@ -140,8 +140,8 @@ fn own_channels(channel: &Channel) -> Result<()> {
 }
 
 impl Keys {
-    /// Whether no key is missing that has no default, of a file with these channels: where none is chosen
-    /// yet, one of several may be a reference.
+    /// Checks that no key without a default is missing. In a file of several `channels` one may be the
+    /// reference, so its keys are required too.
     fn complete(&self, channels: &[Header]) -> Result<()> {
         let (pulses, edge) = (self.pulses_per_turn.is_some(), self.edge.is_some());
         let reference = self.reference.is_some();
@@ -159,13 +159,13 @@ impl Keys {
         if keys.is_empty() { Ok(()) } else { Err(missing(&keys, channels)) }
     }
 
-    /// Whether no key is missing that has no default, none is impossible, and none contradicts another.
+    /// Checks that no key without a default is missing, no value is impossible, and no keys contradict.
     ///
     /// # Errors
-    /// With the key at fault.
+    /// Names the key at fault.
     pub fn usable(&self) -> Result<()> {
         self.complete(&[])?;
-        // A beam from which nothing is seen leaves its own record out.
+        // Checked with a beam along the axis: an angle that sees no motion is refused with its record.
         self.options(Beam::new(0.0, AngleOrigin::Axis)?)?.check()?;
         if self.low_pass.is_some() && self.smoothing.is_some() {
             return Err(Error::usage("both low_pass and smoothing", "one of them").setting("smoothing"));
@@ -173,7 +173,8 @@ impl Keys {
         Ok(())
     }
 
-    /// Without a sensitivity the file must say that the channel is a velocity.
+    /// Options of the measurement. Without a sensitivity 1 is used; [`Keys::measure`] then requires a channel
+    /// that is a velocity.
     fn options(&self, beam: Beam) -> Result<DrillOptions> {
         let sensitivity = self.sensitivity.unwrap_or(1.0);
         let plain = if self.reference.is_some() {
@@ -204,8 +205,8 @@ impl Keys {
         })
     }
 
-    /// The drill of a record, with its figures and tables; `each` turn of the average is handed out as it
-    /// comes.
+    /// Measures the drill of a record, with figures and tables. `each` is called with every turn of the
+    /// average in order.
     ///
     /// # Errors
     /// If a file cannot be read, the record allows no answer, or `each` fails.

@@ -1,4 +1,4 @@
-//! A campaign at work: what is asked of its records, and what they gave.
+//! The run of a campaign: measures the records and collects their answers.
 
 use super::answer::{Answer, left_out, unwritten};
 use super::headline::of_record;
@@ -16,24 +16,25 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
-/// A campaign at work: what its analyses ask, and where they put what they find.
+/// The run of a campaign. Analyses read their settings from it and add their answers to it.
 pub struct Job<'a> {
     /// The campaign.
     pub campaign: &'a Campaign,
+    /// Answers of the last run.
     kept: &'a AnswerCache,
     /// All kinds of records.
     kinds: &'static [AnalysisKind],
-    /// Told how far it is.
+    /// Receives the progress of the run.
     pub progress: &'a dyn Progress,
     /// Title of the report.
     pub title: String,
     /// All answers, long tables as details.
     pub(super) found: Answer,
-    /// How many records answered.
+    /// Number of records with an answer.
     pub(super) answers: usize,
-    /// How many answers are those of the last run.
+    /// Number of answers that were taken from the last run.
     pub(super) again: usize,
-    /// The first record that could not be read.
+    /// Error of the first record that could not be read.
     pub(super) failed: Option<Error>,
 }
 
@@ -49,7 +50,8 @@ impl<'a> Job<'a> {
         Job { campaign, kept, kinds, progress, title, found, answers, again, failed }
     }
 
-    /// What a record gave; `None` and a finding where it gave none: one bad record loses only itself.
+    /// The result of a record. On an error `None`, with a finding that this record is left out: the other
+    /// records are still measured.
     pub fn found<T>(&mut self, record: &str, found: Result<T>) -> Option<T> {
         found.map_err(|error| self.leave_out(record, error)).ok()
     }
@@ -70,8 +72,8 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Adds the answers of records to the list of their kind. Figures and files get the mark of their record
-    /// behind their name.
+    /// Adds the answers of records to the list of their kind. The mark of a record is appended to the names
+    /// of its figures and files.
     pub fn answer(&mut self, kind: &str, records: Vec<AnsweredRecord>) {
         self.answers += records.len();
         let mut list = Vec::new();
@@ -88,7 +90,8 @@ impl<'a> Job<'a> {
         self.found.result.insert(kind.to_owned(), Value::Array(list));
     }
 
-    /// Shows what an answer has and gives its result; a mark stands behind the names of figures and files.
+    /// Adds an answer to the report and returns its result values. `mark` is appended to the names of figures
+    /// and files.
     pub(super) fn show(&mut self, name: &str, mark: &str, answer: Answer) -> Map<String, Value> {
         let Answer {
             mut result,
@@ -126,7 +129,8 @@ impl<'a> Job<'a> {
         result
     }
 
-    /// Answers a section as a whole, or as the last run did. One that fails as a whole loses only itself.
+    /// Measures a section as a whole, or takes its answer from the last run. A section that fails is left
+    /// out, and the others are measured.
     ///
     /// # Errors
     /// If a file cannot be found.
@@ -153,8 +157,8 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// All that records of these sections rest on: their files, and what the campaign states but for other
-    /// records.
+    /// Digest of all inputs of these sections, and their files. Inputs are the files and all tables of the
+    /// campaign except those of other records.
     fn rests_on(&self, sections: &[&str]) -> Result<(Digest, Vec<PathBuf>)> {
         let (these, others): (Vec<&AnalysisKind>, Vec<&AnalysisKind>) =
             self.kinds.iter().partition(|kind| sections.contains(&kind.section));
@@ -164,7 +168,7 @@ impl<'a> Job<'a> {
         Ok((self.digest([sections.concat(), stated], &files), files))
     }
 
-    /// The digest of words, and of names and contents of files; what cannot be read is not kept.
+    /// Digest of words, and of names and contents of files. A file that cannot be read counts by name only.
     fn digest(&self, words: impl IntoIterator<Item = String>, files: &[PathBuf]) -> Digest {
         let words = words.into_iter().map(String::into_bytes);
         let of_file = |file: &PathBuf| {
@@ -175,8 +179,8 @@ impl<'a> Job<'a> {
         digest(words.chain(files))
     }
 
-    /// Measures the record of each table by itself. One whose file is not there or cannot be read loses only
-    /// itself.
+    /// Measures the record of each table separately. A record whose file is missing or cannot be read is left
+    /// out, and the others are measured.
     ///
     /// # Errors
     /// If the campaign cannot be read.
@@ -190,7 +194,7 @@ impl<'a> Job<'a> {
         for entry in entries {
             let name = name_of(entry);
             let Some(mut files) = self.found(&name, K::files(self.campaign, entry)) else { continue };
-            // Numbers alone have no file.
+            // A table of numbers alone has no file.
             let path = files.first().filter(|_| entry.file.is_some()).cloned().unwrap_or_default();
             let own = [K::SECTION.to_owned(), name.clone(), self.campaign.stated_in(entry)];
             let mut on = self.digest(own, &files);
@@ -240,7 +244,7 @@ impl<'a> Job<'a> {
         self.campaign.file(entry, "file", file)
     }
 
-    /// Measures the file of a table; the progress is that of its samples.
+    /// Measures the file of a table. Progress counts the samples that are read.
     ///
     /// # Errors
     /// As `measure`.
@@ -265,15 +269,15 @@ impl<'a> Job<'a> {
     }
 }
 
-/// An answer with the record that gave it.
+/// The answer of a record.
 #[derive(Debug)]
 pub struct AnsweredRecord {
-    /// Name for people.
+    /// Name of the record in the report.
     pub name: String,
     /// The file, or a list of files.
     pub file: Value,
-    /// What stands behind the names of its figures and files.
+    /// Suffix of the names of its figures and files.
     pub mark: String,
-    /// What was found.
+    /// The answer.
     pub answer: Answer,
 }

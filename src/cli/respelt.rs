@@ -8,7 +8,7 @@ use crate::record::without_unit;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Command, old spelling, new spelling.
+/// Renamed options: command, old spelling, new spelling.
 const OLD: [(&str, &str, &str); 8] = [
     ("drill", "--from", "--beam-from"),
     ("drill", "--fit", "--fit-duration"),
@@ -20,20 +20,20 @@ const OLD: [(&str, &str, &str); 8] = [
     ("model choose", "--noise", "--noise-floor"),
 ];
 
-/// Commands that take several files. For others a pattern must match a single file. The name of a file to
-/// write is never expanded.
+/// Commands that take several files. For others a pattern must match a single file. `convert` takes no
+/// pattern, since one of its words names the file to write.
 const SEVERAL: [&str; 2] = ["info", "restitution"];
 
-/// Files that match a pattern, in the order of their numbers; a word without a match is kept. As in a shell,
-/// a hidden file needs an explicit dot.
+/// Files that match a pattern, in numerical order (`run2` before `run10`). A word without a match is kept. As
+/// in a shell, a hidden file needs an explicit dot.
 fn named(word: OsString, command: &str) -> Vec<OsString> {
     let pattern =
         word.to_str().filter(|w| w.contains(['*', '?']) && !w.starts_with('-') && !Path::new(w).exists());
     let any = Folder::default().allow_outside(true);
     let files = pattern.and_then(|pattern| matching(&any, Path::new(&pattern.replace('[', "[[]"))).ok());
     let files = files.unwrap_or_default();
-    let meant = files.len() == 1 && command != "convert" || files.len() > 1 && SEVERAL.contains(&command);
-    if meant { files.into_iter().map(PathBuf::into_os_string).collect() } else { vec![word] }
+    let expands = files.len() == 1 && command != "convert" || files.len() > 1 && SEVERAL.contains(&command);
+    if expands { files.into_iter().map(PathBuf::into_os_string).collect() } else { vec![word] }
 }
 
 /// Whether standard input is named more than once; it can be read only once.

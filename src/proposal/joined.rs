@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Largest relative difference in length between steps of one sweep, which a hand or a clock stops.
+/// Largest relative difference in length between steps of one sweep: a person or a timer stops each record.
 const LENGTH: f64 = 0.01;
 /// Least share of the strongest sine in the power of the force of a sweep step. A shaker distorts at
 /// resonance, but the sine stays the larger part.
@@ -56,7 +56,7 @@ pub(super) fn all(series: Vec<FileSeries>, folder: &Folder, kept: &AnswerCache) 
 }
 
 /// Sweeps made of several series of steps. Frequencies decide: a series that covers the frequencies of a
-/// sweep again is a sweep of its own; one with other frequencies, or with a few, belongs to it.
+/// sweep again is a sweep of its own. One with other frequencies, or with a few files, belongs to the sweep.
 fn sweeps(trial: &Trial<'_>, members: &[&FileSeries], force: usize) -> Vec<(Vec<usize>, FileSeries)> {
     let n = |k: usize| members[k].files.len();
     let Some(base) = (0..members.len()).rev().max_by_key(|k| n(*k)) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! Axes: what a caller asks for, and what it becomes once the data are known.
+//! Axes: the specification by the caller, and the axis with limits once the data are known.
 
 use crate::{Ticks, ticks};
 use serde::{Deserialize, Serialize};
@@ -7,12 +7,12 @@ use vibro_record::units::notation::{self, engineering, labelled, scaled_unit};
 /// How values are laid out along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Scale {
-    /// In proportion.
+    /// Linear.
     #[default]
     Linear,
-    /// By logarithm; negative values are missing there, zero lies below every limit.
+    /// Logarithmic; a negative value is not drawn, zero lies below every limit.
     Log,
-    /// By level: the data are amplitudes and are drawn as 20 lg(|value|/reference).
+    /// Level in dB: the data are amplitudes, drawn as 20 lg(|value|/reference).
     Db {
         /// Amplitude of 0 dB, in the unit of the data.
         reference: f64,
@@ -29,13 +29,14 @@ impl Scale {
         }
     }
 
-    /// The same of a lower end, which zero bounds where amplitudes have levels or logarithms.
+    /// As [`Scale::of`], for the lower end of a band: on a logarithmic or level scale a negative end counts
+    /// as zero.
     pub(super) fn of_low(self, value: f64) -> f64 {
         self.of(if value < 0.0 && self != Scale::Linear { 0.0 } else { value })
     }
 }
 
-/// What an axis shows: label, unit, scale and, where wanted, limits.
+/// Specification of an axis: label, unit, scale and optional limits.
 ///
 /// Data are given in SI units; a linear axis finds its own prefix, so that displacements of 0.002 m are drawn
 /// as 2 with the label `Displacement (mm)`.
@@ -80,7 +81,7 @@ impl AxisSpec {
     }
 }
 
-/// Range of data on an axis' scale, from which limits are found.
+/// Range of the data on an axis' scale, from which its limits are computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
     lo: f64,
@@ -97,8 +98,8 @@ impl Extent {
         extent
     }
 
-    /// Widens by values on the scale; what is not finite, or so large that a difference of two could
-    /// overflow, is left out.
+    /// Widens the range by values on the scale. Ignores values that are not finite, or beyond 1e300, where a
+    /// difference of two could overflow.
     pub(super) fn include(&mut self, values: impl IntoIterator<Item = f64>) {
         for u in values.into_iter().filter(|u| u.abs() <= 1e300) {
             self.lo = self.lo.min(u);
@@ -106,7 +107,7 @@ impl Extent {
         }
     }
 
-    /// The range of both.
+    /// Smallest range that contains both.
     pub(super) fn joined(self, other: Extent) -> Extent {
         Extent { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
@@ -116,18 +117,18 @@ impl Extent {
     }
 }
 
-/// Room left beyond the data, in parts of their range.
+/// Space between the data and the ends of the axis, as a fraction of the data's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Room {
     /// None: the axis ends with the data.
     Tight,
-    /// Some at both ends, for markers.
+    /// 3 % at both ends, so that markers are not cut.
     Margin,
-    /// None, and the lower limit is a floor on which magnitudes stand: zero, or 60 dB under the largest,
-    /// since noise on a hundred spectra behind each other would hide all else.
+    /// None, for the magnitudes of a waterfall: the axis begins at zero, or 60 dB below the largest value.
+    /// Below that, the noise of a hundred stacked spectra would hide the lines.
     Floor,
-    /// This much above; below some, or none if the axis can begin at zero, which it does where the data come
-    /// near.
+    /// This fraction above the data. Below, 6 %, or a limit of zero where the smallest value is at most 0.4
+    /// of the largest.
     Above(f64),
 }
 
@@ -142,12 +143,11 @@ pub(super) struct Axis {
     degrees: bool,
 }
 
-/// The range of levels shown where the limits are found from the data: what lies deeper is noise or an exact
-/// zero.
+/// Range in dB of a level axis with limits from the data: lower levels are noise or an exact zero.
 const LEVELS: f64 = 100.0;
 
 impl Axis {
-    /// Settles the limits; `None` where neither data nor limits say anything.
+    /// Axis with limits, as specified or from the data; `None` where a limit has neither.
     pub(super) fn new(spec: &AxisSpec, data: Extent, room: Room) -> Option<Axis> {
         let given = |end: f64| {
             let u = if spec.scale == Scale::Log { end.log10() } else { end };
@@ -169,24 +169,25 @@ impl Axis {
         Some(Axis { lo, hi, title: labelled(&spec.label, &unit), scale: spec.scale, power, degrees })
     }
 
-    /// Where a value lies: 0 at the lower limit, 1 at the upper one. NaN where it has no place; what lies far
-    /// outside is brought to a finite distance, so that lines can be cut at the frame.
+    /// Position of a value: 0 at the lower limit, 1 at the upper one; NaN where the scale has no such value.
+    /// Positions far outside are clamped to ±1e4, so that lines can be cut at the frame.
     pub(super) fn at(&self, value: f64) -> f64 {
         self.at_scaled(self.scale.of(value))
     }
 
     /// As [`Axis::at`], for a value on the scale already, such as a tick.
     pub(super) fn at_scaled(&self, u: f64) -> f64 {
-        // Half the numbers, so that no difference overflows.
+        // Halved before the subtraction, so that no difference overflows.
         ((u / 2.0 - self.lo / 2.0) / (self.hi / 2.0 - self.lo / 2.0)).clamp(-1e4, 1e4)
     }
 
-    /// As [`Axis::at`], for a lower end: one below zero lies below every limit of a logarithmic axis.
+    /// As [`Axis::at`], for the lower end of a band: on a logarithmic axis a negative end lies below every
+    /// limit.
     pub(super) fn at_low(&self, value: f64) -> f64 {
         self.at_scaled(self.scale.of_low(value))
     }
 
-    /// Ticks, at most so many.
+    /// Ticks; a linear axis has at most `most` that are labelled.
     pub(super) fn ticks(&self, most: usize) -> Ticks {
         match self.scale {
             Scale::Log => ticks::logarithmic(self.lo, self.hi, most),
@@ -201,22 +202,22 @@ fn roomy(scale: Scale, data: Extent, room: Room) -> (f64, f64) {
     if matches!(scale, Scale::Db { .. }) {
         lo = lo.max(hi - if room == Room::Floor { 60.0 } else { LEVELS });
     }
-    let (zero, span) = (scale == Scale::Linear, hi - lo);
+    let (linear, span) = (scale == Scale::Linear, hi - lo);
     match room {
-        Room::Floor if zero => (lo.min(0.0), hi),
+        Room::Floor if linear => (lo.min(0.0), hi),
         Room::Tight | Room::Floor => (lo, hi),
         Room::Margin => (lo - 0.03 * span, hi + 0.03 * span),
         Room::Above(part) => {
-            let low = if zero && lo >= 0.0 && lo <= 0.4 * hi { 0.0 } else { lo - 0.06 * span };
-            let high = if zero && hi <= 0.0 && hi >= 0.4 * lo { 0.0 } else { hi + part * span };
+            let low = if linear && lo >= 0.0 && lo <= 0.4 * hi { 0.0 } else { lo - 0.06 * span };
+            let high = if linear && hi <= 0.0 && hi >= 0.4 * lo { 0.0 } else { hi + part * span };
             (low, high)
         }
     }
 }
 
-/// Limits with a distance that can be drawn, also where all data are equal.
+/// Limits far enough apart to be drawn, also where all data are equal.
 fn widened(scale: Scale, lo: f64, hi: f64) -> (f64, f64) {
-    // Powers of ten beyond these would round to zero or to infinity in between.
+    // On a logarithmic axis the limits are exponents: powers of ten beyond ±290 might underflow or overflow.
     let furthest = if scale == Scale::Log { 290.0 } else { 1e300 };
     let (lo, hi) = (lo.clamp(-furthest, furthest), hi.clamp(-furthest, furthest));
     let size = lo.abs().max(hi.abs());
@@ -233,7 +234,7 @@ fn widened(scale: Scale, lo: f64, hi: f64) -> (f64, f64) {
     (middle - half, middle + half)
 }
 
-/// `dB re 1 µm/s`.
+/// Unit of a level axis, such as `dB re 1 µm/s`.
 fn level_unit(unit: &str, reference: f64) -> String {
     if unit.is_empty() || unit == "1" {
         return "dB".to_owned();

@@ -4,7 +4,8 @@
 
 use resvg::tiny_skia::Pixmap;
 
-/// Pixels that are opaque or not there, as a file with its resolution where one is stated.
+/// PNG file of pixels that are fully opaque or fully transparent, with the resolution `dpi` if stated. Partly
+/// transparent pixels would need their colours divided by alpha.
 pub(super) fn encoded(pixmap: &Pixmap, dpi: Option<f64>) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, pixmap.width(), pixmap.height());
@@ -13,7 +14,7 @@ pub(super) fn encoded(pixmap: &Pixmap, dpi: Option<f64>) -> Vec<u8> {
         let per_metre = (dpi / 0.0254).round() as u32;
         png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
     }));
-    // Line art and cells compress best as they are (clause 12.7 of the standard).
+    // Line art and cells compress best without a filter (clause 12.7 of the standard).
     encoder.set_deflate_compression(png::DeflateCompression::Level(4));
     encoder.set_filter(png::Filter::NoFilter);
     // Writing to memory does not fail.

@@ -1,8 +1,8 @@
-//! Binary numbers of the kinds that files hold, in rows of any width and either byte order.
+//! Decodes the binary number types of measurement files, from rows of any width in either byte order.
 
 use NumberType::{F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
 
-/// What a number is.
+/// Type of a stored number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberType {
     I8,
@@ -22,17 +22,17 @@ pub enum NumberType {
     Bit(u8),
 }
 
-/// Numbers of every size: with a sign, without one, floats.
+/// Types in the order of `codes` of [`NumberType::coded`].
 const NUMBERS: [NumberType; 10] = [I8, I16, I32, I64, U8, U16, U32, U64, F32, F64];
 
 impl NumberType {
-    /// The number of this code; `codes` are those of signed integers of 1, 2, 4 and 8 bytes, of unsigned
-    /// ones, and of floats of 4 and 8.
+    /// The type with this code. `codes` lists a format's codes of signed integers of 1, 2, 4 and 8 bytes, of
+    /// unsigned ones, and of floats of 4 and 8 bytes.
     pub fn coded(code: u32, codes: [u32; 10]) -> Option<NumberType> {
         codes.iter().position(|known| *known == code).map(|at| NUMBERS[at])
     }
 
-    /// Bytes.
+    /// Size in bytes.
     pub fn size(self) -> u64 {
         match self {
             I8 | U8 | NumberType::Bit(_) => 1,
@@ -44,8 +44,8 @@ impl NumberType {
         }
     }
 
-    /// Adds the number that begins at byte `offset` of each row of `width` bytes to `out`; integers beyond
-    /// 2⁵³ are rounded.
+    /// Appends to `out` the number at byte `offset` of each row of `width` bytes. Integers beyond 2⁵³ are
+    /// rounded to a double.
     pub fn take(self, rows: &[u8], offset: usize, width: usize, big_endian: bool, out: &mut Vec<f64>) {
         let at = (rows, offset, width, big_endian);
         match self {
@@ -72,22 +72,22 @@ fn time(bytes: [u8; 16]) -> f64 {
     (both >> 64) as f64 + (both as u64) as f64 / 2f64.powi(64)
 }
 
-/// Numbers of `N` bytes, little endian after they were turned.
+/// Appends the numbers of `N` bytes in a column. Big-endian bytes are reversed before `value` decodes them.
 fn column<const N: usize>(
     (rows, offset, width, big_endian): (&[u8], usize, usize, bool),
     out: &mut Vec<f64>,
     value: impl Fn([u8; N]) -> f64,
 ) {
-    let turned = |mut bytes: [u8; N]| {
+    let decoded = |mut bytes: [u8; N]| {
         if big_endian {
             bytes.reverse();
         }
         value(bytes)
     };
     if width == N {
-        out.extend(rows.as_chunks::<N>().0.iter().map(|bytes| turned(*bytes)));
+        out.extend(rows.as_chunks::<N>().0.iter().map(|bytes| decoded(*bytes)));
         return;
     }
     let cell = |row: &[u8]| row.get(offset..).and_then(<[u8]>::first_chunk).copied();
-    out.extend(rows.chunks_exact(width).filter_map(cell).map(turned));
+    out.extend(rows.chunks_exact(width).filter_map(cell).map(decoded));
 }

@@ -1,4 +1,4 @@
-//! Files of analysers, vibrometers and recorders to records, and records to files.
+//! Reads files of analysers, vibrometers and recorders to records, and writes records to files.
 //!
 //! After `cargo add vibro-io`, a channel of any file is an array in SI units:
 //!
@@ -12,8 +12,8 @@
 //! }
 //! ```
 //!
-//! A [`Reader`] finds out the format from the first bytes, reads all records of a file, and says as
-//! [findings](record::Finding) what it assumed. What the file does not say is stated on the reader.
+//! A [`Reader`] detects the format from the first bytes, reads all records of a file, and reports its
+//! assumptions as [findings](record::Finding). What the file does not state is set on the reader.
 //!
 //! ```
 //! use vibro_io::{Reader, record::Record};
@@ -95,7 +95,7 @@ mod tests {
     use std::borrow::Cow;
     use vibro_record::{Fact, Finding, Result};
 
-    /// Reads a source, and holds that a survey says of it what reading says.
+    /// Reads a source, and asserts that a survey gives the same headers, findings and errors.
     pub fn read_both_ways(source: &Source) -> Result<Recording> {
         let (read, survey) = (Reader::new().read(source), Reader::new().headers(source));
         match (&read, survey) {
@@ -104,8 +104,8 @@ mod tests {
                 assert_eq!(survey, (read.format, headers, read.findings.clone()), "{:?}", source.path());
             }
             (read, survey) => {
-                let said = |error: Option<&vibro_record::Error>| error.map(ToString::to_string);
-                assert_eq!(said(read.as_ref().err()), said(survey.as_ref().err()), "{:?}", source.path());
+                let text = |error: Option<&vibro_record::Error>| error.map(ToString::to_string);
+                assert_eq!(text(read.as_ref().err()), text(survey.as_ref().err()), "{:?}", source.path());
             }
         }
         read

@@ -1,21 +1,23 @@
-//! Channels that are the length of a vector whose components stand beside them, as phones record the absolute
-//! acceleration: it has no sign, so that an oscillation about zero shows at twice its frequency.
+//! Finds channels that hold the magnitude of a vector whose components are recorded beside them, such as the
+//! absolute acceleration of a phone. A magnitude has no sign: an oscillation about zero appears at twice its
+//! frequency.
 
 use crate::held::{Contents, opening};
 use vibro_record::{Finding, Record};
 
-/// Its finding.
+/// Code of the finding on such a channel.
 pub const MAGNITUDE: &str = "magnitude";
 
-/// Fewest values that are compared.
+/// Fewest samples for a comparison: fewer might agree by chance.
 const FEW: usize = 32;
 
-/// RMS distance from the length over the deviation of the values: two decimals beside a motion of one unit
-/// make 2 %, a channel that was measured for itself differs by as much as it moves.
+/// Largest RMS difference between a channel and the computed magnitude, over the channel's standard
+/// deviation. Rounding to two decimals of a motion of one unit gives 2 %; an independent channel gives
+/// about 1.
 const NEAR: f64 = 3e-2;
 
-/// Marks each trace that is, in its first values, the root of the sum of the squares of two or three others
-/// in a row that have its unit.
+/// Adds the finding to each trace whose first values are the magnitude of two or three other traces in a row
+/// with the same unit.
 pub fn mark(contents: &mut Contents) {
     let found: Vec<(usize, String)> = {
         let traces: Vec<(usize, &str, &str, &[f64])> = contents
@@ -28,11 +30,13 @@ pub fn mark(contents: &mut Contents) {
                 Some((i, trace.meta.name.as_str(), trace.meta.unit.symbol(), first))
             })
             .collect();
-        let of = |(i, _, unit, values): &(usize, &str, &str, &[f64])| {
-            let length = values.len() >= FEW && !values.iter().any(|v| *v < 0.0);
+        let matched = |(i, _, unit, values): &(usize, &str, &str, &[f64])| {
+            let possible = values.len() >= FEW && !values.iter().any(|v| *v < 0.0);
             let others: Vec<_> = traces
                 .iter()
-                .filter(|other| length && other.0 != *i && other.2 == *unit && other.3.len() == values.len())
+                .filter(|other| {
+                    possible && other.0 != *i && other.2 == *unit && other.3.len() == values.len()
+                })
                 .collect();
             let in_a_row = [3, 2].into_iter().flat_map(|n| others.windows(n));
             let components = |row: &&[&(usize, &str, &str, &[f64])]| {
@@ -41,7 +45,7 @@ pub fn mark(contents: &mut Contents) {
             let row = in_a_row.into_iter().find(components)?;
             Some((*i, row.iter().map(|other| other.1).collect::<Vec<_>>().join(", ")))
         };
-        traces.iter().filter_map(of).collect()
+        traces.iter().filter_map(matched).collect()
     };
     for (i, components) in found {
         let meta = contents.records[i].0.meta_mut();
@@ -49,8 +53,8 @@ pub fn mark(contents: &mut Contents) {
     }
 }
 
-/// Whether values are the length of a vector, and none of its components: one that keeps its sign doubles no
-/// tone.
+/// Whether `values` are the magnitude of `components` and not equal to one of them. A magnitude that equals a
+/// component without a change of sign doubles no frequency.
 fn is_length(values: &[f64], components: &[&[f64]]) -> bool {
     let finite = |i: &usize| values[*i].is_finite() && components.iter().all(|c| c[*i].is_finite());
     let rows: Vec<usize> = (0..values.len()).filter(finite).collect();
@@ -58,7 +62,7 @@ fn is_length(values: &[f64], components: &[&[f64]]) -> bool {
     let deviation = rows.iter().map(|i| (values[*i] - mean).powi(2)).sum::<f64>();
     let near = |other: &dyn Fn(usize) -> f64| {
         let mut off = 0.0;
-        // Ends where it is too far: most are at the first rows.
+        // Stops at the first row where the difference is too large: for most channels within a few rows.
         rows.iter().all(|i| {
             off += (values[*i] - other(*i)).powi(2);
             off <= NEAR * NEAR * deviation

@@ -1,4 +1,4 @@
-//! The spectra of a sweep, read together.
+//! Reads the spectra of a sweep together.
 
 use crate::folder::Folder;
 use crate::format::Format;
@@ -12,20 +12,20 @@ use vibro_record::{
     Values, Window,
 };
 
-/// What the analyser stored. What its files state themselves is believed where nothing is stated here; where
-/// both are and differ, the statement here is used, with a finding.
+/// Reads a sweep of spectra, with the settings of the analyser. What is not stated here is taken from the
+/// files. Where both differ, the setting here is used with a finding, or the file is refused.
 #[derive(Debug, Clone, Default)]
 pub struct SweepReader {
     /// Name of the sweep.
     pub name: String,
     /// Direction, if stated.
     pub direction: Option<Direction>,
-    /// Mass, if stated.
+    /// Number of the measured mass, if stated.
     pub mass: Option<u8>,
     /// Unit in which responses are stored, if stated; else that of the files, else the SI unit of `quantity`
-    /// is assumed, with a doubt.
+    /// is assumed, with a caution.
     pub unit: Option<Unit>,
-    /// What was stored, if stated; else what the unit says, else a displacement is assumed.
+    /// Quantity of the responses, if stated; else that of the unit, else a displacement is assumed.
     pub quantity: Option<Quantity>,
     /// Factor on stored responses, if stated: unit per stored number, even where the files say volts.
     pub calibration: Option<f64>,
@@ -36,11 +36,11 @@ pub struct SweepReader {
     pub window: Option<Option<Window>>,
     /// Peak or RMS, if stated; else that of the files, else peak is assumed.
     pub scaling: Option<Scaling>,
-    /// How often the analyser integrated in frequency before it stored, if stated.
+    /// Number of integrations in frequency by the analyser before it stored, if stated.
     pub analyser_integrated: Option<u8>,
-    /// Format of the files, found out if `None`.
+    /// Format of the files, detected if `None`.
     pub format: Option<Format>,
-    /// Where the files lie.
+    /// Folder of the files.
     pub folder: Folder,
 }
 
@@ -65,8 +65,8 @@ impl SweepReader {
     /// Reads all spectra of a list.
     ///
     /// # Errors
-    /// If files are missing (all are named), cannot be read, or hold another number of lines than the list
-    /// says.
+    /// If files are missing (all are named), cannot be read, or have another number of lines than the list
+    /// states.
     pub fn read(&self, list: &SweepList) -> Result<Sweep> {
         let reader = Reader::new().within(&self.folder).base_band(Some(list.base_band)).format(self.format);
         // One batch, so that all missing files are named at once.
@@ -78,8 +78,8 @@ impl SweepReader {
         let (unit, calibration) = (Some(Unit::of(Quantity::Force)), self.force_calibration);
         let of_force = SweepReader { unit, quantity: None, calibration, ..self.clone() };
         let mut findings = Vec::new();
-        let mut peaks = |recording: &Recording, said: &SweepReader, force: bool| {
-            said.peaks(recording, force, &axis, &mut findings).map_err(|e| e.in_file(&recording.path))
+        let mut peaks = |recording: &Recording, settings: &SweepReader, force: bool| {
+            settings.peaks(recording, force, &axis, &mut findings).map_err(|e| e.in_file(&recording.path))
         };
         let mut points: Vec<SweepPoint> = Vec::with_capacity(list.len());
         for (i, response) in recordings.iter().enumerate() {
@@ -114,8 +114,8 @@ impl SweepReader {
         })
     }
 
-    /// Peak amplitudes of responses or of a `force` in SI units, with what is known of them: by what the file
-    /// states and what was stated for it.
+    /// Peak amplitudes of a response or a `force` in SI units, with metadata and window, from the file's
+    /// statements and the settings of this reader.
     fn peaks(
         &self,
         recording: &Recording,
@@ -177,14 +177,14 @@ impl SweepReader {
                 found(Finding::caution("response-unit-assumed").name("unit", unit.symbol()));
                 (1.0, unit)
             }
-            // What one stored number stands for is stated in full.
+            // Volts or a ratio in the file: unit and calibration together state what a stored number means.
             Some(stated) if meant != Some(written.quantity()) && raw && self.calibration.is_some() => {
                 (stated.factor() / taken, stated.si())
             }
             _ if meant.is_some_and(|meant| meant != written.quantity()) => {
                 return Err(self.other_quantity(written, raw, force));
             }
-            // A factor that a person states holds for what is stored.
+            // A stated unit holds for the stored numbers, so the conversion `taken` is undone.
             Some(stated) if !force && stated.factor() != taken => {
                 let differs = Finding::caution("sweep-unit-overrides-files").name("used", stated.symbol());
                 found(differs.name("file", written.symbol()).number("factor", taken));
@@ -195,7 +195,7 @@ impl SweepReader {
         Ok(adopted)
     }
 
-    /// The quantity that is stated.
+    /// Quantity of the stated unit, else the stated quantity.
     fn meant(&self) -> Option<Quantity> {
         self.unit.as_ref().map(Unit::quantity).or(self.quantity)
     }
@@ -218,19 +218,19 @@ impl SweepReader {
     }
 }
 
-/// What to try where a file holds other records.
+/// Hint where a file holds other records.
 const SPECTRA: &str = "list the spectra of the analyser; time records and frequency responses have tables of their own in a campaign";
 
-/// What to try where values are levels.
+/// Hint where values are levels in dB.
 const LINEAR: &str = "export linear amplitudes; levels in decibels are not read";
 
-/// The factor by which the reader took stored numbers to SI.
+/// Factor from stored numbers to SI, from the history of the record.
 fn factor_to_si(meta: &Meta) -> f64 {
     let steps = meta.history.iter().filter(|step| step.name == "to_si").flat_map(|step| &step.arguments);
     steps.filter(|(key, _)| key == "factor").filter_map(|(_, factor)| factor.parse::<f64>().ok()).product()
 }
 
-/// Peak values of a spectrum, which must have the lines of `axis`.
+/// Values of a spectrum times `factor`; the spectrum must have the lines of `axis`.
 fn scaled(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Values> {
     if let Values::Real(values) = &spectrum.values
         && let Some(i) = values.iter().position(|v| *v < 0.0)
@@ -263,7 +263,8 @@ fn scaled(spectrum: &Spectrum, axis: &Axis, factor: f64) -> Result<Values> {
     })
 }
 
-/// Findings of the files, each once; what a sweep settles for itself is not repeated.
+/// Collects findings of the files, each once and at most 50. Those on settings that the sweep decides itself
+/// are dropped.
 fn gather(recording: &Recording, findings: &mut Vec<Finding>) {
     const SETTLED: [&str; 4] =
         [code::SCALING_UNSAID, code::UNIT_UNSAID, code::AXIS_UNIT_ASSUMED, code::ABSCISSA_UNSAID];

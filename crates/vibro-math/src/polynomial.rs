@@ -1,4 +1,4 @@
-//! A polynomial over 0..1, with bounds that let none of its falls through zero be missed.
+//! A polynomial over 0..1, with bounds on its derivatives so that no downward zero crossing is missed.
 
 use super::root::{Bounded, RootAhead, walk};
 
@@ -6,10 +6,11 @@ use super::root::{Bounded, RootAhead, walk};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polynomial<const K: usize> {
     terms: [f64; K],
-    /// Bounds on its second and third derivatives.
+    /// Bound on the second derivative.
     curvature: f64,
+    /// Bound on the third derivative.
     third: f64,
-    /// Bound on its way from its first value.
+    /// Bound on the change from the value at 0.
     reach: f64,
 }
 
@@ -50,12 +51,12 @@ impl<const K: usize> Polynomial<K> {
         terms.fold(0.0, |sum, (k, term)| sum * part + (k * (k - 1)) as f64 * term)
     }
 
-    /// Where the polynomial, not negative at 0, first falls to zero. None is missed.
+    /// First place at which the polynomial, not negative at 0, falls to zero. None is missed.
     ///
     /// Steps as in [`super::root`], by the bound M on the curvature. Where value f, slope ḟ and second
     /// derivative f̈ are not negative, the bound M₃ on the third allows any step up to the largest of
-    /// ∛(6f/M₃), √(6ḟ/M₃) and 3f̈/M₃ as well: from a triple root, which masses that part from rest leave
-    /// behind them, it leads away in geometric steps.
+    /// ∛(6f/M₃), √(6ḟ/M₃) and 3f̈/M₃ as well. These steps grow geometrically from a triple root at 0, where
+    /// masses part from rest.
     #[inline]
     pub fn first_fall(&self) -> Option<f64> {
         if self.terms[0] > self.reach {
@@ -103,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_multiple_root_at_the_start_is_left_behind() {
-        // p³(0.7 − p), and p³ with a rounding below zero.
+        // p³(0.7 − p), exactly and with rounding errors in its lower terms.
         let found = Polynomial::new([0.0, 0.0, 0.0, 0.7, -1.0]).first_fall().unwrap();
         assert!((found - 0.7).abs() < 4.0 * f64::EPSILON, "{found}");
         let found = Polynomial::new([-1e-19, 0.0, 1e-20, 0.7, -1.0]).first_fall().unwrap();

@@ -9,17 +9,17 @@ use vibro_record::Direction;
 pub struct Jump {
     /// Last excitation frequency before, in Hz.
     pub from: f64,
-    /// First excitation frequency behind, in Hz.
+    /// First excitation frequency after, in Hz.
     pub to: f64,
     /// Frequency of the jump in Hz: the middle of the two.
     pub frequency: f64,
-    /// Its standard uncertainty in Hz: anywhere between the two with equal chance, their distance over √12.
+    /// Its standard uncertainty in Hz: a uniform distribution between the two, their distance over √12.
     pub frequency_std: f64,
-    /// Amplitude before.
+    /// Amplitude before, in the unit of the curve.
     pub amplitude_before: f64,
     /// Its standard uncertainty.
     pub amplitude_before_std: Option<f64>,
-    /// Amplitude behind.
+    /// Amplitude after, in the unit of the curve.
     pub amplitude_after: f64,
     /// Its standard uncertainty.
     pub amplitude_after_std: Option<f64>,
@@ -29,11 +29,12 @@ pub struct Jump {
     pub direction: Direction,
 }
 
-/// A jump changes the amplitude by at least this factor …
+/// Least factor by which a jump changes the amplitude.
 const JUMP: f64 = 1.5;
-/// … and in logarithm by this much more than the steps beside it.
+/// Least ratio of a jump's change, as a logarithm, to that of the steps beside it over the same width.
 const JUMP_AGAINST_NEIGHBOURS: f64 = 2.5;
 
+/// A standard uncertainty; `None` where it is not finite.
 pub(super) fn known(std: f64) -> Option<f64> {
     Some(std).filter(|s| s.is_finite())
 }
@@ -50,19 +51,18 @@ pub(super) fn differ(a: &Point, b: &Point) -> bool {
     (a.1 - b.1).abs() > SIGMA * noise[0].hypot(noise[1])
 }
 
-/// A jump turns the motion against the force by at least this angle in rad, where its amplitude alone does
-/// not tell it from a flank.
+/// Least change of the phase in rad across a jump that the amplitude alone does not distinguish from the
+/// flank of a resonance.
 const TURN: f64 = 1.0;
 
 /// Jumps between neighbouring steps, in the order in which the sweep was run. `receptances` are those of the
-/// points; none where they are not known.
+/// points; empty where they are unknown.
 pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direction) -> Vec<Jump> {
     let step = |i: usize| (curve[i + 1].1 / curve[i].1).ln();
     let width = |i: usize| (curve[i + 1].0 - curve[i].0).abs();
     let steps = curve.len().saturating_sub(1);
-    // What the curve does on its own over the distance of a step: the steepest of two steps on each side.
-    // Without a step on both sides, and where a sharp peak stands beside the step, a jump cannot be
-    // parted from a flank.
+    // Compares a change with the steepest of two steps on each side, scaled to the same width. Without steps
+    // on both sides, or beside a sharp peak, a jump cannot be distinguished from a flank.
     let stands_out = |i: usize, sides: usize, change: &dyn Fn(usize) -> f64| {
         let around = [i.saturating_sub(2)..i, i + 1..(i + 3).min(steps)].into_iter();
         let mut known = around.filter(|side| sides == 2 || side.len() == 2).peekable();
@@ -73,8 +73,8 @@ pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direc
                 change(i) > JUMP_AGAINST_NEIGHBOURS * usual
             })
     };
-    // Near a pole of a linear motion its inverse is a straight line over f², near a zero the motion itself:
-    // one of them is smooth, and two steps on one side tell.
+    // Near a resonance of a linear system the inverse receptance is a straight line over f², near an
+    // antiresonance the receptance itself is. One of the two is smooth, so steps on one side are enough.
     let noise = |i: usize| {
         let of = |k: usize| known(curve[k].2).unwrap_or(0.0) / curve[k].1 * receptances[k].norm();
         of(i).hypot(of(i + 1))
@@ -94,7 +94,7 @@ pub(crate) fn jumps(curve: &[Point], receptances: &[Complex64], direction: Direc
 }
 
 impl Jump {
-    /// Frequencies beside it in Hz, the lower first.
+    /// Frequencies before and after it in Hz, the lower first.
     pub(super) fn span(&self) -> (f64, f64) {
         (self.from.min(self.to), self.from.max(self.to))
     }
@@ -116,13 +116,13 @@ pub(super) fn jump([before, after]: [Point; 2], direction: Direction) -> Jump {
     }
 }
 
-/// Changes beyond what a curve does beside them by more than this many standard deviations are a jump, where
-/// the other mass jumps.
+/// Least deviation of a change from the extrapolated curve, in standard deviations, that is a jump where the
+/// other mass jumps.
 const SIGMA_OF_BOTH: f64 = 5.0;
 
-/// The jump of a rising curve where the other mass of the same sweep has one: the change across it lies
-/// outside what the steps on both sides predict. `None` where it does not, or where there is no step on a
-/// side.
+/// Jump of a curve, its frequencies rising, where the other mass of the same sweep jumps: the change across
+/// it deviates from the extrapolation of the steps on both sides. `None` where it does not, or where a side
+/// has no step.
 pub(super) fn echo(curve: &[Point], other: &Jump) -> Option<Jump> {
     let high = curve.partition_point(|p| p.0 < other.frequency);
     let [a, b, c, d]: [_; 4] = curve.get(high.checked_sub(2)?..=high + 1)?.try_into().ok()?;
@@ -133,7 +133,7 @@ pub(super) fn echo(curve: &[Point], other: &Jump) -> Option<Jump> {
         let std = across.2.hypot((1.0 + stretch) * near.2).hypot(stretch * far.2);
         (excess.abs() > SIGMA_OF_BOTH * std).then_some(excess)
     };
-    // Seen from the other side a change has the other sign.
+    // Of a jump the two sides see an excess of opposite sign.
     let outside = excess(a, b, c)? * excess(d, c, b)? < 0.0;
     let (before, after) = if other.direction == Direction::Up { (b, c) } else { (c, b) };
     outside.then(|| jump([before, after], other.direction))

@@ -1,9 +1,8 @@
-//! Whether the peaks of a record are contacts, or swings of a structure that rings: one judgement for
-//! impacts, bounces and pulses.
+//! Decides whether the peaks of a record are contacts or the ringing of a structure, for impacts, bounces and
+//! pulses alike.
 //!
-//! A free decay swings between its peaks as it does at them, and nothing drives it: the modes that are fitted
-//! behind its largest peak hold for all that follow. Of impacts each begins a motion of its own, which no
-//! decay of an earlier one explains.
+//! Nothing drives a free decay: the modes fitted after its largest peak predict all later peaks. Each impact
+//! begins a new motion, which the decay of an earlier impact does not predict.
 
 use crate::Estimate;
 use crate::decay::{DecayMode, DecayOptions, decay};
@@ -13,31 +12,31 @@ use vibro_record::units::Unit;
 use vibro_record::units::notation::{counted, estimate};
 use vibro_record::{Axis, Error, Hint, Meta, Trace};
 
-/// Most modes: with more, a sum of sines follows even evenly spaced pulses.
+/// Most modes of the decay: with more, the sum of sines would also fit evenly spaced pulses.
 const MODES: usize = 3;
-/// A peak is a swing where the modes leave less than this part of it, or noise; so it is with the root of the
-/// mean square of all behind the largest.
+/// Largest residual of the modes at a peak of the decay, over the peak. The same limit holds for the RMS of
+/// all samples after the largest peak.
 const LEFT: f64 = 0.5;
-/// Samples in which a decay is judged, an eighth of them before its largest value: memory for eleven times as
-/// many.
+/// Most samples that are fitted, an eighth of them before the largest value: the fit needs memory for eleven
+/// times as many.
 const STRETCH: usize = 1 << 20;
 
-/// Parts of a pulse that a structure swings back and forth behind it at least, of damping ratios up to a
-/// fifth.
+/// Smallest undershoot after a pulse and next overshoot, over its height, for ringing: those of damping
+/// ratios up to 0.2.
 const BACK_AND_FORTH: [f64; 2] = [0.5, 0.25];
-/// Largest damping ratio of what swings: it comes back by a half of its height.
+/// Largest damping ratio of ringing: there the first undershoot is half of the peak.
 const DAMPED: f64 = 0.2;
 
-/// Why one peak of this height over a baseline, with flanks at half of it in samples, is no contact: where
-/// what follows swings back and forth as wide as the peak is. A decay of so few swings as a blow may leave
-/// cannot be fitted.
+/// Error where a single peak is ringing: the signal swings back and forth after it as wide as the peak. A
+/// blow may leave too few cycles to fit a decay. `height` counts from `baseline`; `flanks` are the positions
+/// at half of it, in samples.
 pub(crate) fn back_and_forth(
     values: &[f64],
     baseline: f64,
     height: f64,
     flanks: (f64, f64),
 ) -> Option<Error> {
-    // Half the height of half a sine lasts two thirds of it.
+    // A half sine is above half its height for two thirds of its duration.
     let half = 1.5 * (flanks.1 - flanks.0);
     let behind = |swings: f64| (flanks.1 + swings * half) as usize;
     let largest = |from: usize, to: usize, sign: f64| {
@@ -53,7 +52,7 @@ pub(crate) fn back_and_forth(
     rings.then(|| refused(&why))
 }
 
-/// Refuses a record that rings.
+/// Error for a record that rings.
 fn refused(why: &str) -> Error {
     Error::refused(format!("the record rings: {why}")).hint(Hint::OfFile("vibro decay"))
 }
@@ -61,16 +60,16 @@ fn refused(why: &str) -> Error {
 /// A free decay that explains the peaks of a record.
 #[derive(Debug, Clone)]
 pub(crate) struct Swings {
-    /// Peaks that are its swings.
+    /// Number of peaks that it explains.
     peaks: usize,
-    /// Its strongest mode.
+    /// Strongest mode of the decay.
     mode: DecayMode,
 }
 
 impl Swings {
-    /// The free decay of `values`, whose level is 0, if it explains all peaks behind the largest value, and
-    /// these are most; noise reaches up to `reach`. `peaks` are stretches of samples; where there is
-    /// none, the largest value is one.
+    /// The free decay of `values`, whose baseline is 0, if it explains all peaks after the largest value and
+    /// these are the majority. Noise peaks reach up to `reach`. `peaks` are ranges of samples; without any,
+    /// the largest value is the peak.
     pub fn of(values: &[f64], rate: f64, peaks: &[Range<usize>], reach: f64) -> Option<Swings> {
         let top = (0..values.len()).max_by(|a, b| values[*a].abs().total_cmp(&values[*b].abs()))?;
         let from = top.saturating_sub(STRETCH / 8);
@@ -107,7 +106,7 @@ impl Swings {
         (rings && behind().all(swings)).then_some(Swings { peaks: n, mode })
     }
 
-    /// Why the record holds no contacts, and what measures it.
+    /// Error that the record holds no contacts, with the command that measures a decay.
     pub fn refusal(&self) -> Error {
         let [frequency, zeta] =
             [&self.mode.frequency, &self.mode.zeta].map(|of: &Estimate| estimate(of.value, of.std));
@@ -119,11 +118,11 @@ impl Swings {
     }
 }
 
-/// Part of the time from the first peak to the last that the peaks of a swing take: above nine tenths
-/// of its height a sine is a quarter of the time, and those that fall into the noise are shorter.
+/// Smallest share of the time from first to last peak that the peaks of ringing take. A sine is above nine
+/// tenths of its height for a quarter of the time; peaks near the noise are shorter.
 const TAKEN: f64 = 0.05;
 
-/// Whether a record does not rest between its peaks as it does between impacts.
+/// Whether the peaks are too close for impacts, between which a record is at rest.
 pub(crate) fn are_close(peaks: &[Range<usize>]) -> bool {
     let taken: usize = peaks.iter().map(ExactSizeIterator::len).sum();
     let first = peaks.iter().map(|peak| peak.start).min().unwrap_or_default();
@@ -131,14 +130,14 @@ pub(crate) fn are_close(peaks: &[Range<usize>]) -> bool {
     taken as f64 >= TAKEN * (last - first) as f64
 }
 
-/// Whether the largest value is followed by half of it on the other side: else no decay is worth fitting.
+/// Whether the signal swings back by half of the largest value: otherwise a fit of a decay is not worth it.
 fn comes_back(values: &[f64], top: usize) -> bool {
     let sign = values[top].signum();
     let back = values[top..].iter().fold(0.0, |most: f64, v| most.max(-sign * v));
     back > BACK_AND_FORTH[0] * values[top].abs()
 }
 
-/// A e^(−ζω₀t) cos(ω₀√(1−ζ²) t + φ) at `t` in s from the start of the decay.
+/// Motion of a mode, A e^(−ζω₀t) cos(ω₀√(1−ζ²) t + φ), at `t` in s from the start of the decay.
 fn motion(mode: &DecayMode, t: f64) -> f64 {
     let (angular, zeta) = (TAU * mode.frequency.value, mode.zeta.value);
     let phase = angular * (1.0 - zeta * zeta).sqrt() * t + mode.phase.value;

@@ -3,9 +3,9 @@
 //! Least squares of x(t) = C + Σ aᵢ cos ωᵢt + bᵢ sin ωᵢt over all unknowns: maximum likelihood in white noise
 //! (S. M. Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 7.8), for one
 //! sine the four-parameter fit of IEEE Std 1057, which reaches the Cramér–Rao bound var(f) ≥ 12/((2πΔt)² η
-//! N(N²−1)), η = A²/(2σ²) (Kay, eq. 3.41). Uncertainties come from the inverse of the whole normal matrix:
-//! what two close sines take from each other is in them. A sine sees the noise around its own line only:
-//! uncertainties are those of white noise as strong as there (P. Whittle, Ark. Mat. 2 (1953) 423).
+//! N(N²−1)), η = A²/(2σ²) (Kay, eq. 3.41). Uncertainties come from the inverse of the whole normal matrix,
+//! so they include the correlation of close sines. Only the noise around its own line affects a sine: its
+//! uncertainties are those in white noise of that density (P. Whittle, Ark. Mat. 2 (1953) 423).
 
 mod left;
 
@@ -24,33 +24,35 @@ use vibro_signal::spectrum;
 
 /// Most sines of one record.
 pub const MOST: usize = 10;
-/// Sines nearer than this part of 1/T shake each other so much that a fit of white noise finds two where
-/// there is one.
+/// Smallest distance of two sines in spectral lines (1/T). Nearer sines are so correlated that noise can make
+/// a fit find two where there is one.
 const NEAREST: f64 = 0.5;
-/// A frequency that is given may be off by so many lines.
+/// Largest error of a stated frequency, in spectral lines.
 const NEAR: f64 = 2.0;
-/// So many standard deviations of their mean below the sines, samples at the end of the range are cut off.
+/// Samples at the end of the range count as clipped where their mean lies this many of its standard
+/// deviations inside the fitted sines.
 const SHORT: f64 = 4.0;
-/// Below this weight a sample that is cut off tells nothing.
+/// Weight below which a clipped sample is left out of the normal equations.
 const LEAST: f64 = 1e-9;
-/// Gauss–Newton steps.
+/// Most Gauss–Newton steps.
 const STEPS: usize = 40;
-/// Part of the standard uncertainty of a frequency below which a step ends the fit: large residuals, as
-/// coloured noise leaves, slow the steps down.
+/// Change of a frequency, over its standard uncertainty, below which the fit ends. Large residuals, as in
+/// coloured noise, slow the convergence: a tighter limit costs steps.
 const SETTLED: f64 = 1e-4;
-/// What is left of exact sines, in parts of the largest.
+/// Largest residual of exact sines, over the largest amplitude: it is rounding only.
 const ROUNDING: f64 = 1e-12;
-/// Nearer to half the rate than this many lines a sine and its image are half a line apart, and shake each
-/// other as two sines do.
+/// Smallest distance from half the sampling rate, in spectral lines. Nearer, a sine and its image are less
+/// than half a line apart and correlated as two close sines are.
 const IMAGE: f64 = 0.25;
-/// Noise around a line is coloured where it is this much stronger than white noise of its variance.
+/// Smallest ratio, as amplitudes, of the noise around a line to white noise of the same variance at which the
+/// noise is reported as coloured.
 const COLOURED: f64 = 1.5;
-/// Lines on either side that tell the noise at a sine: those within half of its frequency, between which
-/// noise steeper than the 1/f that is allowed for changes threefold, but so many at least and at most.
+/// Fewest and most lines on either side that give the noise at a sine; between these, half of its line
+/// number. Over that range 1/f² noise still changes threefold after the correction for 1/f.
 const AROUND: [usize; 2] = [15, 40];
-/// From so many lines on the uncertainty in coloured noise holds what another sine does.
+/// Distance in spectral lines from which the uncertainty for coloured noise covers what another sine does.
 const FAR: f64 = 3.5;
-/// Up to this part of the amplitude, what stands beside a sine moves it by a small and known part.
+/// Largest neighbouring line, doubled and over the sine's amplitude, whose effect on the sine is known.
 const SMALL: f64 = 0.02;
 
 /// One sine A cos(2πft + φ).
@@ -64,30 +66,29 @@ pub struct Tone {
     pub phase: Estimate,
 }
 
-/// Sines of a record, and what is left.
+/// Sines of a record, and the residual noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tones {
     /// The sines, the strongest first.
     pub tones: Vec<Tone>,
-    /// Standard deviation of what is left, in the unit of the trace.
+    /// Standard deviation of the residuals, in the unit of the trace.
     pub noise: f64,
-    /// Why there are fewer than asked for, and what limits their uncertainties.
+    /// Why there are fewer sines than requested, and what limits their uncertainties.
     pub findings: Vec<Finding>,
 }
 
-/// The sine of the largest line, or of the largest within two lines of `near` Hz. Where what is left holds
-/// another large line within two of it, it has no uncertainty: [`tones`] fits both.
+/// The sine of the largest line, or of the largest within two lines of `near` Hz. Where the residual has
+/// another large line within two lines of the sine, no uncertainty is given: [`tones`] fits both.
 ///
 /// # Errors
-/// If the trace has no spectrum ([`spectrum::plain`]), no line stands out of the noise, fewer than one and a
-/// half periods are there, or the sine lies within a quarter of a line of half the sampling rate.
+/// If the trace has no spectrum ([`spectrum::plain`]), no line is above the noise, the record has fewer than
+/// one and a half periods, or the sine lies within a quarter of a line of half the sampling rate.
 pub fn sine(trace: &Trace, near: Option<f64>) -> Result<Tones> {
     Ok(SineFit::new(trace, &[HannLines::of(trace)?.strongest(near)?])?.estimates(trace))
 }
 
-/// The `count` strongest sines of a trace; fewer, with a finding, where no more stand out of the noise or can
-/// be parted. The strongest line of what is left gives the next sine; all that are known are then fitted
-/// together.
+/// The `count` strongest sines of a trace; fewer, with a finding, where no further line is above the noise or
+/// can be separated. The strongest line of the residual gives the next sine; then all are fitted together.
 ///
 /// ```
 /// use vibro_measure::tones::tones;
@@ -123,7 +124,7 @@ pub fn tones(trace: &Trace, count: usize) -> Result<Tones> {
     Ok(found)
 }
 
-/// Lines of a record under a Hann window, without its mean.
+/// Amplitude spectrum of a record with a Hann window, the mean removed.
 struct HannLines {
     magnitudes: Vec<f64>,
     powers: Vec<f64>,
@@ -139,25 +140,25 @@ impl HannLines {
         Ok(HannLines { magnitudes, powers, spacing: lines.axis.step().unwrap_or(0.0) })
     }
 
-    /// Height of the line nearest to `frequency` in Hz.
+    /// Amplitude of the line nearest to `frequency` in Hz.
     fn height(&self, frequency: f64) -> f64 {
         self.magnitudes.get((frequency / self.spacing).round() as usize).copied().unwrap_or(0.0)
     }
 
-    /// How strong noise is around `frequency` as a part of white noise of standard deviation `sigma`: not
-    /// below 1 unless the sine is `alone` with noise, since other lines reach farther.
+    /// Ratio, as amplitudes, of the noise around `frequency` (Hz) to white noise of standard deviation
+    /// `sigma`. At least 1 unless the sine is `alone`: other sines act from beyond the lines compared here.
     fn colour(&self, frequency: f64, sigma: f64, alone: bool) -> f64 {
         let centre = (frequency / self.spacing).round() as usize;
         let reach = (centre / 2).clamp(AROUND[0], AROUND[1]);
         let Some(floor) = floor(&self.powers, centre, reach, 1.0, Some(Window::Hann)) else { return 1.0 };
-        // Half of the samples, with the power of a one-sided line: two components.
+        // Squared peak amplitude of a line of white noise: 4σ²·ENBW/N for N samples, which give N/2 lines.
         let white = 2.0 * sigma * sigma * Window::Hann.enbw() / (self.magnitudes.len() - 1) as f64;
         let factor = student(2 * floor.lines).unwrap_or(1.0) * (floor.power / white).sqrt();
         if alone { factor } else { factor.max(1.0) }
     }
 
-    /// The frequency of the strongest line that stands out of the noise, or of those within two lines of
-    /// `near` Hz, interpolated between lines.
+    /// Frequency in Hz of the strongest line above the noise, or of the strongest within two lines of `near`
+    /// Hz, interpolated between lines.
     fn strongest(&self, near: Option<f64>) -> Result<f64> {
         let HannLines { magnitudes, powers, spacing } = self;
         let within = |k: &usize| near.is_none_or(|f| (*k as f64 - f / spacing).abs() <= NEAR);
@@ -185,33 +186,34 @@ impl HannLines {
     }
 }
 
-/// Sines and a mean fitted to a record. Time runs from its middle, in parts of half of it: frequency and
-/// phase are then almost uncorrelated.
+/// Sines and a mean fitted to a record. The fit's time runs from −1 to 1 over the record: counted from the
+/// middle, frequency and phase are almost uncorrelated.
 struct SineFit {
-    /// Angular frequencies.
+    /// Angular frequencies in rad per half record.
     omega: Vec<f64>,
-    /// a and b of each sine, then the mean.
+    /// a and b of each sine, then the mean, in the unit of the trace.
     linear: Vec<f64>,
-    /// Of a, b, A δω of each sine, then the mean.
+    /// Inverse normal matrix: a, b and A δω of each sine, then the mean.
     inverse: DMatrix<f64>,
-    /// Standard deviation of what is left.
+    /// Standard deviation of the residuals, in the unit of the trace.
     noise: f64,
-    /// Half of the record in s.
+    /// Half the duration of the record in s.
     half: f64,
-    /// 1 and −1 for samples that are cut off above and below, 0 for all others.
+    /// 1 and −1 for samples clipped at the upper and lower end of the range, 0 for all others.
     cut: Vec<f64>,
 }
 
-/// Time of a sample from the middle of the record, in parts of half of it.
+/// Time of sample `i` of `n` in half records, counted from the middle of the record.
 fn time(i: usize, n: usize) -> f64 {
     (2 * i + 1) as f64 / n as f64 - 1.0
 }
 
 impl SineFit {
-    /// By Gauss–Newton, from first guesses of the frequencies in Hz within half a line.
+    /// Fit by Gauss–Newton from first guesses of the frequencies in Hz, each within half a line. Clipped
+    /// samples are found first.
     fn new(trace: &Trace, start: &[f64]) -> Result<SineFit> {
         let (n, rate) = (trace.values.len(), trace.rate().unwrap_or(1.0));
-        // Of the slowest sine the crests are the flattest.
+        // Clipping is judged against the slowest sine, which has the flattest crests.
         let slowest = start.iter().copied().fold(f64::INFINITY, f64::min);
         let clipped = clipped(&trace.values, rate / slowest);
         let low = trace.values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -221,8 +223,8 @@ impl SineFit {
             cut[i] = if trace.values[i] == low { -1.0 } else { 1.0 };
         }
         let fit = SineFit::of(trace, start, cut)?;
-        // Noise lifts the highest samples of a whole record above the sines; where they lie below, they are
-        // cut off.
+        // In a record that is not clipped, noise lifts the highest samples above the fitted sines. Where they
+        // lie below, they are clipped.
         let (rest, mut cut) = (fit.rest(trace), fit.cut.clone());
         for (end, side) in [(low, -1.0), (high, 1.0)] {
             let at: Vec<usize> = (0..n).filter(|i| trace.values[*i] == end && fit.cut[*i] == 0.0).collect();
@@ -236,7 +238,7 @@ impl SineFit {
         if cut == fit.cut { Ok(fit) } else { SineFit::of(trace, start, cut) }
     }
 
-    /// With samples that are cut off.
+    /// Fit with known clipped samples `cut`.
     fn of(trace: &Trace, start: &[f64], cut: Vec<f64>) -> Result<SineFit> {
         let (n, count) = (trace.values.len(), start.len());
         let half = 0.5 * n as f64 / trace.rate().unwrap_or(1.0);
@@ -262,36 +264,36 @@ impl SineFit {
                     model += a * cos + b * sin;
                 }
                 row[size - 1] = 1.0;
-                let left = Left::of(v - model, if step == 0 { 0.0 } else { cut[i] }, noise);
-                squares += left.square;
-                known += left.known;
-                if left.weight < LEAST {
+                let residual = Left::of(v - model, if step == 0 { 0.0 } else { cut[i] }, noise);
+                squares += residual.square;
+                known += residual.known;
+                if residual.weight < LEAST {
                     continue;
                 }
-                let v = model + left.mean / left.weight;
-                all += left.weight * v * v;
-                normal.syger(left.weight, &row, &row, 1.0);
-                right.axpy(left.weight * v, &row, 1.0);
+                let v = model + residual.mean / residual.weight;
+                all += residual.weight * v * v;
+                normal.syger(residual.weight, &row, &row, 1.0);
+                right.axpy(residual.weight * v, &row, 1.0);
             }
             normal.fill_upper_triangle_with_lower_triangle();
             if step == 0 {
-                // No amplitudes are known yet: frequencies stay.
+                // No amplitudes are known yet: the first step keeps the frequencies.
                 (0..count).for_each(|k| normal[(3 * k + 2, 3 * k + 2)] = 1.0);
             }
             let unclear = || Error::refused("the samples do not determine these sines");
             let inverse = normal.cholesky().ok_or_else(unclear)?.inverse();
             let p = &inverse * &right;
-            // Variance of what is left, to first order: the steps end far below what it lets be known.
-            let left = (all - p.dot(&right)).max(0.0) / free as f64;
-            noise = if step == 0 { left.sqrt() } else { (squares / known).sqrt() };
+            // Residual variance to first order: exact enough, since the steps end far below the uncertainty.
+            let variance = (all - p.dot(&right)).max(0.0) / free as f64;
+            noise = if step == 0 { variance.sqrt() } else { (squares / known).sqrt() };
             let mut settled = step > 0;
             for (k, w) in omega.iter_mut().enumerate() {
                 let (a, b) = (p[3 * k], p[3 * k + 1]);
                 (linear[2 * k], linear[2 * k + 1]) = (a, b);
                 let change = if step == 0 { 0.0 } else { p[3 * k + 2] / a.hypot(b) };
-                // A sine may not leave its line in one step.
+                // At most 0.5 rad per half record, 0.16 lines, so that no sine leaves its line in one step.
                 *w += change.clamp(-0.5, 0.5);
-                let std = (left * inverse[(3 * k + 2, 3 * k + 2)]).sqrt() / a.hypot(b);
+                let std = (variance * inverse[(3 * k + 2, 3 * k + 2)]).sqrt() / a.hypot(b);
                 settled = settled && change.abs() <= (SETTLED * std).max(1e-12 * *w);
             }
             linear[2 * count] = p[size - 1];
@@ -320,10 +322,10 @@ impl SineFit {
             .hint("look at the spectrum: two close lines, or a frequency that drifts"))
     }
 
-    /// The fit with one more sine; `None` where no other line stands out of the noise, or it cannot be parted
-    /// from the others.
+    /// The fit with one more sine; `None` where no other line is above the noise, or the sine cannot be
+    /// separated from the others.
     fn one_more(&self, trace: &Trace, spacing: f64) -> Option<SineFit> {
-        // What rounding leaves of exact sines has lines, too.
+        // The rounding errors of exact sines have spectral lines too.
         if self.is_exact() {
             return None;
         }
@@ -338,13 +340,13 @@ impl SineFit {
         parted.then_some(more)
     }
 
-    /// Whether nothing is left but rounding.
+    /// Whether the residual is rounding only.
     fn is_exact(&self) -> bool {
         let largest = self.linear.chunks_exact(2).map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
         self.noise <= ROUNDING * largest
     }
 
-    /// What each sample is without the sines and the mean.
+    /// Residual of each sample, with its weight in the fit.
     fn left(&self, trace: &Trace) -> Vec<Left> {
         let n = trace.values.len();
         let mean = self.linear.last().copied().unwrap_or(0.0);
@@ -356,21 +358,21 @@ impl SineFit {
         each.map(|(i, (v, cut))| Left::of(v - mean - sum(time(i, n)), *cut, self.noise)).collect()
     }
 
-    /// The record without the sines and the mean; what was cut off has its most likely place.
+    /// The residual record; a clipped sample has its expected residual.
     fn rest(&self, trace: &Trace) -> Trace {
         let values = self.left(trace).iter().map(|left| left.mean).collect();
         Trace { meta: trace.meta.clone(), axis: trace.axis.clone(), values }
     }
 
-    /// The sines with first-order uncertainties, widened by the noise around each and by what is left beside
-    /// it.
+    /// The sines with first-order uncertainties, widened for coloured noise and for neighbouring lines of the
+    /// residual.
     fn estimates(&self, trace: &Trace) -> Tones {
         let n = trace.values.len();
         let (rest, unit) = (self.rest(trace), trace.meta.unit.quantity().symbol());
         let lines = if self.is_exact() { None } else { HannLines::of(&rest).ok() };
         let other = lines.as_ref().and_then(|lines| lines.strongest(None).ok());
-        // Samples that are cut off have less noise in what is left: lines are compared with white noise of
-        // its own size.
+        // Clipped samples have less noise in the residual: its lines are compared with white noise of the
+        // residual's own RMS.
         let rms = (rest.values.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt();
         // The first sample, in the time of the fit.
         let first = time(0, n);
@@ -410,18 +412,19 @@ impl SineFit {
 }
 
 impl Tone {
-    /// Widens the uncertainties where what is left holds another line beside this sine, which moves it by
-    /// more than noise does; where that line is large, how far is not known, and no uncertainty is left.
+    /// Widens the uncertainties where the residual has another line beside this sine, which shifts the sine
+    /// more than noise does. Beside a large line the shift is unknown, and the uncertainties are removed.
     ///
-    /// A sine of a part r of the amplitude moves the frequency of a least-squares fit over T by up to
-    /// 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T, amplitude and phase in the middle by up to r, so the phase at the
-    /// first sample by 2.3 r; the fit may have taken up half of it.
+    /// A neighbouring sine of r times the amplitude shifts the frequency of a least-squares fit over T by up
+    /// to 12r/T³ ∫t sin Δt dt/2π = 0.42 r/T. It shifts the relative amplitude and the phase in the middle by
+    /// up to r, so the phase at the first sample by 2.3 r. The fit may have absorbed half of the neighbour:
+    /// r is taken as twice the residual line.
     fn widened(&mut self, left: &HannLines, strongest: Option<f64>) -> Option<Finding> {
         let at = self.frequency.value;
         let other = left.strongest(Some(at)).ok()?;
         let strongest = strongest.unwrap_or(other);
-        // A sine so far off that was not fitted, which the noise around this one holds, leaves a line here of
-        // up to that part of itself.
+        // A sine at this distance that was not fitted leaves a line here of up to its height over the
+        // distance in lines. The noise around this sine already includes it.
         let away = (strongest - at).abs() / left.spacing;
         if away >= FAR && left.height(other) * away < left.height(strongest) {
             return None;

@@ -42,7 +42,7 @@ impl State {
     }
 }
 
-/// Free part of one mass' motion, by its start.
+/// Free part of one mass' motion: displacement in m and velocity in m/s at the flight's start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Free {
     pub oscillator: Oscillator,
@@ -62,7 +62,7 @@ impl Free {
     }
 }
 
-/// Change of a displacement in a step `h`, and the velocity after it, by Taylor's series.
+/// Change of a displacement in a step `h` (s), and the velocity after it, by Taylor's series.
 #[inline]
 fn ahead_of(terms: &[f64; 6], h: f64) -> (f64, f64) {
     let [_, v, a, jerk, snap, fifth] = *terms;
@@ -70,7 +70,7 @@ fn ahead_of(terms: &[f64; 6], h: f64) -> (f64, f64) {
     (x, v + h * (a + h / 2.0 * (jerk + h / 3.0 * (snap + h / 4.0 * fifth))))
 }
 
-/// Where a flight meets the other mass.
+/// First contact of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Landing {
     /// Time in s from the flight's start.
@@ -89,9 +89,10 @@ pub struct Flight {
     pub(super) waves: Waves,
     /// Where mass 1 would rest under the constant force, in m.
     pub(super) rest: f64,
+    /// Gap in m with both masses in their rest positions.
     pub(super) gap: f64,
     pub(super) free: [Free; 2],
-    /// Time before which the gap is known to be open: the beginning of a parting.
+    /// Time in s up to which parting masses are known to be apart; 0 for other flights.
     pub(super) open: f64,
 }
 
@@ -122,11 +123,12 @@ impl Flight {
         Flight { waves, rest, gap, free: [part(0), part(1)], open: 0.0 }
     }
 
-    /// The same flight of masses that part from rest against each other: no contact is sought where the gap
-    /// can but open.
+    /// The same flight for masses that part from rest against each other. No contact is searched for while
+    /// the gap is known to open: the rounding error of so small a gap could pass for a contact.
     ///
-    /// With g = ġ = 0 at the start, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24, which is above 0 up to its root. After a
-    /// release g̈ is 0 as well, the gap opens like t³, and is long smaller than its rounding.
+    /// With g = ġ = 0 at the start and a bound M₄ on the fourth derivative, g ≥ g̈t²/2 + g⃛t³/6 − M₄t⁴/24:
+    /// above 0 up to its root. After a release g̈ is 0 as well: the gap opens like t³ and stays below its
+    /// rounding error for a long time.
     pub(super) fn parting(mut self) -> Flight {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = self.series(0.0);
         let bound = |i: usize| {
@@ -135,7 +137,7 @@ impl Flight {
         let fourth = bound(1) + self.waves.limits.snap + bound(0);
         let (bend, jerk) = ((a2 - a1).max(0.0), j2 - j1);
         let root = (jerk / 6.0 + (jerk * jerk / 36.0 + fourth * bend / 12.0).sqrt()) / (fourth / 12.0);
-        // Half of it, where more than an eighth of the leading term is left.
+        // Half the root, where the lower bound of the gap is still above an eighth of its leading term.
         if root.is_finite() {
             self.open = root / 2.0;
         }
@@ -160,7 +162,7 @@ impl Flight {
         State { x1, v1, x2, v2 }
     }
 
-    /// Gap in m at `t`; negative where nothing stops the masses from passing through each other.
+    /// Gap in m at `t`; negative where the flight, continued past a contact, lets the masses overlap.
     pub fn gap(&self, t: f64) -> f64 {
         let [[x1, ..], [x2, ..]] = self.series(t);
         self.gap + x2 - x1
@@ -185,7 +187,7 @@ impl Flight {
             return None;
         }
         let mut last = [[0.0; 6]; 2];
-        // A quarter ε of the terms that are summed.
+        // Rounding error of the gap in m: a quarter ε of the terms that are summed.
         let rounding = 0.25
             * f64::EPSILON
             * (self.gap.abs() + self.waves.amplitude + self.free[0].x.abs() + self.free[1].x.abs());
@@ -210,12 +212,13 @@ impl Flight {
             },
             |t| {
                 let (limits, free) = self.limits(t);
-                // At the beginning most flights end in contact.
+                // Without limits the search ends: the motion cannot reach contact any more. At the start this
+                // is not checked, since most flights end in contact.
                 let reach = self.waves.amplitude + free;
                 (t == self.open || self.gap - self.rest <= reach).then_some(limits)
             },
         )?;
-        // Newton's method on the series: a parabola's root is left by the cube of the step.
+        // Two Newton steps on the series: the root of the parabola is in error by the cube of the step.
         let start = self.gap + (last[1][0] - last[0][0]);
         for _ in 0..2 {
             if ahead > 0.0 {
@@ -228,7 +231,7 @@ impl Flight {
         Some(Landing { time: at + ahead, state })
     }
 
-    /// Bounds on the derivatives of the gap from `t` on, and on the free parts' displacements together, in m.
+    /// Bounds on the derivatives of the gap from `t` on, and on the sum of the free displacements in m.
     fn limits(&self, t: f64) -> (Limits, f64) {
         let (mut limits, mut reach) = (self.waves.limits, 0.0);
         for part in &self.free {

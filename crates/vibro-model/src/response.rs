@@ -19,7 +19,7 @@ pub const MOST_POINTS: usize = 1_000_000;
 pub struct Response {
     /// Point by point, the frequency rising.
     pub points: Vec<ResponsePoint>,
-    /// Where motions appear, vanish or change their verdict, the frequency rising.
+    /// Where motions appear, vanish, or change stability or admissibility, the frequency rising.
     pub changes: Vec<Change>,
 }
 
@@ -34,7 +34,7 @@ pub struct ResponsePoint {
     pub no_impact: Option<NoImpact>,
     /// Free motion without losses at this frequency, where there is one.
     pub backbone: Option<Orbit>,
-    /// Why there is no answer, where there is none.
+    /// Reason why this frequency has no motions, where it has none.
     pub refused: Option<String>,
 }
 
@@ -48,7 +48,7 @@ pub enum ChangeKind {
     Flip,
     /// Stability is lost or gained; a slow beat grows.
     NeimarkSacker,
-    /// The impact vanishes.
+    /// The impulse of the impact falls to zero.
     Grazing,
     /// The masses begin or cease to meet a second time.
     #[serde(rename = "second contact")]
@@ -70,7 +70,7 @@ impl ChangeKind {
 pub struct Change {
     /// Frequency in Hz.
     pub frequency: f64,
-    /// What happens there.
+    /// Kind of the change.
     pub kind: ChangeKind,
     /// Half the peak-to-peak values of x₁ and x₂ in m there.
     pub amplitude: [f64; 2],
@@ -80,10 +80,10 @@ pub struct Change {
 /// with one impact in `cycles` cycles; changes are located between the points to a millionth of their
 /// distance.
 ///
-/// A frequency at which an undamped mass resonates gives a point without motions that says so.
+/// A frequency at which an undamped mass resonates gives a point without motions, with the reason.
 ///
 /// # Errors
-/// If the frequencies are none, or a parameter is impossible at all of them.
+/// If the range of frequencies is invalid, or a parameter is impossible at all of them.
 pub fn response(
     rig: &Rig,
     excitation: &Excitation,
@@ -99,7 +99,7 @@ pub fn response(
     if let Some(ResponsePoint { frequency, .. }) =
         points.first().filter(|_| points.iter().all(|p| p.refused.is_some()))
     {
-        // The reason as it stands at the first.
+        // Returns the error of the first frequency.
         orbits_of(rig, &excitation.at_frequency(*frequency), cycles)?;
     }
     let solve = |frequency: f64| point(rig, excitation, frequency, cycles);
@@ -110,10 +110,10 @@ pub fn response(
     Ok(Response { points, changes })
 }
 
-/// Frequencies with equal distances, by their number.
+/// Equidistant frequencies in Hz, as a function of the index of the point.
 ///
 /// # Errors
-/// If the ends are none, or there are fewer than 2 or more than `most`.
+/// If the range is invalid, or there are fewer than 2 or more than `most` points.
 pub(crate) fn axis(from: f64, to: f64, points: usize, most: usize) -> Result<impl Fn(usize) -> f64 + Sync> {
     if !(from.is_finite() && to.is_finite() && from > 0.0 && to > from) {
         let expected = "finite frequencies above 0, the lower one first";
@@ -142,11 +142,14 @@ fn point(rig: &Rig, excitation: &Excitation, frequency: f64, cycles: u32) -> Res
     point
 }
 
-/// What a motion is at a frequency.
+/// Existence and stability of a motion at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Standing {
+    /// No solution.
     Gone,
+    /// A solution without a positive impulse.
     Parted,
+    /// The masses would pass through each other outside the impact.
     Passing,
     Unstable,
     Stable,
@@ -166,8 +169,8 @@ fn standing(orbit: Option<&Orbit>) -> Standing {
 /// Changes between two neighbouring points.
 fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> ResponsePoint) -> Vec<Change> {
     let mut changes = Vec::new();
-    // From the left, then what appears from the right; of a fold both motions are gone, the upper one tells
-    // it.
+    // From the left, then from the right for motions that appear. At a fold two motions vanish: only the
+    // upper one reports it.
     for (here, there) in [(a, b), (b, a)] {
         for orbit in &here.orbits {
             let next = orbit.continued(&there.orbits);
@@ -195,7 +198,7 @@ fn between(a: &ResponsePoint, b: &ResponsePoint, solve: &impl Fn(f64) -> Respons
     changes
 }
 
-/// The change of the standing of `orbit` on the way from the frequency `from` (Hz) to the point `to`.
+/// Locates the change of `orbit` between the frequency `from` (Hz) and the point `to`.
 fn locate(
     orbit: &Orbit,
     from: f64,
@@ -254,7 +257,7 @@ mod tests {
         let of = |kind: ChangeKind| {
             found.changes.iter().filter(|c| c.kind == kind).map(|c| c.frequency / unit).collect::<Vec<_>>()
         };
-        // Independent number: A = Δ at ν = 2.168715614919, where the smaller root passes through zero, too.
+        // From an independent calculation: A = Δ at ν = 2.168715614919, where the smaller root is zero too.
         let step = 0.4 / 399.0;
         for kind in [ChangeKind::NoImpact, ChangeKind::Grazing] {
             let near: Vec<_> =
@@ -299,14 +302,15 @@ mod tests {
             let orbit = orbits_of(&rig, &sine.at_frequency(flip.frequency), 1).unwrap().orbits.remove(0);
             let nearest =
                 orbit.multipliers.unwrap().iter().map(|z| (z + 1.0).norm()).fold(f64::INFINITY, f64::min);
-            // Frequency to 1e-6 of 0.01 Hz, multipliers change by some tens a Hz.
+            // Located to 1e-6 of 0.01 Hz; multipliers change by some tens per Hz.
             assert!(nearest < 1e-5, "{nearest}");
         }
     }
 
     #[test]
     fn impulses_have_their_gap_without_motions() {
-        // Independent: no one-impact orbit for F = 0.009 N s between ν ≈ 1.17 and 1.88 (R = 0.7).
+        // From an independent calculation: F = 0.009 N s and R = 0.7 allow no one-impact orbit from ν ≈ 1.17
+        // to 1.88.
         let rig = Rig::thesis();
         let unit = rig.natural_frequencies()[0];
         let train = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 1.0 });

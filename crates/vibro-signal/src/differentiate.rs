@@ -4,7 +4,7 @@ use super::sound::no_gaps;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result, Trace};
 
-/// A differentiated trace and the frequency up to which it is right.
+/// A differentiated trace and the frequency up to which its amplitudes are accurate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Differentiated {
     /// The trace, with its new unit.
@@ -13,9 +13,9 @@ pub struct Differentiated {
     pub highest: f64,
 }
 
-/// Weights on five neighbours for the derivative at the first, second and middle one, in twelfths of a
-/// sample: the derivative of the polynomial through them (Abramowitz & Stegun, Handbook of Mathematical
-/// Functions, 1964, table 25.2).
+/// Weights of five neighbouring samples for the derivative at the first, second and middle one, in 1/(12 Δt):
+/// the derivative of the polynomial through them (Abramowitz & Stegun, Handbook of Mathematical Functions,
+/// 1964, table 25.2).
 const WEIGHTS: [[f64; 5]; 3] =
     [[-25.0, 48.0, -36.0, 16.0, -3.0], [-3.0, -10.0, 18.0, -6.0, 1.0], [1.0, -8.0, 0.0, 8.0, -1.0]];
 
@@ -45,11 +45,12 @@ pub fn in_time(trace: &Trace, times: u8) -> Result<Differentiated> {
     meta.unit = meta.unit.times_seconds(-(times as i8));
     meta.quantity = meta.unit.quantity();
     meta.step("differentiate", &[("times", &times), ("rule", &"differences of five samples")]);
-    // The derivative times (8 sin x − sin 2x)/(6x) ≈ 1 − x⁴/30, x = ωΔt.
+    // Gain of one differentiation over the true one: (8 sin x − sin 2x)/(6x) ≈ 1 − x⁴/30, x = ωΔt.
     let highest = rate / TAU * (30.0 * 0.01 / f64::from(times)).powf(0.25);
     Ok(Differentiated { trace, highest })
 }
 
+/// One differentiation; `factor` is 1/(12 Δt).
 fn once(values: &[f64], factor: f64) -> Vec<f64> {
     let sum = |part: &[f64], weights: &[f64; 5]| -> f64 {
         factor * part.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>()
@@ -57,7 +58,7 @@ fn once(values: &[f64], factor: f64) -> Vec<f64> {
     let [first, second, middle] = &WEIGHTS;
     let mut out = vec![sum(&values[..5], first), sum(&values[..5], second)];
     out.extend(values.windows(5).map(|part| sum(part, middle)));
-    // At the other end the same weights, from the end and with the other sign.
+    // The last two samples use the weights of the first two, in reverse order and with opposite sign.
     let tail: Vec<f64> = values.iter().rev().take(5).map(|v| -v).collect();
     out.extend([sum(&tail, second), sum(&tail, first)]);
     out
@@ -81,7 +82,7 @@ mod tests {
         let found = in_time(&trace(8.0, t.collect()), 1).unwrap();
         for (i, v) in (0..).zip(&found.trace.values) {
             let truth = 4.0 * time(i).powi(3) - 9.0 * time(i).powi(2) + 1.0;
-            // Five terms of up to 48·8/12 times values of order one.
+            // Tolerance: rounding of five terms of up to 48·8/12 times values of order one.
             assert!((v - truth).abs() < 160.0 * 4.0 * f64::EPSILON, "{i}: {v} {truth}");
         }
         assert_eq!(found.trace.meta.unit.symbol(), "m/s");
@@ -98,8 +99,8 @@ mod tests {
                 let found = in_time(&trace(rate, values), times).unwrap().trace;
                 let largest = found.values[10..3990].iter().fold(0.0, |a: f64, v| a.max(v.abs()));
                 let factor = largest / omega.powi(i32::from(times));
-                // The next term of the series, x⁶/252 a derivative, works the other way; a crest between two
-                // samples hides up to x²/8 in a few samples, nothing in four thousand.
+                // The next term of the series, x⁶/252 for each differentiation, raises the gain. A crest
+                // between two samples is missed by up to x²/8, but not by 4000 samples.
                 assert!(factor < 1.0001 && factor > 0.99, "{f} Hz, {times}: {factor}");
                 assert!(f < highest || factor < 0.993, "{f} Hz, {times}: {factor}");
             }

@@ -9,8 +9,8 @@ use vibro_record::units::notation::shortest;
 use vibro_record::{Axis, Error, Grid, Result, Scaling, Spectrum, Trace, Values};
 
 /// Integrates a spectrum `times` times (differentiates where below 0): each line is divided by (iω) that
-/// often, magnitudes by ω, powers by ω². Lines below `fmin` Hz are left out, and so is zero where it is
-/// integrated: a mean velocity has no displacement in a spectrum.
+/// often, magnitudes by ω, powers by ω². Lines below `fmin` Hz are left out. An integration also leaves out
+/// the line at 0 Hz: a mean velocity has no displacement in a spectrum.
 ///
 /// # Errors
 /// If `times` is not −2 to 2, no line is left, or the lines are not of a scaling that can be integrated.
@@ -19,7 +19,7 @@ pub fn in_frequency(spectrum: &Spectrum, times: i8, fmin: f64) -> Result<Spectru
     let Grid::Even { start, step, n } = spectrum.axis.grid else {
         return Err(Error::refused("the lines of the spectrum are not evenly spaced"));
     };
-    // A line that is meant by `fmin` stays, whatever rounding says.
+    // A line at `fmin` is kept despite rounding.
     let first = (0..n).find(|k| {
         let f = start + *k as f64 * step;
         f >= fmin - 1e-9 * step && !(times > 0 && f <= 0.0)
@@ -69,51 +69,52 @@ pub fn in_frequency(spectrum: &Spectrum, times: i8, fmin: f64) -> Result<Spectru
     Ok(result)
 }
 
-/// How a trace is integrated in time.
+/// Options of an integration in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InTime {
-    /// 1 or 2.
+    /// Number of integrations, 1 or 2.
     pub times: i8,
-    /// Corner in Hz of the high-pass after each integration; it passes twice, without phase.
+    /// Corner in Hz of the high-pass after each integration; it runs forwards and backwards, without phase.
     pub corner: f64,
-    /// Order of one pass of it.
+    /// Order of the high-pass in one of the two passes.
     pub order: usize,
     /// Period of the excitation in s: means are taken over whole periods only.
     pub period: Option<f64>,
 }
 
 impl InTime {
-    /// Part of the amplitude of a sine of `frequency` Hz that is left by high-pass and trapezoid at this
-    /// sampling rate in Hz, in all integrations together, between the edges of the record.
+    /// Gain of high-pass and trapezoid over the exact integral, in all integrations together, for a sine of
+    /// `frequency` sampled at `rate` (Hz), away from the ends of the record.
     ///
     /// # Errors
-    /// If the corner or the order cannot be.
+    /// If the corner or the order is invalid.
     pub fn gain(&self, frequency: f64, rate: f64) -> Result<f64> {
         let filter = Filter::high_pass(self.corner, self.order, rate)?;
         let turn = 0.5 * TAU * frequency / rate;
-        // Both passes; the trapezoid's Δt/2·(1 + z⁻¹)/(1 − z⁻¹) over the integral's 1/(iω).
+        // Both passes of the high-pass, times the trapezoid's Δt/2·(1 + z⁻¹)/(1 − z⁻¹) over the integral's
+        // 1/(iω).
         let once = filter.response(frequency).norm_sqr() * turn / turn.tan();
         Ok(once.powi(i32::from(self.times)))
     }
 }
 
-/// An integrated trace and what is known of its faults.
+/// An integrated trace and the limits of its accuracy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Integrated {
     /// The trace, with its new unit.
     pub trace: Trace,
-    /// Frequencies in Hz between which amplitudes are right within 1 %: the high-pass takes from lower ones,
-    /// the trapezoid from higher ones.
+    /// Frequencies in Hz between which amplitudes are right within 1 %: the high-pass attenuates lower ones,
+    /// the trapezoid higher ones.
     pub band: [f64; 2],
     /// Seconds at both ends in which the high-pass has not settled.
     pub edge: f64,
-    /// Change of the mean from the first period to the last, between the edges; without a period, of a
-    /// straight line through the values: the drift that is left.
+    /// Remaining drift between the edges, in the unit of the trace: the change of the mean from the first
+    /// period to the last, or without a period that of a straight line through the values.
     pub drift: f64,
 }
 
-/// Integrates a trace by the trapezoid: its mean over whole periods is taken out first, a zero-phase
-/// Butterworth high-pass takes the drift out afterwards.
+/// Integrates a trace by the trapezoidal rule. The mean over whole periods is removed before, the drift by a
+/// zero-phase Butterworth high-pass afterwards.
 ///
 /// # Errors
 /// If the trace has no sampling rate, is too short for the filter or for one period, a sample is missing, or
@@ -169,16 +170,16 @@ fn check(times: i8, least: i8) -> Result<()> {
     Err(Error::usage(format!("{times} integrations"), format!("a whole number from {least} to 2")))
 }
 
-/// Where high-pass and trapezoid take half a percent each at most, in all integrations together. The
-/// high-pass lets through 1/(1 + (corner/f)^2N) in two passes; the trapezoid is the integral times
-/// (ωΔt/2)/tan(ωΔt/2) ≈ 1 − (ωΔt)²/12.
+/// Frequencies in Hz between which high-pass and trapezoid attenuate by at most 0.5 % each, in all
+/// integrations together. The gain of two passes of the high-pass is 1/(1 + (corner/f)^2N), that of the
+/// trapezoid over the integral (ωΔt/2)/tan(ωΔt/2) ≈ 1 − (ωΔt)²/12.
 fn band(how: &InTime, rate: f64) -> [f64; 2] {
     let share = 0.005 / f64::from(how.times);
     let low = how.corner * (1.0 / share - 1.0).powf(0.5 / how.order as f64);
     [low, rate * (12.0 * share).sqrt() / TAU]
 }
 
-/// Samples of as many whole periods as the record holds; all where no period is known.
+/// Number of samples in the whole periods of the record; all samples where no period is known.
 fn whole_periods(n: usize, period: Option<f64>, rate: f64) -> Result<usize> {
     let Some(period) = period else { return Ok(n.max(1)) };
     let cycles = (n as f64 / rate / period).floor();
@@ -189,6 +190,7 @@ fn whole_periods(n: usize, period: Option<f64>, rate: f64) -> Result<usize> {
     Ok(((cycles * period * rate).round() as usize).clamp(1, n))
 }
 
+/// Drift as in [`Integrated::drift`]; `edge` and `period` are in samples.
 fn drift(values: &[f64], edge: usize, period: Option<usize>) -> f64 {
     let inner =
         values.get(edge..values.len().saturating_sub(edge)).filter(|v| v.len() >= 2).unwrap_or(values);
@@ -226,7 +228,8 @@ mod tests {
             for corner in [5.0, 12.0] {
                 let how = InTime { times, corner, order: 4, period: Some(0.05) };
                 let found = in_time(&trace, &how).unwrap().trace.values;
-                // 80 whole periods in the middle; what the ends have left there, exp(−0.38·2π·5·2), is 4e-11.
+                // 80 whole periods in the middle. There the filter's transients from the ends, 2 s away, have
+                // decayed to exp(−0.38·2π·5·2) = 4e-11.
                 let sum = |f: fn(f64) -> f64| -> f64 {
                     (2000..6000).map(|i| found[i] * f(TAU * 20.0 * i as f64 / rate)).sum::<f64>() / 2000.0
                 };
@@ -261,7 +264,7 @@ mod tests {
         let psd = in_frequency(&plain(Scaling::Psd), 1, 0.0).unwrap();
         assert_eq!((psd.meta.unit.symbol(), psd.meta.quantity), ("(m/s)²/Hz", Quantity::Velocity));
         assert!((psd.values.magnitude(19) / (4.5 / 1.5 / (omega * omega)) - 1.0).abs() < 1e-12);
-        // There and back again.
+        // A differentiation undoes the integration.
         let back = in_frequency(&once, -1, 0.0).unwrap();
         assert_eq!(back.meta.unit.symbol(), "m/s²");
         assert!((back.values.magnitude(15) / 3.0 - 1.0).abs() < 1e-12);

@@ -7,9 +7,9 @@ use crate::report::{AxisSpec, Figure, Ink, Marker, Plot, Series, Stroke};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// So many lines are shown as dots, more as a line.
+/// Most spectral lines that are drawn as dots; more are drawn as a curve.
 const DOTS: usize = 150;
-/// Points of a smooth curve.
+/// Fewest points of a smooth curve.
 const SMOOTH: usize = 300;
 
 /// Magnitude (logarithmic) over phase in degrees, with the fitted response over the lines of each mode.
@@ -67,15 +67,16 @@ pub fn frf(title: &str, meta: &Meta, measured: &Measured, modes: &[Mode]) -> Fig
     })
 }
 
-/// The fitted response at its lines and, where these are few, between them: the modes, and a straight line
-/// through what else was fitted. What a window adds to the modes is known at the lines only.
+/// The fitted response at its lines and, where these are few, between them. Between two lines it is the sum
+/// of the modes, with the other terms of the fit interpolated linearly. The effect of a window on the modes
+/// is known at the lines only.
 fn curve(measured: &Measured, modes: &[Mode], windowed: bool) -> Vec<(f64, Complex64)> {
     let fitted = modes.first().map(|mode| mode.fitted.as_slice()).unwrap_or_default();
     let at_lines = fitted.iter().map(|(f, re, im)| (*f, Complex64::new(*re, *im)));
     if windowed || measured.magnitude_only || fitted.len() >= SMOOTH {
         return at_lines.collect();
     }
-    let alone = |f: f64| {
+    let modal = |f: f64| {
         let omega = TAU * f;
         let of = |mode: &Mode| {
             let (own, angle) = (TAU * mode.frequency.value, mode.phase.as_ref().map_or(0.0, |p| p.value));
@@ -85,17 +86,17 @@ fn curve(measured: &Measured, modes: &[Mode], windowed: bool) -> Vec<(f64, Compl
         Complex64::new(0.0, omega).powi(measured.power()) * modes.iter().map(of).sum::<Complex64>()
     };
     let between = SMOOTH.div_ceil(fitted.len().saturating_sub(1).max(1));
-    let rest: Vec<(f64, Complex64)> = at_lines.map(|(f, value)| (f, value - alone(f))).collect();
+    let rest: Vec<(f64, Complex64)> = at_lines.map(|(f, value)| (f, value - modal(f))).collect();
     let piece = |pair: &[(f64, Complex64)]| {
         let ((a, from), (b, to)) = (pair[0], pair[1]);
         let at = |k: usize| {
             let part = k as f64 / between as f64;
             let f = a + part * (b - a);
-            (f, alone(f) + from + (to - from) * part)
+            (f, modal(f) + from + (to - from) * part)
         };
         (0..between).map(at).collect::<Vec<_>>()
     };
-    let last = rest.last().map(|(f, left)| (*f, alone(*f) + left));
+    let last = rest.last().map(|(f, rest)| (*f, modal(*f) + rest));
     rest.windows(2).flat_map(piece).chain(last).collect()
 }
 
@@ -105,8 +106,8 @@ pub(crate) fn coherence_plot(f: &[f64], coherence: &[f64], ink: Ink) -> Plot {
         .with(Series::line("", f, coherence).ink(ink).stroke(Stroke::Solid))
 }
 
-/// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below it only
-/// fills the frame.
+/// The phase of a function over its frequencies, where the coherence, if known, is 0.5 or more: below that
+/// the phase is noise that fills the frame.
 pub(crate) fn phase_plot(
     f: &[f64],
     values: impl Iterator<Item = Complex64>,
@@ -148,7 +149,8 @@ mod tests {
         let curve = curve(&measured, &found.modes, false);
         assert!(curve.len() > SMOOTH && curve.windows(2).all(|w| w[0].0 < w[1].0));
         for (f, value) in curve {
-            // Fits end where a step gains 1e-8 of what is left; that of exact lines is rounding.
+            // A fit ends once a step reduces the residual by less than 1e-8 of itself; the residual of exact
+            // lines is rounding.
             assert!((value - truth(f)).norm() < 1e-5 * truth(f).norm(), "{f}: {value} {}", truth(f));
         }
     }

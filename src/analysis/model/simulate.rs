@@ -1,4 +1,4 @@
-//! A motion from impact to impact: `vibro model simulate`.
+//! Simulation of a motion from impact to impact: `vibro model simulate`.
 
 use super::contact::{self, Contact};
 use super::{Driven, SceneKeys, figures};
@@ -46,29 +46,30 @@ pub struct Keys {
     pub grazing: f64,
 }
 
-/// Cycles that the traces show, and samples of each.
+/// Excitation cycles in the plotted traces.
 const SHOWN: u32 = 12;
+/// Samples of the traces per cycle.
 const SAMPLES: u32 = 400;
 
-/// What a motion did in the cycles that were looked at.
+/// A motion over the analysed cycles.
 struct ObservedMotion {
     portrait: Portrait,
     /// Time in s, phase in rad and state at the end.
     end: (f64, f64, State),
-    /// Grazing impacts, where they are counted.
+    /// Number of grazing impacts; `None` where the contact model does not count them.
     grazing: Option<u64>,
-    /// Stretches in closed form, with those before, where they are counted.
+    /// Number of flights in closed form, transients included; `None` where the contact model has none.
     flights: Option<u64>,
 }
 
 impl Keys {
-    /// Names of the files that its answer has.
+    /// Names of the files of the answer.
     pub const FILES: Names = Names::Numbered(&["traces", "phase_plane", "poincare", "reaction", "impacts"]);
 
     /// The motion with its impacts and its regime.
     ///
     /// # Errors
-    /// If the scene or a key cannot be, nothing drives the rig, or the motion cannot be followed.
+    /// If the scene or a key is invalid, the scene has no excitation, or the simulation fails.
     pub fn answer(&self) -> Result<Answer> {
         let Driven { scene, excitation, finding } = self.scene.driven(self.frequency)?;
         let start = self.start(&scene.rig)?;
@@ -112,19 +113,19 @@ impl Keys {
         }
     }
 
-    /// What a motion does after it has settled.
+    /// Lets the transients decay for `settle` cycles, then records the motion.
     fn seen(&self, motion: &mut dyn Motion) -> Result<ObservedMotion> {
         let end = motion.time() + f64::from(self.settle) / motion.frequency();
         motion.advance(end, &mut |_| {})?;
         let before = motion.counted().map(|counts| counts.grazing);
-        let sitting = PortraitOptions { cycles: self.cycles, samples: SAMPLES, shown: SHOWN };
-        let portrait = Portrait::take(motion, &sitting)?;
+        let options = PortraitOptions { cycles: self.cycles, samples: SAMPLES, shown: SHOWN };
+        let portrait = Portrait::take(motion, &options)?;
         let (end, counts) = ((motion.time(), motion.phase(), motion.state()), motion.counted());
         let grazing = counts.zip(before).map(|(counts, before)| counts.grazing - before);
         Ok(ObservedMotion { portrait, end, grazing, flights: counts.map(|counts| counts.flights) })
     }
 
-    /// What is not to be relied on.
+    /// Findings that limit the result: grazing, irregular or unsettled motion, losses that are left out.
     fn doubts(&self, seen: &ObservedMotion, rig: &Rig) -> Vec<Finding> {
         let mut found = Vec::new();
         let pattern = &seen.portrait.pattern;
@@ -145,7 +146,7 @@ impl Keys {
             found.push(Finding::caution("hertz-lossless").number("restitution", rig.restitution));
         }
         let State { x1, x2, .. } = seen.end.2;
-        // Apart by less than a millionth of their ways.
+        // A gap below a millionth of the displacements counts as closed.
         if pattern.regime == Regime::NoImpact && rig.gap + x2 - x1 <= 1e-6 * (x1.abs() + x2.abs()) {
             found.push(Finding::caution("masses-pressed"));
         }

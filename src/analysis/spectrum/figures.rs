@@ -25,15 +25,15 @@ pub fn lines(title: &str, result: &SpectralResult) -> Figure {
     }
 }
 
-/// Lines of which more are not seen in print: a curve through all would fill the frame.
+/// Most spectral lines that print can resolve: a curve through more would fill the frame.
 const LINES: usize = 4000;
 
-/// The curve, or of very many lines the largest of as many as print shows side by side; and the sines that
-/// were fitted.
+/// Figure of a spectrum, with marks at the fitted sines. Of more than [`LINES`] lines the largest of each
+/// group of neighbours is drawn.
 fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &SpectralResult) -> Figure {
     let together = f.len().div_ceil(LINES).max(1);
     let on_line = |at: f64| {
-        // A sine stands on the higher of the lines beside it.
+        // The mark of a sine is drawn at the height of the higher of its two neighbouring lines.
         let next = f.partition_point(|f| *f < at);
         v[next.saturating_sub(1)..v.len().min(next + 1)].iter().copied().fold(f64::NAN, f64::max)
     };
@@ -45,15 +45,15 @@ fn drawn(title: &str, plot: Plot, (f, v): (Vec<f64>, Vec<f64>), result: &Spectra
     };
     let (x, y): (Vec<f64>, Vec<f64>) = f.chunks(together).zip(v.chunks(together)).map(largest).unzip();
     let mut plot = plot.with(Series::line("", x, y));
-    let mut said = vec![conditions(result)];
+    let mut caption = vec![conditions(result)];
     if !at.is_empty() {
         plot = plot.with(Series::points("", at, heights).marker(Marker::OpenCircle).ink(Ink::Nth(1)));
-        said.push("Circles mark the sines that were fitted.".to_owned());
+        caption.push("Circles mark the sines that were fitted.".to_owned());
     }
     if together > 1 {
-        said.push(format!("Of {together} lines side by side the largest is drawn."));
+        caption.push(format!("Of {together} lines side by side the largest is drawn."));
     }
-    Figure::double(format!("Spectrum, {title}")).panel(plot).caption(said.join(" "))
+    Figure::double(format!("Spectrum, {title}")).panel(plot).caption(caption.join(" "))
 }
 
 /// Window, averages and scaling, as a caption states them.
@@ -71,7 +71,7 @@ fn conditions(result: &SpectralResult) -> String {
 
 /// The axes of a spectrum, and its lines.
 fn axes(spectrum: &Spectrum) -> (Plot, (Vec<f64>, Vec<f64>)) {
-    // A quantity of no name goes without.
+    // A quantity without a name is left out of the label.
     let quantity = match spectrum.meta.quantity {
         Quantity::Other => String::new(),
         quantity => format!("{} ", quantity.name()),
@@ -93,6 +93,7 @@ fn transfer(title: &str, transfer: &Transfer, conditions: &str) -> Figure {
     let frf = &transfer.frf;
     let f = frf.axis.values();
     let magnitude: Vec<f64> = frf.values.iter().map(|v| v.norm()).collect();
+    // At least 5 % of the magnitude, since a logarithmic axis has no place for zero or less.
     let edge = |by: f64| -> Vec<f64> {
         let lines = magnitude.iter().zip(&transfer.magnitude_std);
         lines.map(|(m, std)| (m + by * std).max(0.05 * m)).collect()

@@ -1,4 +1,4 @@
-//! Sweeps against the model: overlay and fit, in `vibro compare` and in a campaign.
+//! Measured sweeps against the model: overlay and fit, in `vibro compare` and in a campaign.
 
 use super::{figures, findings_of, responses, tables};
 use crate::analysis::answer::Answer;
@@ -15,7 +15,7 @@ use crate::record::Finding;
 use crate::report::Table;
 use serde_json::json;
 
-/// The parameters that a campaign asks for; `None` where it asks for none.
+/// Fits the parameters that `[fit]` of a campaign lists; `None` where it lists none.
 ///
 /// # Errors
 /// As [`crate::compare::fit()`].
@@ -24,8 +24,8 @@ pub fn fit(campaign: &Campaign, rig: &Rig, responses: &[Response]) -> Result<Opt
         return Ok(None);
     }
     let force = campaign.excitation.and_then(|e| e.force);
-    // A curved contact has no stiffness in N/m, and a damper that is stated leaves no restitution to be
-    // found.
+    // Only a linear contact has a stiffness in N/m. A stated contact damper fixes the restitution, which then
+    // cannot be fitted.
     let straight = campaign.contact.filter(|c| c.exponent.is_none_or(|n| n == 1.0) && c.damping.is_none());
     let contact = straight.and_then(|c| c.stiffness);
     crate::compare::fit(rig, force, contact, predicting(campaign).pace(), responses, &campaign.fit).map(Some)
@@ -39,7 +39,7 @@ fn predicting(campaign: &Campaign) -> Predicting {
     Predicting { model: campaign.model, contact: campaign.contact }
 }
 
-/// The sweeps of a campaign over its rig, with the fit that it asks for.
+/// Overlay of a campaign's sweeps on the prediction for its rig, with the fit that `[fit]` requests.
 ///
 /// # Errors
 /// If the campaign has no rig, a sweep cannot be read, or the data allow no overlay or no fit.
@@ -58,10 +58,10 @@ pub fn compared(campaign: &Campaign, progress: &dyn Progress) -> Result<Answer> 
     Ok(answer)
 }
 
-/// What is shown of overlay and fit.
+/// Findings, figures and tables of overlay and fit.
 fn shown(campaign: &Campaign, responses: &[Response], overlay: &Overlay, fit: Option<&Fit>) -> Answer {
     let mut answer = Answer::default();
-    // All that follows rests on it.
+    // First, because every prediction depends on the assumed keys of the rig.
     answer.add("", rig_left_out("[rig]", &campaign.rig_left_out()));
     answer.add("", &overlay.findings);
     answer.figure("overlay", figures::overlay(&campaign.name, overlay, responses));
@@ -81,8 +81,8 @@ fn shown(campaign: &Campaign, responses: &[Response], overlay: &Overlay, fit: Op
 /// Overlays the responses of a campaign on its rig and fits the parameters that it asks for.
 ///
 /// # Errors
-/// If what was found cannot be written as JSON. Data that allow no overlay or no fit are no reason to give up
-/// the rest.
+/// If a result cannot be written as JSON. Data that allow no overlay or no fit give a finding, and the other
+/// analyses continue.
 pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<Table>> {
     let campaign = job.campaign;
     let mut rig = campaign.rig.filter(|_| campaign.compute.overlay && !responses.is_empty());
@@ -93,19 +93,19 @@ pub fn run(job: &mut Job<'_>, responses: &[Response]) -> Result<Option<Table>> {
     if rig.is_none() && !campaign.fit.parameters.is_empty() {
         job.found.add("", [Finding::caution("fit-without-rig")]);
     }
-    let (mut laid, mut found) = (None, None);
+    let (mut overlay, mut fitted) = (None, None);
     if let Some(rig) = &rig {
-        laid = job.found("overlay", overlaid(campaign, rig, responses));
-        found = job.found("fit", fit(campaign, rig, responses)).flatten();
-        if let Some(overlay) = &laid {
-            job.show("", "", shown(campaign, responses, overlay, found.as_ref()));
+        overlay = job.found("overlay", overlaid(campaign, rig, responses));
+        fitted = job.found("fit", fit(campaign, rig, responses)).flatten();
+        if let Some(overlay) = &overlay {
+            job.show("", "", shown(campaign, responses, overlay, fitted.as_ref()));
         }
         let stiffness = campaign.contact.and_then(|contact| contact.stiffness);
-        let sliders = laid.as_ref().and_then(|overlay| Sliders::of(rig, overlay, stiffness));
-        job.found.compared = laid.is_some().then_some(ComparedRig { rig: *rig, sliders });
+        let sliders = overlay.as_ref().and_then(|overlay| Sliders::of(rig, overlay, stiffness));
+        job.found.compared = overlay.is_some().then_some(ComparedRig { rig: *rig, sliders });
     }
     job.put("rig", &rig)?;
-    job.put("overlay", &laid)?;
-    job.put("fit", &found)?;
-    Ok(laid.as_ref().map(tables::agreement))
+    job.put("overlay", &overlay)?;
+    job.put("fit", &fitted)?;
+    Ok(overlay.as_ref().map(tables::agreement))
 }

@@ -1,39 +1,38 @@
-//! The compliance of the contact, taken out of the points.
+//! Corrects measured amplitudes for the compliance of the contact.
 
 use super::{Converged, Data, MotionKind, Problem, Setting, StepAmplitude, SweepStep, assigned};
 use crate::error::Result;
 use crate::model::{Compliance, Excitation, Sine, orbits, shown, softened};
 use std::f64::consts::PI;
 
-/// Rounds of correction and fit: with 2.5 % of the period in contact, the most that can be corrected, three
-/// leave 2e-5 of the change.
+/// Most rounds of correction and fit. With 2.5 % of the period in contact, the most that can be corrected,
+/// three rounds reduce the error to 2e-5 of the change.
 const ROUNDS: usize = 8;
-/// Part of a standard deviation by which the corrections then still change at most.
+/// Largest change of an amplitude, in standard deviations, that ends the rounds.
 const STILL: f64 = 0.1;
 
 /// Points as they would be with a rigid contact.
 #[derive(Debug, Clone)]
 pub struct CorrectedPoints {
     pub data: Data,
-    /// Amplitudes for which the contact lasts too long; they are no longer seen.
+    /// Number of amplitudes whose contact lasts too long to be corrected; they are left out.
     pub lost: usize,
-    /// Coordinates that belong to them.
+    /// Coordinates of the rig with which the points were corrected.
     pub u: Vec<f64>,
 }
 
-/// The points of an answer without the compliance of a contact of `stiffness` (N/m).
+/// The points of a fit, corrected for the compliance of a contact of `stiffness` (N/m).
 ///
-/// Each amplitude of impacts is divided by what the contact makes of it in the rig found, and the rig found
-/// again from the points so corrected, in turn until both stay. With the part s of the period in contact, a
-/// change of the rig by δ changes the correction by some sδ: each round leaves about s of the change that was
-/// left.
+/// Two steps alternate until nothing changes: each amplitude of impacts is divided by the factor of the
+/// contact in the fitted rig, and the rig is fitted to the corrected points. With a share s of the period in
+/// contact, a change δ of the rig changes the correction by about sδ: each round reduces the error by s.
 ///
 /// # Errors
 /// If too few points are left.
 pub fn corrected(answer: &Converged<'_>, stiffness: f64) -> Result<CorrectedPoints> {
     let from = |setting: &Setting| corrected_from(answer, setting, stiffness);
-    // A rigid answer may be a rig whose contacts last too long to be corrected: then from the rig as it was
-    // stated.
+    // The fit to uncorrected points may be a rig whose contacts last too long to be corrected. Then the
+    // rounds start from the stated rig.
     let stated = || from(&answer.least.problem.base);
     match from(&answer.setting()) {
         Ok(found) if found.lost == 0 => Ok(found),
@@ -56,8 +55,8 @@ fn corrected_from(answer: &Converged<'_>, from: &Setting, stiffness: f64) -> Res
     Ok(now)
 }
 
-/// The points of the problem without what the contact makes of them in this setting. The motions are those of
-/// `latest` points: uncorrected ones may be outliers for want of the correction.
+/// The points of the problem, corrected with the rig and force of this setting. Motions are assigned by the
+/// `latest` points, because uncorrected points may look like outliers.
 fn without(
     problem: &Problem<'_>,
     latest: &Data,
@@ -71,7 +70,7 @@ fn without(
             continue;
         }
         let force = problem.data.force_at(setting, step);
-        let Some((factors, left)) = factors(setting, stiffness, force, step.frequency) else {
+        let Some((factors, error)) = factors(setting, stiffness, force, step.frequency) else {
             lost += SweepStep::clear(step).count();
             step.readings = [None, None];
             continue;
@@ -79,7 +78,7 @@ fn without(
         let readings = step.readings.iter_mut().zip(factors);
         for (reading, factor) in readings.filter_map(|(reading, factor)| Some((reading.as_mut()?, factor))) {
             reading.amplitude /= factor;
-            reading.std = (reading.std / factor).hypot(left * reading.amplitude);
+            reading.std = (reading.std / factor).hypot(error * reading.amplitude);
             reading.upper_limit = reading.upper_limit.map(|l| l / factor);
             reading.compliance = factor;
         }
@@ -98,8 +97,8 @@ fn change(before: &Data, after: &Data) -> f64 {
     readings(before).iter().zip(&readings(after)).map(one).fold(0.0, f64::max)
 }
 
-/// What the compliance makes of the amplitudes of both masses, as factors, and the part (ωt)² of each that a
-/// correction of first order in the time t in contact leaves; `None` where the correction does not hold.
+/// Factors by which the compliance changes the amplitudes of both masses, and their relative error (ωt)²: the
+/// correction is of first order in the time t in contact. `None` where the correction is not valid.
 fn factors(setting: &Setting, stiffness: f64, force: f64, frequency: f64) -> Option<([f64; 2], f64)> {
     let (rig, sine) = (&setting.rig, Sine { force, frequency });
     let compliance = Compliance::new(rig, stiffness, None).ok()?;
@@ -108,6 +107,6 @@ fn factors(setting: &Setting, stiffness: f64, force: f64, frequency: f64) -> Opt
     let soft = softened.first()?.as_ref()?;
     let rigid = shown(rig, &sine).ok()?.amplitude;
     let factors = [0, 1].map(|mass| soft.fundamental[mass] / rigid[mass]);
-    let left = (2.0 * PI * soft.share).powi(2);
-    factors.iter().all(|m| m.is_finite() && *m > 0.0).then_some((factors, left))
+    let error = (2.0 * PI * soft.share).powi(2);
+    factors.iter().all(|m| m.is_finite() && *m > 0.0).then_some((factors, error))
 }

@@ -1,4 +1,4 @@
-//! Archives and workbooks, made here, against the text that they hold.
+//! Archives and workbooks made by the tests, compared with the same table read from plain text.
 
 use crate::folder::Folder;
 use crate::limit::Limit;
@@ -11,9 +11,10 @@ use vibro_record::{Record, Trace};
 use zip::unstable::write::FileOptionsExt;
 use zip::write::SimpleFileOptions;
 
+/// Rows of the test table.
 const N: u32 = 200;
 
-/// 200 rows of two channels at 400 Hz between `mark`.
+/// Table of time and two channels sampled at 400 Hz, its columns separated by `mark`.
 fn table(mark: char) -> String {
     let row = |i| {
         format!(
@@ -43,7 +44,7 @@ fn traces(recording: &Recording) -> Vec<&Trace> {
     recording.records.iter().filter_map(|r| if let Record::Trace(t) = r { Some(t) } else { None }).collect()
 }
 
-/// Holds that a file has the values, units and axis of the text.
+/// Asserts that a file has the values, units and axis of the plain-text table.
 fn same(name: &str, bytes: &[u8]) -> Recording {
     let text = Reader::new().from_reader("x.csv", table(',').as_bytes()).unwrap();
     let found = Reader::new().from_reader(name, bytes).unwrap();
@@ -78,7 +79,7 @@ fn one_of_several_tables_is_named_by_its_path() {
     std::fs::write(&path, &files).unwrap();
     let said = Reader::new().from_path(&path).unwrap_err().to_string();
     assert!(said.contains("a.csv (200 rows), sub/b.csv (200 rows)"), "{said}");
-    // The hint, typed.
+    // The path that the hint proposes opens its part.
     let typed = said.rsplit("name one: ").next().unwrap().lines().next().unwrap();
     assert_eq!(traces(&Reader::new().from_path(typed).unwrap())[1].meta.name, "Force");
     let second = Reader::new().from_path(path.join("sub/b.csv")).unwrap();
@@ -105,7 +106,7 @@ fn a_path_means_a_part_on_a_disk_and_in_memory() {
         assert_eq!(folder.part(&part), Some((archive.as_path(), Path::new("sub/b.csv"))));
         assert!(folder.exists(&part) && folder.part(&archive).is_none());
         assert!(!folder.exists(&at("gone.zip/a.csv")) && folder.part(root.path()).is_none());
-        // What is known of the archive is known of its part.
+        // A part has the digest and the time stamp of its archive.
         assert_eq!(folder.digest(&part).unwrap(), <[u8; 32]>::from(Sha256::digest(&two)));
         assert!(folder.stamp(&part).is_some() && folder.stamp(&part) == folder.stamp(&archive));
         let reader = Reader::new().within(&folder);
@@ -131,7 +132,7 @@ fn archives_that_cannot_be_read_are_refused() {
     let bomb = vec![b'0'; 3_000_000];
     let mut broken = whole.clone();
     broken[60] ^= 0x55;
-    // The size that the local and the central head declare.
+    // Local and central header declare 1000 bytes instead of the true size.
     let mut lying = packed(&[("a.csv", &bomb)]);
     let places: Vec<usize> =
         (0..lying.len() - 4).filter(|i| lying[*i..*i + 4] == 3_000_000u32.to_le_bytes()).collect();
@@ -166,7 +167,7 @@ mod sheets {
         book.save_to_buffer().unwrap()
     }
 
-    /// The cells of the table: numbers as numbers.
+    /// Cells of the table as text, row by row.
     fn cells() -> Vec<Vec<String>> {
         table('\t').lines().map(|line| line.split('\t').map(str::to_owned).collect()).collect()
     }
@@ -220,7 +221,7 @@ mod sheets {
 
     #[test]
     fn a_column_in_percent_is_said() {
-        let of = |name: &str| {
+        let findings = |name: &str| {
             let bytes = workbook(|book| {
                 let sheet = book.add_worksheet();
                 sheet.write_string(0, 0, "Time (s)").unwrap();
@@ -232,8 +233,8 @@ mod sheets {
             });
             Reader::new().from_reader("x.xlsx", bytes.as_slice()).unwrap().findings
         };
-        assert!(has_finding(&of("Slip (%)"), "sheet-in-percent", &["column=Slip (%)"]));
-        assert!(!has_finding(&of("Force (N)"), "sheet-in-percent", &[]));
+        assert!(has_finding(&findings("Slip (%)"), "sheet-in-percent", &["column=Slip (%)"]));
+        assert!(!has_finding(&findings("Force (N)"), "sheet-in-percent", &[]));
     }
 
     fn sheet_of(rows: &[[&str; 4]]) -> Vec<u8> {
@@ -263,7 +264,7 @@ mod sheets {
         let values: Vec<&[f64]> = traces(&found).into_iter().map(|t| t.values.as_slice()).collect();
         assert_eq!(values, [&[0.252, 1.5, -3.0][..], &[1234.5, -2.5, 7.0]]);
         assert!(has_finding(&found.findings, "columns-empty", &["columns=Notiz"]), "{:?}", found.findings);
-        // An error is a missing value.
+        // A cell with a spreadsheet error is a missing value.
         let rows = [rows[0], rows[1], ["0.005", "#DIV/0!", "", "2"], rows[3]];
         let said = Reader::new().from_reader("x.xlsx", sheet_of(&rows).as_slice()).unwrap_err().to_string();
         assert!(said.contains("1 missing value") && said.contains("3 (\"Weg\")"), "{said}");
@@ -272,11 +273,11 @@ mod sheets {
         assert!(traces(&kept)[0].values[1].is_nan());
     }
 
-    /// Complaints name the cell as a program of sheets does, wherever the table begins; beside a column of
-    /// text that is left out, too.
+    /// Errors name a cell as the spreadsheet program does (`AA9`), wherever the table begins and also beside
+    /// a text column that is left out.
     #[test]
     fn a_cell_has_the_name_that_it_has_in_the_workbook() {
-        // ZZ is column 26 · 27 = 702.
+        // ZZ, the last column of two letters, has the number 26 + 26² = 702.
         for (left, name) in [(0, "D9"), (1, "E9"), (23, "AA9"), (24, "AB9"), (698, "ZZ9"), (699, "AAA9")] {
             let bytes = workbook(|book| {
                 let sheet = book.add_worksheet();
@@ -313,7 +314,7 @@ mod sheets {
         {
             let found = days(start, rate);
             assert!(has_finding(&found.findings, "axis-serial-days", &[]), "{:?}", found.findings);
-            // A double holds such a day to 0.3 µs, of which both ends are off.
+            // A double resolves a day number of 45 000 to 0.32 µs; both ends of the axis may be off by that.
             let (trace, off) = (traces(&found)[0], 2.0 * 3.2e-7 * rate / 399.0);
             assert!(
                 (trace.axis.at(399) * rate / 399.0 - 1.0).abs() < off,
@@ -321,13 +322,13 @@ mod sheets {
                 trace.axis.at(399)
             );
         }
-        // Seconds of a day, 1440 a second; a record of 100 kHz.
+        // Not days: a time of day in s sampled at 1440 Hz, and a record sampled at 100 kHz.
         for (start, rate) in [(45_250.4, 1.0 / 60.0), (0.0, 1e5 / 86_400.0)] {
             assert!(!has_finding(&days(start, rate).findings, "axis-serial-days", &[]), "{start} {rate}");
         }
     }
 
-    /// What would be groups of digits in a text are decimals of a number here.
+    /// In a number cell −1.234 has three decimals. In text its point might separate thousands.
     #[test]
     fn three_decimals_beside_whole_numbers_are_a_number() {
         let bytes = workbook(|book| {
@@ -346,7 +347,7 @@ mod sheets {
 
     #[test]
     fn dates_are_seconds_from_the_first_with_their_resolution() {
-        // Across midnight, in steps of 2.5 ms, which days hold to 0.6 µs.
+        // Across midnight in steps of 2.5 ms; a day number as a double resolves 0.6 µs.
         for (with_date, step) in [(true, 0.0025), (true, 0.5), (false, 0.0025)] {
             let bytes = workbook(|book| {
                 let sheet = book.add_worksheet();
@@ -363,7 +364,7 @@ mod sheets {
             let found = Reader::new().from_reader("x.xlsx", bytes.as_slice()).unwrap();
             let trace = traces(&found)[0];
             assert_eq!((traces(&found).len(), trace.values.len()), (1, N as usize));
-            // Seconds of a day are doubles: both ends are rounded by half an ulp of 86 400 s.
+            // The time of day in s is a double: both ends are rounded by half an ulp of 86 400 s.
             let rounding = f64::EPSILON * 86_400.0 / (f64::from(N - 1) * step);
             let error = (trace.rate().unwrap() * step - 1.0).abs();
             assert!(error < rounding, "{step}: {error:e}, {:?}", found.all_findings());
@@ -438,7 +439,7 @@ mod sheets {
     #[test]
     fn a_compound_file_with_cells_far_apart_is_refused() {
         let file = compound(&cells());
-        // The place of the first text.
+        // Row and column of the first text cell follow the four bytes that begin its record.
         let at = file.windows(2).position(|bytes| bytes == [0x04, 0x02]).unwrap() + 4;
         let said = |place: [u16; 2]| {
             let mut file = file.clone();

@@ -1,4 +1,5 @@
-//! The comment in which this crate's own wave files carry what the format has no place for.
+//! The comment in this crate's own wave files: exact sampling rate, start time and full scales, for which the
+//! format has no fields.
 
 use crate::number;
 use std::fmt;
@@ -24,7 +25,7 @@ pub(crate) struct Scales {
     pub channels: Vec<Scale>,
 }
 
-/// What the value 1 stands for.
+/// Physical value of the stored value 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scale {
     /// Number of units, above 0.
@@ -50,6 +51,7 @@ impl Scales {
     }
 }
 
+/// Reads the line of one channel.
 fn scale(line: &str) -> Option<Scale> {
     let (factor, rest) = line.strip_prefix("full scale ")?.split_once(' ')?;
     let (unit, name) = rest.split_once(" of ")?;

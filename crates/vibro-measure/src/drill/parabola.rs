@@ -1,4 +1,4 @@
-//! Parabolas beside an impact, and what all of them leave in the same way.
+//! Parabolas fitted before and after an impact, and the lack of fit that they have in common.
 
 use super::survey::State;
 use crate::residuals::Whiteness;
@@ -7,14 +7,14 @@ use std::ops::RangeInclusive;
 
 /// Fewest samples of a fit: twice its parameters.
 pub(super) const FEWEST: usize = 6;
-/// Standard deviations above 1 that the mean square of a common residual over that which chance leaves must
-/// have.
+/// Threshold of a lack of fit: mean square of the common residual over its value for noise, in standard
+/// deviations above 1.
 const SIGNIFICANT: f64 = 5.0;
 
-/// A parabola, continued to the middle of the contact.
+/// Least-squares parabola, extrapolated to the middle of the contact.
 #[derive(Debug, Clone)]
 pub(super) struct Parabola {
-    /// Its value there.
+    /// Extrapolated value, in the unit of the samples.
     pub value: f64,
     /// Variance of the value for unit variance of the samples.
     pub leverage: f64,
@@ -26,8 +26,8 @@ pub(super) struct Parabola {
 }
 
 impl Parabola {
-    /// Parabola through the measured samples of `range`, continued to the place `at`; `None` where fewer than
-    /// two thirds of them are measured.
+    /// Parabola through the measured samples of `range`, extrapolated to the sample position `at`; `None`
+    /// where fewer than two thirds of the samples are measured.
     pub fn through(
         values: &[f64],
         states: &[State],
@@ -51,7 +51,7 @@ impl Parabola {
             normal += powers * powers.transpose();
             right += powers * y;
         }
-        // The first row of the inverse gives the value.
+        // x counts from `at`: the constant term is the extrapolated value.
         let inverse = normal.try_inverse()?;
         let fitted = inverse * right;
         let mut residuals = vec![0.0; part.len()];
@@ -61,33 +61,33 @@ impl Parabola {
         value.is_finite().then_some(Parabola { value, leverage, squares, freedom, residuals })
     }
 
-    /// Variance of the value by the residuals of this fit alone.
+    /// Variance of the extrapolated value, from the residuals of this fit alone.
     pub fn variance(&self) -> f64 {
         self.leverage * self.squares / self.freedom
     }
 }
 
-/// What the parabolas on one side of impacts leave in the same way at each of them.
+/// Lack of fit that the parabolas on one side of all impacts have in common.
 ///
-/// Noise differs from impact to impact. A residual that all have in common is motion that is no parabola:
-/// ringing, a contact that lasts longer than the gap between the fits, an instrument that is slow. It moves
-/// every speed by as much, and no scatter from impact to impact shows it.
+/// Noise differs from impact to impact. A common residual is motion that is no parabola: ringing, a contact
+/// longer than the gap between the fits, or a slow instrument. It biases all speeds by the same amount, so
+/// the scatter from impact to impact does not show it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LackOfFit {
     /// Root of the mean square of the common residual, in m/s.
     pub residual: f64,
-    /// By how much it may move the speed at the impact, in m/s.
+    /// Largest bias of the speed at the impact, in m/s.
     pub bias: f64,
 }
 
 impl LackOfFit {
-    /// Significant lack of fit of the parabolas that left these residuals, each with `gap` samples to the
-    /// middle of the contact.
+    /// Significant lack of fit of the parabolas with these residuals. From each fit to the middle of its
+    /// contact there are `gap` samples.
     ///
-    /// n residuals of p places have the mean m and the variances s²: n|m|²/Σs² is 1 ± √(2/f) in noise, f the
-    /// number of places that do not depend on each other. The bias is the common residual continued
-    /// to the middle of the contact: the least bent curve that a parabola leaves is the third of Legendre's
-    /// polynomials, √7 P₃ for a root mean square of 1.
+    /// Over n impacts, the residual at each sample has the mean m and the variance s². In noise nΣm²/Σs² is
+    /// 1 ± √(2/f), f being the number of independent samples. The bias is the common residual extrapolated to
+    /// the middle of the contact. It is taken as Legendre's cubic, √7 P₃ for an RMS of 1: the smoothest curve
+    /// that a parabola does not fit.
     pub fn of(residuals: &[&[f64]], gap: usize) -> Option<LackOfFit> {
         let (n, places) = (residuals.len() as f64, residuals.first()?.len());
         let (mut common, mut chance) = (0.0, 0.0);
@@ -111,8 +111,8 @@ mod tests {
     use super::*;
     use vibro_math::Noise;
 
-    /// Part of 1000 sets of `n` impacts whose noise depends on itself by `rho`, in which a lack of fit is
-    /// significant, in %; with `ring` in each.
+    /// Percentage of 1000 sets of `n` impacts with a significant lack of fit. The noise has a variance of 1
+    /// and an autocorrelation of `rho` from sample to sample; `ring` is the amplitude of a ringing.
     fn significant(n: usize, rho: f64, ring: f64) -> f64 {
         let mut noise = Noise::new(17);
         let significant = (0..1000).filter(|_| {
@@ -148,19 +148,18 @@ mod tests {
     fn no_lack_of_fit(impacts: &[usize]) {
         for &n in impacts {
             for rho in [0.0, 0.5, 0.9] {
-                // 0.03 % by the threshold; few impacts tell little of the noise's dependence. An uncertainty
-                // may be missing in 2 %.
+                // The threshold alone allows 0.03 %. Few impacts leave the autocorrelation uncertain, so 2 %
+                // is accepted.
                 assert!(significant(n, rho, 0.0) < 2.0, "{n} {rho}");
             }
         }
-        // 40 rings of the size of the noise: a quotient of 20, and 1 ± 0.3 by chance.
+        // Ringing as large as the noise at 40 impacts: a ratio of 20, against 1 ± 0.3 in noise.
         assert!(significant(40, 0.0, 1.0) == 100.0);
     }
 
     #[test]
     fn the_residual_is_continued_to_the_contact() {
-        // A cubic of Legendre on 3200 samples: the residual is its own root mean square, the contact where it
-        // ends.
+        // Legendre's cubic on 3200 samples: its RMS is 1/√7, its value at the end, where the contact is, 1.
         let cubic = |k: usize| {
             let x = (k as f64 + 0.5) / 1600.0 - 1.0;
             0.5 * x * (5.0 * x * x - 3.0)

@@ -1,49 +1,53 @@
 //! The most plausible train of bounces among sounds: flights that shrink by a common ratio, and impacts that
 //! grow quieter with them.
 //!
-//! Every pair of sounds may be the first two impacts. The evidence for a pair is the likelihood of the best
-//! train that begins with it, over the one that all sounds are foreign and come at random, averaged over ln
-//! R; the train follows by dynamic programming over pairs of sounds. A sound that follows an impact soon and
-//! is quieter is its echo or ringing.
+//! Every pair of sounds may be the first two impacts. The evidence for a pair is a likelihood ratio, averaged
+//! over ln R: the best train that begins with the pair, against foreign sounds at random times only. Dynamic
+//! programming over pairs of sounds finds the train. A quieter sound soon after an impact is its echo or
+//! ringing. All log-likelihoods are natural logarithms.
 
 use crate::impacts::{QUIETER, Sound};
 
-/// Steps of ln R, and least R.
+/// Step of the grid of ln R.
 pub const STEP: f64 = 0.015;
+/// Smallest R of the grid.
 pub const LEAST: f64 = 0.03;
-/// Largest R of a bounce: a superball returns with 0.92, steel on an anvil with 0.97. Sounds whose intervals
-/// shrink less are evenly spaced.
+/// Largest R of a bounce: a superball has 0.92, steel on an anvil 0.97. Sounds whose intervals shrink less
+/// count as evenly spaced.
 pub const LARGEST: f64 = 0.985;
-/// Steps of ln R above 0 that are looked at: intervals of a voice or a machine grow, too.
+/// Steps of the grid above ln R = 0: intervals of a voice or a machine may grow.
 const GROWS: usize = 2;
 /// Standard deviation of ln R from bounce to bounce.
 pub const SCATTER: f64 = 0.02;
-/// Standard deviation of the time of an impact in s: what of a contact is loudest differs.
+/// Standard deviation of the time of an impact in s: the loudest instant of a contact varies.
 const TIMING: f64 = 3e-4;
-/// Standard deviation of the logarithm of loudness over speed of an impact.
+/// Standard deviation of ln(loudness/speed) of an impact.
 const LOUDNESS: f64 = 0.5;
-/// Standard deviation of ln R by the stated height: 6 % of the height.
+/// Standard deviation of ln R from the stated height, whose error is taken as 6 %.
 const FALL: f64 = 0.03;
-/// A deviation of loudness, or from the stated height, costs no more: contacts may switch, and heights be in
-/// mm.
+/// Largest cost of a deviation, in log-likelihood: an electrical contact only switches, whatever the speed,
+/// and a height may be typed in mm.
 const CAP: f64 = 4.0;
-/// Within this time in s echoes of a room and ringing follow an impact, so many a second.
+/// Time in s after an impact within which echoes of the room and ringing follow.
 pub const SHADOW: f64 = 0.06;
+/// Rate of echoes and ringing within that time, in 1/s.
 const ECHOES: f64 = 50.0;
-/// One record in five has the sound of the release that begins the fall.
+/// Probability that the release that begins the fall is heard: one record in five.
 const RELEASES: f64 = 0.2;
-/// First flights in s, evenly likely on a logarithmic scale.
+/// Shortest and longest first flight in s; all between are equally likely on a logarithmic scale.
 const FLIGHTS: [f64; 2] = [5e-3, 2.0];
-/// The flight in s behind a fall of 5 mm, if R were 1: 2√(2h/g). What is dropped falls further; the pitch of
-/// a voice, 2 to 13 ms, and its multiples hold trains of such falls.
+/// Shortest first flight in s for R = 1, 2√(2h/g) after a fall of h = 5 mm. Bodies are dropped from higher;
+/// the pitch period of a voice, 2 to 13 ms, and its multiples would pass for trains of lower falls.
 pub const LOWEST: f64 = 0.064;
-/// Sounds of a record that may begin within a train: a ball is heard a dozen times.
+/// Most sounds of a record that may begin within a train, with a shorter flight: a ball is heard a dozen
+/// times.
 const CLEAN: usize = 16;
-/// Cost of an end while the next impact is expected to exceed the noise limit by [`HEARD`]: one in ten balls
+/// Cost, in log-likelihood, of a train that ends although its next impact should be heard: one ball in ten
 /// rolls off.
 const ENDS: f64 = 2.3;
+/// Expected height over the noise limit from which the next impact should be heard.
 const HEARD: f64 = 3.0;
-/// Trains whose evidence is less than one in so many of the best one's are ruled out.
+/// Smallest ratio of the best evidence to that of a rival at which the rival is ruled out.
 pub const ODDS: f64 = 20.0;
 
 /// The record of a fall.
@@ -51,9 +55,9 @@ pub const ODDS: f64 = 20.0;
 pub struct FallRecord {
     /// Noise limit of the sounds.
     pub reach: f64,
-    /// Median height, of which a threshold is a part.
+    /// Median height of the sounds; a threshold is stated relative to it.
     pub median: f64,
-    /// Begin and end of the record in s.
+    /// Beginning and end of the record in s.
     pub ends: (f64, f64),
     /// The flight in s that would follow if R were 1, where the height is stated.
     pub full: Option<f64>,
@@ -61,35 +65,36 @@ pub struct FallRecord {
     pub pause: Option<f64>,
 }
 
-/// What the sounds are if they are not the bounces of the most plausible train.
+/// Another explanation of the sounds than the most plausible train.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rival {
     /// First two impacts of another train.
     Train(usize, usize),
-    /// The release and the only impact that is heard: what lies between them is the fall.
+    /// The release and the only impact that is heard: the time between them is the fall.
     Fall(usize, usize),
 }
 
 /// √(2π).
 const TURN: f64 = 2.506_628_274_631_000_5;
 
-/// Standard deviation of the logarithm of a flight that should last `expected`, where R or the height
-/// scatters it by this part.
+/// Standard deviation of ln(flight) for a flight that should last `expected` (s). `scatter` is the part from
+/// R or the height. The times of three impacts, with weights of 1, −2 and 1 at most, add 6 TIMING².
 fn spread(expected: f64, scatter: f64) -> f64 {
     (scatter * scatter + 6.0 * TIMING * TIMING / (expected * expected)).sqrt()
 }
 
-/// What speaks for a pair of impacts, over all ln R.
+/// Evidence for a pair as the first two impacts, summed over ln R.
 #[derive(Clone, Copy)]
 struct Evidence {
-    /// Its best score, and the ln R of that.
+    /// Largest log-likelihood.
     best: f64,
+    /// ln R of the largest log-likelihood.
     log_r: f64,
-    /// Sum of all likelihoods over that of the best.
+    /// Sum of all likelihoods over the largest.
     sum: f64,
 }
 
-/// A likelihood below e to this power of another adds nothing to it: 1e-17.
+/// Difference of log-likelihoods below which the smaller adds nothing to a sum of doubles: e^−39 = 1e-17.
 const NOTHING: f64 = -39.0;
 
 impl Evidence {
@@ -112,41 +117,47 @@ impl Evidence {
     }
 }
 
-/// A train with its ln R, what else is as plausible, when its next impact is expected, and how many sounds
-/// are its echoes or its release.
+/// The train with the most evidence.
 pub struct BestTrain {
+    /// Its impacts, as indices of sounds.
     pub train: Vec<usize>,
+    /// Its ln R.
     pub log_r: f64,
+    /// Another explanation that is not ruled out.
     pub rival: Option<Rival>,
+    /// Time of the next impact in s, where that should be heard.
     pub expected: Option<f64>,
+    /// Number of sounds that are echoes or ringing of its impacts.
     pub echoes: usize,
+    /// Number of sounds that are the release and its echoes.
     pub release: usize,
-    /// How much more likely it is that these are the release than that they are foreign.
+    /// Odds that these are the release and not foreign sounds.
     pub odds: f64,
 }
 
-/// The next impact that a pair of impacts lets expect.
+/// The next impact as predicted from a pair of impacts.
 struct Next {
     /// The flight to it in s.
     flight: f64,
-    /// Factor within which the flight lies.
+    /// Factor by which the flight may be longer or shorter.
     range: f64,
-    /// Whether it would be loud enough, and lie within the record.
+    /// Whether it should be heard: loud enough, and within the record.
     stands_out: bool,
 }
 
-/// What every pair of sounds is, whatever R is.
+/// Terms of all pairs of sounds that do not depend on R.
 pub struct Pairs<'a> {
     sounds: &'a [Sound],
     heard: FallRecord,
     /// Rate of foreign sounds in 1/s.
     rate: f64,
-    /// Its logarithm, over that of heights.
+    /// Log-likelihood of a foreign sound: ln of their rate over the range of ln(height).
     foreign: f64,
-    /// What an echo explains.
+    /// Gain in log-likelihood of a sound that is an echo and not foreign.
     echo: f64,
+    /// ln(height) of each sound.
     logs: Vec<f64>,
-    /// What a sound of the release before a first impact tells, for each sound that may be that impact.
+    /// Gain in log-likelihood by a release before the first impact, for each sound as that impact.
     released: Vec<f64>,
 }
 
@@ -171,15 +182,15 @@ impl Pairs<'_> {
         pairs
     }
 
-    /// How much more likely it is that `i` and its echoes are the release before the first impact `j` than
-    /// foreign; `None` where the height of the fall is not known.
+    /// Odds that `i` and its echoes are the release before the first impact `j` and not foreign sounds;
+    /// `None` where the height of the fall is not stated.
     fn release(&self, i: usize, j: usize) -> Option<f64> {
         let fall = 0.5 * self.heard.full?;
         let echoes = self.echo * self.shadowed(i, j) as f64;
         Some(RELEASES / self.rate * (Self::timed(self.flight(i, j), fall, FALL) + echoes).exp())
     }
 
-    /// Sounds that are likely the release before the first impact `j` and its echoes, and the odds of it.
+    /// Number of sounds that are likely the release before the first impact `j` and its echoes, and the odds.
     fn likeliest_release(&self, j: usize) -> (usize, f64) {
         let releases = (0..j).filter_map(|i| Some((i, self.release(i, j)?)));
         let likeliest = releases.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, odds)| *odds > 1.0);
@@ -191,20 +202,20 @@ impl Pairs<'_> {
         let n = self.sounds.len();
         let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
         let first: Vec<_> = all.map(|(i, j)| ((i, j), self.first(i, j))).collect();
-        let mut told = vec![Evidence::NONE; n * n];
+        let mut table = vec![Evidence::NONE; n * n];
         for step in 0..=((1.0 / LEAST).ln() / STEP) as usize + GROWS {
             let log_r = STEP * (GROWS as f64 - step as f64);
             let (r, (value, _)) = (log_r.exp(), self.behind(log_r));
             for (pair, first) in &first {
                 let at = pair.0 * n + pair.1;
-                told[at].add(self.begin(*pair, *first, log_r, r) + value[at], log_r);
+                table[at].add(self.begin(*pair, *first, log_r, r) + value[at], log_r);
             }
         }
         let pairs = || (0..n * n).filter(|at| at / n < at % n);
-        let evidence = |at: &usize| told[*at].all();
+        let evidence = |at: &usize| table[*at].all();
         let most = pairs().max_by(|a, b| evidence(a).total_cmp(&evidence(b)));
         let most = most.filter(|at| evidence(at).is_finite())?;
-        // Sounds of one impact begin trains that are one.
+        // Trains that begin with different sounds of one impact are the same train.
         let same = |at: usize| {
             let apart = |i: usize, j: usize| (self.sounds[i].time - self.sounds[j].time).abs();
             let flights = (self.flight(at / n, at % n) - self.flight(most / n, most % n)).abs();
@@ -214,8 +225,8 @@ impl Pairs<'_> {
         let trains = trains.map(|at| (evidence(&at), Rival::Train(at / n, at % n)));
         let falls = pairs().map(|at| (self.fall(at / n, at % n), Rival::Fall(at / n, at % n)));
         let rival = trains.chain(falls).max_by(|a, b| a.0.total_cmp(&b.0));
-        let rival = rival.filter(|(told, _)| *told > evidence(&most) - ODDS.ln());
-        let log_r = told[most].log_r;
+        let rival = rival.filter(|(score, _)| *score > evidence(&most) - ODDS.ln());
+        let log_r = table[most].log_r;
         let train = self.follow(most / n, most % n, &self.behind(log_r).1);
         let ends = train.iter().skip(1).copied().chain([n]);
         let echoes = train.iter().zip(ends).map(|(j, k)| self.shadowed(*j, k)).sum();
@@ -230,7 +241,7 @@ impl Pairs<'_> {
         Some(BestTrain { train, log_r, rival, expected, echoes, release, odds })
     }
 
-    /// The next impact behind a pair, for R.
+    /// The next impact as predicted from the pair `j`, `k` with the restitution `r`.
     fn next(&self, j: usize, k: usize, r: f64) -> Next {
         let flight = self.flight(j, k) * r;
         let range = (4.0 * spread(flight, SCATTER)).exp();
@@ -239,9 +250,9 @@ impl Pairs<'_> {
         Next { flight, range, stands_out: loud && within }
     }
 
-    /// The evidence that `i` is the release and `j` the only impact that is heard: R is evenly likely on a
-    /// logarithmic scale, and the second impact is quieter than what stands out, is heard as the end of the
-    /// first, or comes behind the end of the record.
+    /// Log-likelihood that `i` is the release and `j` the only impact that is heard. All R are equally likely
+    /// on a logarithmic scale. The second impact is too quiet, merges with the first, or lies after the end
+    /// of the record.
     fn fall(&self, i: usize, j: usize) -> f64 {
         let (Some(full), Some(release)) = (self.heard.full, self.release(i, j)) else {
             return f64::NEG_INFINITY;
@@ -257,7 +268,7 @@ impl Pairs<'_> {
         release.ln() + unheard.ln() + echoes
     }
 
-    /// Sounds between two impacts that are echoes or ringing of the first.
+    /// Number of sounds between the impacts `j` and `k` that are echoes or ringing of `j`.
     fn shadowed(&self, j: usize, k: usize) -> usize {
         let impact = self.sounds[j];
         let near = self.sounds[j + 1..k].iter().take_while(|s| s.time < impact.time + SHADOW);
@@ -268,29 +279,30 @@ impl Pairs<'_> {
         self.sounds[k].time - self.sounds[j].time
     }
 
-    /// What the loudness of impact `k` behind `j` tells.
+    /// Log-likelihood of the loudness of impact `k` after `j`.
     fn loudness(&self, j: usize, k: usize, log_r: f64) -> f64 {
         let z = (self.logs[k] - self.logs[j] - log_r) / LOUDNESS;
         -(0.5 * z * z).min(CAP) - (TURN * LOUDNESS).ln()
     }
 
-    /// What a flight tells that should last `expected`.
+    /// Log-likelihood of a flight that should last `expected`, both in s.
     fn timed(flight: f64, expected: f64, scatter: f64) -> f64 {
         let std = spread(expected, scatter);
         let z = (flight / expected).ln() / std;
         -0.5 * z * z - (TURN * std * flight).ln()
     }
 
-    /// What the first two impacts tell, whatever R is: that the flight is any, and the rest.
+    /// Terms of the first two impacts that do not depend on R: the log-likelihood of an arbitrary flight, and
+    /// the sum of the others.
     fn first(&self, i: usize, j: usize) -> (f64, f64) {
         let any = -((FLIGHTS[1] / FLIGHTS[0]).ln() * self.flight(i, j)).ln();
         (any, self.released[i] - self.foreign + self.echo * self.shadowed(i, j) as f64)
     }
 
-    /// What the first two impacts tell.
+    /// Log-likelihood of the first two impacts with the restitution `r`.
     fn begin(&self, (i, j): (usize, usize), (any, rest): (f64, f64), log_r: f64, r: f64) -> f64 {
         let flight = self.flight(i, j);
-        // What follows evenly is found as such, however short its intervals are.
+        // Evenly spaced sounds are found whatever their intervals, so that they do not pass for bounces.
         let shrinks = log_r <= LARGEST.ln();
         if shrinks && self.sounds.len() > CLEAN && flight < LOWEST * r {
             return f64::NEG_INFINITY;
@@ -302,7 +314,8 @@ impl Pairs<'_> {
         timed + self.loudness(i, j, log_r) + rest
     }
 
-    /// What follows each pair of impacts at its best, and the next impact, for one R.
+    /// For one R and each pair of impacts: the largest log-likelihood of the sounds after it, and the next
+    /// impact, `usize::MAX` for none.
     fn behind(&self, log_r: f64) -> (Vec<f64>, Vec<usize>) {
         let n = self.sounds.len();
         let (mut value, mut next) = (vec![0.0; n * n], vec![usize::MAX; n * n]);
@@ -319,9 +332,9 @@ impl Pairs<'_> {
                     if flight > expected * range {
                         break;
                     }
-                    let told =
+                    let gain =
                         Self::timed(flight, expected, SCATTER) + self.loudness(k, l, log_r) - self.foreign;
-                    let score = told + self.echo * self.shadowed(k, l) as f64 + value[k * n + l];
+                    let score = gain + self.echo * self.shadowed(k, l) as f64 + value[k * n + l];
                     if score > best {
                         (best, last) = (score, l);
                     }

@@ -24,9 +24,9 @@ fn the_thesis_drop_and_its_uncertainty() {
         ..drop(0.57, 0.144)
     };
     let found = of(&Measured { drop: Some(one.clone()), contact_time: Some(0.0), ..Measured::default() });
-    // Printed as 0.2; 0.072·√(9.80665/1.14) = 0.211174.
+    // The thesis prints 0.2; the numbers give 0.072·√(9.80665/1.14) = 0.211174.
     assert!((found.restitution.value - 0.211_174).abs() < 1e-6, "{found:?}");
-    // Against the derivatives by differences.
+    // Expected uncertainty from numerical derivatives.
     let slope = |change: &dyn Fn(&mut Drop), step: f64| {
         let mut other = one.clone();
         change(&mut other);
@@ -40,24 +40,24 @@ fn the_thesis_drop_and_its_uncertainty() {
     assert!((found.restitution.std.unwrap() / expected - 1.0).abs() < 1e-5, "{found:?}");
 }
 
-/// Intervals between beginnings hold the impact itself: 1 ms of 144 is 0.7 % of R.
+/// An interval between the onsets of impacts includes the contact time: 1 ms of 144 ms is 0.7 % of R.
 #[test]
 fn the_contact_time_is_taken_off() {
     let (r, contact) = (0.7, 1e-3);
-    // From 0.57 m: 2R√(2h/g), and each next flight R times as long.
+    // First flight after a drop from 0.57 m: 2R√(2h/g); each later flight is R times as long.
     let first = 2.0 * r * (2.0 * 0.57 / GRAVITY).sqrt();
     let intervals: Vec<f64> = (0..6).map(|k| first * f64::powi(r, k) + contact).collect();
     let train = Train { intervals: intervals.clone(), onset_std: Some(1e-6), ..Train::default() };
     let fell = Drop { height_std: Some(1e-4), interval_std: Some(1e-6), ..drop(0.57, intervals[0]) };
     let measured = Measured { drop: Some(fell), trains: vec![train], ..Measured::default() };
-    let said = of(&Measured { contact_time: Some(contact), ..measured.clone() });
-    assert!(said.by.iter().all(|way| (way.restitution.value - r).abs() < 1e-12), "{said:?}");
-    assert!(said.findings.is_empty() && said.intervals == [intervals.clone()], "{said:?}");
-    let unsaid = of(&measured);
-    let parts = finding(&unsaid, "contact-time-unsaid").unwrap().fact("parts").cloned();
-    assert!((unsaid.by[0].restitution.value / r - 1.0 - contact / first).abs() < 1e-12, "{unsaid:?}");
+    let stated = of(&Measured { contact_time: Some(contact), ..measured.clone() });
+    assert!(stated.by.iter().all(|way| (way.restitution.value - r).abs() < 1e-12), "{stated:?}");
+    assert!(stated.findings.is_empty() && stated.intervals == [intervals.clone()], "{stated:?}");
+    let unstated = of(&measured);
+    let parts = finding(&unstated, "contact-time-unsaid").unwrap().fact("parts").cloned();
+    assert!((unstated.by[0].restitution.value / r - 1.0 - contact / first).abs() < 1e-12, "{unstated:?}");
     let Some(Fact::Numbers(parts)) = parts else { panic!() };
-    // A part of the interval, which is longer by the contact.
+    // The finding gives the contact time over the interval, which includes it.
     assert!((parts[0] - contact / intervals[0]).abs() < 1e-12, "{parts:?}");
 }
 
@@ -102,7 +102,7 @@ fn two_flights_give_their_ratio_without_an_uncertainty() {
     let train = Train { intervals: vec![0.3, 0.18], ..Train::default() };
     let found = of(&Measured { trains: vec![train.clone()], contact_time: Some(0.0), ..Measured::default() });
     assert!((found.restitution.value - 0.6).abs() < 1e-14 && found.restitution.std.is_none(), "{found:?}");
-    // However well the onsets are timed: one ratio does not show how R scatters.
+    // With exactly timed onsets too: one ratio does not show how R scatters.
     let timed = Train { onset_std: Some(1e-4), ..train };
     let found = of(&Measured { trains: vec![timed], contact_time: Some(0.0), ..Measured::default() });
     assert!(found.restitution.std.is_none() && finding(&found, "too-few-flights").is_some(), "{found:?}");
@@ -117,23 +117,24 @@ fn growing_flights_are_refused() {
     for grown in [vec![0.1, 0.2, 0.4], vec![0.3, 0.2, 0.25], vec![0.3, 0.2, 0.25, 0.1]] {
         assert!(restitution(&train(grown)).unwrap_err().to_string().contains("grow"));
     }
-    // Noise of the onsets explains a growth by less than 4√6 of it.
+    // A growth below 4√6 standard uncertainties of an onset may be noise.
     let mut noisy = train(vec![0.3, 0.27, 0.243, 0.245, 0.2]);
     noisy.trains[0].onset_std = Some(1e-3);
     assert!(restitution(&noisy).is_ok());
     noisy.trains[0].onset_std = Some(1e-4);
     assert!(restitution(&noisy).is_err());
-    // A drop answers whatever follows it: behind a flight of R 0.9 by the height one of 0.27/0.3.
+    // A stated height gives R although later flights grow: 0.9, as do the first two flights with 0.27/0.3.
     noisy.drop = Some(drop(9.80665 * (0.3f64 / 0.9).powi(2) / 8.0, 0.3));
     let found = of(&noisy);
     assert!(found.by.len() == 1 && finding(&found, "flight-times-ignored").is_some(), "{found:?}");
-    // Where the first flights have another R, the sounds may be others.
+    // Where the first two flights give another R than the height, the sounds may not be the impacts.
     noisy.drop = Some(drop(0.57, 0.3));
     let found = of(&noisy);
     assert!(found.restitution.std.is_none() && finding(&found, "methods-far-apart").is_some(), "{found:?}");
 }
 
-/// A voice beside a fall of 0.5 m with R = 0.7: what it adds parts the flights of 0.447 s and less.
+/// A voice during the bounces after a fall of 0.5 m with R = 0.7, whose flights last 0.447 s and less: its
+/// sounds, some 2.4 ms apart, lie between them.
 #[test]
 fn a_voice_among_bounces_is_doubted_and_a_hand_is_not() {
     let flights = (0..5).map(|k| 0.447 * 0.7f64.powi(k));
@@ -149,7 +150,7 @@ fn a_voice_among_bounces_is_doubted_and_a_hand_is_not() {
     assert_eq!((found.restitution.std, found.by.len()), (None, 1), "{found:?}");
     heard.drop = None;
     assert!(restitution(&heard).unwrap_err().to_string().contains("other sounds"));
-    // A hand takes the body up, 2 s later.
+    // A hand picks the body up 2 s later.
     let intervals = flights.chain([2.0, 1.5]).collect();
     heard.drop = Some(Drop { height_std: Some(1e-3), interval_std: Some(1e-5), ..drop(0.5, 0.447) });
     heard.trains = vec![Train { intervals, ..Train::default() }];
@@ -176,7 +177,7 @@ fn velocities_of_both_masses_and_by_momentum() {
         found.agree == Some(true) && found.by.iter().all(|w| (w.restitution.value - r).abs() < 1e-14),
         "{found:?}"
     );
-    // Derivatives by differences for the method by momentum of mass 1.
+    // Expected uncertainty from numerical derivatives, for the method by momentum with the speed of mass 1.
     let alone = |v1: f64, v2: f64, w: f64| {
         let some = Velocities { before: (v1, v2), after1: Some(w), after2: None, ..all.clone() };
         of(&Measured { velocities: Some(some), ..Measured::default() }).restitution
@@ -186,7 +187,7 @@ fn velocities_of_both_masses_and_by_momentum() {
     let d = [alone(v + h, 0.0, w1), alone(v, h, w1), alone(v, 0.0, w1 + h)]
         .map(|x| (x.value - base.value) / h * u);
     let expected = d.iter().map(|d| d * d).sum::<f64>().sqrt();
-    // Differences over 1e-6: truncation of that size.
+    // Differences over 1e-6 have a truncation error of that size.
     assert!((base.std.unwrap() / expected - 1.0).abs() < 1e-5, "{base:?} {expected}");
     let why = |before, after1| {
         let v = Velocities { before, after1: Some(after1), masses: Some((m1, m2)), ..Velocities::default() };
@@ -207,14 +208,14 @@ fn a_restitution_outside_its_range_within_its_uncertainty_is_an_answer() {
     };
     let of_velocities =
         |v: &Velocities| restitution(&Measured { velocities: Some(v.clone()), ..Measured::default() });
-    // R = 0.005, −0.0004 by mass 1 and 0.27 by mass 2.
+    // R = 0.005 by both speeds after, −0.0004 by that of mass 1 and 0.27 by that of mass 2.
     let plastic = velocities((0.02, 0.025), Some((1.0, 50.0)), Some(0.05));
     let found = of_velocities(&plastic).unwrap();
     assert!(found.by.len() == 3 && (found.by[1].restitution.value + 0.0004).abs() < 1e-9, "{found:?}");
     // R = 1.005, u = 0.02·√(2 + 2·1.005²) or less.
     let elastic = velocities((-0.3, 0.705), None, Some(0.02));
     assert!((of_velocities(&elastic).unwrap().restitution.value - 1.005).abs() < 1e-12);
-    // Beyond 2 u, or where nothing is known of u: refused.
+    // Refused beyond 2 u, or where u is unknown.
     for std in [Some(0.001), None] {
         let sure = Velocities { std, ..elastic.clone() };
         assert!(of_velocities(&sure).unwrap_err().to_string().contains("outside 0 to 1"));
@@ -236,8 +237,8 @@ fn methods_that_disagree_are_not_averaged() {
     assert!(finding(&found, "methods-disagree").is_some(), "{:?}", found.findings);
 }
 
-/// A height in mm, and a second impact that was not seen: answers far apart disagree although none has an
-/// uncertainty.
+/// A height typed in mm, and a second impact that was missed: answers far apart disagree although none has
+/// an uncertainty.
 #[test]
 fn answers_far_apart_disagree_without_uncertainties() {
     for (height, intervals) in [(570.0, vec![0.144, 0.03]), (0.57, vec![0.144, 0.015])] {
@@ -253,8 +254,8 @@ fn answers_far_apart_disagree_without_uncertainties() {
     }
 }
 
-/// After a fall of 0.57 m with R = 0.8 the flights are 2 √(2h/g) Rⁿ: a record that begins with the second
-/// impact has R² for the first of them.
+/// After a fall of 0.57 m with R = 0.8 the flights are 2 √(2h/g) Rⁿ. In a record that begins with the second
+/// impact, height and first flight give R² instead of R.
 #[test]
 fn a_record_that_begins_with_the_second_impact_is_told_by_the_square() {
     let flight = |n: i32| 2.0 * (2.0 * 0.57 / GRAVITY).sqrt() * 0.8f64.powi(n);
@@ -293,9 +294,9 @@ fn two_drops_have_no_uncertainty_and_five_a_bootstrap() {
     let found = drops(&all[..2]);
     assert!(found.restitution.std.is_none() && found.bootstrap_std.is_none(), "{found:?}");
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
-    // Three: s = 2 ms, Student's quantile of two degrees of freedom, c√(2/(1 − c²)) for a part c between its
-    // ends, where the normal distribution has 1.96, and half of the height's 1/570. Quantiles are found to
-    // 1e-9.
+    // Three drops: s = 2 ms. With two degrees of freedom, Student's quantile for a coverage c is
+    // c√(2/(1 − c²)), against 1.96 of the normal distribution at c = 0.95. The height adds half of its
+    // 1/570. Quantiles are computed to 1e-9.
     let found = drops(&all[..3]).restitution;
     let student = 0.95 * (2.0 / (1.0 - 0.95f64.powi(2))).sqrt();
     let timing = student / 1.959_963_984_540_054 * 2e-3 / 3f64.sqrt() / 0.142;
@@ -303,8 +304,8 @@ fn two_drops_have_no_uncertainty_and_five_a_bootstrap() {
     assert!((found.std.unwrap() / expected - 1.0).abs() < 1e-8, "{found:?}");
     assert!(drops(&all[..4]).restitution.std.is_some());
     let found = drops(&all);
-    // Variance of the drawn mean: Σd²/n² = 40e-6/25; 2000 drawings scatter by 1/√4000 = 1.6 %, four times
-    // that.
+    // Variance of the mean of a bootstrap sample: Σd²/n² = 40e-6/25. Over 2000 samples it scatters by
+    // 1/√4000 = 1.6 %; tolerance: four times that.
     let expected = (40e-6f64 / 25.0).sqrt() / 0.144 * found.restitution.value;
     assert!((found.bootstrap_std.unwrap() / expected - 1.0).abs() < 0.064, "{found:?}");
 }
@@ -321,16 +322,17 @@ fn two_drops_have_an_uncertainty_only_where_what_is_stated_explains_their_scatte
         };
         of(&Measured { drop: Some(d), contact_time: Some(0.0), ..Measured::default() })
     };
-    // Σ(d − d̄)² = 8e-6 s²: χ² of one degree of freedom passes 3.841 where the stated one is below 1.443 ms.
+    // Σ(d − d̄)² = 8e-6 s²: χ² with one degree of freedom exceeds 3.841, its 95 % quantile, where the stated
+    // uncertainty is below 1.443 ms.
     assert!(of_two(1.45e-3).restitution.std.is_some());
     let found = of_two(1.43e-3);
     assert!(found.restitution.std.is_none(), "{found:?}");
     assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
 }
 
-/// However well the onsets are timed, a first flight is that of one bounce: its uncertainty is no smaller
-/// than R scatters. Where R alone does, ratios of successive flights have the variance s², ratios of first
-/// flights 2s², and all are independent.
+/// A first flight shows one bounce: its uncertainty is at least the scatter of R, however well the onsets are
+/// timed. If only R scatters, the logarithms of the ratios of successive flights have the variance s², those
+/// of two first flights 2s², and all are independent.
 #[test]
 fn a_drop_is_no_surer_than_the_flights_behind_it_scatter() {
     let of_drops = |trains: &[&[f64]]| {
@@ -346,15 +348,16 @@ fn a_drop_is_no_surer_than_the_flights_behind_it_scatter() {
     // Two ratios: one degree of freedom.
     let s = (log(0.4, 0.3) - log(0.3, 0.22)).abs() / 2f64.sqrt();
     let one = of_drops(&[&[0.4, 0.3, 0.22]]) / (12.706_205 / 1.959_964 * s);
-    // A ratio each and that of the first flights: two.
+    // One ratio in each train, and that of the first flights: two degrees of freedom.
     let squares = (log(0.4, 0.3) - log(0.402, 0.297)).powi(2) / 2.0 + log(0.4, 0.402).powi(2) / 2.0;
     let two = of_drops(&[&[0.4, 0.3], &[0.402, 0.297]])
         / (4.302_653 / 1.959_964 * (squares / 2.0).sqrt() / 2f64.sqrt());
-    // The onsets, 1 µs, add (√2e-6/0.4/0.01)²/2 = 6e-8, and the height no more.
+    // The onsets, uncertain by 1 µs, add a relative (√2e-6/0.4/0.01)²/2 = 6e-8, and the height no more.
     assert!((one - 1.0).abs() < 1e-6 && (two - 1.0).abs() < 1e-6, "{one} {two}");
 }
 
-/// Three trains of R 0.6 and three of 0.8 are of two bodies; six of 0.6 whose flights scatter by 1 % of one.
+/// Three trains with R = 0.6 and three with 0.8 come from two bodies, six with 0.6 from one. R scatters by
+/// 1 % from bounce to bounce.
 #[test]
 fn trains_of_two_bodies_are_said_to_differ() {
     let mut noise = vibro_math::Noise::new(41);
@@ -369,16 +372,16 @@ fn trains_of_two_bodies_are_said_to_differ() {
     };
     let two = of_trains([0.6, 0.6, 0.6, 0.8, 0.8, 0.8]);
     let found = finding(&two, "trains-differ").expect("said");
-    // 1 % a bounce over five ratios: 0.45 % of R.
+    // A scatter of 1 % per bounce over five ratios leaves 0.45 % of R.
     let off = [("low", 0.6), ("high", 0.8)].map(|(end, r)| (found.get(end).unwrap() / r - 1.0).abs());
     assert!(off.iter().all(|off| *off < 0.02), "{off:?}");
     assert!(finding(&of_trains([0.6; 6]), "trains-differ").is_none());
 }
 
 /// Plastic contact: R falls with the fifth root of the speed (K. L. Johnson, *Contact Mechanics*, 1985, eq.
-/// 11.47), and a flight lasts as long as the speed is high. Where R scatters by 2 %, one in a hundred such
-/// trains of eight flights may be said to change; of forty, none at the quantile 0.9995 with a chance of 96
-/// %.
+/// 11.47), to which a flight time is proportional. A steady R that scatters by 2 % may be reported as
+/// changing in one of a hundred trains. The quantile 0.9995 gives none in forty trains with a probability of
+/// 96 %.
 #[test]
 fn a_restitution_that_depends_on_speed_is_said_to_change() {
     let changes = |intervals: Vec<f64>| {
@@ -388,7 +391,7 @@ fn a_restitution_that_depends_on_speed_is_said_to_change() {
     };
     let by_speed = |flight: &f64| Some(flight * 0.78 * (flight / 0.6).powf(-0.2));
     let [first, last] = changes(std::iter::successors(Some(0.6), by_speed).take(8).collect()).expect("said");
-    // ln R goes as −0.2 ln v, and ln v is no straight line of the place: it bends by a tenth of its fall.
+    // ln R = −0.2 ln v, and ln v is not linear in the number of the bounce: it bends by a tenth of its fall.
     let truth = [0.78, 0.78 * 0.78f64.powf(-0.2 * (0..6).map(|k| 0.8f64.powi(k)).sum::<f64>())];
     assert!(first / truth[0] - 1.0 < 0.03 && last > first + 0.05 && (last / truth[1] - 1.0).abs() < 0.03);
     let mut noise = vibro_math::Noise::new(42);
@@ -414,7 +417,8 @@ fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
         assert!(finding(&found, "drop-without-uncertainty").is_some(), "{:?}", found.findings);
         assert!(of_drops(Some(1e-3), Some(1e-6), intervals).restitution.std.is_some());
     }
-    // Σd²/(n(n − 1)) = 20e-6/12, and √3 of Student's distribution.
+    // Variance of the mean Σd²/(n(n − 1)) = 20e-6/12; Student's distribution of 3 degrees of freedom has the
+    // standard deviation √3.
     let timing = (20e-6f64 / 12.0 * 3.0).sqrt() / 0.143 * of_drops(None, None, &four).restitution.value;
     let found = of_drops(None, None, &four);
     let alone = finding(&found, "drop-without-uncertainty").unwrap().get("timing").unwrap();
@@ -425,8 +429,8 @@ fn there_is_no_uncertainty_without_that_of_the_height_and_of_the_timing() {
     assert!(of_drops(Some(1e-4), None, &four).restitution.std.is_some());
 }
 
-/// Five bounces timed as one are from a height that was read 5 mm too high: what is not known cannot
-/// disagree.
+/// Five equal first flights, and a height that was read 5 mm too high. Without an uncertainty of the height,
+/// drop and train cannot disagree.
 #[test]
 fn drops_without_the_uncertainty_of_their_height_do_not_disagree_with_a_train() {
     let flights = [0.4, 0.248, 0.153_8, 0.095_3, 0.059_1, 0.036_6];
@@ -466,8 +470,9 @@ fn findings_of_steady_trains_do_not_concern_bounces() {
     assert!(found.times.len() == 8 && !irregular(&found.findings), "{:?}", found.findings);
 }
 
-/// The force of a ball of restitution `r`, half sines of `contact` s whose height goes as the speed, after a
-/// fall of 0.3 m; seen through noise, and hum that wanders, which nothing takes off.
+/// Force of a ball of restitution `r` dropped from 0.3 m: half sines of `contact` s, their heights
+/// proportional to the speed. Noise is added, and hum of this amplitude whose frequency varies, so that it
+/// cannot be removed as a sine.
 fn force(r: f64, contact: f64, hum: f64, seed: u64) -> Trace {
     let (rate, mut noise) = (20_000.0, vibro_math::Noise::new(seed));
     let (mut speed, mut at, mut begins) = ((2.0 * GRAVITY * 0.3f64).sqrt(), 0.4, Vec::new());
@@ -513,7 +518,7 @@ fn a_contact_that_the_force_shows_is_taken_off() {
             finding(&found, "contact-time-seen").is_some()
                 && finding(&found, "contact-time-unsaid").is_none()
         );
-        // What is stated is taken instead.
+        // A stated contact time is used instead.
         let stated =
             of(&Measured { trains: vec![train], contact_time: Some(contact), ..Measured::default() });
         assert!(
@@ -538,8 +543,8 @@ fn the_bias_by_contact_is_that_of_the_fit() {
         panic!()
     };
     let moved = one(c, Some(0.0)).restitution.value / r - 1.0;
-    // Least squares without onset noise is the mean of the ratios; of second order in c over the last flight,
-    // 1e-4/0.096, and where the fit weighs.
+    // Without onset noise the fit is the mean of the ratios. Tolerance: terms of second order in c over the
+    // last flight, 1e-4/0.096, and the weights of the fit.
     assert!((parts[0] * c / 1e-3 / moved - 1.0).abs() < 0.1, "{parts:?} {moved}");
 }
 
@@ -552,7 +557,7 @@ fn bounces_below_hum_are_found_above_it() {
     assert!(std.is_none_or(|std| (value - 0.81).abs() < 2.0 * std), "{value} {std:?}");
 }
 
-/// A ratio of flights does not depend on the clock; the flight against the height does.
+/// A ratio of flights does not depend on the error of the clock; R from height and flight does.
 #[test]
 fn the_clock_is_in_what_depends_on_it() {
     let (r, clock) = (0.7, 1e-3);
@@ -577,14 +582,14 @@ fn the_clock_is_in_what_depends_on_it() {
     assert_eq!(std(&uncertain, 1), std(&exact, 1));
 }
 
-/// Flights that differ in the fourth digit are told with four.
+/// Flights that differ in the fourth digit are printed with four.
 #[test]
 fn flights_of_rivals_show_that_they_differ() {
     assert_eq!(train::apart([0.76712, 0.76743]), ["0.7671 s", "0.7674 s"]);
     assert_eq!(train::apart([0.1, 0.2]), ["0.100 s", "0.200 s"]);
 }
 
-/// Two drops one after the other: each advice that is given tells the bounces of one of them.
+/// Two drops in one record: the part that the error proposes holds the bounces of one of them.
 #[test]
 fn an_advice_was_tried() {
     let rate = 8000.0;

@@ -1,3 +1,5 @@
+//! Flights in closed form against their equation of motion and against contacts found by dense sampling.
+
 use super::*;
 use crate::excitation::Sine;
 use crate::rig::Rig;
@@ -13,7 +15,7 @@ pub(crate) fn flight(rig: &Rig, steady: &Steady, gap: f64, state: &State, phase:
     Flight::with(rig.oscillators(), waves, 0.0, gap, state)
 }
 
-/// When a flight meets the other mass.
+/// Time in s of the first contact within `duration` (s).
 pub(crate) fn first_contact(flight: &Flight, duration: f64) -> Option<f64> {
     flight.land(duration).map(|landing| landing.time)
 }
@@ -117,15 +119,15 @@ impl Exponentials {
         sum
     }
 
-    /// Rounding error of a gap up to time `t`: that of each term, with some ε of its exponent.
+    /// Bound on the rounding error of a gap in m up to time `t`: a few ε of each term and of its exponent.
     fn noise(&self, t: f64) -> f64 {
         let term = |(a, rate): &(Complex64, Complex64)| a.norm() * (4.0 + (rate * t).norm());
         f64::EPSILON * (self.gap + self.terms.iter().map(term).sum::<f64>())
     }
 
-    /// The first of the samples 0, dt, 2dt, … up to `last`·dt, from `from` on, at which the gap is not open.
+    /// Number of the first sample with a closed gap, among those at `from`·dt to `last`·dt.
     fn first_closed(&self, dt: f64, from: usize, last: usize) -> Option<usize> {
-        // Each term is turned from sample to sample.
+        // From sample to sample each term is multiplied by a constant, which saves the exponentials.
         let mut terms: Vec<_> = self.terms.iter().map(|(a, rate)| (*a, (rate * dt).exp())).collect();
         (0..=last).find(|i| {
             let gap = self.gap + terms.iter().map(|(z, _)| z.re).sum::<f64>();
@@ -154,18 +156,18 @@ fn no_contact_is_missed_or_invented_in_ten_thousand_flights() {
         let flight = flight(&rig, &steady, rig.gap, &start, phase);
         let oracle = Exponentials::of(&rig, &sine, &start, phase);
         let noise = oracle.noise(duration);
-        // A start at contact belongs to the impact before if the masses part.
+        // A start at contact with parting masses belongs to the impact before and is not counted.
         let from = usize::from(oracle.at(0.0)[0].abs() < noise && start.approach() < 0.0);
         let found = first_contact(&flight, duration);
         let sampled = oracle.first_closed(dt, from, 10_000).map(|i| i as f64 * dt);
         if let Some(t) = found {
-            // A contact it is: the gap vanishes there, falling.
+            // It is a contact: the gap is zero there and closing.
             let [gap, rate, acceleration] = oracle.at(t);
             assert!(gap.abs() < noise && rate < 1e-12 * acceleration.abs(), "flight {run}: {gap:e} at {t}");
-            // And the first one: no sample before it is closed.
+            // It is the first: the gap is open at all samples before.
             assert!(sampled.is_none_or(|s| s >= t - 1e-13), "flight {run}: {t} {sampled:?}");
             hits += 1;
-            // A dip between two samples.
+            // Contacts between two samples, which sampling alone misses.
             between += u32::from(sampled.is_none_or(|s| s > t + dt));
         } else {
             assert_eq!(sampled, None, "flight {run}: a contact was missed");
@@ -178,7 +180,8 @@ fn no_contact_is_missed_or_invented_in_ten_thousand_flights() {
 
 #[test]
 fn hairbreadth_misses_and_touches_are_told_apart() {
-    // Flights whose smallest gap is moved to a given distance, by the oracle and Newton's method on its rate.
+    // Newton's method on the oracle's rate finds the smallest gap. The rest gap is then shifted until the
+    // smallest gap is between ±1e-4 m and ±1e-12 m.
     let mut noise = Noise::new(7);
     let mut count = 0;
     while count < 300 {
@@ -200,7 +203,7 @@ fn hairbreadth_misses_and_touches_are_told_apart() {
             t -= rate / acceleration;
         }
         let [smallest, ..] = oracle.at(t);
-        // A start that is no overlap.
+        // Skips flights that would start with an overlap after the shift.
         if oracle.at(0.0)[0] - smallest < 2e-4 {
             continue;
         }
@@ -210,7 +213,7 @@ fn hairbreadth_misses_and_touches_are_told_apart() {
             for sign in [1.0, -1.0] {
                 let moved = rig.gap - smallest + sign * distance;
                 let flight = flight(&rig, &steady, moved, &start, phase);
-                // The last sample's flight would be cut short of the smallest gap otherwise.
+                // The duration ends at the last sample, at least ten samples after the smallest gap.
                 let found = first_contact(&flight, f64::from(last) * dt);
                 assert_eq!(found.is_some(), sign < 0.0, "{sign}·1e-{exponent} m: {found:?}");
                 if let Some(found) = found {
@@ -223,7 +226,7 @@ fn hairbreadth_misses_and_touches_are_told_apart() {
     }
 }
 
-/// Flights from contact under a pressing force, as in a chatter.
+/// Flight that begins at contact, parting at `w` (m/s) against a pressing force, as in a chatter.
 fn chatter(noise: &mut Noise, w: f64) -> Flight {
     let c = [0.0, 0.1, 8.3][(noise.uniform() * 3.0) as usize];
     let rig = Rig { c1: c, c2: noise.uniform(), gap: -1e-3, ..Rig::thesis() };
@@ -239,7 +242,7 @@ fn chatter(noise: &mut Noise, w: f64) -> Flight {
 #[test]
 fn short_flights_land_where_the_closed_form_is_at_contact_and_not_before() {
     let mut noise = Noise::new(8);
-    // The longest ones are followed by series of twenty terms, where they prove enough.
+    // The longest flights need a series of twenty terms, whose error bound does not always suffice.
     for (w, least) in [(1e-6, 200), (1e-5, 200), (1e-4, 200), (5e-4, 200), (2e-3, 150), (5e-3, 50)] {
         let mut followed = 0;
         for _ in 0..200 {
@@ -249,13 +252,13 @@ fn short_flights_land_where_the_closed_form_is_at_contact_and_not_before() {
             let rounding = 0.25 * flight.noise();
             let Some(landing) = flight.hop(1.0, rounding) else { continue };
             followed += 1;
-            // Rounding of the gap by the closed form, at whose root the slope is at least w/2.
+            // Tolerance: rounding of the gap in closed form, whose slope at the landing is at least w/2.
             let off = flight.gap(landing.time).abs();
             assert!(off <= 4.0 * flight.noise(), "seed 8, {w}: {off:e}");
             let (there, state) = (flight.state(landing.time), landing.state);
             assert!((there.x1 - state.x1).abs() <= 4.0 * flight.noise());
-            // Speeds by the series lose what the displacements lose, times the fastest rate of 250 rad/s, and
-            // their own rounding.
+            // Tolerance of the speeds: that of the displacements times the fastest rate, 250 rad/s, and the
+            // rounding of the speeds themselves.
             let slack = 250.0 * flight.noise() + 4.0 * f64::EPSILON * (state.v1.abs() + state.v2.abs() + 0.1);
             let apart = [there.v1 - state.v1, there.v2 - state.v2];
             assert!(
@@ -283,7 +286,8 @@ fn the_series_is_silent_where_it_proves_nothing() {
     for _ in 0..50 {
         let flight = chatter(&mut noise, 1e-3);
         rounding = 0.25 * flight.noise();
-        // A long flight, one that begins apart, one towards the other mass, one that nothing presses.
+        // No landing by the series: a long flight, one that begins apart, one towards the other mass; below,
+        // one without a pressing force.
         assert!(chatter(&mut noise, 0.2).hop(1.0, rounding).is_none());
         assert!(Flight { gap: flight.gap + 1e-9, ..flight }.hop(1.0, rounding).is_none());
         assert!(chatter(&mut noise, -1e-3).hop(1.0, rounding).is_none());

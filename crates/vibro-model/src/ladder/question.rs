@@ -1,4 +1,4 @@
-//! What is asked of a model, what it answers, and how far that is from another model's answer.
+//! The question to a model, its answer, and the change from one model's answer to another's.
 
 use super::Model;
 use crate::least::{NumberRange, number};
@@ -6,35 +6,36 @@ use crate::observable::Observable;
 use serde::Serialize;
 use vibro_record::{Direction, Error, Result};
 
-/// Readings of followed motions err by some 4e-6 of themselves, and are taken as settled at a fiftieth of the
-/// tolerance.
+/// Smallest tolerance. Readings of simulated motions have relative errors of about 4e-6, and motions count as
+/// settled at a fiftieth of the tolerance.
 const FINEST: f64 = 1e-4;
-/// A mass that moves less than this part of what the other does is not measured by its own motion.
+/// Amplitude, relative to the largest, below which changes of a mass are related to the largest amplitude
+/// instead of its own.
 const STILL: f64 = 1e-3;
-/// Standard errors by which a change between two rungs may be due to means over motions that do not repeat.
+/// Change between two rungs, in standard errors of means over motions that do not repeat, that may be chance.
 const SAME: f64 = 2.0;
-/// Standard errors beyond which two means are of two motions. Of a normal distribution less than e^{−z²/2}
-/// lies farther than z on either side; a search compares some thirty pairs, so that one motion is taken for
-/// two in 1 % of the searches at most.
+/// Distance, in standard errors, beyond which two means belong to two motions. A normal deviate lies outside
+/// ±z with a probability below e^{−z²/2}. A search compares some thirty pairs, so one motion is taken for two
+/// in at most 1 % of the searches.
 pub const APART: f64 = 4.0;
 
-/// What is looked at, and how exactly it is wanted.
+/// The observable that models are compared by, and the accuracy that is needed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Question {
-    /// What is looked at.
+    /// The observable.
     pub observable: Observable,
-    /// Relative change of it that does not matter.
+    /// Relative change of the observable that does not matter.
     pub tolerance: f64,
-    /// Change of it that does not matter, in its own unit: the noise floor of the measurement.
+    /// Change that does not matter, in the unit of the observable: the noise floor of the measurement.
     pub noise: f64,
     /// Standard uncertainty of the gap in m: a motion in closed form must be farther than this from grazing.
     pub gap_std: f64,
-    /// Which way the frequency came, for where several motions are possible.
+    /// Direction of the sweep that led to the frequency; it selects one of several coexisting motions.
     pub history: Option<Direction>,
 }
 
 impl Question {
-    /// Two percent, no noise, a gap that is known, no history.
+    /// A question with a tolerance of 2 %, no noise, an exactly known gap, and no history.
     pub fn new(observable: Observable) -> Question {
         Question { observable, tolerance: 0.02, noise: 0.0, gap_std: 0.0, history: None }
     }
@@ -54,40 +55,38 @@ impl Question {
     }
 }
 
-/// How far an answer moves at another rung.
+/// Change of an answer from one rung to another.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Change {
     /// The other rung.
     pub at: Model,
-    /// Its answer less this one, over this one: of the mass for which that is the larger against what is
-    /// allowed. For a mass that moves less than a thousandth of what the other does, over the largest of
-    /// all answers.
+    /// Relative change, (other − this)/this, of the mass with the larger change over its allowance. For a
+    /// mass with less than a thousandth of the largest answer it is relative to that answer.
     pub change: f64,
-    /// Whether that is no more than the tolerance, the noise floor or what the answers themselves are
-    /// uncertain by allow; never where one of them comes from a motion that has not settled, or has a
-    /// standard error above tolerance and noise floor.
+    /// Whether the change is within the tolerance, the noise floor or the standard errors of the answers.
+    /// Never where one motion has not settled, or has a standard error above tolerance and noise floor.
     pub enough: bool,
 }
 
 /// An answer of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
-    /// Of x₁ and x₂.
+    /// The observable of x₁ and of x₂.
     pub value: [f64; 2],
-    /// Its standard error.
+    /// Standard errors of the values.
     pub spread: [f64; 2],
-    /// Whether the motion that it was read from had settled, or has means that are steady. Else the answer
-    /// may be any.
+    /// Whether the simulated motion had settled, or has steady means. Else the answer is not reliable.
     pub steady: bool,
 }
 
 impl Answer {
-    /// An answer without an error of its own.
+    /// An answer without a standard error.
     pub fn exact(value: [f64; 2]) -> Answer {
         Answer { value, spread: [0.0; 2], steady: true }
     }
 
-    /// The largest ratio of its standard error to the tolerance or the noise floor, whichever allows more.
+    /// The larger ratio, of both masses, of the standard error to the tolerance or the noise floor, whichever
+    /// allows more.
     pub fn unsure(&self, question: &Question) -> f64 {
         let largest = self.value[0].abs().max(self.value[1].abs());
         let part = |i: usize| {
@@ -98,37 +97,36 @@ impl Answer {
         part(0).max(part(1))
     }
 
-    /// Whether it comes from a motion that has settled, or is a mean that is known as exactly as is asked
-    /// for.
+    /// Whether the motion was steady and the standard error is within tolerance or noise floor.
     pub fn known(&self, question: &Question) -> bool {
         self.steady && self.unsure(question) <= 1.0
     }
 
-    /// Whether `other` may be an answer of the same motion: of both masses no farther off than tolerance,
-    /// noise floor or this many standard errors allow.
+    /// Whether `other` may be an answer of the same motion: for both masses the difference is within the
+    /// tolerance, the noise floor or this many standard errors.
     pub fn agrees(&self, other: &Answer, question: &Question, errors: f64) -> bool {
         self.farthest(other, question, errors).is_none_or(|(ratio, _)| ratio <= 1.0)
     }
 
-    /// How far it moves to `other`, the answer of the rung `at`.
+    /// Change to `other`, the answer of the rung `at`.
     pub fn change(&self, other: &Answer, at: Model, question: &Question) -> Change {
-        // What is hardly known bears nothing out. Nor does a motion on its way somewhere widen what is
-        // allowed.
+        // An uncertain answer confirms nothing. The standard error of a motion that has not settled does not
+        // widen the allowance.
         let known = self.known(question) && other.known(question);
         let (ratio, change) =
             self.farthest(other, question, if known { SAME } else { 0.0 }).unwrap_or_default();
         Change { at, change, enough: known && ratio <= 1.0 }
     }
 
-    /// The change to `other` over what is allowed, and the relative change, of the mass for which the first
-    /// is larger; `None` where neither moves. So many standard errors are allowed.
+    /// Ratio of the change to its allowance, and the relative change, for the mass with the larger ratio;
+    /// `None` where neither mass changes. The allowance includes `errors` standard errors.
     fn farthest(&self, other: &Answer, question: &Question, errors: f64) -> Option<(f64, f64)> {
         let largest = self.value.iter().chain(&other.value).fold(0.0_f64, |l, v| l.max(v.abs()));
         let far = |i: usize| {
             let (own, moved) = (self.value[i].abs(), other.value[i] - self.value[i]);
             let unsure = errors * self.spread[i].hypot(other.spread[i]);
             let allowed = (question.tolerance * own.max(STILL * largest)).max(question.noise).max(unsure);
-            // Nothing is allowed where nothing moves and something should.
+            // Without an allowance any change is too large.
             let ratio = if allowed > 0.0 { moved.abs() / allowed } else { f64::INFINITY };
             (moved != 0.0).then(|| (ratio, moved / if own < STILL * largest { largest } else { own }))
         };

@@ -1,4 +1,4 @@
-//! What each rung answers at one excitation of a scene, and whether its own checks pass.
+//! The answer of each rung at one excitation of a scene, and whether the rung's own checks pass.
 
 use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Question};
@@ -18,10 +18,10 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 use vibro_record::{Error, Finding, Result};
 
-/// Exponent of two curved bodies.
+/// Exponent of the force over the indentation of two curved bodies (Hertz).
 const HERTZ: f64 = 1.5;
 
-/// What `work` gives, and the time in ns that it takes; NaN where there is no clock.
+/// Result of `work` and its computing time in ns; NaN where there is no clock.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let begun = (!cfg!(target_family = "wasm")).then(Instant::now);
     let done = work();
@@ -41,13 +41,13 @@ pub fn keys(scene: &Scene) -> ContactKeys {
     scene.contact.unwrap_or_default()
 }
 
-/// Whether the contact is stated to be other than a spring.
+/// Whether the stated contact is no linear spring: its exponent is not 1.
 pub fn is_curved(scene: &Scene) -> bool {
     keys(scene).exponent.is_some_and(|n| n != 1.0)
 }
 
-/// The curved law that the scene states; losses that are not stated rebound with the rig's restitution at
-/// `speed` (m/s).
+/// The contact law of curved bodies that the scene states. Without a stated damping, it is that which gives
+/// the rig's restitution at the approach speed `speed` (m/s).
 ///
 /// # Errors
 /// If the stiffness is missing, or a number is impossible.
@@ -62,10 +62,10 @@ pub fn curved(scene: &Scene, speed: f64) -> Result<Law> {
     law.check().map(|()| law)
 }
 
-/// The contact of two curved bodies that lasts as long as this spring and damper where it is met at `speed`
-/// (m/s), and rebounds alike.
+/// The contact of two curved bodies with the duration and the restitution of this spring and damper at the
+/// approach speed `speed` (m/s).
 ///
-/// Without losses it lasts 2.9432 (5Mv²/4k)^{2/5}/v, which gives k.
+/// Its duration without losses is 2.9432 (5Mv²/4k)^{2/5}/v, which gives k.
 fn as_long(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
     let Law::KelvinVoigt { stiffness, damping } = law else { return Ok(law) };
     let mass = rig.reduced_mass();
@@ -76,7 +76,7 @@ fn as_long(rig: &Rig, law: Law, speed: f64) -> Result<Law> {
     Law::hunt_crossley(curved, HERTZ, conversion::restitution(ratio), speed)
 }
 
-/// The motion that the rig is in, and how that is known.
+/// Finding on the motion that the simulation reached, from rest or along the rig's history.
 fn into(motions: &Motions) -> Finding {
     let reading = &motions.reading;
     let found = match reading.end {
@@ -95,7 +95,7 @@ impl DrivenScene<'_> {
         &self.scene.rig
     }
 
-    /// What a rung answers; `closed` says whether the closed form is valid.
+    /// The answer of a rung; `closed` is whether the closed form is valid.
     pub fn rung(&self, model: Model, motions: &mut Motions, closed: bool) -> Rung {
         let found = match model {
             Model::Linear => self.linear(motions),
@@ -109,7 +109,7 @@ impl DrivenScene<'_> {
         Rung::of(model, found)
     }
 
-    /// Mass 1 alone.
+    /// Motion of mass 1 alone, without impacts.
     fn linear(&self, motions: &Motions) -> Found {
         let (found, cost) = timed(|| no_impact(self.rig(), self.excitation));
         let found = found?;
@@ -123,23 +123,23 @@ impl DrivenScene<'_> {
         let (gap, std) = (self.rig().gap, self.question.gap_std);
         let sized = |code| Finding::note(code).number("largest", found.largest).number("gap", gap);
         let clear = gap - found.largest;
-        let met = || sized("masses-stay-clear");
+        let stays_clear = || sized("masses-stay-clear");
         let (valid, reasons) = match motions.on {
             _ if !found.possible => (false, vec![sized("masses-meet")]),
             _ if clear <= std => {
                 let unsure = Finding::note("clearance-not-sure").number("clearance", clear);
                 (false, vec![unsure.number("std", std)])
             }
-            CurrentMotion::Open => (true, vec![met()]),
-            CurrentMotion::Free => (true, vec![met(), into(motions)]),
+            CurrentMotion::Open => (true, vec![stays_clear()]),
+            CurrentMotion::Free => (true, vec![stays_clear(), into(motions)]),
             CurrentMotion::Orbit(_) | CurrentMotion::Other => {
-                (false, vec![met(), Finding::note("other-motion"), into(motions)])
+                (false, vec![stays_clear(), Finding::note("other-motion"), into(motions)])
             }
         };
         Ok(Rung::answering(Answer::exact(value), cost, valid, reasons))
     }
 
-    /// One impact a cycle.
+    /// Motion with one rigid impact per cycle, in closed form.
     fn closed_form(&self, motions: &Motions) -> Found {
         let orbit = motions.orbit()?.ok_or_else(|| Finding::note("orbit-missing"))?;
         let v = &orbit.validity;
@@ -167,7 +167,7 @@ impl DrivenScene<'_> {
         Ok(Rung::answering(answer, motions.closed_cost, valid, reasons))
     }
 
-    /// Stiffness in N/m of the spring that the contact is.
+    /// Stiffness in N/m of the contact, which must be a linear spring.
     fn stiffness(&self) -> std::result::Result<f64, Finding> {
         match keys(self.scene).stiffness {
             _ if is_curved(self.scene) => Err(Finding::note("spring-needed")),
@@ -176,7 +176,7 @@ impl DrivenScene<'_> {
         }
     }
 
-    /// The same with the contact's duration; the closed form is valid or not.
+    /// The closed form corrected for the duration of the contact, where it is `valid`.
     fn soft_corrected(&self, motions: &Motions, valid: bool) -> Found {
         let stiffness = self.stiffness()?;
         let orbit = motions.orbit().ok().flatten().filter(|_| valid);
@@ -197,13 +197,13 @@ impl DrivenScene<'_> {
         Ok(found.orbits.iter().zip(soft).find(|(o, _)| Some(*o) == same).and_then(|(_, soft)| soft))
     }
 
-    /// Spring and damper.
+    /// Contact of spring and damper.
     fn kelvin_voigt(&self, motions: &mut Motions) -> Found {
         let law = self.scene.spring(self.stiffness()?)?;
         self.contact(Model::KelvinVoigt, motions, law)
     }
 
-    /// A curved contact that is stated.
+    /// Contact of curved bodies, as stated.
     fn hunt_crossley(&self, motions: &mut Motions) -> Found {
         if !is_curved(self.scene) {
             return Err(Finding::note("exponent-unknown").into());
@@ -212,8 +212,8 @@ impl DrivenScene<'_> {
         self.contact(Model::HuntCrossley, motions, curved(self.scene, speed)?)
     }
 
-    /// Curved bodies that meet for as long as the spring that is stated and rebound alike, in place of an
-    /// exponent that is not stated.
+    /// Contact of curved bodies with the duration and the restitution of the stated spring: shows how much
+    /// the exponent matters where none is stated.
     pub fn curved_alike(&self, motions: &Motions) -> Found {
         let speed = motions.speed()?;
         let stiffness = keys(self.scene).stiffness.ok_or_else(|| Finding::note("impacts-missing"))?;
@@ -223,8 +223,8 @@ impl DrivenScene<'_> {
         Ok(Rung::answering(reading.answer, cost, false, vec![reason]))
     }
 
-    /// A contact whose law is known: followed the way the rig came, else from where the motion with impacts
-    /// at once had settled and from rest.
+    /// Simulation with a known contact law: along the stated history, or else from the settled state of the
+    /// motion with rigid impacts and also from rest.
     fn contact(&self, model: Model, motions: &mut Motions, law: Law) -> Found {
         if let Some(way) = &motions.way {
             let (reading, cost) = self.follow(motions, way.with(law)?)?;
@@ -242,8 +242,8 @@ impl DrivenScene<'_> {
         Ok(found)
     }
 
-    /// What a contact of this law shows, from where the motion with impacts at once had settled, and the time
-    /// in ns that it took.
+    /// Reading with this contact law, from the settled state of the motion with rigid impacts, and the
+    /// computing time in ns.
     pub fn with(&self, motions: &Motions, law: Law) -> Result<(Reading, f64)> {
         let end = &motions.end;
         self.follow(motions, Compliant::new(self.rig(), self.excitation, law, end.state(), end.phase())?)
@@ -262,7 +262,8 @@ impl DrivenScene<'_> {
         MotionReader::new(self.rig(), self.excitation.frequency(), self.question)
     }
 
-    /// A mass 1 loose on its spring, from rest; with the contact's spring and damper where they are known.
+    /// Simulation from rest of a mass 1 that is loose on its spring; with spring and damper of the contact if
+    /// its `stiffness` (N/m) is given.
     pub fn loose_mass(&self, stiffness: Option<f64>) -> Found {
         let buffer = self.scene.buffer.ok_or_else(|| Finding::note("buffer-missing"))?;
         let (rig, rest) = (self.rig(), Simulation::at_rest(self.rig()));

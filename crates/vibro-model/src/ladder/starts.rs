@@ -1,4 +1,4 @@
-//! From where motions are followed: the way the frequency came, or states all around.
+//! Starts of simulations: a sweep that leads to the excitation, or states in all directions.
 
 use crate::contact::Compliant;
 use crate::excitation::Excitation;
@@ -13,19 +13,19 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Result};
 
-/// Ratio of one frequency to the next.
+/// Ratio of successive frequencies of the sweep.
 const STEP: f64 = 1.01;
-/// Steps at least and at most: 28 % to a factor of 4.
+/// Fewest and most steps of the sweep: a change of the frequency by 28 % to a factor of 4.
 const STEPS: (i32, i32) = (25, 140);
-/// Cycles at the beginning, and at each step.
+/// Excitation cycles at the first frequency of the sweep, and at each later one.
 const CYCLES: (f64, f64) = (300.0, 60.0);
-/// States tried.
+/// Number of start states.
 const STARTS: u32 = 8;
-/// Their size at least and at most, in units of the gap or of what mass 1 does alone, the larger.
+/// Smallest and largest size of a start state, in units of the gap or of the displacement of mass 1 without
+/// impacts, the larger.
 const SIZES: (f64, f64) = (1.0, 6.0);
 
-/// The way to an excitation after its frequency rose or fell to it: from where only one motion is known, in
-/// steps of 1 %.
+/// Sweep up or down to an excitation in steps of 1 %, from a frequency at which only one motion is known.
 #[derive(Debug)]
 pub struct Approach {
     rig: Rig,
@@ -37,20 +37,22 @@ pub struct Approach {
 }
 
 impl Approach {
+    /// The sweep that reaches `excitation` in this direction.
+    ///
     /// # Errors
     /// If a parameter is impossible, or an undamped mass is driven at resonance.
     pub fn new(rig: &Rig, excitation: &Excitation, direction: Direction) -> Result<Approach> {
         let sign = if direction == Direction::Up { -1 } else { 1 };
         let at = |n: i32| excitation.at_frequency(excitation.frequency() * STEP.powi(sign * n));
-        // A pulse that is longer than a cycle ends the way.
+        // The sweep cannot begin where the pulse would last longer than a cycle.
         let end = (1..=STEPS.1).take_while(|n| at(*n).check().is_ok()).last().unwrap_or(0);
-        let one = |n: &i32| !orbits_of(rig, &at(*n), 1).is_ok_and(|found| several(&found));
-        let first = (STEPS.0..end).find(one).unwrap_or(end);
+        let is_single = |n: &i32| !orbits_of(rig, &at(*n), 1).is_ok_and(|found| several(&found));
+        let first = (STEPS.0..end).find(is_single).unwrap_or(end);
         let then = (0..first).rev().map(|n| at(n).frequency()).collect();
         Ok(Approach { rig: *rig, first: at(first), state: outset(rig, &at(first))?, then })
     }
 
-    /// The motion at its end, with impacts at once.
+    /// The simulation at the end of the sweep, with rigid impacts.
     ///
     /// # Errors
     /// As [`Simulation::run`].
@@ -58,7 +60,7 @@ impl Approach {
         self.lead(Simulation::from_state(&self.rig, &self.first, self.state, 0.0)?)
     }
 
-    /// The motion at its end, with a contact that gives way.
+    /// The simulation at the end of the sweep, with a compliant contact.
     ///
     /// # Errors
     /// As [`Compliant::new`] and [`Motion::advance`].
@@ -76,8 +78,8 @@ impl Approach {
     }
 }
 
-/// Whether the motion without impacts and one with impacts are both possible. One that has lost its stability
-/// counts: round it lies another motion with impacts, as behind a flip or a Neimark–Sacker loss.
+/// Whether the motion without impacts and one with impacts are both possible. An unstable one counts too:
+/// after a flip or a Neimark–Sacker bifurcation another motion with impacts exists near it.
 pub fn several(found: &Orbits) -> bool {
     found.no_impact.possible && found.orbits.iter().any(|o| o.validity.admissible)
 }
@@ -94,19 +96,19 @@ fn outset(rig: &Rig, excitation: &Excitation) -> Result<State> {
     Ok(Simulation::at_rest(rig))
 }
 
-/// How many states beside rest the rig was followed from in search of other motions.
+/// Number of start states, besides rest, of the search for other motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Followed {
-    /// Those that were.
+    /// States that were simulated.
     pub states: u32,
-    /// All that there are. Fewer are followed once a second motion is found, where it takes too many cycles,
-    /// and where some lead beyond what can be followed.
+    /// All states. Fewer are simulated once a second motion is found, where the search takes too many cycles,
+    /// or where a motion cannot be simulated.
     pub of: u32,
 }
 
-/// States with the phase 0 of the excitation, of sizes that rise from one to the next and in directions
-/// spread evenly (the additive recurrence of the generalised golden ratio, M. Roberts, 2018). Masses that
-/// would overlap are mirrored at their contact.
+/// Start states at phase 0 of the excitation, of rising size and in evenly spread directions (the additive
+/// recurrence of the generalised golden ratio, M. Roberts, 2018). An overlap is mirrored at the contact, so
+/// that the masses are apart by as much.
 pub fn starts(rig: &Rig, excitation: &Excitation) -> impl Iterator<Item = (State, f64)> {
     let unit = no_impact(rig, excitation).map_or(0.0, |free| free.largest).max(rig.gap.abs());
     let omega = TAU * excitation.frequency();
@@ -139,7 +141,7 @@ mod tests {
             assert_eq!(all.len(), STARTS as usize);
             // Overlapping and moving walls are refused.
             assert!(all.iter().all(|s| Simulation::from_state(&rig, &sine, *s, 0.0).is_ok()));
-            // x₁ need not: it cannot lie far beyond a contact.
+            // x₁ may have one sign only: it cannot lie far beyond the contact.
             assert!(all.iter().any(|s| s.v1 > 0.0) && all.iter().any(|s| s.v1 < 0.0));
             let size = |s: &State| s.v1.abs().max(s.v2.abs()) / (TAU * 12.97);
             let unit = no_impact(&rig, &sine).unwrap().largest.max(gap.abs());

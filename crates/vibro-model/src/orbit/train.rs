@@ -1,4 +1,4 @@
-//! Orbits under impulses or pulses: every root of the timing.
+//! One-impact orbits under impulses or rectangular pulses: all impact times that meet the impact conditions.
 
 use super::conditions::{Conditions, Root};
 use super::driven::{Piece, PulseResponse};
@@ -9,12 +9,12 @@ use crate::waves::Waves;
 use std::f64::consts::TAU;
 use vibro_math::root::bracketed;
 
-/// Orbits under the excitation whose steady motion is `response`, in the order of their timing τ in 0 < τ <
-/// T.
+/// One-impact orbits, ordered by the time τ of the impact after the beginning of the pulse. `response` is the
+/// steady motion y of mass 1 alone under `excitation`.
 ///
-/// Both conditions together, y(τ) = Δ + JC and ẏ(τ) = JP, ask for G(τ) = P(y − Δ) − Cẏ = 0. In each piece Py
-/// − Cẏ is a free motion of mass 1 itself, so its stationary points are known in closed form, and between two
-/// of them lies one root at most.
+/// Without the impulse J, the conditions y(τ) = Δ + JC and ẏ(τ) = JP leave G(τ) = P(y − Δ) − Cẏ = 0. In each
+/// piece of the response Py − Cẏ is a free motion of mass 1, so its stationary points are known in closed
+/// form. Between two of them G has at most one root.
 pub fn orbits(conditions: &Conditions, response: &PulseResponse, excitation: &Excitation) -> Vec<Orbit> {
     let mut orbits = Vec::new();
     let Conditions { c, p, rig, .. } = *conditions;
@@ -30,10 +30,10 @@ pub fn orbits(conditions: &Conditions, response: &PulseResponse, excitation: &Ex
             impulse,
             timing,
             force_phase: omega * timing,
-            // ẏ dτ = dΔ + C dJ and ÿ dτ = P dJ.
+            // dJ/dΔ from ẏ dτ = dΔ + C dJ and ÿ dτ = P dJ.
             sensitivity: a.abs() / slope.abs(),
             size: rig.gap.abs() + y.abs(),
-            // With τ from y = Δ + JC, d(JP − ẏ)/dJ = (Pẏ − Cÿ)/ẏ.
+            // With τ from y = Δ + JC, d(JP − ẏ)/dJ = (Pẏ − Cÿ)/ẏ: its sign is that of the slope of G.
             upper: slope > 0.0,
         };
         let course = course(conditions, response, impulse, timing);
@@ -42,22 +42,22 @@ pub fn orbits(conditions: &Conditions, response: &PulseResponse, excitation: &Ex
     orbits
 }
 
-/// The steady motion less that of the impacts, from an impact that follows the beginning of the pulse by
-/// `delay` (s).
+/// Motion over one period, from impact to impact: the steady response minus the effect of the impacts. The
+/// impact follows the beginning of the pulse by `delay` (s).
 fn course(conditions: &Conditions, response: &PulseResponse, impulse: f64, delay: f64) -> Course {
     let (period, gap) = (conditions.period(), conditions.rig.gap);
     let oscillators = conditions.rig.oscillators();
     let mut stretches = Vec::new();
     let (mut t, (mut piece, mut inside)) = (0.0, response.piece(delay));
-    // What remains by rounding only is no stretch.
+    // A remainder of a few roundings of the period is no stretch of its own.
     while t < period * (1.0 - 4.0 * f64::EPSILON) {
-        let left = piece.duration - inside;
+        let remaining = piece.duration - inside;
         let (x, v) = oscillators[0].free(piece.free.0, piece.free.1, inside);
         let [(c1, d1), (c2, d2)] = conditions.greens.map(|green| green.at(t));
         let free = [(x - impulse * c1, v - impulse * d1), (impulse * c2, impulse * d2)];
         let flight = Flight::of(oscillators, Waves::default(), piece.rest, gap, free);
-        stretches.push((left.min(period - t), flight));
-        t += left;
+        stretches.push((remaining.min(period - t), flight));
+        t += remaining;
         inside = 0.0;
         let [on, off] = response.pieces();
         piece = if piece.start == 0.0 && response.width > 0.0 || on.duration == 0.0 { off } else { on };
@@ -65,7 +65,7 @@ fn course(conditions: &Conditions, response: &PulseResponse, impulse: f64, delay
     Course { period, stretches }
 }
 
-/// Visits every root τ of G with G's slope there.
+/// Calls `visit` with each root τ of G in s and the slope of G there.
 fn each_root(conditions: &Conditions, response: &PulseResponse, mut visit: impl FnMut(f64, f64)) {
     let Conditions { c, p, rig, .. } = *conditions;
     let oscillator = &response.oscillator;
@@ -75,7 +75,7 @@ fn each_root(conditions: &Conditions, response: &PulseResponse, mut visit: impl 
         // z = Py − Cẏ as a free motion.
         let (z, dz) = (p * x - c * v, p * v - c * a);
         let level = p * (rig.gap - rest);
-        // |z| never exceeds its bound again.
+        // |z| stays below its bound: where that is below the level, the piece has no root.
         if duration <= 0.0 || oscillator.bound(z, dz) < level.abs() {
             continue;
         }
@@ -84,8 +84,8 @@ fn each_root(conditions: &Conditions, response: &PulseResponse, mut visit: impl 
             (z - level, dz)
         };
         let mut left = (0.0, g(0.0).0);
-        let turns = oscillator.passages(dz, oscillator.acceleration(z, dz), duration);
-        for t in turns.chain(std::iter::once(duration)) {
+        let extrema = oscillator.passages(dz, oscillator.acceleration(z, dz), duration);
+        for t in extrema.chain(std::iter::once(duration)) {
             let here = g(t).0;
             // A root on the border belongs to the piece that begins there.
             let root = if left.1 == 0.0 {

@@ -1,4 +1,5 @@
-//! Impacts, rests and kicks: what changes a simulated motion at an instant.
+//! Events that change a simulated motion at an instant: impacts, masses that come to rest against each other,
+//! kicks and steps of the excitation.
 
 use super::{Hold, Simulation};
 use crate::flow::State;
@@ -12,12 +13,12 @@ use vibro_record::Result;
 /// Approach speed in m/s below which the end of a chatter is looked for; above it, impacts do not yet
 /// accumulate closely enough.
 const SLOW: f64 = 1e-3;
-/// The same over the speeds of the masses: a bounce at 6e-8 of them, √(16ε), rises no higher than the
-/// rounding of the gap, which is rest.
+/// The same limit over the speeds of the masses. A bounce at 6e-8 of them, √(16ε), rises no higher than the
+/// rounding of the gap and counts as rest.
 const SLOW_PART: f64 = 1e-7;
 
 impl Simulation {
-    /// Exchanges momentum in the present state, which is at contact.
+    /// Applies the impact law to the present state, which is at contact.
     #[inline]
     pub(super) fn collide(&mut self) -> Result<Impact> {
         let approach = self.state.approach();
@@ -32,15 +33,15 @@ impl Simulation {
         Ok(Impact { time: self.time, phase: self.drive.forcing.phase, approach_velocity: approach, impulse })
     }
 
-    /// Scale of the speeds in m/s: of velocities, and of displacements times ω, those under the force too.
+    /// Scale of the speeds in m/s: the velocities, and ω times the displacements and the forced amplitude.
     #[inline]
     fn speed(&self) -> f64 {
         let State { x1, v1, x2, v2 } = self.state;
-        let way = x1.abs() + x2.abs() + self.drive.alone().amplitude;
-        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency * way
+        let displacement = x1.abs() + x2.abs() + self.drive.alone().amplitude;
+        v1.abs() + v2.abs() + TAU * self.drive.forcing.frequency * displacement
     }
 
-    /// Looks after an impact whether the masses come to rest against each other, at once or after a chatter.
+    /// Decides after an impact whether the masses come to rest together, at once or after a chatter.
     fn end_chatter(&mut self, approach: f64) -> Result<()> {
         let press = Press::of(&self.flight());
         if press.acceleration <= 0.0 && approach < self.grazing_speed {
@@ -51,13 +52,13 @@ impl Simulation {
             return self.rest();
         }
         if press.acceleration > 0.0
-            && let Some(left) = press.accumulation(&self.rig, separation)
+            && let Some(duration) = press.accumulation(&self.rig, separation)
         {
             let pair = self.pair()?;
-            // The masses must be pressed together all the time.
-            if pair.force(0.0).value > 0.0 && pair.release(left).is_none() {
+            // The chatter ends in rest only if the masses are pressed together until its end.
+            if pair.force(0.0).value > 0.0 && pair.release(duration).is_none() {
                 self.state = pair.state(0.0);
-                self.hold = Hold::Settling(left);
+                self.hold = Hold::Settling(duration);
                 self.counts.sticks += 1;
             }
         }
@@ -78,7 +79,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Does what the excitation does now.
+    /// Applies an event of the excitation: a kick changes the velocity of mass 1, a step changes the force.
     pub(super) fn tick(&mut self, tick: Tick) -> Result<Event> {
         self.drive.forcing.tick(tick);
         if let Tick::Kick(impulse) = tick {
@@ -92,15 +93,15 @@ impl Simulation {
         Ok(Event::Switch)
     }
 
-    /// Finds how the masses are to each other once the force has stepped.
+    /// Decides after a step of the force whether the masses stay together, part, or are apart.
     pub(super) fn look_again(&mut self) -> Result<()> {
         if let Hold::Settling(_) = self.hold {
-            // What is left of the chatter is far below the masses' ways: it ends now, in rest or in parting.
+            // The remaining bounces of the chatter are negligible: it ends now, in rest or in parting.
             self.counts.sticks -= 1;
             return self.rest();
         }
         if self.hold == Hold::Parting {
-            // The new force may press again what has only begun to part.
+            // The new force may press masses together that have only begun to part.
             let flight = self.flight();
             if flight.gap(0.0) > 16.0 * flight.noise() {
                 self.hold = Hold::Apart;

@@ -1,5 +1,5 @@
-//! What people write by hand, and the toolkit replaces: a few lines each, as they stand in scripts and
-//! spreadsheets.
+//! Estimators as people write them in scripts and spreadsheets, a few lines each: the toolkit's precision is
+//! compared with theirs.
 
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use vibro_record::{Trace, Window};
 use vibro_signal::fft::Transform;
 use vibro_signal::window;
 
-/// Peak amplitudes of the lines, by a transform of the record under a window.
+/// Peak amplitudes of the spectral lines, by a Fourier transform of the windowed record.
 pub fn lines(trace: &Trace, shape: Window) -> Vec<f64> {
     let n = trace.values.len();
     let weights = window::samples(shape, n);
@@ -17,17 +17,17 @@ pub fn lines(trace: &Trace, shape: Window) -> Vec<f64> {
     Transform::new(n).forward(&weighted).iter().map(|x| 2.0 * x.norm() / sum).collect()
 }
 
-/// Distance of the lines in Hz.
+/// Spacing of the spectral lines in Hz.
 pub fn spacing(trace: &Trace) -> f64 {
     trace.rate().unwrap_or(f64::NAN) / trace.values.len() as f64
 }
 
-/// The largest of the lines, 0 Hz included.
+/// Index of the largest line, 0 Hz included.
 pub fn largest(lines: &[f64]) -> usize {
     (0..lines.len()).max_by(|a, b| lines[*a].total_cmp(&lines[*b])).unwrap_or(0)
 }
 
-/// The second largest line that is higher than both beside it.
+/// Index of the second largest local maximum.
 pub fn second(lines: &[f64]) -> Option<usize> {
     let mut peaks: Vec<usize> = (1..lines.len().saturating_sub(1))
         .filter(|k| lines[*k] > lines[k - 1] && lines[*k] >= lines[k + 1])
@@ -36,7 +36,7 @@ pub fn second(lines: &[f64]) -> Option<usize> {
     peaks.get(1).copied()
 }
 
-/// Place of the top of a parabola through line `k` and both beside it; the line itself at the ends.
+/// Position, in lines, of the maximum of a parabola through line `k` and its neighbours; `k` at the ends.
 pub fn parabola(lines: &[f64], k: usize) -> f64 {
     let (Some(left), Some(right)) = (k.checked_sub(1).map(|i| lines[i]), lines.get(k + 1)) else {
         return k as f64;
@@ -44,7 +44,7 @@ pub fn parabola(lines: &[f64], k: usize) -> f64 {
     k as f64 - 0.5 * (right - left) / (left + right - 2.0 * lines[k])
 }
 
-/// Times in samples at which a level is passed upwards, between samples.
+/// Times of the upward crossings of a level, in samples, interpolated linearly.
 pub fn passages(values: &[f64], level: f64) -> Vec<f64> {
     let up = |(i, w): (usize, &[f64])| {
         (w[0] < level && w[1] >= level).then(|| i as f64 + (level - w[0]) / (w[1] - w[0]))
@@ -57,12 +57,12 @@ pub fn half(values: &[f64]) -> f64 {
     0.5 * values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The first samples after the passages of half the highest value.
+/// First sample after each upward crossing of half the highest value.
 pub fn threshold(values: &[f64]) -> Vec<f64> {
     passages(values, half(values)).iter().map(|t| t.ceil()).collect()
 }
 
-/// Mean frequency in events a sample from the first and the last of these times in samples.
+/// Mean rate of events per sample, from the first and last of these times in samples.
 pub fn mean_rate(times: &[f64]) -> f64 {
     match times {
         [first, .., last] => (times.len() - 1) as f64 / (last - first),
@@ -75,7 +75,7 @@ pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Running sums over the rate: an integral without a word on its constant.
+/// Running sums over the sampling rate: an integral whose constant is ignored.
 pub fn sums(trace: &Trace) -> Vec<f64> {
     let (rate, mut sum) = (trace.rate().unwrap_or(f64::NAN), 0.0);
     let add = |v: &f64| {
@@ -85,7 +85,7 @@ pub fn sums(trace: &Trace) -> Vec<f64> {
     trace.values.iter().map(add).collect()
 }
 
-/// Without the straight line of least squares (`detrend`).
+/// Values minus their least-squares straight line (`detrend`).
 pub fn detrended(values: &[f64]) -> Vec<f64> {
     let (n, mean) = (values.len() as f64, mean(values));
     let middle = 0.5 * (n - 1.0);
@@ -94,15 +94,15 @@ pub fn detrended(values: &[f64]) -> Vec<f64> {
     values.iter().enumerate().map(|(i, v)| v - mean - slope * (i as f64 - middle)).collect()
 }
 
-/// Half of the distance from the lowest to the highest value.
+/// Half the peak-to-peak value.
 pub fn half_swing(values: &[f64]) -> f64 {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     0.5 * (high - low)
 }
 
-/// Magnitudes of the lines, the largest, the half-power level, and the next lines below and above that are
-/// under it.
+/// Magnitudes of the lines, index of the largest, half-power level, and indices of the nearest lines on
+/// either side below that level.
 fn peak(values: &[Complex64]) -> Option<(Vec<f64>, usize, f64, usize, usize)> {
     let size: Vec<f64> = values.iter().map(|v| v.norm()).collect();
     let at = largest(&size);
@@ -112,8 +112,8 @@ fn peak(values: &[Complex64]) -> Option<(Vec<f64>, usize, f64, usize, usize)> {
     Some((size, at, level, left, right))
 }
 
-/// ζ from the lines nearest to the half-power points of the largest line, or from points interpolated between
-/// lines.
+/// ζ by the half-power bandwidth of the largest line. Its ends are interpolated with `between`, else they are
+/// the nearest lines.
 pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64 {
     let Some((size, at, level, left, right)) = peak(values) else { return f64::NAN };
     let cross = |out: usize, inside: usize| {
@@ -124,7 +124,7 @@ pub fn half_power(frequency: &[f64], values: &[Complex64], between: bool) -> f64
 }
 
 /// ζ from a circle through the mobility at the lines above half power and two more on either side (Kåsa
-/// 1976), by the angle that the lines below and above the largest one turn:
+/// 1976). α₁ and α₂ are the angles on the circle from the largest line ωᵣ to the first and last line ω₁, ω₂:
 /// ζ = (ω₂² − ω₁²)/(2ωᵣ(ω₁ tan(α₁/2) + ω₂ tan(α₂/2))).
 pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
     let Some((size, at, _, left, right)) = peak(values) else { return f64::NAN };
@@ -148,8 +148,8 @@ pub fn circle(frequency: &[f64], values: &[Complex64]) -> f64 {
     (w2 * w2 - w1 * w1) / (2.0 * own * (w1 * (0.5 * below).tan() + w2 * (0.5 * above).tan()))
 }
 
-/// Time to the peak over duration of a pulse, read as on a screen: level of the first tenth of the record,
-/// highest sample, and where 3 % of its height is passed before and after.
+/// Rise time over duration of a pulse, as read from a screen. The baseline is the mean of the first tenth of
+/// the record, the peak the highest sample; the pulse starts and ends at 3 % of its height.
 pub fn instants(values: &[f64]) -> f64 {
     let level = mean(&values[..(values.len() / 10).max(1)]);
     let peak = largest(values);
@@ -163,8 +163,8 @@ pub fn instants(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A mode of ζ = 0.01 without noise, 20 lines in its bandwidth: half power is good to the lines, the
-    /// circle of one mode exact but for the place of the largest line.
+    /// A mode of ζ = 0.01 without noise, with 20 lines in its bandwidth. The error of half power is that of
+    /// the line spacing; the circle is exact for one mode if the largest line is at the resonance.
     #[test]
     fn methods_of_paper_and_pencil_find_a_clean_mode() {
         let (own, zeta) = (100.0, 0.01);

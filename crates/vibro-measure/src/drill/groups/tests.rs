@@ -8,7 +8,7 @@ fn options(masses: Option<(f64, f64)>) -> DrillOptions {
     options
 }
 
-/// Impacts of turns in a row from (phase, before, after), a second apart whatever the phase.
+/// Impacts of successive turns with (phase, velocity before, velocity after), 1 s apart whatever the phase.
 fn impacts(of: &[(f64, f64, f64)]) -> Vec<Impact> {
     let one = |(cycle, (phase, before, after)): (usize, &(f64, f64, f64))| Impact {
         cycle,
@@ -44,16 +44,17 @@ fn front_and_rear() {
     ];
     let mut all = impacts(&of.repeat(10));
     let groups = grouped(&mut all, 40, &options(Some((0.1, 0.2))));
-    // Squares of jumps: in front ten times 64 + 100 + 81 + 81, behind ten times 25 + 29 + 27 or so.
+    // The group with the larger sum of squared velocity changes comes first: front 10·(64 + 100 + 81 + 81)
+    // m²/s², rear about 10·(25 + 29 + 27).
     assert_eq!(groups.iter().map(|g| g.n).collect::<Vec<_>>(), [40, 30]);
     assert_eq!(all.iter().take(7).map(|i| i.group).collect::<Vec<_>>(), [0, 1, 0, 1, 0, 0, 1]);
     let front = &groups[0];
-    // (−0.02 + 0.02 − 0.01 + 0.03)/4, across the edge of the turn.
+    // (−0.02 + 0.02 − 0.01 + 0.03)/4: phases on both sides of the beginning of a turn.
     assert!((front.phase.value - 0.005).abs() < 1e-12 && front.share == 1.0, "{front:?}");
     assert!((front.before.value - 7.5).abs() < 1e-12 && (front.after.value + 1.5).abs() < 1e-12);
-    // Separation ½(v − v′) − v′ = 4.5 + 1.5 in the mean, approach 7.5.
+    // Mean separation ½(v − v′) − v′ = 4.5 + 1.5 m/s with ½ the ratio of masses, mean approach 7.5 m/s.
     assert!((front.restitution.as_ref().unwrap().value - 6.0 / 7.5).abs() < 1e-12);
-    // Behind, 3.3/12.3: the struck mass is not there.
+    // At the rear there is no struck mass: −v′/v = 3.3/12.3.
     let rear = groups[1].restitution.as_ref().unwrap();
     assert!((rear.value - 3.3 / 12.3).abs() < 1e-12 && rear.std.is_some(), "{rear:?}");
     assert!(front.before.std.is_some());
@@ -70,14 +71,14 @@ fn impacts_at_all_phases_have_no_mean_phase() {
     assert!(grouped(&mut [], 3, &options(None)).is_empty());
 }
 
-/// Part of 1000 records of `n` impacts that have no mean phase.
+/// Fraction of 1000 records of `n` impacts that are found to have no mean phase.
 fn undirected(n: usize, mut phase: impl FnMut(usize) -> f64) -> f64 {
     let mut count = 0;
     for _ in 0..1000 {
         let of: Vec<_> = (0..n).map(|k| (phase(k).rem_euclid(1.0), 5.0, -1.0)).collect();
         let found = grouped(&mut impacts(&of), n, &options(None));
-        let told = found[0].findings.iter().any(|f| f.code == "drill-phase-undirected");
-        count += usize::from(told && found[0].phase.std.is_none());
+        let undirected = found[0].findings.iter().any(|f| f.code == "drill-phase-undirected");
+        count += usize::from(undirected && found[0].phase.std.is_none());
     }
     1e-3 * f64::from(count as u32)
 }
@@ -86,7 +87,7 @@ fn undirected(n: usize, mut phase: impl FnMut(usize) -> f64) -> f64 {
 fn chance_prefers_no_phase() {
     let mut noise = Noise::new(4);
     for n in [6, 10, 20, 40, 60] {
-        // One in twenty seems to prefer a phase; 1000 records scatter by 0.7 %: four times that.
+        // By chance 5 % of random records prefer a phase. 1000 records scatter by 0.7 %: four times that.
         let uniform = undirected(n, |_| noise.uniform());
         assert!(uniform > 0.92, "{n}: {uniform}");
         let normal = undirected(n, |_| 0.08 * noise.normal());
@@ -109,7 +110,7 @@ fn impacts_beyond_the_range_are_in_no_mean_and_leave_no_uncertainty() {
 
 #[test]
 fn a_ratio_of_sums_and_its_propagated_uncertainty() {
-    // R = 0.2 in every impact whatever the speed, which varies in no order: nothing scatters.
+    // R = 0.2 in every impact, whatever its speed: the ratio does not scatter.
     let of: Vec<_> = (0..12)
         .map(|k| (0.5, 10.0 + 0.2 * f64::from(7 * k % 12), -0.2 * (10.0 + 0.2 * f64::from(7 * k % 12))))
         .collect();
@@ -118,7 +119,7 @@ fn a_ratio_of_sums_and_its_propagated_uncertainty() {
     assert!((r.value - 0.2).abs() < 1e-12 && r.std.unwrap() < 1e-12, "{r:?}");
 }
 
-/// Twenty impacts whose speeds scatter by a hundredth.
+/// Twenty impacts whose speeds spread over 0.01 m/s.
 fn twenty(before: f64, after: f64, std: f64) -> Vec<Impact> {
     let speed = |v: f64, k: usize| v + 0.01 * ((k * 7 % 20) as f64 / 19.0 - 0.5);
     (0..20)
@@ -148,7 +149,7 @@ fn what_strikes_has_a_restitution_and_what_is_struck_has_none() {
         &|_| 0.0,
     )
     .unwrap();
-    // Scatter of 0.003 a speed over 20 impacts; four times that.
+    // Each speed scatters by 0.003 m/s; tolerance: four times that of the mean of 20.
     assert!((found.value - 0.4).abs() < 4.0 * 0.003 / 20f64.sqrt(), "{found:?}");
     let why = |i: &[Impact], o| restitution(&i.iter().collect::<Vec<_>>(), true, &o, &|_| 0.0).unwrap_err();
     assert_eq!(why(&twenty(0.01, 2.7, 0.02), options(None)).code, "drill-not-striking");
@@ -161,7 +162,7 @@ fn what_strikes_has_a_restitution_and_what_is_struck_has_none() {
 
 #[test]
 fn what_has_no_uncertainty_explains_nothing() {
-    // Three impacts have no uncertainty: that 1.1 is above 1 is not beyond it.
+    // Three impacts give no uncertainty: R = 1.1 is not significantly above 1 and is kept.
     let found =
         restitution(&twenty(5.0, -5.5, 0.02)[..3].iter().collect::<Vec<_>>(), true, &options(None), &|_| 0.0);
     let found = found.unwrap();
@@ -170,8 +171,8 @@ fn what_has_no_uncertainty_explains_nothing() {
 
 #[test]
 fn a_striker_whose_speed_varies_by_half_still_strikes() {
-    // Speeds from 1.1 to 9 m/s in no order, each sent back with 0.3 of it, mean 5 m/s: the sum of twenty is
-    // known to 11 %, the quotient is the same in all.
+    // Speeds from 1.1 to 9 m/s in no order, mean 5 m/s, each returned with 0.3 of it. The mean of twenty is
+    // uncertain by 11 %, but the ratio is the same in all.
     let mut all = twenty(5.0, -1.5, 0.02);
     for (k, impact) in all.iter_mut().enumerate() {
         impact.before = 1.1 + 7.9 * ((k * 7) % 20) as f64 / 19.0;
@@ -189,8 +190,8 @@ fn what_is_not_known_of_an_offset_is_in_all_means_and_a_large_one_leaves_no_unce
     };
     let small = group(0.4);
     let std = |e: &Option<Estimate>| e.as_ref().unwrap().std.unwrap();
-    // Speeds scatter by 0.001: all is of the offset. Of R by (1 + R)/v, of the energies by m v and m (v −
-    // v′).
+    // The mean speeds scatter by only 0.001 m/s: the uncertainties are those of the offset, 0.2 m/s. R
+    // changes with it by (1 + R)/v, the energies by m v and m (v − v′).
     let r = small.restitution.as_ref().unwrap().value;
     let expected = [0.2, 0.2, (1.0 + r) / 5.0 * 0.2, 0.1 * 5.0 * 0.2, 0.1 * 6.0 * 0.2];
     let (before, after) = (small.before.std.unwrap(), small.after.std.unwrap());
@@ -234,8 +235,7 @@ fn fits_that_lead_beyond_the_record_give_no_velocities() {
     assert!(refused.findings.iter().any(|found| found.code == "drill-velocity-impossible"));
 }
 
-/// Residuals of −√7 P₃, as a parabola leaves of a cubic, in parts of the fit: the bias is that cubic at the
-/// contact.
+/// Residuals √7 P₃, as of a cubic fitted by a parabola: the bias is that cubic at the contact.
 #[test]
 fn what_parabolas_leave_in_common_is_in_the_uncertainty() {
     let places = 40;
@@ -258,12 +258,12 @@ fn what_parabolas_leave_in_common_is_in_the_uncertainty() {
         groups(&mut all, &residuals, 5, 30, &options(Some((0.14, 0.42))), &Offset { value: 0.0, std: None });
     let [group] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!(group.findings.iter().map(|f| f.code.as_ref()).collect::<Vec<_>>(), ["drill-lack-of-fit"]);
-    // x = 1.25 five of forty samples beyond the end.
+    // The contact is 5 samples after the end of 40: x = 1 + 2·5/40 = 1.25.
     let bias = 0.05 * 7f64.sqrt() * 0.5 * 1.25 * (5.0 * 1.25 * 1.25 - 3.0);
     let near = |std: Option<f64>, expected: f64| (std.unwrap() / expected - 1.0).abs() < 0.02;
     assert!(group.before.std.unwrap() < 0.001 && near(group.after.std, bias), "{group:?} {bias}");
     assert!(near(group.energy_given.as_ref().unwrap().std, 0.14 * 1.2 * bias));
-    // R = (v − v′)/3 − v′ over v.
+    // R = ((v − v′)/3 − v′)/v, the ratio of the masses being 1/3.
     assert!(near(group.restitution.as_ref().unwrap().std, (1.0 + 1.0 / 3.0) / 6.0 * bias));
     assert_eq!(group.phase.std, None);
 }

@@ -1,16 +1,16 @@
-//! Steps: loops of a fixed size without events, as everybody writes first, the time stepping of non-smooth
-//! dynamics, and steps of a fixed or a controlled size behind one face.
+//! Time integrators to compare with: plain loops of fixed steps without event location, as a first script has
+//! them, Moreau's time stepping, and one interface to integrators of fixed or controlled step size.
 
 use super::super::task::{Log, Task};
 use crate::Found;
 use vibro_math::bisected;
 use vibro_math::runge_kutta::{Dop853, DormandPrince, Integrator, Step, Tolerance};
 
-/// Displacements in m and speeds in m/s below which errors are not counted against the state itself.
+/// Floor of x₁, v₁, x₂, v₂ in m and m/s for the relative tolerance: a smaller value may err as this one.
 pub(super) const FLOOR: [f64; 4] = [1e-3, 0.05, 1e-3, 0.05];
 
-/// First step in s from `y` at `t`: a hundredth of a cycle, behind an impact that is followed by another no
-/// more than a tenth of the flight 2w/a, since a sign test does not see a flight that ends within its first
+/// First step in s from `y` at `t`: a hundredth of a cycle. Where the masses part at w against a pressing
+/// acceleration a, at most a tenth of the flight 2w/a: a sign test misses a flight that ends within its first
 /// step.
 pub(super) fn first_step(task: &Task, t: f64, y: &[f64; 4]) -> f64 {
     let (apart, pressed) = (y[3] - y[1], task.hold(t, y) / task.rig.reduced_mass());
@@ -21,7 +21,7 @@ pub(super) fn first_step(task: &Task, t: f64, y: &[f64; 4]) -> f64 {
 /// An integrator and its setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum IntegratorKind {
-    /// Runge and Kutta's four stages, so many steps a cycle of the excitation.
+    /// Classical Runge–Kutta of order 4 with this number of steps per cycle of the excitation.
     Rk4(f64),
     /// Dormand and Prince's order 5 with this relative tolerance.
     Rk45(f64),
@@ -30,7 +30,7 @@ pub enum IntegratorKind {
 }
 
 impl IntegratorKind {
-    /// Its relative tolerance; of fixed steps, what a step of order 4 leaves.
+    /// Relative tolerance; for fixed steps h the error (ωh)⁴ of order 4.
     pub fn relative(self) -> f64 {
         match self {
             IntegratorKind::Rk4(n) => (std::f64::consts::TAU / n).powi(4),
@@ -41,7 +41,7 @@ impl IntegratorKind {
 
 /// An integration of the rig's motion.
 pub enum Stepper {
-    /// Time, state, size of a step.
+    /// Order 4 with fixed steps: time in s, state, step size in s.
     Fixed(f64, [f64; 4], f64),
     /// Order 5.
     Five(Integrator<DormandPrince, 4>),
@@ -102,14 +102,14 @@ impl SolverStep {
         self.dense.as_ref().map_or_else(|| rk4(&f, self.start, &self.from, t), |step| step.at(t))
     }
 
-    /// First time after its start at which weights·y + offset, not negative there, falls to zero; none where
-    /// there is no dense output.
+    /// First time in s after the start at which weights·y + offset, not negative there, falls to zero; `None`
+    /// without dense output.
     pub fn first_fall(&self, weights: &[f64; 4], offset: f64) -> Option<f64> {
         self.dense.as_ref()?.first_fall(weights, offset)
     }
 
-    /// Where `height`, not negative at the start, is zero if it is not positive at the end: a sign test and
-    /// halving.
+    /// Time in s after the start at which `height` falls to zero, by bisection. `start` is its value at the
+    /// start; `None` if that is negative or the value at the end is positive.
     pub fn crossing(
         &self,
         f: impl Fn(f64, &[f64; 4]) -> [f64; 4],
@@ -135,12 +135,12 @@ pub(super) fn rk4(f: &impl Fn(f64, &[f64; 4]) -> [f64; 4], t: f64, y: &[f64; 4],
     std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]))
 }
 
-/// A step that starts at time and state, of so many seconds: the state at its end, and time and approach
-/// speed of an impact in it.
+/// One step of a plain loop, from time (s), state and step size (s). Returns the state at its end, and time
+/// (s) and approach speed (m/s) of an impact within it.
 pub type Stride = fn(&Task, f64, &[f64; 4], f64) -> ([f64; 4], Option<(f64, f64)>);
 
-/// Follows the motion with `n` strides a cycle. Where impacts come step after step for twenty steps or more,
-/// the masses count as resting against each other.
+/// Simulates the motion with `n` steps per cycle. Masses count as resting against each other where impacts at
+/// most four steps apart continue for twenty steps or more.
 pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
     let h = task.cycle() / n;
     let steps = (task.until / h).ceil();
@@ -153,7 +153,7 @@ pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
         y = next;
         log.impacts.extend(impact);
     }
-    // Stretches without more than four steps from impact to impact.
+    // Joins impacts at most four steps apart to stretches.
     for pair in log.impacts.windows(2) {
         let (from, to) = (pair[0].0, pair[1].0);
         match log.sticks.last_mut() {
@@ -166,33 +166,33 @@ pub fn marched(task: &Task, stride: Stride, n: f64) -> Result<Log, Found> {
     Ok(log)
 }
 
-/// Velocities by Euler's step, displacements by the new velocities.
+/// Semi-implicit Euler: velocities first, then displacements with the new velocities.
 pub fn euler(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
     let rate = task.pushed(t, y, 0.0);
     let [v1, v2] = [y[1] + h * rate[1], y[3] + h * rate[3]];
     turned(task, t + h, [y[0] + h * v1, v1, y[2] + h * v2, v2])
 }
 
-/// Runge and Kutta's fourth order.
+/// Classical Runge–Kutta of order 4.
 pub fn classical(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
     turned(task, t + h, rk4(&|t: f64, y: &[f64; 4]| task.pushed(t, y, 0.0), t, y, h))
 }
 
-/// Velocities turned round where the masses overlap and approach at the end of a step.
+/// Applies the impact law at the end of a step if the masses overlap and approach.
 fn turned(task: &Task, t: f64, mut y: [f64; 4]) -> ([f64; 4], Option<(f64, f64)>) {
     let impact = (task.gap(&y) < 0.0 && y[1] > y[3]).then(|| (t, task.collide(&mut y)));
     (y, impact)
 }
 
 /// Moreau's midpoint scheme (J. J. Moreau, 1999, *Comput. Methods Appl. Mech. Eng.* 177, 329): half a step of
-/// the displacements, then the velocities of the whole step with an impulse where the masses overlap there,
-/// so large that they part with R times what they approached by, then the other half.
+/// the displacements, the whole step of the velocities, the other half of the displacements. Where the masses
+/// overlap at the midpoint, an impulse makes them part at R times the approach speed.
 pub fn moreau(task: &Task, t: f64, y: &[f64; 4], h: f64) -> ([f64; 4], Option<(f64, f64)>) {
     let (rig, middle) = (&task.rig, t + h / 2.0);
     let (x1, x2) = (y[0] + h / 2.0 * y[1], y[2] + h / 2.0 * y[3]);
     let rate = task.pushed(middle, &[x1, y[1], x2, y[3]], 0.0);
     let (v1, v2, before) = (y[1] + h * rate[1], y[3] + h * rate[3], y[1] - y[3]);
-    // u⁺ ≥ −R u⁻, u being the speed of approach, and the impulse not below zero.
+    // The approach speed u after the step is at most −R times that before it; the impulse is not negative.
     let needed = rig.reduced_mass() * (v1 - v2 + rig.restitution * before);
     let impulse = if rig.gap + x2 - x1 <= 0.0 { needed.max(0.0) } else { 0.0 };
     let (v1, v2) = (v1 - impulse / rig.m1, v2 + impulse / rig.m2);
