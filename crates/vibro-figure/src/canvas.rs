@@ -34,9 +34,9 @@ pub(crate) enum Anchor {
 }
 
 /// A text and how it stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Text<'a> {
-    pub words: &'a str,
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Text {
+    pub words: String,
     /// End of the baseline, or its middle.
     pub at: Point,
     pub size: f64,
@@ -56,17 +56,26 @@ pub(crate) struct Image {
     pub pixels: Pixmap,
 }
 
-/// What has been drawn so far; images lie under everything else.
+/// What is drawn over the images.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Mark {
+    /// A path.
+    Shape { data: String, fill: Option<Rgb>, pen: Option<Pen> },
+    /// A text.
+    Text(Text),
+}
+
+/// What has been drawn so far, in order; images lie under everything else.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Canvas {
-    pub body: String,
+    pub marks: Vec<Mark>,
     pub images: Vec<Image>,
 }
 
 impl Canvas {
     /// Open lines with one pen.
     pub fn lines(&mut self, parts: &[Vec<Point>], pen: Pen) {
-        self.shape(&path(parts, false), None, Some(pen));
+        self.shape(path(parts, false), None, Some(pen));
     }
 
     /// One straight line.
@@ -76,12 +85,12 @@ impl Canvas {
 
     /// Closed areas with one fill and, where wanted, an outline.
     pub fn areas(&mut self, parts: &[Vec<Point>], fill: Rgb, outline: Option<Pen>) {
-        self.shape(&path(parts, true), Some(fill), outline);
+        self.shape(path(parts, true), Some(fill), outline);
     }
 
     /// A rectangle.
     pub fn rect(&mut self, r: Rect, fill: Option<Rgb>, outline: Option<Pen>) {
-        self.shape(&path(&[r.corners()], true), fill, outline);
+        self.shape(path(&[r.corners()], true), fill, outline);
     }
 
     /// Circles of one radius.
@@ -99,24 +108,13 @@ impl Canvas {
             }
             data.push('z');
         }
-        self.shape(&data, Some(fill), outline);
+        self.shape(data, Some(fill), outline);
     }
 
-    /// A path. Thin lines have plain corners: no rounding would be seen, and long noisy lines have many.
-    fn shape(&mut self, data: &str, fill: Option<Rgb>, pen: Option<Pen>) {
-        if data.is_empty() {
-            return;
+    fn shape(&mut self, data: String, fill: Option<Rgb>, pen: Option<Pen>) {
+        if !data.is_empty() {
+            self.marks.push(Mark::Shape { data, fill, pen });
         }
-        let mut look = fill.map(|fill| format!(" fill=\"{fill}\"")).unwrap_or_default();
-        if let Some(Pen { colour, width, dashes }) = pen {
-            let _ = write!(look, " stroke=\"{colour}\" stroke-width=\"{}\"", decimal(width));
-            if !dashes.is_empty() {
-                let lengths: Vec<String> = dashes.iter().map(|d| decimal(*d)).collect();
-                let _ = write!(look, " stroke-dasharray=\"{}\"", lengths.join(" "));
-            }
-            look.push_str(if width < 0.7 { " stroke-linejoin=\"bevel\"" } else { "" });
-        }
-        let _ = writeln!(self.body, "<path d=\"{data}\"{look}/>");
     }
 
     /// Cells row by row from the top, without those that are missing.
@@ -133,31 +131,91 @@ impl Canvas {
 
     /// Plain black text.
     pub fn label(&mut self, words: &str, at: Point, size: f64, anchor: Anchor) {
-        self.text(Text { words, at, size, anchor, turn: 0.0, colour: BLACK, halo: false });
+        self.text(Text { words: words.to_owned(), at, size, anchor, turn: 0.0, colour: BLACK, halo: false });
     }
 
     /// A text.
-    pub fn text(&mut self, text: Text<'_>) {
-        if text.words.is_empty() {
-            return;
+    pub fn text(&mut self, text: Text) {
+        if !text.words.is_empty() {
+            self.marks.push(Mark::Text(text));
         }
-        let (x, y) = (decimal(text.at.0), decimal(text.at.1));
-        let place = match text.turn {
+    }
+}
+
+/// How the texts of a document stand in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lettering {
+    /// As words in the fonts of who looks at them.
+    Words,
+    /// As outlines of the bundled font.
+    Outlines,
+}
+
+impl Mark {
+    fn element(&self, lettering: Lettering) -> String {
+        match (self, lettering) {
+            (Mark::Shape { data, fill, pen }, _) => shape(data, *fill, *pen),
+            (Mark::Text(text), Lettering::Words) => text.words(),
+            (Mark::Text(text), Lettering::Outlines) => text.outlines(),
+        }
+    }
+}
+
+/// A path. Thin lines have plain corners: no rounding would be seen, and long noisy lines have many.
+fn shape(data: &str, fill: Option<Rgb>, pen: Option<Pen>) -> String {
+    let mut look = fill.map(|fill| format!(" fill=\"{fill}\"")).unwrap_or_default();
+    if let Some(Pen { colour, width, dashes }) = pen {
+        let _ = write!(look, " stroke=\"{colour}\" stroke-width=\"{}\"", decimal(width));
+        if !dashes.is_empty() {
+            let lengths: Vec<String> = dashes.iter().map(|d| decimal(*d)).collect();
+            let _ = write!(look, " stroke-dasharray=\"{}\"", lengths.join(" "));
+        }
+        look.push_str(if width < 0.7 { " stroke-linejoin=\"bevel\"" } else { "" });
+    }
+    format!("<path d=\"{data}\"{look}/>\n")
+}
+
+/// Width of the white edge of a text in points.
+const HALO: f64 = 2.0;
+
+impl Text {
+    fn words(&self) -> String {
+        let (x, y) = (decimal(self.at.0), decimal(self.at.1));
+        let place = match self.turn {
             0.0 => format!("x=\"{x}\" y=\"{y}\""),
             turn => format!("transform=\"translate({x} {y}) rotate({})\"", decimal(-turn)),
         };
-        let anchor = match text.anchor {
+        let anchor = match self.anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        let halo =
-            if text.halo { " stroke=\"#ffffff\" stroke-width=\"2\" paint-order=\"stroke\"" } else { "" };
-        let (size, colour, words) = (decimal(text.size), text.colour, escaped(text.words));
-        let _ = writeln!(
-            self.body,
-            "<text {place} font-size=\"{size}\"{anchor} fill=\"{colour}\"{halo}>{words}</text>"
-        );
+        let halo = if self.halo {
+            format!(" stroke=\"#ffffff\" stroke-width=\"{}\" paint-order=\"stroke\"", decimal(HALO))
+        } else {
+            String::new()
+        };
+        let (size, colour, words) = (decimal(self.size), self.colour, escaped(&self.words));
+        format!("<text {place} font-size=\"{size}\"{anchor} fill=\"{colour}\"{halo}>{words}</text>\n")
+    }
+
+    /// The text as one path in em, moved, turned and enlarged to its place.
+    fn outlines(&self) -> String {
+        let before = match self.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5,
+            Anchor::End => 1.0,
+        };
+        let Text { at: (x, y), size, turn, colour, .. } = self;
+        let left = -before * font::width(&self.words, *size);
+        let place = format!("translate({x} {y}) rotate({}) translate({left} 0) scale({size})", -turn);
+        let halo = if self.halo {
+            format!(" stroke=\"#ffffff\" stroke-width=\"{}\" paint-order=\"stroke\"", HALO / size)
+        } else {
+            String::new()
+        };
+        let data = font::outlines(&self.words);
+        format!("<path transform=\"{place}\" d=\"{data}\" fill=\"{colour}\"{halo}/>\n")
     }
 }
 
@@ -168,7 +226,7 @@ pub(super) fn document(
     scale: f64,
     name: &str,
     images: &[Image],
-    body: &str,
+    (marks, lettering): (&[Mark], Lettering),
 ) -> String {
     const POINTS: f64 = 72.0 / 25.4;
     let [across, down, w, h] = [width * scale, height * scale, width * POINTS, height * POINTS].map(decimal);
@@ -187,6 +245,7 @@ pub(super) fn document(
         );
     }
     let family = font::FAMILY;
+    let body: String = marks.iter().map(|mark| mark.element(lettering)).collect();
     let _ = writeln!(
         svg,
         "<g fill=\"none\" stroke-linejoin=\"round\" font-family=\"{family}\">\n{body}</g>\n</svg>"

@@ -1,5 +1,6 @@
 //! From figures to pictures: the layout of the panels.
 
+use crate::canvas::Lettering;
 use crate::{Canvas, Extent, Figure, Insets, Panel, Rect, Sheet, canvas, plot};
 
 /// A drawn figure, at its size in print.
@@ -18,7 +19,8 @@ impl Drawing {
     /// The picture as an SVG document with real text; it refers to nothing outside and has no ids, so that
     /// several can stand in one page.
     pub fn svg(&self) -> String {
-        canvas::document(self.size, self.scale, &self.name, &self.canvas.images, &self.canvas.body)
+        let marks = (&*self.canvas.marks, Lettering::Words);
+        canvas::document(self.size, self.scale, &self.name, &self.canvas.images, marks)
     }
 }
 

@@ -187,7 +187,7 @@ pub(super) fn along(canvas: &mut Canvas, name: &str, x: f64, frame: Rect, below:
     let half = font::width(&name, size) / 2.0;
     let at = (x, frame.middle().1.max(frame.y - ABOVE + half));
     let anchor = Anchor::Middle;
-    canvas.text(Text { words: &name, at, size, anchor, turn: 90.0, colour: BLACK, halo: false });
+    canvas.text(Text { words: name, at, size, anchor, turn: 90.0, colour: BLACK, halo: false });
 }
 
 /// A text and its size such that it fits: smaller by a quarter at most, then cut.

@@ -1,5 +1,6 @@
 //! What a figure is drawn for.
 
+use crate::canvas::Mark;
 use crate::colour::{Rgb, SERIES};
 use crate::{Drawing, Figure, Heatmap};
 use resvg::tiny_skia::PremultipliedColorU8;
@@ -52,12 +53,19 @@ impl Drawing {
     /// The drawing in grey: the maps' colours are as light as their values, series and classes differ in
     /// level.
     fn grey(mut self) -> Drawing {
-        let coloured = |part: &str| {
-            let rgb = u32::from_str_radix(part.get(..6)?, 16).ok()?.to_be_bytes();
-            Some(format!("{0:02x}{0:02x}{0:02x}{1}", grey([rgb[1], rgb[2], rgb[3]]), &part[6..]))
+        let of = |colour: &mut Rgb| {
+            let level = grey([colour.0, colour.1, colour.2]);
+            *colour = Rgb(level, level, level);
         };
-        let parts = self.canvas.body.split('#').map(|part| coloured(part).unwrap_or_else(|| part.to_owned()));
-        self.canvas.body = parts.collect::<Vec<String>>().join("#");
+        for mark in &mut self.canvas.marks {
+            match mark {
+                Mark::Shape { fill, pen, .. } => {
+                    fill.iter_mut().for_each(of);
+                    pen.iter_mut().for_each(|pen| of(&mut pen.colour));
+                }
+                Mark::Text(text) => of(&mut text.colour),
+            }
+        }
         for image in &mut self.canvas.images {
             for pixel in image.pixels.pixels_mut() {
                 let level = grey([pixel.red(), pixel.green(), pixel.blue()]);

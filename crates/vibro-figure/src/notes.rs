@@ -69,7 +69,15 @@ fn write(canvas: &mut Canvas, text: &str, spot: Option<Spot>, colour: Rgb, clutt
     } else {
         ((area.x, area.bottom() - DESCENT * SMALL), 0.0)
     };
-    canvas.text(Text { words: text, at, size: SMALL, anchor: Anchor::Start, turn, colour, halo: true });
+    canvas.text(Text {
+        words: text.to_owned(),
+        at,
+        size: SMALL,
+        anchor: Anchor::Start,
+        turn,
+        colour,
+        halo: true,
+    });
 }
 
 /// The best place along a line, on either side.

@@ -1,7 +1,8 @@
 //! A drawing as pixels: its cells first, then lines and texts over them.
 
+use crate::canvas::Lettering;
 use crate::png::encoded;
-use crate::{Drawing, Image, canvas, font};
+use crate::{Drawing, Image, canvas};
 use resvg::tiny_skia::{Color, FilterQuality, Pixmap, PixmapPaint, Transform};
 use resvg::usvg;
 use vibro_record::{Error, Result};
@@ -35,11 +36,10 @@ impl Drawing {
             let paint = PixmapPaint { quality: FilterQuality::Nearest, ..PixmapPaint::default() };
             pixmap.draw_pixmap(0, 0, pixels.as_ref(), &paint, transform, None);
         }
-        let mut options = usvg::Options { font_family: font::NAME.to_owned(), ..usvg::Options::default() };
-        options.fontdb_mut().load_font_data(font::BYTES.to_vec());
-        // Without the cell images, which lie under everything else.
-        let text = canvas::document(self.size, 1.0, &self.name, &[], &self.canvas.body);
-        let tree = usvg::Tree::from_str(&text, &options)
+        // Without the cell images, which lie under everything else. Texts are outlines of the bundled font.
+        let marks = (&*self.canvas.marks, Lettering::Outlines);
+        let text = canvas::document(self.size, 1.0, &self.name, &[], marks);
+        let tree = usvg::Tree::from_str(&text, &usvg::Options::default())
             .map_err(|e| refused(format!("cannot be turned into pixels: {e}")))?;
         let transform =
             Transform::from_scale(across as f32 / tree.size().width(), down as f32 / tree.size().height());

@@ -205,7 +205,7 @@ impl<'a> Sheet<'a> {
         let middle = (f64::midpoint(front.0, far.0), f64::midpoint(front.1, far.1));
         let (at, turn) = ((middle.0 + off * rise, middle.1 + off * right), rise.atan2(right).to_degrees());
         let anchor = Anchor::Middle;
-        canvas.text(Text { words: &name, at, size, anchor, turn, colour: BLACK, halo: false });
+        canvas.text(Text { words: name, at, size, anchor, turn, colour: BLACK, halo: false });
         // The name of the heights may be longer than their axis: it then goes on upwards.
         let left = self.frame.x - TICK - 2.0 - frame::widest(&ty) - GAP - DESCENT;
         let length = font::width(&up.title, LARGE).clamp(self.rise, self.frame.h.max(self.rise));
