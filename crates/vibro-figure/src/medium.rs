@@ -60,8 +60,12 @@ impl Drawing {
         for mark in &mut self.canvas.marks {
             match mark {
                 Mark::Shape { fill, pen, .. } => {
-                    fill.iter_mut().for_each(of);
-                    pen.iter_mut().for_each(|pen| of(&mut pen.colour));
+                    if let Some(fill) = fill {
+                        of(fill);
+                    }
+                    if let Some(pen) = pen {
+                        of(&mut pen.colour);
+                    }
                 }
                 Mark::Text(text) => of(&mut text.colour),
             }
