@@ -64,8 +64,7 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
     };
     with_text(source, options.limit, |text| match table::detect(text, options) {
         Some(dialect) if !runs::others_of(&dialect).is_empty() => read_runs(text, &dialect, options, survey),
-        Some(dialect) => table::grouped(text, &dialect)
-            .and_then(|()| read(text, &dialect, options, survey))
+        Some(dialect) => read(text, &dialect, options, survey)
             .or_else(|why| one_table(text, options, why))
             .or_else(|why| without_words(text, options, why)),
         None => without_words(text, options, without_names()),
@@ -163,7 +162,7 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
             Format::Ascii => numbers::detect(text, options).ok(),
             _ => None,
         };
-        let of_one_run = |d: &Dialect| table::grouped(text, d).is_ok() && runs::others_of(d).is_empty();
+        let of_one_run = |d: &Dialect| runs::others_of(d).is_empty();
         let Some(dialect) = dialect.filter(|d| format == Format::Ascii || of_one_run(d)) else {
             return Ok(None);
         };
@@ -183,7 +182,7 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
 }
 
 fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Read> {
-    let stated = Stated::of(dialect.header.iter().map(String::as_str));
+    let stated = Stated::of(dialect.header.iter().map(String::as_str), dialect.shown_mark(&text.head));
     let kept = kept(dialect, options, &stated, survey);
     // As many rows as the first bytes let expect.
     let lines = text.head.lines().count() as f64 / text.head.len().max(1) as f64;
@@ -259,6 +258,7 @@ fn records_of(text: &Text, tail: &[u8], dialect: &Dialect, rows: Rows, options: 
     if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
+    findings.extend(table::grouped(text, dialect)?);
     let columns = records::build(text, tail, dialect, rows, options, &mut findings)?;
     Ok(Read { columns, findings, clean: None })
 }

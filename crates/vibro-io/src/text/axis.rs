@@ -1,6 +1,6 @@
 //! The abscissa of a text: what a person states, what a column holds, what the header states.
 
-use super::header::Stated;
+use super::header::{PerhapsRate, Stated};
 use crate::Options;
 use crate::assemble::{NOMINAL, domain, short};
 use vibro_record::code;
@@ -241,13 +241,21 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             findings.extend(assumed.map(|found| found.number("step", 1.0 / rate)));
             if header.assumed.is_none() {
                 findings.push(Finding::note(code::RATE_FROM_HEAD).number("rate", rate));
+                let line = header.decimation.as_deref();
+                findings.extend(
+                    line.map(|line| {
+                        Finding::caution("rate-decimated").number("rate", rate).name("line", line)
+                    }),
+                );
             }
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {
             let found = Finding::caution(code::ABSCISSA_UNSAID);
             let found = match &header.perhaps_rate {
-                Some((said, rate)) => found.name("variable", said.as_str()).number("rate", *rate),
+                Some(PerhapsRate { said, decimal, grouped }) => {
+                    found.name("said", said.as_str()).number("decimal", *decimal).number("grouped", *grouped)
+                }
                 None => found,
             };
             findings.push(found);

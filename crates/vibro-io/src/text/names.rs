@@ -91,9 +91,22 @@ impl Name {
             "" => Name::parse(text),
             unit => {
                 let unit = long(text, unit).unwrap_or(symbol(unit)).to_owned();
-                Name { name: text.trim().to_owned(), unit: Some(unit) }
+                let own = Name::parse(text);
+                // A unit that stands in both rows is one.
+                let name = if own.unit.as_deref() == Some(unit.as_str()) { &own.name } else { text.trim() };
+                Name { name: name.to_owned(), unit: Some(unit) }
             }
         }
+    }
+
+    /// Says that the name holds another unit than the row of units below it: `Acc [m/s²]` over `g`.
+    pub(crate) fn unit_differs(&self) -> Option<Finding> {
+        let used = self.unit.as_deref()?;
+        let own = Name::parse(&self.name).unit?;
+        let known = |unit: &str| Unit::parse(amplitude(unit).0);
+        let differ = known(&own)? != known(used)?;
+        let found = Finding::caution("unit-row-differs").name("head", own).name("used", used);
+        differ.then(|| found.name("column", self.name.as_str()))
     }
 
     /// Reads `t/s`, `a/(m/s²)`: a quantity over its unit; `None` for other text.

@@ -33,7 +33,8 @@ pub fn build(
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Built>> {
     let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
-    let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
+    let said = dialect.header.iter().chain(&rows.remarks).map(String::as_str);
+    let stated = Stated::of(said, dialect.shown_mark(&text.head));
     let is_table = dialect.format == Format::Csv;
     let mut made = RecordContext { text, tail, dialect, is_table, options, stated, naturals: false };
     let mut of_axis = Vec::new();
@@ -94,8 +95,11 @@ pub fn build(
     }
     let mut built = Vec::new();
     let table = made.joined(table, &axis)?;
-    if let Some(scale) = &made.stated.scale {
-        of_axis.push(Finding::caution("scale-in-head").name("scale", scale.as_str()));
+    let signal = table.iter().any(Column::may_be_signal);
+    let scales = made.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
+    let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
+    if !scales.is_empty() {
+        of_axis.push(Finding::caution("scale-in-head").name("scale", scales.join(", ")));
     }
     let even: Vec<String> = table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
     if !even.is_empty() {
@@ -107,6 +111,13 @@ pub fn build(
     }
     if let Some((n, all)) = repeats(&table) {
         of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
+    }
+    let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
+    let held: Vec<(usize, String)> = held.collect();
+    for of_length in held.chunk_by(|a, b| a.0 == b.0) {
+        let labels: Vec<&str> = of_length.iter().map(|(_, label)| label.as_str()).collect();
+        let found = Finding::caution("values-held").count("n", of_length[0].0);
+        of_axis.push(found.name("columns", labels.join(", ")));
     }
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
@@ -289,7 +300,7 @@ impl RecordContext<'_> {
             assumed.map(
                 |found| if found.code == code::AXIS_UNIT_ASSUMED { found.name("head", head) } else { found },
             );
-        let findings = assumed.into_iter().chain(found).collect();
+        let findings = column.name.unit_differs().into_iter().chain(assumed).chain(found).collect();
         let resolution = own * factor;
         Ok(PrintedAbscissa {
             axis,
@@ -416,6 +427,7 @@ impl RecordContext<'_> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
         let whole = || column.reals().iter().all(|v| v.fract() == 0.0);
         let against = column.name.against_unit(self.naturals, whole).filter(|_| self.options.unit.is_none());
+        let differs = column.name.unit_differs().filter(|_| self.options.unit.is_none());
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
@@ -452,6 +464,7 @@ impl RecordContext<'_> {
         } else {
             self.options.adopt(&mut meta, said)
         };
+        meta.findings.extend(differs);
         values.scale(factor)?;
         let spectral = self.spectral(&meta.name, unit);
         let (record, ends) = values.record(meta, axis.clone(), spectral)?;

@@ -1081,11 +1081,114 @@ fn a_unit_above_all_is_that_of_those_without_one_and_said_of_several() {
 fn a_rate_with_a_comma_before_three_digits_is_named_as_what_it_may_be() {
     let found = of("Sampling rate,\"51,200\"\nacc (g),force (N)\n1,2\n3,1\n2,2\n");
     assert!(
-        has_finding(&found.findings, "abscissa-unsaid", &["variable=51,200", "rate=51200"]),
+        has_finding(&found.findings, "abscissa-unsaid", &["said=51,200", "decimal=51.2", "grouped=51200"]),
         "{:?}",
         found.findings
     );
     assert_eq!(found.records[0].axis().kind, AxisKind::Index);
+}
+
+#[test]
+fn three_digits_behind_every_mark_are_said_to_be_groups_perhaps() {
+    let rows = |rows: &str| of(format!("Time (ms);Force (N)\n{rows}"));
+    let said =
+        |found: &Recording, facts: &[&str]| has_finding(&found.findings, "digits-may-be-grouped", facts);
+    let comma = rows("0;16,166\n1;17,216\n2;18,104\n");
+    assert!(said(&comma, &["columns=Force", "cell=16,166", "other=point"]), "{:?}", comma.findings);
+    assert!(said(&rows("0;16.166\n1;17.216\n2;18.104\n"), &["other=comma"]));
+    let plain = Reader::new().from_reader("x.txt", &b"fs: 1000 Hz\nForce (N)\n16,129\n17,041\n"[..]).unwrap();
+    assert!(said(&plain, &["cell=16,129"]), "{:?}", plain.findings);
+    // What shows the mark to be the decimal one, in any column; what a person states.
+    assert!(!said(&rows("0;16.166\n1;0.216\n2;18.104\n"), &[]));
+    assert!(!said(&of("Time (s);Force (N)\n0.000;16.166\n0.001;17.216\n"), &[]));
+    let stated = Reader::new()
+        .decimal_comma(Some(true))
+        .from_reader("x.csv", &b"a;b\n1;16.166\n3;17.216\n"[..])
+        .unwrap();
+    assert!(!said(&stated, &[]));
+    assert_eq!(values(&stated.records[1]), [16_166.0, 17_216.0]);
+}
+
+#[test]
+fn a_scale_that_a_head_states_is_said_where_values_may_lack_it() {
+    let scale = |head: &str, unit: &str| {
+        let found = of(format!("{head}\nTime (s),A ({unit})\n0.0,0.5\n0.1,1.5\n0.2,0.5\n")).all_findings();
+        let said = found.iter().find(|found| found.code == "scale-in-head")?.facts.clone();
+        Some(format!("{said:?}"))
+    };
+    for (head, words) in [
+        ("Multiplier,0.001", "multiplier: 0.001"),
+        ("Gain = 10", "gain: 10"),
+        ("# Sensitivity: 10.2 mV/(m/s²)", "10.2 mV/(m/s²)"),
+        ("Scale: 1 V/g", "scale: 1 V/g"),
+        ("Voltage divider: 10", "10"),
+    ] {
+        let said = scale(head, "V").unwrap_or_else(|| panic!("{head}"));
+        assert!(said.contains(words), "{head}: {said}");
+    }
+    assert!(scale("Multiplier: 0.001", "m/s²").is_some());
+    for (head, unit) in [
+        ("Gain: 1", "V"),
+        ("Gain: 0 dB", "V"),
+        ("Multiplier: 1", "V"),
+        ("Scale: linear", "V"),
+        // A unit of motion says that the sensitivity is in the values.
+        ("Sensitivity: 10.2 mV/(m/s²)", "m/s²"),
+        ("Gain: 10", "m/s²"),
+    ] {
+        assert_eq!(scale(head, unit), None, "{head}");
+    }
+}
+
+#[test]
+fn a_row_of_units_that_contradicts_a_name_is_said() {
+    let rows = "0.0,0.5\n0.1,1.5\n0.2,0.5\n";
+    let found = of(format!("Time [s],Acc [m/s²]\ns,g\n{rows}"));
+    assert!(has_finding(&found.all_findings(), "unit-row-differs", &["head=m/s²", "used=g"]));
+    let times = of(format!("Time [s],Acc [g]\nms,g\n{rows}"));
+    assert!(has_finding(&times.all_findings(), "unit-row-differs", &["head=s", "used=ms"]));
+    let same = of(format!("Time [s],Acc [m/s²]\ns,m/s²\n{rows}"));
+    assert!(same.all_findings().is_empty(), "{:?}", same.all_findings());
+    assert_eq!(same.records[0].meta().name, "Acc");
+}
+
+#[test]
+fn values_that_stand_several_times_each_are_said() {
+    let sine = |i: usize| (0.7 * i as f64).sin();
+    let said = |value: &dyn Fn(usize) -> f64| {
+        let rows: String =
+            (0..400).fold(String::new(), |all, i| all + &format!("{i},{:.4},{}\n", value(i), sine(i)));
+        let found = of(format!("Time (ms),A (g),B (g)\n{rows}")).findings;
+        found.into_iter().find(|found| found.code == "values-held").map(|found| format!("{:?}", found.facts))
+    };
+    for n in [2, 4] {
+        let found = said(&|i| sine(i / n)).unwrap_or_else(|| panic!("{n}"));
+        assert!(found.contains(&format!("Number({n}.0)")) && found.contains("\"A\""), "{found}");
+    }
+    // Coarse digits, a switch, steps that rise evenly, and plain values.
+    let others: [&dyn Fn(usize) -> f64; 5] = [
+        &|i| (4.0 * (0.05 * i as f64).sin()).round(),
+        &|i| f64::from((i / 4).is_multiple_of(2)),
+        &|i| (i / 4) as f64,
+        &|i| if i < 200 { 0.0 } else { sine(i) },
+        &sine,
+    ];
+    for (at, value) in others.iter().enumerate() {
+        assert_eq!(said(*value), None, "{at}");
+    }
+}
+
+#[test]
+fn decimal_commas_below_a_rate_tell_that_its_point_groups_digits() {
+    let rate = |text: &str| of(text).records[0].axis().step().map(|step| (1.0 / step).round());
+    assert_eq!(rate("Abtastrate: 1.000 Hz\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n"), Some(1000.0));
+    assert_eq!(rate("Sample rate: 1,000 Hz\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n"), Some(1000.0));
+    // Whole numbers tell nothing.
+    let whole = of("Abtastrate: 1.000 Hz\nA (V);B (V)\n5;15\n25;35\n");
+    assert!(has_finding(&whole.findings, "abscissa-unsaid", &["decimal=1", "grouped=1000"]));
+    // Decimation is said: the rate may be that before it.
+    let kept = of("Sampling rate: 2000 Hz, decimated by 2\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n");
+    assert!(has_finding(&kept.findings, "rate-decimated", &["rate=2000"]), "{:?}", kept.findings);
 }
 
 #[test]
