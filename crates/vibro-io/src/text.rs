@@ -20,6 +20,7 @@ pub(crate) mod names;
 mod numbers;
 mod preamble;
 mod records;
+mod row_names;
 mod rows;
 mod runs;
 mod stream;
@@ -63,6 +64,7 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
         .setting("format")
     };
     with_text(source, options.limit, |text| match table::detect(text, options) {
+        _ if let Some(plain) = row_names::without(text)? => read_table(&plain, options, survey),
         Some(dialect) if !runs::others_of(&dialect).is_empty() => read_runs(text, &dialect, options, survey),
         Some(dialect) => read(text, &dialect, options, survey)
             .or_else(|why| one_table(text, options, why))
@@ -87,6 +89,7 @@ fn read_runs(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
 
 pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     with_text(source, options.limit, |text| match numbers::detect(text, options) {
+        _ if let Some(plain) = row_names::without(text)? => read_table(&plain, options, survey),
         Ok(dialect) => read(text, &dialect, options, survey).or_else(|why| one_table(text, options, why)),
         Err(why) => without_words(text, options, why),
     })
@@ -236,7 +239,9 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
 /// abscissa.
 fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> Vec<bool> {
     let names = dialect.names.iter().flatten();
-    let complex = options.complex || stated.complex || names.clone().any(|name| name.part().is_some());
+    let complex = options.complex
+        || stated.complex
+        || names.clone().any(|name| name.part().is_some() || name.phase().is_some());
     // Columns without names may continue each other, which their values tell.
     let plain = dialect.names.is_none() && dialect.columns > 2;
     let all = !survey || complex || plain;

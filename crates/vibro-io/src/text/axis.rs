@@ -140,10 +140,16 @@ impl PrintedAbscissa {
         }
         let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + relative * b.abs();
         // Both ends are rounded; a lost sample makes a whole step, an unsteady clock less than half of one.
-        let tolerance = axis.step().map_or(0.5 * given.step().unwrap_or(0.0), |_| 2.0 * self.resolution);
+        let uneven = || self.batch().unwrap_or(0.5 * given.step().unwrap_or(0.0));
+        let tolerance = axis.step().map_or_else(uneven, |_| 2.0 * self.resolution);
         let span = close(self.last() - axis.start(), given.at(axis.len() - 1), tolerance);
         let ends = || close(self.last(), statement.hertz, self.resolution) && axis.step().is_some();
         if given.kind == AxisKind::Time { span } else { ends() || (span && self.begins_at_zero()) }
+    }
+
+    /// The time of a batch of samples, where several share one.
+    fn batch(&self) -> Option<f64> {
+        if let Grid::Uneven(instants) = &self.axis.grid { batch(instants) } else { None }
     }
 
     /// Relative difference of a statement that means this column.
@@ -200,6 +206,11 @@ impl PrintedAbscissa {
         if let Grid::Uneven(instants) = &self.axis.grid
             && axis.kind == AxisKind::Time
         {
+            if batch(instants).is_some() {
+                return error.hint(
+                    "where samples are missing, cut the file and read the parts alone; else correct the stated number",
+                );
+            }
             return evened(error, instants, self.resolution);
         }
         error
@@ -209,6 +220,14 @@ impl PrintedAbscissa {
             )
             .setting(setting)
     }
+}
+
+/// The median step between different instants, where some are equal and none goes back.
+fn batch(instants: &[f64]) -> Option<f64> {
+    let steps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
+    let batched = steps.contains(&0.0) && steps.iter().all(|step| *step >= 0.0);
+    let apart: Vec<f64> = steps.into_iter().filter(|step| *step > 0.0).collect();
+    (batched && !apart.is_empty()).then(|| vibro_record::median(&apart))
 }
 
 /// A printed axis, compared with what the header states.

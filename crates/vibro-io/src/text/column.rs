@@ -3,6 +3,7 @@
 use super::names::Name;
 use crate::assemble::kind_of;
 use crate::held::{Held, rises};
+use num_complex::Complex64;
 use std::borrow::Cow;
 use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Clock, Values};
@@ -120,6 +121,28 @@ impl Column {
         let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
         let large = steps.iter().filter(|step| **step > 2.0 * smallest).count();
         (n > 1 && 20 * alike >= 19 * lengths.len() && 2 * large > steps.len()).then_some(n)
+    }
+
+    /// Makes the magnitude of a response function complex, where the column behind it is its phase; says
+    /// whether it is.
+    pub fn take_phase(&mut self, behind: &Column) -> bool {
+        let unit = self.name.unit.as_deref().and_then(Unit::parse);
+        let functions = [Quantity::Receptance, Quantity::Mobility, Quantity::Accelerance];
+        let is_function = unit.is_some_and(|unit| functions.contains(&unit.quantity()));
+        let (magnitudes, phases) = (self.reals(), behind.reals());
+        let plain = !self.values.is_complex() && magnitudes.len() == phases.len();
+        let Some(factor) = behind
+            .name
+            .phase()
+            .filter(|_| is_function && plain && magnitudes.iter().all(|magnitude| *magnitude >= 0.0))
+        else {
+            return false;
+        };
+        let pairs = magnitudes.iter().zip(phases.iter());
+        let values =
+            pairs.map(|(magnitude, phase)| Complex64::from_polar(*magnitude, factor * phase)).collect();
+        self.values = Values::Complex(values).into();
+        true
     }
 
     pub fn label(&self) -> String {

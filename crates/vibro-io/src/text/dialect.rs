@@ -57,7 +57,8 @@ impl Dialect {
     pub(crate) fn named_abscissa(&self) -> Option<usize> {
         let names = self.names.as_deref().filter(|_| self.format == Format::Csv)?;
         let named = |i: &usize| names[*i].axis(*i == 0).is_some() && self.clock_at() != Some(*i);
-        (0..names.len()).find(named).or(self.clock_at())
+        let sure = |i: &usize| named(i) && !names[*i].is_vague();
+        (0..names.len()).find(sure).or(self.clock_at()).or((0..names.len()).find(named))
     }
 
     /// The column of date and time.

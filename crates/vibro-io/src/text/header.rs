@@ -1,5 +1,6 @@
 //! What header lines state: lines, base band, sampling rate, unit, window, date.
 
+use super::names::Name;
 use crate::number;
 use crate::options::POSSIBLE;
 use vibro_record::Window;
@@ -30,6 +31,8 @@ pub struct Stated {
     step: Option<f64>,
     /// Key that states that step without a unit, which is taken for s.
     pub assumed: Option<&'static str>,
+    /// Whether the abscissa is said to be a frequency.
+    pub lines_apart: bool,
     /// First instant in s.
     pub start: Option<f64>,
     /// Whether values are said to be complex.
@@ -98,7 +101,6 @@ impl Stated {
     /// Reads header lines above rows with the decimal `mark`, where that is known.
     pub fn of<'a>(lines: impl Iterator<Item = &'a str>, mark: Option<u8>) -> Stated {
         let mut stated = Stated { mark, ..Stated::default() };
-        let mut lines_apart = false;
         for line in lines {
             // `NPTS= 6000, DT= .01 SEC` are two statements.
             let between = [(',', ['=', '=']), ('\t', ['=', ':'])].into_iter();
@@ -118,7 +120,7 @@ impl Stated {
                 let said = value.to_lowercase();
                 stated.complex |= said == "complex" || said.contains("real and imaginary");
                 let hertz = matches!(said.as_str(), "hz" | "hertz") || said.starts_with("frequency");
-                lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
+                stated.lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
                 if key.is_empty() {
                     free_text(line, &mut stated);
                 } else {
@@ -126,7 +128,7 @@ impl Stated {
                 }
             }
         }
-        if lines_apart && stated.of_one_series {
+        if stated.lines_apart && stated.of_one_series {
             stated.rate = None;
             let step = stated.step.filter(|_| stated.start.is_none_or(|start| start == 0.0));
             stated.line_width = stated.line_width.or(step);
@@ -283,6 +285,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             // One for each of several channels belongs to none.
             stated.unit = unit.filter(|v| !v.is_empty() && !v.contains([';', '\t']) && !v.contains(" and "));
         }
+        "y axis" => stated.unit = stated.unit.take().or(Name::parse(value).unit),
         key if SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key) => {
             stated.scales.extend(scale(key, value));
         }

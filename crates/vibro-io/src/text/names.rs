@@ -233,6 +233,15 @@ impl Name {
         if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
     }
 
+    /// The factor to radians of a phase, which stands behind its magnitude.
+    pub fn phase(&self) -> Option<f64> {
+        let key = self.name.to_lowercase();
+        let named =
+            PHASES.iter().any(|word| begins(&key, word)) || PHASES.contains(&self.last_word().as_str());
+        let unit = Unit::parse(self.unit.as_deref()?).filter(|unit| unit.quantity() == Quantity::Angle);
+        unit.filter(|_| named).map(|unit| unit.factor())
+    }
+
     /// The last word of the name in lower case: `sample` of `loggingSample`, `loop_sample` and `Sample`.
     pub fn last_word(&self) -> String {
         let name = self.name.trim_end_matches(|c: char| !c.is_alphanumeric());
@@ -315,8 +324,21 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words).filter(|_| sure))
 }
 
-/// Names of an abscissa that do not say of what: it rises, or it is none.
-const ABSCISSAE: [&str; 3] = ["x", "x-axis", "x axis"];
+/// Names of an abscissa that do not say of what, or also stand above dates: it rises, or it is none.
+const ABSCISSAE: [&str; 12] = [
+    "x",
+    "x-axis",
+    "x axis",
+    "datum",
+    "date",
+    "datetime",
+    "date time",
+    "zeitstempel",
+    "ts",
+    "epoch",
+    "tempo",
+    "tiempo",
+];
 
 /// Names of a time that are its unit.
 const WHOLE: [(&str, &str); 6] = [
@@ -338,6 +360,9 @@ const COUNT_WORDS: [&str; 9] =
 
 /// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
 pub(super) const NATURAL: &str = "N";
+
+/// Words in the name of a phase.
+const PHASES: [&str; 5] = ["phase", "phasenwinkel", "fase", "angle", "фаза"];
 
 /// Words in the name of a force: its N is newton.
 const FORCES: [&str; 3] = ["force", "load", "kraft"];

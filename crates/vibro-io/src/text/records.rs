@@ -94,7 +94,7 @@ pub fn build(
         of_axis.push(Finding::caution("two-channels"));
     }
     let mut built = Vec::new();
-    let table = made.joined(table, &axis)?;
+    let table = made.joined(table, &axis, &mut of_axis)?;
     let signal = table.iter().any(Column::may_be_signal);
     let scales = made.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
     let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
@@ -157,7 +157,7 @@ fn of_one_channel(table: &[Column]) -> Result<()> {
     let name = table[at].label();
     let found = format!("{name:?} goes from {} to {} and back", short(one), short(next));
     Err(Error::usage(found, "rows of one channel or sensor")
-        .hint("write the rows of each number to a file of their own, or take out the column"))
+        .hint("keep the rows of one number in a file, those of the others each in a file of their own"))
 }
 
 /// The record of a column, and how its values are read again.
@@ -370,7 +370,8 @@ impl RecordContext<'_> {
     /// Time or frequency, by what a person or the header states of `n` values.
     fn domain(&self, n: usize) -> Option<AxisKind> {
         let (options, stated) = (self.options, &self.stated);
-        let spectrum = options.base_band.is_some() || stated.all_lines(n);
+        let over_hertz = stated.lines_apart && !stated.of_one_series;
+        let spectrum = options.base_band.is_some() || stated.all_lines(n) || over_hertz;
         if options.rate.is_some() || (!spectrum && stated.rate.is_some()) {
             return Some(AxisKind::Time);
         }
@@ -378,14 +379,22 @@ impl RecordContext<'_> {
         spectrum.then_some(AxisKind::Frequency)
     }
 
-    /// Joins real and imaginary parts that belong together; over time there are none.
-    fn joined(&self, table: Vec<Column>, axis: &Axis) -> Result<Vec<Column>> {
+    /// Joins real and imaginary parts that belong together, and the magnitude of a response function with the
+    /// phase behind it; over time there are none.
+    fn joined(&self, table: Vec<Column>, axis: &Axis, found: &mut Vec<Finding>) -> Result<Vec<Column>> {
         let parts = !self.dialect.complex && axis.kind != AxisKind::Time;
         let unnamed = self.dialect.names.is_none() && axis.kind == AxisKind::Frequency;
         let (n, stated) =
             (table.len(), self.options.complex || self.stated.complex && unnamed && table.len() == 2);
         let mut out: Vec<Column> = Vec::new();
         for column in table {
+            if let Some(magnitude) = out.last_mut().filter(|_| parts && axis.kind == AxisKind::Frequency)
+                && magnitude.take_phase(&column)
+            {
+                let name = format!("{}, {}", magnitude.label(), column.label());
+                found.push(Finding::note("magnitude-and-phase").name("columns", name));
+                continue;
+            }
             let partner = match column.name.part() {
                 _ if !parts => None,
                 Some((ComplexPart::Imaginary, whole)) => {

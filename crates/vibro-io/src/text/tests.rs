@@ -1179,6 +1179,92 @@ fn values_that_stand_several_times_each_are_said() {
 }
 
 #[test]
+fn a_minus_of_any_kind_is_one_and_brackets_are_asked_about() {
+    let text = |cell: &str| format!("Time (s);Acc (g)\n0.0;0.5\n0.1;{cell}\n0.2;0.5\n");
+    for cell in ["-1.5", "−1.5", "–1.5", "1.5-"] {
+        assert_eq!(values(&of(text(cell)).records[0])[1], -1.5 * 9.806_65, "{cell}");
+    }
+    let brackets = Reader::new().from_reader("x.csv", text("(1.5)").as_bytes()).unwrap_err().to_string();
+    assert!(brackets.contains("write -1.5"), "{brackets}");
+    assert!(Reader::new().from_reader("x.csv", text("--1.5").as_bytes()).is_err());
+}
+
+#[test]
+fn rows_with_names_in_quotes_below_a_shorter_line_of_names() {
+    let rows = "\"1\" 0 0.5 1\n\"2\" 0.001 1.5 3\n\"3\" 0.002 2.5 5\n";
+    let text = format!("\"time\" \"acc.mps2\" \"force (N)\"\n{rows}");
+    let found = Reader::new().from_reader("x.txt", text.as_bytes()).unwrap();
+    let names: Vec<&str> = found.records.iter().map(|record| record.meta().name.as_str()).collect();
+    assert_eq!((names, values(&found.records[1])), (vec!["acc.mps2", "force"], &[1.0, 3.0, 5.0][..]));
+    assert_eq!(found.records[0].axis(), &Axis::time(0.0, 1e-3, 3));
+}
+
+#[test]
+fn magnitude_and_phase_of_a_function_are_one_complex_record() {
+    let table = |names: &str| of(format!("{names}\n1.0,2.0,90\n2.0,4.0,180\n3.0,1.0,-90\n4.0,1.0,0\n"));
+    let function = table("Frequency (Hz),Magnitude (g/N),Phase (deg)");
+    let [Record::Frf(record)] = function.records.as_slice() else { panic!("{:?}", function.records) };
+    let values = &record.values;
+    assert!((values[0] - Complex64::new(0.0, 2.0 * 9.806_65)).norm() < 1e-12, "{values:?}");
+    assert!((values[1] - Complex64::new(-4.0 * 9.806_65, 0.0)).norm() < 1e-12, "{values:?}");
+    // A response beside its force is no function; an angle beside a function no phase.
+    for names in ["Frequency (Hz),Amp (µm),Phase (deg)", "Frequency (Hz),Magnitude (g/N),Tilt (deg)"] {
+        assert_eq!(table(names).records.len(), 2, "{names}");
+    }
+}
+
+#[test]
+fn what_is_said_of_a_table_that_cannot_be_read_as_it_is() {
+    let why = |text: &str| Reader::new().from_reader("x.csv", text.as_bytes()).unwrap_err().to_string();
+    let commas = why("Time (s),Acc (m/s²)\n0,000,1,16602\n0,001,2,24792\n");
+    assert!(commas.contains("cannot separate cells, too"), "{commas}");
+    let rows: String =
+        (0..40).map(|i| format!("{i},{},0.{}\n", if i % 2 == 0 { "A" } else { "B" }, i * i % 7)).collect();
+    let words = why(&format!("Time (ms),sensor,acc (g)\n{rows}"));
+    assert!(words.contains("keep the rows of one word") && !words.contains("take out"), "{words}");
+    let numbers = why(&format!("Time (ms),id,acc (g)\n{}", rows.replace('A', "1").replace('B', "2")));
+    assert!(numbers.contains("keep the rows of one number") && !numbers.contains("take out"), "{numbers}");
+    let batch = |rate: f64, lost: bool| {
+        let kept = (0..200).filter(|i| !lost || !(50..100).contains(i));
+        let rows: String = kept.map(|i| format!("{},{}\n", (i / 10) * 20, i * i % 7)).collect();
+        Reader::new()
+            .rate(Some(rate))
+            .from_reader("x.csv", format!("timestamp_ms,acc (g)\n{rows}").as_bytes())
+    };
+    let even = batch(500.0, false).unwrap();
+    assert_eq!(even.records[0].axis(), &Axis::time(0.0, 2e-3, 200));
+    let lost = batch(500.0, true).unwrap_err().to_string();
+    assert!(lost.contains("where samples are missing") && !lost.contains("--rate"), "{lost}");
+}
+
+#[test]
+fn days_of_a_sheet_with_decimal_commas_and_epochs_in_microseconds() {
+    let rows: String =
+        (0..100).map(|i| format!("45413,{:010};1,{}\n", 5_000_000_000_u64 + 1157 * i, i * i % 7)).collect();
+    let days = of(format!("Datum;Schwinggeschw. [mm/s]\n{rows}"));
+    assert_eq!(days.records[0].axis().kind, AxisKind::Time);
+    assert!((1.0 / days.records[0].axis().step().unwrap() - 100.0).abs() < 0.1);
+    let rows: String =
+        (0..100).map(|i| format!("{},1.{}\n", 1_714_556_000_123_456_u64 + 500 * i, i * i % 7)).collect();
+    let epoch = of(format!("ts,\"Accel, m/s²\"\n{rows}"));
+    assert!((epoch.records[0].axis().step().unwrap() - 5e-4).abs() < 1e-9);
+    // A date that is a number stands beside its clock.
+    let rows: String = (0..20).map(|i| format!("20240501,12:00:{i:02}.000,{}\n", i * i % 7)).collect();
+    let dated = of(format!("Date,Time,acc (g)\n{rows}"));
+    assert!(dated.records.iter().all(|record| record.axis().kind == AxisKind::Time));
+}
+
+#[test]
+fn a_head_that_says_that_the_abscissa_is_a_frequency() {
+    let rows: String = (0..40).map(|i| format!("{}\t{i}.0\t{}.5\n", i + 1, i * i % 7)).collect();
+    let head =
+        "Function:\tAutospectrum\nX-Axis:\tFrequency [Hz]\nY-Axis:\tAcceleration [dB/1E-6 m/s²]\nData:\n";
+    let Record::Spectrum(spectrum) = plain(&format!("{head}{rows}")) else { panic!() };
+    assert_eq!(spectrum.axis.step(), Some(1.0));
+    assert!(spectrum.meta.unit.is_level(), "{:?}", spectrum.meta);
+}
+
+#[test]
 fn decimal_commas_below_a_rate_tell_that_its_point_groups_digits() {
     let rate = |text: &str| of(text).records[0].axis().step().map(|step| (1.0 / step).round());
     assert_eq!(rate("Abtastrate: 1.000 Hz\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n"), Some(1000.0));
