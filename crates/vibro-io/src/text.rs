@@ -27,6 +27,7 @@ mod stream;
 mod table;
 mod tables;
 mod tail;
+mod two_parts;
 pub(crate) mod unit_words;
 mod word_columns;
 mod wrapped;
@@ -66,6 +67,9 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
     with_text(source, options.limit, |text| match table::detect(text, options) {
         _ if let Some(plain) = row_names::without(text)? => read_table(&plain, options, survey),
         Some(dialect) if !runs::others_of(&dialect).is_empty() => read_runs(text, &dialect, options, survey),
+        Some(dialect) if let Some(joined) = two_parts::joined(text, &dialect)? => {
+            read_table(&joined, options, survey)
+        }
         Some(dialect) => read(text, &dialect, options, survey)
             .or_else(|why| one_table(text, options, why))
             .or_else(|why| without_words(text, options, why)),

@@ -95,30 +95,7 @@ pub fn build(
     }
     let mut built = Vec::new();
     let table = made.joined(table, &axis, &mut of_axis)?;
-    let signal = table.iter().any(Column::may_be_signal);
-    let scales = made.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
-    let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
-    if !scales.is_empty() {
-        of_axis.push(Finding::caution("scale-in-head").name("scale", scales.join(", ")));
-    }
-    let even: Vec<String> = table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
-    if !even.is_empty() {
-        of_axis.push(Finding::caution("columns-rise-evenly").name("columns", even.join(", ")));
-    }
-    let without = table.iter().filter(|column| column.name.unit.is_none()).count();
-    if let Some(unit) = made.stated.unit.as_deref().filter(|_| is_table && without > 1) {
-        of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
-    }
-    if let Some((n, all)) = repeats(&table) {
-        of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
-    }
-    let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
-    let held: Vec<(usize, String)> = held.collect();
-    for of_length in held.chunk_by(|a, b| a.0 == b.0) {
-        let labels: Vec<&str> = of_length.iter().map(|(_, label)| label.as_str()).collect();
-        let found = Finding::caution("values-held").count("n", of_length[0].0);
-        of_axis.push(found.name("columns", labels.join(", ")));
-    }
+    of_axis.extend(made.said_of(&table));
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
         let mut column = match sparse {
@@ -306,7 +283,7 @@ impl RecordContext<'_> {
             axis,
             label,
             resolution,
-            assumed: by_name.is_none(),
+            assumed: by_name.is_none() && !self.over_hertz(),
             origin: since,
             clock,
             findings,
@@ -367,11 +344,49 @@ impl RecordContext<'_> {
         cell.map(colons).as_deref() == Some(":")
     }
 
+    /// Whether the head says that a column holds frequencies.
+    fn over_hertz(&self) -> bool {
+        self.stated.lines_apart && !self.stated.of_one_series
+    }
+
+    /// What is to be said of the columns of values together.
+    fn said_of(&self, table: &[Column]) -> Vec<Finding> {
+        let mut found = Vec::new();
+        let signal = table.iter().any(Column::may_be_signal);
+        let scales = self.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
+        let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
+        if !scales.is_empty() {
+            found.push(Finding::caution("scale-in-head").name("scale", scales.join(", ")));
+        }
+        let even: Vec<String> =
+            table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
+        if !even.is_empty() {
+            found.push(Finding::caution("columns-rise-evenly").name("columns", even.join(", ")));
+        }
+        let without = table.iter().filter(|column| column.name.unit.is_none()).count();
+        if let Some(unit) = self.stated.unit.as_deref().filter(|_| self.is_table && without > 1) {
+            found.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
+        }
+        if let Some((n, all)) = repeats(table) {
+            found.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
+        }
+        let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
+        let held: Vec<(usize, String)> = held.collect();
+        for of_length in held.chunk_by(|a, b| a.0 == b.0) {
+            let labels: Vec<&str> = of_length.iter().map(|(_, label)| label.as_str()).collect();
+            let held = Finding::caution("values-held").count("n", of_length[0].0);
+            found.push(held.name("columns", labels.join(", ")));
+        }
+        found
+    }
+
     /// Time or frequency, by what a person or the header states of `n` values.
     fn domain(&self, n: usize) -> Option<AxisKind> {
         let (options, stated) = (self.options, &self.stated);
-        let over_hertz = stated.lines_apart && !stated.of_one_series;
-        let spectrum = options.base_band.is_some() || stated.all_lines(n) || over_hertz;
+        if self.over_hertz() {
+            return Some(AxisKind::Frequency);
+        }
+        let spectrum = options.base_band.is_some() || stated.all_lines(n);
         if options.rate.is_some() || (!spectrum && stated.rate.is_some()) {
             return Some(AxisKind::Time);
         }

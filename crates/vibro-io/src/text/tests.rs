@@ -1218,15 +1218,18 @@ fn what_is_said_of_a_table_that_cannot_be_read_as_it_is() {
     let why = |text: &str| Reader::new().from_reader("x.csv", text.as_bytes()).unwrap_err().to_string();
     let commas = why("Time (s),Acc (m/s²)\n0,000,1,16602\n0,001,2,24792\n");
     assert!(commas.contains("cannot separate cells, too"), "{commas}");
-    let rows: String =
-        (0..40).map(|i| format!("{i},{},0.{}\n", if i % 2 == 0 { "A" } else { "B" }, i * i % 7)).collect();
+    let rows: String = (0..40)
+        .map(|i| format!("{i},{},0.{}\n", if i % 2 == 0 { "A" } else { "B" }, i * i % 7))
+        .collect::<Vec<_>>()
+        .concat();
     let words = why(&format!("Time (ms),sensor,acc (g)\n{rows}"));
     assert!(words.contains("keep the rows of one word") && !words.contains("take out"), "{words}");
     let numbers = why(&format!("Time (ms),id,acc (g)\n{}", rows.replace('A', "1").replace('B', "2")));
     assert!(numbers.contains("keep the rows of one number") && !numbers.contains("take out"), "{numbers}");
     let batch = |rate: f64, lost: bool| {
         let kept = (0..200).filter(|i| !lost || !(50..100).contains(i));
-        let rows: String = kept.map(|i| format!("{},{}\n", (i / 10) * 20, i * i % 7)).collect();
+        let rows: String =
+            kept.map(|i| format!("{},{}\n", (i / 10) * 20, i * i % 7)).collect::<Vec<_>>().concat();
         Reader::new()
             .rate(Some(rate))
             .from_reader("x.csv", format!("timestamp_ms,acc (g)\n{rows}").as_bytes())
@@ -1239,29 +1242,54 @@ fn what_is_said_of_a_table_that_cannot_be_read_as_it_is() {
 
 #[test]
 fn days_of_a_sheet_with_decimal_commas_and_epochs_in_microseconds() {
-    let rows: String =
-        (0..100).map(|i| format!("45413,{:010};1,{}\n", 5_000_000_000_u64 + 1157 * i, i * i % 7)).collect();
+    let rows: String = (0..100)
+        .map(|i| format!("45413,{:010};1,{}\n", 5_000_000_000_u64 + 1157 * i, i * i % 7))
+        .collect::<Vec<_>>()
+        .concat();
     let days = of(format!("Datum;Schwinggeschw. [mm/s]\n{rows}"));
     assert_eq!(days.records[0].axis().kind, AxisKind::Time);
     assert!((1.0 / days.records[0].axis().step().unwrap() - 100.0).abs() < 0.1);
-    let rows: String =
-        (0..100).map(|i| format!("{},1.{}\n", 1_714_556_000_123_456_u64 + 500 * i, i * i % 7)).collect();
+    let rows: String = (0..100)
+        .map(|i| format!("{},1.{}\n", 1_714_556_000_123_456_u64 + 500 * i, i * i % 7))
+        .collect::<Vec<_>>()
+        .concat();
     let epoch = of(format!("ts,\"Accel, m/s²\"\n{rows}"));
     assert!((epoch.records[0].axis().step().unwrap() - 5e-4).abs() < 1e-9);
     // A date that is a number stands beside its clock.
-    let rows: String = (0..20).map(|i| format!("20240501,12:00:{i:02}.000,{}\n", i * i % 7)).collect();
+    let rows: String =
+        (0..20).map(|i| format!("20240501,12:00:{i:02}.000,{}\n", i * i % 7)).collect::<Vec<_>>().concat();
     let dated = of(format!("Date,Time,acc (g)\n{rows}"));
     assert!(dated.records.iter().all(|record| record.axis().kind == AxisKind::Time));
 }
 
 #[test]
+fn seconds_and_their_parts_in_two_columns() {
+    for (names, unit) in [("tv_sec,tv_usec", 1000), ("header.stamp.secs,header.stamp.nsecs", 1_000_000)] {
+        let row = |i: usize| {
+            format!("{},{},{}.5\n", 1_714_556_000 + (i + 950) / 1000, (i + 950) % 1000 * unit, i * i % 7)
+        };
+        let found = of(format!("{names},acc (g)\n{}", (0..200).map(row).collect::<String>()));
+        assert_eq!(found.records.len(), 1, "{names}");
+        let step = found.records[0].axis().step().unwrap();
+        assert!((step - 1e-3).abs() < 1e-9, "{names}: {step}");
+    }
+    // A cell that is no whole number.
+    let odd = of("sec,usec,acc (g)\n1.5,3,2.5\n2.5,4,3.5\n3.5,9,4.5\n");
+    assert_eq!((odd.records.len(), odd.records[0].axis().start()), (2, 1.5));
+}
+
+#[test]
 fn a_head_that_says_that_the_abscissa_is_a_frequency() {
-    let rows: String = (0..40).map(|i| format!("{}\t{i}.0\t{}.5\n", i + 1, i * i % 7)).collect();
+    let rows: String =
+        (0..40).map(|i| format!("{}\t{i}.0\t{}.5\n", i + 1, i * i % 7)).collect::<Vec<_>>().concat();
     let head =
         "Function:\tAutospectrum\nX-Axis:\tFrequency [Hz]\nY-Axis:\tAcceleration [dB/1E-6 m/s²]\nData:\n";
     let Record::Spectrum(spectrum) = plain(&format!("{head}{rows}")) else { panic!() };
     assert_eq!(spectrum.axis.step(), Some(1.0));
     assert!(spectrum.meta.unit.is_level(), "{:?}", spectrum.meta);
+    // A rate would make a trace of the spectrum.
+    let rated = Reader::new().rate(Some(100.0)).from_reader("x.txt", format!("{head}{rows}").as_bytes());
+    assert!(rated.unwrap_err().to_string().contains("holds a frequency"));
 }
 
 #[test]
