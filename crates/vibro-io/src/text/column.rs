@@ -107,8 +107,8 @@ impl Column {
         })
     }
 
-    /// How many times each value stands, where nearly all stand as often: a sensor that is slower than the rows.
-    /// Where most steps between them are the smallest one, it is the digits that are coarse.
+    /// How many times each value stands, where nearly all stand as often: a sensor that is slower than the
+    /// rows. Where most steps between them are the smallest one, it is the digits that are coarse.
     pub fn held(&self) -> Option<usize> {
         let values = self.values.opening();
         let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();

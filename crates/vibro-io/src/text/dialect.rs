@@ -66,8 +66,7 @@ impl Dialect {
         self.clock.as_ref().map(|cells| cells.start)
     }
 
-    /// The decimal mark, where a person stated it or a number of the rows that `head` begins with has it, and no
-    /// groups of three digits behind it alone.
+    /// The decimal mark, where a person stated it or a number of the first rows shows it: `1.000` does not.
     pub(crate) fn shown_mark(&self, head: &str) -> Option<u8> {
         let has =
             |cell: &str| cell.as_bytes().contains(&self.decimal) && !number::may_be_grouped(cell.as_bytes());

@@ -67,8 +67,8 @@ pub struct PerhapsRate {
 pub struct Scale {
     /// As it is written: with its key, but for a plain scale factor.
     pub said: String,
-    /// Whether it takes the signal of a sensor to what it measures, or is a gain of that signal: values in a unit
-    /// of motion or force have it in them.
+    /// Whether it takes the signal of a sensor to what it measures, or is a gain of that signal: values in a
+    /// unit of motion or force have it in them.
     pub of_signal: bool,
 }
 
@@ -285,7 +285,9 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             // One for each of several channels belongs to none.
             stated.unit = unit.filter(|v| !v.is_empty() && !v.contains([';', '\t']) && !v.contains(" and "));
         }
-        "y axis" => stated.unit = stated.unit.take().or(Name::parse(value).unit),
+        "y axis" if value.ends_with([']', ')']) => {
+            stated.unit = stated.unit.take().or(Name::parse(value).unit)
+        }
         key if SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key) => {
             stated.scales.extend(scale(key, value));
         }
@@ -300,7 +302,8 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
     }
 }
 
-/// What a factor under its key says, where one of its numbers is not 1, or it is a quotient of units: `1 V/g`.
+/// What a factor under its key says, where one of its numbers is not 1, or it is a quotient of units:
+/// `1 V/g`.
 fn scale(key: &str, value: &str) -> Option<Scale> {
     let words: Vec<&str> = value.split([';', ' ']).map(str::trim).filter(|word| !word.is_empty()).collect();
     let first = number::either(words.first()?.trim_start_matches(['x', '×', '*']).as_bytes());
@@ -369,8 +372,8 @@ fn printed(value: &str) -> &str {
     value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
 }
 
-/// The mark of the number that a text begins with, where it alone does not show whether that is the decimal one:
-/// `51,200`.
+/// The mark of the number that a text begins with, where it alone does not show whether that is the decimal
+/// one: `51,200`.
 fn doubtful_mark(value: &str) -> Option<u8> {
     let printed = printed(value.trim()).as_bytes();
     let mut marks = printed.iter().filter(|b| matches!(b, b'.' | b','));
@@ -403,8 +406,8 @@ fn without_blanks(value: &str) -> String {
     whole
 }
 
-/// As [`quantity`], of any sign. A mark that may be the decimal one or group digits is what `mark` of the rows
-/// says; without that it is nothing.
+/// As [`quantity`], of any sign. A mark that may be the decimal one or group digits is what `mark` of the
+/// rows says; without that it is nothing.
 fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     let value = value.trim();
     let printed = printed(value);

@@ -1,5 +1,5 @@
-//! Rows that are named in quotes, below a line of names that is one cell shorter, as `write.table` of R writes
-//! them.
+//! Rows that are named in quotes, below a line of names that is one cell shorter, as `write.table` of R
+//! writes them.
 //!
 //! ```text
 //! "time" "force.N"
