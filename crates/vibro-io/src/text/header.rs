@@ -286,7 +286,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
             stated.unit = unit.filter(|v| !v.is_empty() && !v.contains([';', '\t']) && !v.contains(" and "));
         }
         "y axis" if value.ends_with([']', ')']) => {
-            stated.unit = stated.unit.take().or(Name::parse(value).unit)
+            stated.unit = stated.unit.take().or(Name::parse(value).unit);
         }
         key if SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key) => {
             stated.scales.extend(scale(key, value));
