@@ -37,9 +37,19 @@ pub(crate) fn parse_with(text: &[u8], decimal: u8) -> Option<f64> {
     let text = text.trim_ascii();
     match prefix(text, decimal) {
         Some((value, used)) if used == text.len() => Some(value),
-        Some(_) => ungrouped(text, decimal, false),
-        None => None,
+        Some(_) => ungrouped(text, decimal, false).or_else(|| negative(text, decimal)),
+        None => negative(text, decimal),
     }
+}
+
+/// A number whose minus is a typographic one, or stands behind it as sheets and old programs write: `−0.5`,
+/// `0.5-`.
+#[cold]
+fn negative(text: &[u8], decimal: u8) -> Option<f64> {
+    let before = || ["−", "–"].iter().find_map(|minus| text.strip_prefix(minus.as_bytes()));
+    let magnitude = text.strip_suffix(b"-").or_else(before)?;
+    let (value, used) = prefix(magnitude, decimal)?;
+    (used == magnitude.len() && magnitude[0] != b'-' && magnitude[0] != b'+').then_some(-value)
 }
 
 /// As [`parse_with`], where a person stated the decimal mark: then the other mark groups digits, also of

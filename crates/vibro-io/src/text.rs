@@ -20,12 +20,14 @@ pub(crate) mod names;
 mod numbers;
 mod preamble;
 mod records;
+mod row_names;
 mod rows;
 mod runs;
 mod stream;
 mod table;
 mod tables;
 mod tail;
+mod two_parts;
 pub(crate) mod unit_words;
 mod word_columns;
 mod wrapped;
@@ -63,9 +65,12 @@ pub(crate) fn read_table(source: &Source, options: &Options, survey: bool) -> Re
         .setting("format")
     };
     with_text(source, options.limit, |text| match table::detect(text, options) {
+        _ if let Some(plain) = row_names::without(text)? => read_table(&plain, options, survey),
         Some(dialect) if !runs::others_of(&dialect).is_empty() => read_runs(text, &dialect, options, survey),
-        Some(dialect) => table::grouped(text, &dialect)
-            .and_then(|()| read(text, &dialect, options, survey))
+        Some(dialect) if let Some(joined) = two_parts::joined(text, &dialect)? => {
+            read_table(&joined, options, survey)
+        }
+        Some(dialect) => read(text, &dialect, options, survey)
             .or_else(|why| one_table(text, options, why))
             .or_else(|why| without_words(text, options, why)),
         None => without_words(text, options, without_names()),
@@ -88,6 +93,7 @@ fn read_runs(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
 
 pub(crate) fn read_numbers(source: &Source, options: &Options, survey: bool) -> Result<Contents> {
     with_text(source, options.limit, |text| match numbers::detect(text, options) {
+        _ if let Some(plain) = row_names::without(text)? => read_table(&plain, options, survey),
         Ok(dialect) => read(text, &dialect, options, survey).or_else(|why| one_table(text, options, why)),
         Err(why) => without_words(text, options, why),
     })
@@ -163,7 +169,7 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
             Format::Ascii => numbers::detect(text, options).ok(),
             _ => None,
         };
-        let of_one_run = |d: &Dialect| table::grouped(text, d).is_ok() && runs::others_of(d).is_empty();
+        let of_one_run = |d: &Dialect| runs::others_of(d).is_empty();
         let Some(dialect) = dialect.filter(|d| format == Format::Ascii || of_one_run(d)) else {
             return Ok(None);
         };
@@ -183,7 +189,7 @@ pub(crate) fn stream(source: &Source, options: &Options, format: Format) -> Resu
 }
 
 fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) -> Result<Read> {
-    let stated = Stated::of(dialect.header.iter().map(String::as_str));
+    let stated = Stated::of(dialect.header.iter().map(String::as_str), dialect.shown_mark(&text.head));
     let kept = kept(dialect, options, &stated, survey);
     // As many rows as the first bytes let expect.
     let lines = text.head.lines().count() as f64 / text.head.len().max(1) as f64;
@@ -237,7 +243,9 @@ fn read_rows(text: &Text, dialect: &Dialect, options: &Options, survey: bool) ->
 /// abscissa.
 fn kept(dialect: &Dialect, options: &Options, stated: &Stated, survey: bool) -> Vec<bool> {
     let names = dialect.names.iter().flatten();
-    let complex = options.complex || stated.complex || names.clone().any(|name| name.part().is_some());
+    let complex = options.complex
+        || stated.complex
+        || names.clone().any(|name| name.part().is_some() || name.phase().is_some());
     // Columns without names may continue each other, which their values tell.
     let plain = dialect.names.is_none() && dialect.columns > 2;
     let all = !survey || complex || plain;
@@ -259,6 +267,7 @@ fn records_of(text: &Text, tail: &[u8], dialect: &Dialect, rows: Rows, options: 
     if dialect.decimal == b',' && dialect.columns == 1 && dialect.format == Format::Csv {
         findings.push(Finding::caution("decimal-comma-assumed"));
     }
+    findings.extend(table::grouped(text, dialect)?);
     let columns = records::build(text, tail, dialect, rows, options, &mut findings)?;
     Ok(Read { columns, findings, clean: None })
 }

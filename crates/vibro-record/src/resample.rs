@@ -136,6 +136,11 @@ pub fn evened(error: Error, instants: &[f64], resolution: f64) -> Error {
     if instants.windows(2).any(|w| w[1] == w[0]) {
         return error.hint("several samples have one time: state the samples per second").setting("rate");
     }
+    let steps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
+    if steps.iter().any(|step| *step > LONGEST * median(&steps)) {
+        return error
+            .hint("its gaps are too long to interpolate: record or export every sample, with even steps");
+    }
     let mean = instants.len().saturating_sub(1) as f64 / (instants[instants.len() - 1] - instants[0]);
     error.hint("interpolate on an even grid").set("resample", proposed(mean))
 }

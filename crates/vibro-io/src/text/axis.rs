@@ -1,6 +1,6 @@
 //! The abscissa of a text: what a person states, what a column holds, what the header states.
 
-use super::header::Stated;
+use super::header::{PerhapsRate, Stated};
 use crate::Options;
 use crate::assemble::{NOMINAL, domain, short};
 use vibro_record::code;
@@ -140,10 +140,16 @@ impl PrintedAbscissa {
         }
         let close = |a: f64, b: f64, resolution: f64| (a - b).abs() <= resolution + relative * b.abs();
         // Both ends are rounded; a lost sample makes a whole step, an unsteady clock less than half of one.
-        let tolerance = axis.step().map_or(0.5 * given.step().unwrap_or(0.0), |_| 2.0 * self.resolution);
+        let uneven = || self.batch().unwrap_or(0.5 * given.step().unwrap_or(0.0));
+        let tolerance = axis.step().map_or_else(uneven, |_| 2.0 * self.resolution);
         let span = close(self.last() - axis.start(), given.at(axis.len() - 1), tolerance);
         let ends = || close(self.last(), statement.hertz, self.resolution) && axis.step().is_some();
         if given.kind == AxisKind::Time { span } else { ends() || (span && self.begins_at_zero()) }
+    }
+
+    /// The time of a batch of samples, where several share one.
+    fn batch(&self) -> Option<f64> {
+        if let Grid::Uneven(instants) = &self.axis.grid { batch(instants) } else { None }
     }
 
     /// Relative difference of a statement that means this column.
@@ -200,6 +206,11 @@ impl PrintedAbscissa {
         if let Grid::Uneven(instants) = &self.axis.grid
             && axis.kind == AxisKind::Time
         {
+            if batch(instants).is_some() {
+                return error.hint(
+                    "where samples are missing, cut the file and read the parts alone; else correct the stated number",
+                );
+            }
             return evened(error, instants, self.resolution);
         }
         error
@@ -209,6 +220,14 @@ impl PrintedAbscissa {
             )
             .setting(setting)
     }
+}
+
+/// The median step between different instants, where some are equal and none goes back.
+fn batch(instants: &[f64]) -> Option<f64> {
+    let steps: Vec<f64> = instants.windows(2).map(|w| w[1] - w[0]).collect();
+    let batched = steps.contains(&0.0) && steps.iter().all(|step| *step >= 0.0);
+    let apart: Vec<f64> = steps.into_iter().filter(|step| *step > 0.0).collect();
+    (batched && !apart.is_empty()).then(|| vibro_record::median(&apart))
 }
 
 /// A printed axis, compared with what the header states.
@@ -241,13 +260,21 @@ fn headed(n: usize, header: &Stated, findings: &mut Vec<Finding>) -> Axis {
             findings.extend(assumed.map(|found| found.number("step", 1.0 / rate)));
             if header.assumed.is_none() {
                 findings.push(Finding::note(code::RATE_FROM_HEAD).number("rate", rate));
+                let line = header.decimation.as_deref();
+                findings.extend(
+                    line.map(|line| {
+                        Finding::caution("rate-decimated").number("rate", rate).name("line", line)
+                    }),
+                );
             }
             Axis::time(header.start.unwrap_or(0.0), 1.0 / rate, n)
         }
         _ => {
             let found = Finding::caution(code::ABSCISSA_UNSAID);
             let found = match &header.perhaps_rate {
-                Some((said, rate)) => found.name("variable", said.as_str()).number("rate", *rate),
+                Some(PerhapsRate { said, decimal, grouped }) => {
+                    found.name("said", said.as_str()).number("decimal", *decimal).number("grouped", *grouped)
+                }
                 None => found,
             };
             findings.push(found);

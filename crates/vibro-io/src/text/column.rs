@@ -3,8 +3,9 @@
 use super::names::Name;
 use crate::assemble::kind_of;
 use crate::held::{Held, rises};
+use num_complex::Complex64;
 use std::borrow::Cow;
-use vibro_record::units::Unit;
+use vibro_record::units::{Quantity, Unit};
 use vibro_record::{AxisKind, Clock, Values};
 
 /// A column of a text.
@@ -98,6 +99,52 @@ impl Column {
         (known.len() > 1 && (in_turns() || named())).then(|| [first, known[1]])
     }
 
+    /// Whether its unit is that of a signal, unknown or none: such values may lack a factor.
+    pub fn may_be_signal(&self) -> bool {
+        let unit = self.name.unit.as_deref().and_then(Unit::parse);
+        unit.is_none_or(|unit| {
+            matches!(unit.quantity(), Quantity::Voltage | Quantity::Other | Quantity::Ratio)
+        })
+    }
+
+    /// How many times each value stands, where nearly all stand as often: a sensor that is slower than the
+    /// rows. Where most steps between them are the smallest one, it is the digits that are coarse.
+    pub fn held(&self) -> Option<usize> {
+        let values = self.values.opening();
+        let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
+        let inner = runs.get(1..runs.len().saturating_sub(1)).filter(|inner| inner.len() >= FEWEST_RUNS)?;
+        let mut lengths: Vec<usize> = inner.iter().map(|run| run.len()).collect();
+        lengths.sort_unstable();
+        let n = lengths[lengths.len() / 2];
+        let alike = lengths.iter().filter(|length| length.abs_diff(n) <= usize::from(n > 2)).count();
+        let steps: Vec<f64> = inner.windows(2).map(|w| (w[1][0] - w[0][0]).abs()).collect();
+        let smallest = steps.iter().copied().fold(f64::INFINITY, f64::min);
+        let large = steps.iter().filter(|step| **step > 2.0 * smallest).count();
+        (n > 1 && 20 * alike >= 19 * lengths.len() && 2 * large > steps.len()).then_some(n)
+    }
+
+    /// Makes the magnitude of a response function complex, where the column behind it is its phase; says
+    /// whether it is.
+    pub fn take_phase(&mut self, behind: &Column) -> bool {
+        let unit = self.name.unit.as_deref().and_then(Unit::parse);
+        let functions = [Quantity::Receptance, Quantity::Mobility, Quantity::Accelerance];
+        let is_function = unit.is_some_and(|unit| functions.contains(&unit.quantity()));
+        let (magnitudes, phases) = (self.reals(), behind.reals());
+        let plain = !self.values.is_complex() && magnitudes.len() == phases.len();
+        let Some(factor) = behind
+            .name
+            .phase()
+            .filter(|_| is_function && plain && magnitudes.iter().all(|magnitude| *magnitude >= 0.0))
+        else {
+            return false;
+        };
+        let pairs = magnitudes.iter().zip(phases.iter());
+        let values =
+            pairs.map(|(magnitude, phase)| Complex64::from_polar(*magnitude, factor * phase)).collect();
+        self.values = Values::Complex(values).into();
+        true
+    }
+
     pub fn label(&self) -> String {
         if self.name.name.is_empty() { format!("column {}", self.at) } else { self.name.name.clone() }
     }
@@ -106,6 +153,9 @@ impl Column {
 /// Most channels or sensors whose rows stand below each other, and words for what numbers them.
 const TURNS: usize = 64;
 const NUMBERED: [&str; 9] = ["channel", "chan", "ch", "sensor", "node", "device", "probe", "id", "kanal"];
+
+/// Fewest values, each of which stands several times, that show that this is how they are stored.
+const FEWEST_RUNS: usize = 20;
 
 /// Least part of the rows that repeat the one before where a sensor is read more often than it measures.
 const REPEATS: f64 = 0.05;

@@ -6,6 +6,9 @@ use super::names::Name;
 use crate::{Format, number};
 use std::ops::Range;
 
+/// Rows that show the decimal mark.
+const ENOUGH: usize = 1000;
+
 /// How rows are to be cut and read, and what stands above them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dialect {
@@ -54,12 +57,25 @@ impl Dialect {
     pub(crate) fn named_abscissa(&self) -> Option<usize> {
         let names = self.names.as_deref().filter(|_| self.format == Format::Csv)?;
         let named = |i: &usize| names[*i].axis(*i == 0).is_some() && self.clock_at() != Some(*i);
-        (0..names.len()).find(named).or(self.clock_at())
+        let sure = |i: &usize| named(i) && !names[*i].is_vague();
+        (0..names.len()).find(sure).or(self.clock_at()).or((0..names.len()).find(named))
     }
 
     /// The column of date and time.
     pub(crate) fn clock_at(&self) -> Option<usize> {
         self.clock.as_ref().map(|cells| cells.start)
+    }
+
+    /// The decimal mark, where a person stated it or a number of the first rows shows it: `1.000` does not.
+    pub(crate) fn shown_mark(&self, head: &str) -> Option<u8> {
+        let has =
+            |cell: &str| cell.as_bytes().contains(&self.decimal) && !number::may_be_grouped(cell.as_bytes());
+        let rows = self.rows(head).filter(|line| line.remark.is_none());
+        let shows = |line: Line| {
+            let cells = self.cut(&line).unwrap_or_default();
+            cells.iter().enumerate().any(|(i, (_, cell))| self.clock_at() != Some(i) && has(cell))
+        };
+        (self.stated || rows.take(ENOUGH).any(shows)).then_some(self.decimal)
     }
 
     /// A real number as a cell holds it.

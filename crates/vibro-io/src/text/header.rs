@@ -1,5 +1,6 @@
 //! What header lines state: lines, base band, sampling rate, unit, window, date.
 
+use super::names::Name;
 use crate::number;
 use crate::options::POSSIBLE;
 use vibro_record::Window;
@@ -16,8 +17,12 @@ pub struct Stated {
     pub base_band: Option<f64>,
     /// Sampling rate in Hz.
     pub rate: Option<f64>,
-    /// What may be the sampling rate in Hz, for the comma in it may group its digits, and how it is written.
-    pub perhaps_rate: Option<(String, f64)>,
+    /// What may be the sampling rate, for nothing tells whether the mark in it is the decimal one.
+    pub perhaps_rate: Option<PerhapsRate>,
+    /// What says that fewer values were kept than were sampled, as written.
+    pub decimation: Option<String>,
+    /// The decimal mark of the rows, where they show it.
+    mark: Option<u8>,
     /// Number of values of a series.
     pub values: Option<usize>,
     /// Whether it is a step that is stated, as above the values of one series, and no rate.
@@ -26,6 +31,8 @@ pub struct Stated {
     step: Option<f64>,
     /// Key that states that step without a unit, which is taken for s.
     pub assumed: Option<&'static str>,
+    /// Whether the abscissa is said to be a frequency.
+    pub lines_apart: bool,
     /// First instant in s.
     pub start: Option<f64>,
     /// Whether values are said to be complex.
@@ -34,8 +41,8 @@ pub struct Stated {
     pub line_width: Option<f64>,
     /// Unit as written.
     pub unit: Option<String>,
-    /// Factors of the values, other than 1, as written.
-    pub scale: Option<String>,
+    /// Factors of the values, other than 1.
+    pub scales: Vec<Scale>,
     /// Window.
     pub window: Option<Window>,
     /// Channel name or title.
@@ -44,14 +51,43 @@ pub struct Stated {
     pub notes: Vec<(String, String)>,
 }
 
+/// A rate with a mark before its last three digits, `1.000 Hz`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PerhapsRate {
+    /// As it is written.
+    pub said: String,
+    /// In Hz, where the mark is the decimal one.
+    pub decimal: f64,
+    /// In Hz, where it groups digits.
+    pub grouped: f64,
+}
+
+/// A factor of the values, as a head states it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scale {
+    /// As it is written: with its key, but for a plain scale factor.
+    pub said: String,
+    /// Whether it takes the signal of a sensor to what it measures, or is a gain of that signal: values in a
+    /// unit of motion or force have it in them.
+    pub of_signal: bool,
+}
+
+/// Keys of a factor of the values, and of one of a signal.
+const SCALE: &str = "slope|scale factor|scaling factor|multiplier|multiplikator|multiplicator|scale|skalierung|faktor|factor|\
+                     conversion factor|umrechnungsfaktor";
+const OF_SIGNAL: &str = "sensitivity|sensor sensitivity|transducer sensitivity|empfindlichkeit|sensibilité|sensibilità|sensibilidad|\
+                         gain|verstärkung|amplification|amplifier gain|gain factor|voltage divider|spannungsteiler|divider|\
+                         calibration factor|kalibrierfaktor|cal factor";
+
 /// Keys of a sampling rate, and of the step of time.
 const RATE: &str = "sampling rate|sample rate|sampling frequency|sample frequency|samplerate|samp freq|sampling freq|data rate|fs|rate|abtastrate|\
                     abtastfrequenz|fréquence d'échantillonnage|samples per second|scan rate|update rate|messrate|\
                     messfrequenz|samplingrate|samples/sec|samples/s|sampling speed|output data rate|odr|acquisition rate|logging rate|\
-                    frequenza di campionamento|frecuencia de muestreo|frequência de amostragem";
+                    frequenza di campionamento|frecuencia de muestreo|frequência de amostragem|taux|échantillonnage|\
+                    taux d'échantillonnage|muestreo|sampling|abtastung";
 const STEP: &str = "dt|delta t|sampling interval|sample interval|sampling period|time step|delta time|increment|clock|\
                     interval|time interval|tinc|sample period|scan interval|logging interval|abtastzeit|messintervall|x increment|xinc|x axis delta|hresolution|horizontal interval|delta|dx|sampling cycle|\
-                    x delta|xdelta|sampling|abtastintervall";
+                    x delta|xdelta|abtastintervall|サンプリング周期";
 /// Keys of what the abscissa is, or of its unit.
 const AXIS: &str = "x-axis|x axis|x-axis unit|x axis unit|xunit|xunits|x unit|hunit|horizontal units";
 
@@ -62,24 +98,29 @@ const MILLIHERTZ: &str = "millihertz";
 const MOST_LINES: f64 = 1e9;
 
 impl Stated {
-    /// Reads header lines.
-    pub fn of<'a>(lines: impl Iterator<Item = &'a str>) -> Stated {
-        let mut stated = Stated::default();
-        let mut lines_apart = false;
+    /// Reads header lines above rows with the decimal `mark`, where that is known.
+    pub fn of<'a>(lines: impl Iterator<Item = &'a str>, mark: Option<u8>) -> Stated {
+        let mut stated = Stated { mark, ..Stated::default() };
         for line in lines {
             // `NPTS= 6000, DT= .01 SEC` are two statements.
-            let several = line.split(',').all(|part| part.contains('='));
-            for line in line.split(',').filter(|_| several).chain((!several).then_some(line)) {
+            let between = [(',', ['=', '=']), ('\t', ['=', ':'])].into_iter();
+            let several =
+                |(mark, ends): &(char, [char; 2])| line.split(*mark).all(|part| part.contains(*ends));
+            let mark = between.filter(several).map(|(mark, _)| mark).find(|mark| line.contains(*mark));
+            for line in line.split(|c| Some(c) == mark) {
                 let line = line.trim().trim_matches('"').trim_start_matches([';', ' ']);
                 let line = line.strip_prefix("//").map_or(line, str::trim_start);
                 let (key, value) = split(line);
+                if stated.decimation.is_none() && is_decimated(line) {
+                    stated.decimation = Some(line.to_owned());
+                }
                 stated.notes.push((key.to_owned(), value.to_owned()));
                 let (key, value) = if key.is_empty() { behind_key(line) } else { (key, value) };
                 let key = key.replace("mHz", MILLIHERTZ).to_lowercase();
                 let said = value.to_lowercase();
                 stated.complex |= said == "complex" || said.contains("real and imaginary");
                 let hertz = matches!(said.as_str(), "hz" | "hertz") || said.starts_with("frequency");
-                lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
+                stated.lines_apart |= AXIS.split('|').any(|known| known == key) && hertz;
                 if key.is_empty() {
                     free_text(line, &mut stated);
                 } else {
@@ -87,7 +128,7 @@ impl Stated {
                 }
             }
         }
-        if lines_apart && stated.of_one_series {
+        if stated.lines_apart && stated.of_one_series {
             stated.rate = None;
             let step = stated.step.filter(|_| stated.start.is_none_or(|start| start == 0.0));
             stated.line_width = stated.line_width.or(step);
@@ -99,6 +140,11 @@ impl Stated {
     /// since analysers print the sampling rate too.
     pub(crate) fn all_lines(&self, n: usize) -> bool {
         self.base_band.is_some() && self.lines.is_some_and(|lines| lines as usize + 1 == n)
+    }
+
+    /// Whether a rate is stated, known or not.
+    pub fn states_rate(&self) -> bool {
+        self.rate.is_some() || self.perhaps_rate.is_some()
     }
 
     /// Distance of `n` lines in Hz, as the header states it.
@@ -139,6 +185,16 @@ fn behind_key(line: &str) -> (&str, &str) {
     unit.or_else(rate).map_or(("", line), |(key, value)| (key, value.trim()))
 }
 
+/// Whether a line says that only some of the values that were sampled are kept: `decimated by 2`.
+fn is_decimated(line: &str) -> bool {
+    let lower = line.to_lowercase();
+    let behind =
+        ["decimat", "dezimat", "dezimiert", "décimat"].iter().find_map(|word| lower.split_once(word));
+    let Some((_, behind)) = behind else { return false };
+    let factor = behind.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty());
+    factor.is_some_and(|factor| factor.trim_start_matches('0').parse::<u32>().is_ok_and(|n| n > 1))
+}
+
 /// Takes what stands under a key that is understood, where it is a possible value.
 fn keyed(key: &str, value: &str, stated: &mut Stated) {
     let (key, unit_in_key) = match key.find(['[', '(']) {
@@ -154,69 +210,86 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         unit_in_key.is_empty() && (of(RATE, &HERTZ) || of(STEP, &SECONDS))
     });
     let (key, unit_in_key) = behind.unwrap_or((key.as_str(), unit_in_key));
-    let hertz_of = |value: &str| {
+    let value = without_blanks(value);
+    let value = value.as_str();
+    let mark = stated.mark;
+    let hertz_with = |mark| {
         let value = value.replace("mHz", MILLIHERTZ);
-        quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ)
+        quantity(&samples_a_second(&value), &samples_a_second(unit_in_key), &HERTZ, mark)
     };
-    let hertz = || hertz_of(value);
+    // Nobody groups the digits of kilohertz; a head in English may stand above decimal commas.
+    let said = format!("{value} {unit_in_key}").to_lowercase();
+    let kilohertz = ["khz", "mhz", "ks/s"].iter().any(|unit| said.contains(unit));
+    let told = |own: u8| if kilohertz { mark == Some(own) } else { own == b'.' || mark != Some(own) };
+    let hertz = || hertz_with(mark).filter(|_| doubtful_mark(value).is_none_or(told));
+    let seconds_with = |mark| quantity(value, unit_in_key, &SECONDS, mark).and_then(|dt| checked(1.0 / dt));
+    // The rate by either mark, where the rows do not tell.
+    let perhaps = |rate_with: &dyn Fn(Option<u8>) -> Option<f64>| {
+        let own = doubtful_mark(value)?;
+        let (decimal, grouped) = (rate_with(Some(own))?, rate_with(Some(other_mark(own)))?);
+        Some(PerhapsRate { said: value.to_owned(), decimal, grouped })
+    };
+    let plain = || quantity(value, "", &[("", 1.0)], mark);
     let bare = unit_in_key.is_empty() && value.ends_with(|c: char| c.is_ascii_digit());
     // `bandwidth`, `span` and `resolution` are no keys: they also stand over time traces, and for other
     // things.
     match key.trim() {
         // Without a unit these may be anything, but for an increment beside a start.
         // SAC and its kin: a step in s, which is none above 1.
-        "delta" if bare && quantity(value, "", &[("", 1.0)]).is_some_and(|step| step < 1.0) => {
-            let step = quantity(value, "", &[("", 1.0)]);
+        "delta" if bare && plain().is_some_and(|step| step < 1.0) => {
+            let step = plain();
             stated.rate = stated.rate.or(step.and_then(|step| checked(1.0 / step)));
             stated.assumed = Some("DELTA");
             (stated.step, stated.of_one_series) = (step, true);
         }
         "rate" | "data rate" | "clock" | "delta" | "dx" | "x delta" | "xdelta" | "interval"
         | "time interval" | "odr" | "scan interval" | "logging interval" | "messintervall" | "sampling"
+        | "taux" | "échantillonnage" | "muestreo" | "abtastung"
             if bare => {}
         "increment" if bare && stated.start.is_none() => {}
         "lines" | "spectral lines" | "number of lines" | "no of lines" | "fft lines" => {
-            stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)]).and_then(line_count);
+            stated.lines = quantity(value, "", &[("", 1.0), ("lines", 1.0)], mark).and_then(line_count);
         }
         "base band" | "baseband" | "frequency range" | "frequency span" | "fmax" | "f max" => {
             stated.base_band = hertz();
         }
         key if RATE.split('|').any(|known| known == key) => {
-            stated.rate = hertz().or(stated.rate);
-            let ungrouped = || Some((value.to_owned(), hertz_of(&value.replace(',', ""))?));
-            stated.perhaps_rate = if stated.rate.is_none() { ungrouped() } else { None };
+            stated.rate = hertz().or_else(|| seconds_with(mark).filter(|_| !bare)).or(stated.rate);
+            stated.perhaps_rate = if stated.rate.is_none() { perhaps(&hertz_with) } else { None };
         }
         key if STEP.split('|').any(|known| known == key) => {
-            let rate = quantity(value, unit_in_key, &SECONDS).and_then(|dt| checked(1.0 / dt));
+            let rate = seconds_with(mark);
+            stated.perhaps_rate = stated.perhaps_rate.take().or_else(|| perhaps(&seconds_with));
             stated.of_one_series |= rate.is_some();
             stated.step = rate.map(|rate| 1.0 / rate).or(stated.step);
             stated.rate = stated.rate.or(rate);
         }
         "npts" | "number of points" | "number of samples" | "record length" | "memory length"
         | "blocksize" | "total data points" => {
-            stated.values = quantity(value, "", &[("", 1.0)]).and_then(line_count).map(|n| n as usize);
+            stated.values = plain().and_then(line_count).map(|n| n as usize);
         }
         "start" | "t0" | "time of first sample" | "start time s" | "x origin" | "xorg" | "hoffset" => {
-            let parsed = scaled(value, unit_in_key, &SECONDS);
+            let parsed = scaled(value, unit_in_key, &SECONDS, mark);
             stated.start = parsed.filter(|start| *start == 0.0 || checked(start.abs()).is_some());
         }
         "pre trigger length" | "pre trigger" | "pretrigger" | "pre trigger time" => {
-            let before = quantity(value.trim_start_matches('-'), unit_in_key, &SECONDS);
+            let before = quantity(value.trim_start_matches('-'), unit_in_key, &SECONDS, mark);
             stated.start = before.filter(|_| !bare).map(|before| -before).or(stated.start);
         }
         "df" | "delta f" | "line width" | "frequency resolution" | "line spacing" => {
             stated.line_width = hertz();
         }
-        "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "amplitude unit"
-        | "engineering unit" => {
+        "unit" | "units" | "y unit" | "yunit" | "y axis unit" | "einheit" | "unidad" | "unidade"
+        | "unité" | "unità" | "amplitude unit" | "engineering unit" => {
             let unit = Some(value.trim_matches(['[', ']']).to_owned());
             // One for each of several channels belongs to none.
             stated.unit = unit.filter(|v| !v.is_empty() && !v.contains([';', '\t']) && !v.contains(" and "));
         }
-        "slope" | "scale factor" | "scaling factor" => {
-            let other = |factor: &str| factor.parse::<f64>().is_ok_and(|factor| factor != 1.0);
-            stated.scale =
-                Some(value.to_owned()).filter(|all| all.split([';', ' ']).any(|f| other(f.trim())));
+        "y axis" if value.ends_with([']', ')']) => {
+            stated.unit = stated.unit.take().or(Name::parse(value).unit);
+        }
+        key if SCALE.split('|').chain(OF_SIGNAL.split('|')).any(|known| known == key) => {
+            stated.scales.extend(scale(key, value));
         }
         "window" | "weighting" | "window type" => {
             stated.window = Window::from_name(value.split([' ', '(']).next().unwrap_or(""))
@@ -227,6 +300,23 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
         }
         _ => {}
     }
+}
+
+/// What a factor under its key says, where one of its numbers is not 1, or it is a quotient of units:
+/// `1 V/g`.
+fn scale(key: &str, value: &str) -> Option<Scale> {
+    let words: Vec<&str> = value.split([';', ' ']).map(str::trim).filter(|word| !word.is_empty()).collect();
+    let first = number::either(words.first()?.trim_start_matches(['x', '×', '*']).as_bytes());
+    let quotient = first.is_some() && words.iter().any(|word| word.contains('/'));
+    let other =
+        |word: &&str| number::either(word.as_bytes().trim_ascii()).is_some_and(|factor| factor != 1.0);
+    // No gain in dB is none.
+    let none = first == Some(0.0);
+    let states = !none && (quotient || first.is_some_and(|factor| factor != 1.0) || words.iter().any(other));
+    let plain = matches!(key, "slope" | "scale factor" | "scaling factor");
+    let said = if plain { value.to_owned() } else { format!("{key}: {value}") };
+    let of_signal = quotient || OF_SIGNAL.split('|').any(|known| known == key);
+    states.then_some(Scale { said, of_signal })
 }
 
 /// Samples a second, as they are written, in Hz: `2 kS/s`, `100 samples/s`.
@@ -257,26 +347,79 @@ fn free_text(line: &str, stated: &mut Stated) {
     }
 }
 
-const HERTZ: [(&str, f64); 6] =
-    [(MILLIHERTZ, 1e-3), ("mhz", 1e6), ("khz", 1e3), ("hz", 1.0), ("1/s", 1.0), ("", 1.0)];
+const HERTZ: [(&str, f64); 9] = [
+    (MILLIHERTZ, 1e-3),
+    ("mhz", 1e6),
+    ("khz", 1e3),
+    ("hz", 1.0),
+    ("1/s", 1.0),
+    ("samples/min", 1.0 / 60.0),
+    ("samples per minute", 1.0 / 60.0),
+    ("1/min", 1.0 / 60.0),
+    ("", 1.0),
+];
 
 const SECONDS: [(&str, f64); 7] =
     [("ns", 1e-9), ("us", 1e-6), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0), ("sec", 1.0), ("", 1.0)];
 
 /// A number with one of `units` behind it (or the unit from the key), checked.
-fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> {
-    scaled(value, unit_in_key, units).and_then(checked)
+fn quantity(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
+    scaled(value, unit_in_key, units, mark).and_then(checked)
 }
 
-fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)]) -> Option<f64> {
+/// The number that a text begins with, as it is printed.
+fn printed(value: &str) -> &str {
+    value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next().unwrap_or_default()
+}
+
+/// The mark of the number that a text begins with, where it alone does not show whether that is the decimal
+/// one: `51,200`.
+fn doubtful_mark(value: &str) -> Option<u8> {
+    let printed = printed(value.trim()).as_bytes();
+    let mut marks = printed.iter().filter(|b| matches!(b, b'.' | b','));
+    let mark = marks.next().filter(|_| marks.next().is_none())?;
+    number::may_be_grouped(printed).then_some(*mark)
+}
+
+fn other_mark(mark: u8) -> u8 {
+    if mark == b',' { b'.' } else { b',' }
+}
+
+/// The decimal mark of a printed number: the last of two, none of several that are alike.
+fn decimal_mark(printed: &str) -> u8 {
+    let mut marks = printed.bytes().rev().filter(|b| matches!(b, b'.' | b','));
+    let last = marks.next().unwrap_or(b'.');
+    if marks.next() == Some(last) { other_mark(last) } else { last }
+}
+
+/// A value whose number has blanks between groups of three digits, without them: `1 000 Hz`.
+fn without_blanks(value: &str) -> String {
+    let digits = |word: &str| word.bytes().take_while(u8::is_ascii_digit).count();
+    let mut words = value.split([' ', '\u{a0}', '\u{202f}', '\u{2009}']);
+    let mut whole = words.next().unwrap_or_default().to_owned();
+    let mut groups = (1..=3).contains(&whole.len()) && digits(&whole) == whole.len();
+    for word in words {
+        groups &= digits(word) == 3 && !whole.ends_with(|c: char| !c.is_ascii_digit());
+        whole += if groups { "" } else { " " };
+        whole += word;
+    }
+    whole
+}
+
+/// As [`quantity`], of any sign. A mark that may be the decimal one or group digits is what `mark` of the
+/// rows says; without that it is nothing.
+fn scaled(value: &str, unit_in_key: &str, units: &[(&str, f64)], mark: Option<u8>) -> Option<f64> {
     let value = value.trim();
-    let printed = value.split(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).next()?;
-    // `51,200` may be 51 200.
-    let comma =
-        printed.contains(',') && !printed.contains('.') && !number::may_be_grouped(printed.as_bytes());
-    let (number, used) = number::prefix(value.as_bytes(), if comma { b',' } else { b'.' })?;
-    // `44100 Hz.  Linear scale.`
-    let rest = value.get(used..)?.trim();
+    let printed = printed(value);
+    let exponent = value[printed.len()..].starts_with(['e', 'E']);
+    let doubtful = doubtful_mark(value).is_some() && !exponent;
+    let decimal = if doubtful { mark? } else { decimal_mark(printed) };
+    let (number, used) = match number::parse_stated(printed.as_bytes(), decimal).filter(|_| !exponent) {
+        Some(number) => (number, printed.len()),
+        None => number::prefix(value.as_bytes(), decimal)?,
+    };
+    // `44100 Hz.  Linear scale.`, `1.0 kHz / filter 400 Hz`
+    let rest = value.get(used..)?.split(" / ").next()?.trim();
     let first = rest.split_whitespace().next().filter(|word| word.ends_with(['.', ',', ';'])).unwrap_or(rest);
     let rest = first.trim_end_matches(['.', ',', ';']).trim_matches(['[', ']']).to_lowercase();
     let unit = if rest.is_empty() { unit_in_key.to_lowercase() } else { rest };
@@ -297,7 +440,7 @@ mod tests {
     use super::*;
 
     fn of(lines: &[&str]) -> Stated {
-        Stated::of(lines.iter().copied())
+        Stated::of(lines.iter().copied(), None)
     }
 
     #[test]
@@ -322,14 +465,51 @@ mod tests {
         assert_eq!((s.lines, s.base_band), (Some(400.0), Some(20.0)));
     }
 
-    /// It may be 51.2 Hz or 51 200 Hz: the second is said, and none is used.
+    /// It may be 51.2 Hz or 51 200 Hz: where the rows do not tell, both are said and none is used.
     #[test]
     fn a_rate_in_groups_of_digits_is_a_question() {
-        for text in ["Sampling rate: 51,200", "Sample rate [Hz]: 51,200", "fs = 51,200 Hz"] {
+        for text in ["Sampling rate: 51,200", "Sample rate [Hz]: 51,200", "fs = 51,200 Hz", "fs = 51.200 Hz"]
+        {
             let s = of(&[text]);
-            assert_eq!((s.rate, s.perhaps_rate.map(|(_, rate)| rate)), (None, Some(51_200.0)), "{text}");
+            let perhaps = s.perhaps_rate.map(|perhaps| (perhaps.decimal, perhaps.grouped));
+            assert_eq!((s.rate, perhaps), (None, Some((51.2, 51_200.0))), "{text}");
         }
         assert_eq!(of(&["Sampling rate: 51,2 kHz"]).perhaps_rate, None);
+    }
+
+    /// `1.000` above decimal commas is a thousand, and one above decimal points.
+    #[test]
+    fn the_mark_of_the_rows_tells_what_the_mark_of_a_rate_is() {
+        let rate = |line: &str, mark| Stated::of(std::iter::once(line), Some(mark)).rate;
+        for (line, comma, point) in [
+            ("Abtastrate: 1.000 Hz", Some(1000.0), Some(1.0)),
+            ("Sampling rate: 1,000 Hz", None, Some(1000.0)),
+            ("fs: 1.000,0 Hz", Some(1000.0), Some(1000.0)),
+            ("fs: 1,000.0 Hz", Some(1000.0), Some(1000.0)),
+            ("fs: 1.000.000 Hz", Some(1e6), Some(1e6)),
+            ("Abtastrate: 51,2 kHz", Some(51_200.0), Some(51_200.0)),
+            ("fs: 1.000e3 Hz", Some(1000.0), Some(1000.0)),
+            ("fs: 0.500 Hz", Some(0.5), Some(0.5)),
+            // Nobody groups the digits of kilohertz: it is a question.
+            ("fs: 1.000 kHz", None, Some(1000.0)),
+            ("Abtastintervall: 1,000 ms", Some(1000.0), Some(1.0)),
+            ("Taux: 1 000 Hz", Some(1000.0), Some(1000.0)),
+            ("Échantillonnage : 1 kHz", Some(1000.0), Some(1000.0)),
+            ("Sampling: 2 ms", Some(500.0), Some(500.0)),
+            ("Rate: 60000 samples/min", Some(1000.0), Some(1000.0)),
+            ("Acquisition rate 1.0 kHz / filter 400 Hz", Some(1000.0), Some(1000.0)),
+        ] {
+            assert_eq!((rate(line, b','), rate(line, b'.')), (comma, point), "{line}");
+        }
+        let two = Stated::of(std::iter::once("Abtastrate [Hz]: 1.000\tKanäle: 2"), Some(b','));
+        assert_eq!((two.rate, two.notes.len()), (Some(1000.0), 2));
+    }
+
+    #[test]
+    fn a_head_that_speaks_of_decimation() {
+        let said = |line: &str| of(&[line]).decimation.is_some();
+        assert!(said("Sampling rate: 2000 Hz, decimated by 2") && said("Decimation: 4"));
+        assert!(!said("Decimation: 1") && !said("Decimation: none") && !said("Decimals: 3"));
     }
 
     #[test]

@@ -114,7 +114,7 @@ pub fn rate_of_columns(line: &Line, separator: Separator) -> Option<String> {
         1 => format!("{}: {last}", cells[0].trim_end_matches(':')),
         _ => return None,
     };
-    Stated::of(std::iter::once(stated.as_str())).rate.map(|_| stated)
+    Stated::of(std::iter::once(stated.as_str()), None).states_rate().then_some(stated)
 }
 
 /// Whether a line stands above all columns, such as `Waveform Data`, or is one of the preamble.

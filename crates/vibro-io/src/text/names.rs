@@ -91,9 +91,22 @@ impl Name {
             "" => Name::parse(text),
             unit => {
                 let unit = long(text, unit).unwrap_or(symbol(unit)).to_owned();
-                Name { name: text.trim().to_owned(), unit: Some(unit) }
+                let own = Name::parse(text);
+                // A unit that stands in both rows is one.
+                let name = if own.unit.as_deref() == Some(unit.as_str()) { &own.name } else { text.trim() };
+                Name { name: name.to_owned(), unit: Some(unit) }
             }
         }
+    }
+
+    /// Says that the name holds another unit than the row of units below it: `Acc [m/s²]` over `g`.
+    pub(crate) fn unit_differs(&self) -> Option<Finding> {
+        let used = self.unit.as_deref()?;
+        let own = Name::parse(&self.name).unit?;
+        let known = |unit: &str| Unit::parse(amplitude(unit).0);
+        let differ = known(&own)? != known(used)?;
+        let found = Finding::caution("unit-row-differs").name("head", own).name("used", used);
+        differ.then(|| found.name("column", self.name.as_str()))
     }
 
     /// Reads `t/s`, `a/(m/s²)`: a quantity over its unit; `None` for other text.
@@ -220,6 +233,15 @@ impl Name {
         if count { Some("count") } else { (warm && quantity == Quantity::Angle).then_some("temperature") }
     }
 
+    /// The factor to radians of a phase, which stands behind its magnitude.
+    pub fn phase(&self) -> Option<f64> {
+        let key = self.name.to_lowercase();
+        let named =
+            PHASES.iter().any(|word| begins(&key, word)) || PHASES.contains(&self.last_word().as_str());
+        let unit = Unit::parse(self.unit.as_deref()?).filter(|unit| unit.quantity() == Quantity::Angle);
+        unit.filter(|_| named).map(|unit| unit.factor())
+    }
+
     /// The last word of the name in lower case: `sample` of `loggingSample`, `loop_sample` and `Sample`.
     pub fn last_word(&self) -> String {
         let name = self.name.trim_end_matches(|c: char| !c.is_alphanumeric());
@@ -302,8 +324,21 @@ fn cut(line: &str, columns: usize, separator: Separator) -> Option<Vec<String>> 
     fit(split("\t")).or_else(|| fit(split("  "))).or_else(|| fit(words).filter(|_| sure))
 }
 
-/// Names of an abscissa that do not say of what: it rises, or it is none.
-const ABSCISSAE: [&str; 3] = ["x", "x-axis", "x axis"];
+/// Names of an abscissa that do not say of what, or also stand above dates: it rises, or it is none.
+const ABSCISSAE: [&str; 12] = [
+    "x",
+    "x-axis",
+    "x axis",
+    "datum",
+    "date",
+    "datetime",
+    "date time",
+    "zeitstempel",
+    "ts",
+    "epoch",
+    "tempo",
+    "tiempo",
+];
 
 /// Names of a time that are its unit.
 const WHOLE: [(&str, &str); 6] = [
@@ -325,6 +360,9 @@ const COUNT_WORDS: [&str; 9] =
 
 /// The unit of a column that counts, in heads of telephones: the set ℕ, and no newton.
 pub(super) const NATURAL: &str = "N";
+
+/// Words in the name of a phase.
+const PHASES: [&str; 5] = ["phase", "phasenwinkel", "fase", "angle", "фаза"];
 
 /// Words in the name of a force: its N is newton.
 const FORCES: [&str; 3] = ["force", "load", "kraft"];

@@ -205,6 +205,10 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
             .setting("decimal")
     };
     let comma = match options.decimal_comma {
+        // A comma before `057` stands in no row of whole numbers.
+        Some(false) if explicit.is_none() && any(&no_integers) && !any(&|line| !is_whole(line)) => {
+            return Ok((Separator::Blank, b'.'));
+        }
         Some(comma) => comma,
         None if explicit.is_none() && grouped(rows) => return Err(doubtful()),
         // Points are decimal marks, so commas separate.
@@ -225,6 +229,11 @@ fn marks(rows: &[Line], options: &Options) -> Result<(Separator, u8)> {
         None => return Err(doubtful()),
     };
     Ok(if comma { (explicit.unwrap_or(Separator::Blank), b',') } else { (explicit.unwrap_or(COMMA), b'.') })
+}
+
+/// Whether a line is a whole number, perhaps with a mark before its last three digits.
+fn is_whole(line: &str) -> bool {
+    number::may_be_grouped(line.as_bytes()) || line.bytes().all(|b| b.is_ascii_digit() || b == b'-')
 }
 
 /// Whether a comma in a line cannot stand between two integers.

@@ -33,7 +33,8 @@ pub fn build(
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Built>> {
     let n = rows.columns.iter().map(Held::len).max().unwrap_or(0);
-    let stated = Stated::of(dialect.header.iter().chain(&rows.remarks).map(String::as_str));
+    let said = dialect.header.iter().chain(&rows.remarks).map(String::as_str);
+    let stated = Stated::of(said, dialect.shown_mark(&text.head));
     let is_table = dialect.format == Format::Csv;
     let mut made = RecordContext { text, tail, dialect, is_table, options, stated, naturals: false };
     let mut of_axis = Vec::new();
@@ -93,21 +94,8 @@ pub fn build(
         of_axis.push(Finding::caution("two-channels"));
     }
     let mut built = Vec::new();
-    let table = made.joined(table, &axis)?;
-    if let Some(scale) = &made.stated.scale {
-        of_axis.push(Finding::caution("scale-in-head").name("scale", scale.as_str()));
-    }
-    let even: Vec<String> = table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
-    if !even.is_empty() {
-        of_axis.push(Finding::caution("columns-rise-evenly").name("columns", even.join(", ")));
-    }
-    let without = table.iter().filter(|column| column.name.unit.is_none()).count();
-    if let Some(unit) = made.stated.unit.as_deref().filter(|_| is_table && without > 1) {
-        of_axis.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
-    }
-    if let Some((n, all)) = repeats(&table) {
-        of_axis.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
-    }
+    let table = made.joined(table, &axis, &mut of_axis)?;
+    of_axis.extend(made.said_of(&table));
     for (i, column) in table.into_iter().enumerate() {
         let sparse = column.sparse;
         let mut column = match sparse {
@@ -146,7 +134,7 @@ fn of_one_channel(table: &[Column]) -> Result<()> {
     let name = table[at].label();
     let found = format!("{name:?} goes from {} to {} and back", short(one), short(next));
     Err(Error::usage(found, "rows of one channel or sensor")
-        .hint("write the rows of each number to a file of their own, or take out the column"))
+        .hint("keep the rows of one number in a file, those of the others each in a file of their own"))
 }
 
 /// The record of a column, and how its values are read again.
@@ -289,13 +277,13 @@ impl RecordContext<'_> {
             assumed.map(
                 |found| if found.code == code::AXIS_UNIT_ASSUMED { found.name("head", head) } else { found },
             );
-        let findings = assumed.into_iter().chain(found).collect();
+        let findings = column.name.unit_differs().into_iter().chain(assumed).chain(found).collect();
         let resolution = own * factor;
         Ok(PrintedAbscissa {
             axis,
             label,
             resolution,
-            assumed: by_name.is_none(),
+            assumed: by_name.is_none() && !self.over_hertz(),
             origin: since,
             clock,
             findings,
@@ -356,9 +344,48 @@ impl RecordContext<'_> {
         cell.map(colons).as_deref() == Some(":")
     }
 
+    /// Whether the head says that a column holds frequencies.
+    fn over_hertz(&self) -> bool {
+        self.stated.lines_apart && !self.stated.of_one_series
+    }
+
+    /// What is to be said of the columns of values together.
+    fn said_of(&self, table: &[Column]) -> Vec<Finding> {
+        let mut found = Vec::new();
+        let signal = table.iter().any(Column::may_be_signal);
+        let scales = self.stated.scales.iter().filter(|scale| signal || !scale.of_signal);
+        let scales: Vec<&str> = scales.map(|scale| scale.said.as_str()).collect();
+        if !scales.is_empty() {
+            found.push(Finding::caution("scale-in-head").name("scale", scales.join(", ")));
+        }
+        let even: Vec<String> =
+            table.iter().filter(|column| column.rises_evenly()).map(Column::label).collect();
+        if !even.is_empty() {
+            found.push(Finding::caution("columns-rise-evenly").name("columns", even.join(", ")));
+        }
+        let without = table.iter().filter(|column| column.name.unit.is_none()).count();
+        if let Some(unit) = self.stated.unit.as_deref().filter(|_| self.is_table && without > 1) {
+            found.push(Finding::caution("unit-for-all").name("unit", unit).count("n", without));
+        }
+        if let Some((n, all)) = repeats(table) {
+            found.push(Finding::caution("rows-repeat").count("n", n).count("all", all));
+        }
+        let held = table.iter().filter_map(|column| Some((column.held()?, column.label())));
+        let held: Vec<(usize, String)> = held.collect();
+        for of_length in held.chunk_by(|a, b| a.0 == b.0) {
+            let labels: Vec<&str> = of_length.iter().map(|(_, label)| label.as_str()).collect();
+            let held = Finding::caution("values-held").count("n", of_length[0].0);
+            found.push(held.name("columns", labels.join(", ")));
+        }
+        found
+    }
+
     /// Time or frequency, by what a person or the header states of `n` values.
     fn domain(&self, n: usize) -> Option<AxisKind> {
         let (options, stated) = (self.options, &self.stated);
+        if self.over_hertz() {
+            return Some(AxisKind::Frequency);
+        }
         let spectrum = options.base_band.is_some() || stated.all_lines(n);
         if options.rate.is_some() || (!spectrum && stated.rate.is_some()) {
             return Some(AxisKind::Time);
@@ -367,14 +394,22 @@ impl RecordContext<'_> {
         spectrum.then_some(AxisKind::Frequency)
     }
 
-    /// Joins real and imaginary parts that belong together; over time there are none.
-    fn joined(&self, table: Vec<Column>, axis: &Axis) -> Result<Vec<Column>> {
+    /// Joins real and imaginary parts that belong together, and the magnitude of a response function with the
+    /// phase behind it; over time there are none.
+    fn joined(&self, table: Vec<Column>, axis: &Axis, found: &mut Vec<Finding>) -> Result<Vec<Column>> {
         let parts = !self.dialect.complex && axis.kind != AxisKind::Time;
         let unnamed = self.dialect.names.is_none() && axis.kind == AxisKind::Frequency;
         let (n, stated) =
             (table.len(), self.options.complex || self.stated.complex && unnamed && table.len() == 2);
         let mut out: Vec<Column> = Vec::new();
         for column in table {
+            if let Some(magnitude) = out.last_mut().filter(|_| parts && axis.kind == AxisKind::Frequency)
+                && magnitude.take_phase(&column)
+            {
+                let name = format!("{}, {}", magnitude.label(), column.label());
+                found.push(Finding::note("magnitude-and-phase").name("columns", name));
+                continue;
+            }
             let partner = match column.name.part() {
                 _ if !parts => None,
                 Some((ComplexPart::Imaginary, whole)) => {
@@ -416,6 +451,7 @@ impl RecordContext<'_> {
         let unknown = column.name.unknown_unit().map(str::to_owned);
         let whole = || column.reals().iter().all(|v| v.fract() == 0.0);
         let against = column.name.against_unit(self.naturals, whole).filter(|_| self.options.unit.is_none());
+        let differs = column.name.unit_differs().filter(|_| self.options.unit.is_none());
         let Column { at, name: Name { name, unit }, mut values, .. } = column;
         let title = self.stated.name.as_deref().unwrap_or_default();
         let name = match (self.dialect.columns, self.is_table) {
@@ -452,6 +488,7 @@ impl RecordContext<'_> {
         } else {
             self.options.adopt(&mut meta, said)
         };
+        meta.findings.extend(differs);
         values.scale(factor)?;
         let spectral = self.spectral(&meta.name, unit);
         let (record, ends) = values.record(meta, axis.clone(), spectral)?;

@@ -3,13 +3,14 @@
 use super::clock::Stopwatch;
 use super::decoded::{in_line, shorten};
 use super::dialect::Dialect;
-use super::lines::{Fields, Line, Lines};
+use super::lines::{Fields, Line, Lines, Separator};
 use super::numbers::complex;
 use super::tail::CUT_OFF;
 use crate::held::Held;
 use crate::missing::Missing;
 use crate::{Format, number};
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::ops::Range;
 use vibro_record::units::notation::counted;
 use vibro_record::{Error, Result, Values};
@@ -260,7 +261,18 @@ impl FieldParser<'_> {
         let at = fields.get(n).map_or(line.text.len(), |(at, _)| *at);
         let found = counted(fields.len(), "field") + " in this row";
         let expected = format!("{n}, as many as in line {}", self.dialect.columns_from);
-        fault(line, at, &found, &expected).hint(self.hint(line, "mend or remove the row"))
+        let error = fault(line, at, &found, &expected);
+        let whole = |(_, field): &(usize, Cow<str>)| !field.contains('.') && self.value(field).is_some();
+        if self.dialect.separator == Separator::Char(b',')
+            && fields.len() == 2 * n
+            && fields.iter().all(whole)
+        {
+            return error.hint(
+                "if commas are decimal marks here, they cannot separate cells, too: export with semicolons or tabs \
+                 between cells, or with decimal points",
+            );
+        }
+        error.hint(self.hint(line, "mend or remove the row"))
     }
 
     fn not_a_number(&self, line: &Line, at: usize, field: &str) -> Error {
@@ -275,6 +287,10 @@ impl FieldParser<'_> {
         {
             let hint = "state whether the decimal mark is a comma or a point; the other mark groups digits";
             return error.hint(hint).setting("decimal");
+        }
+        let inner = field.strip_prefix('(').and_then(|inner| inner.strip_suffix(')'));
+        if let Some(inner) = inner.filter(|inner| self.value(inner).is_some()) {
+            return error.hint(format!("if brackets mean less than zero, write -{inner}; in all rows alike"));
         }
         // No value can be missing there.
         if self.dialect.names.is_some() && line.text[..at].trim_matches([' ', '"']).is_empty() {

@@ -21,7 +21,7 @@ use super::preamble::{BESIDE, Preamble, beside, beside_rows, key_and_value};
 use crate::{Format, Options, number};
 use std::borrow::Cow;
 use vibro_record::units::Unit;
-use vibro_record::{AxisKind, Error, Result};
+use vibro_record::{AxisKind, Error, Finding, Result};
 
 /// From the one that stands in numbers least to the one that does most.
 const SEPARATORS: [u8; 3] = *b"\t;,";
@@ -133,11 +133,11 @@ fn decided(found: Dialect, text: &Text, options: &Options) -> Dialect {
 }
 
 /// Refuses whole numbers with a mark before their last three digits, `1,000` beside `998`, where nothing
-/// shows that the mark is not the decimal one.
+/// shows that the mark is not the decimal one; says which columns hold only such numbers.
 ///
 /// # Errors
 /// Names the first of them.
-pub fn grouped(text: &Text, dialect: &Dialect) -> Result<()> {
+pub fn grouped(text: &Text, dialect: &Dialect) -> Result<Option<Finding>> {
     let mut columns = vec![(None, false); dialect.columns];
     for line in dialect.rows(&text.head).filter(|line| line.remark.is_none() && !dialect.stated) {
         let cells = dialect.cut(&line).unwrap_or_default().into_iter().zip(&mut columns).enumerate();
@@ -145,19 +145,29 @@ pub fn grouped(text: &Text, dialect: &Dialect) -> Result<()> {
             if number::may_be_grouped(cell.as_bytes()) {
                 first.get_or_insert((in_line(line.number).column(line.column(at)), shorten(&cell)));
             } else if cell.contains([',', '.']) {
-                return Ok(());
+                return Ok(None);
             } else {
                 *whole |= !cell.is_empty();
             }
         }
     }
-    let doubtful = columns.into_iter().find_map(|(first, whole)| first.filter(|_| whole));
-    doubtful.map_or(Ok(()), |(place, cell)| {
+    if let Some((place, cell)) = columns.iter().find_map(|(first, whole)| first.as_ref().filter(|_| *whole)) {
         let found = format!("{cell:?} beside whole numbers may be grouped digits");
-        Err(Error::input(place, found, "a file where this can be told")
+        return Err(Error::input(place.clone(), found, "a file where this can be told")
             .hint("say which mark is the decimal one: comma or point; the other groups digits")
-            .setting("decimal"))
-    })
+            .setting("decimal"));
+    }
+    let name = |at: usize| dialect.names.as_ref().map_or("", |names| &names[at].name);
+    let label = |at: usize| Some(name(at).to_owned()).filter(|name| !name.is_empty());
+    let all = columns.iter().enumerate().filter_map(|(at, (first, _))| Some((at, first.as_ref()?)));
+    let labels: Vec<String> =
+        all.clone().map(|(at, _)| label(at).unwrap_or_else(|| format!("column {}", at + 1))).collect();
+    let first = all.map(|(_, (_, cell))| cell).next();
+    Ok(first.map(|cell| {
+        let other = if dialect.decimal == b',' { "point" } else { "comma" };
+        let found = Finding::caution("digits-may-be-grouped").name("columns", labels.join(", "));
+        found.name("cell", cell.as_str()).name("other", other)
+    }))
 }
 
 /// The dialect with the names that stand in the lines above `first`, in rows of their own or behind keys, and
@@ -234,7 +244,7 @@ fn fit(
     let head = || above.iter().filter(|l| !used.contains(&l.number));
     // A rate behind its key goes before a row of rates, which may be those of a filter.
     let keyed: Vec<String> = head().map(|l| key_and_value(l, separator)).collect();
-    let is_stated = Stated::of(keyed.iter().map(String::as_str)).rate.is_some();
+    let is_stated = Stated::of(keyed.iter().map(String::as_str), None).states_rate();
     let header = head().zip(&keyed).map(|(l, keyed)| {
         let rate = rate_of_columns(l, separator).filter(|_| l.remark.is_none() && !is_stated);
         rate.unwrap_or_else(|| keyed.clone())

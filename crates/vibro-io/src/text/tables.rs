@@ -39,6 +39,9 @@ pub fn longest(text: &Text, line: u64) -> Result<Option<(Source, Finding)>> {
     } else {
         return Ok(None);
     };
-    let found = Finding::caution("table-left-out").count("n", left);
+    let found = match left {
+        0 => Finding::caution("lines-left-out").count("line", line as usize),
+        left => Finding::caution("table-left-out").count("n", left),
+    };
     Ok(Some((text.source.with_bytes(kept)?, found)))
 }

@@ -1081,11 +1081,228 @@ fn a_unit_above_all_is_that_of_those_without_one_and_said_of_several() {
 fn a_rate_with_a_comma_before_three_digits_is_named_as_what_it_may_be() {
     let found = of("Sampling rate,\"51,200\"\nacc (g),force (N)\n1,2\n3,1\n2,2\n");
     assert!(
-        has_finding(&found.findings, "abscissa-unsaid", &["variable=51,200", "rate=51200"]),
+        has_finding(&found.findings, "abscissa-unsaid", &["said=51,200", "decimal=51.2", "grouped=51200"]),
         "{:?}",
         found.findings
     );
     assert_eq!(found.records[0].axis().kind, AxisKind::Index);
+}
+
+#[test]
+fn three_digits_behind_every_mark_are_said_to_be_groups_perhaps() {
+    let rows = |rows: &str| of(format!("Time (ms);Force (N)\n{rows}"));
+    let said =
+        |found: &Recording, facts: &[&str]| has_finding(&found.findings, "digits-may-be-grouped", facts);
+    let comma = rows("0;16,166\n1;17,216\n2;18,104\n");
+    assert!(said(&comma, &["columns=Force", "cell=16,166", "other=point"]), "{:?}", comma.findings);
+    assert!(said(&rows("0;16.166\n1;17.216\n2;18.104\n"), &["other=comma"]));
+    let plain = Reader::new().from_reader("x.txt", &b"fs: 1000 Hz\nForce (N)\n16,129\n17,041\n"[..]).unwrap();
+    assert!(said(&plain, &["cell=16,129"]), "{:?}", plain.findings);
+    // What shows the mark to be the decimal one, in any column; what a person states.
+    assert!(!said(&rows("0;16.166\n1;0.216\n2;18.104\n"), &[]));
+    assert!(!said(&of("Time (s);Force (N)\n0.000;16.166\n0.001;17.216\n"), &[]));
+    let stated = Reader::new()
+        .decimal_comma(Some(true))
+        .from_reader("x.csv", &b"a;b\n1;16.166\n3;17.216\n"[..])
+        .unwrap();
+    assert!(!said(&stated, &[]));
+    assert_eq!(values(&stated.records[1]), [16_166.0, 17_216.0]);
+}
+
+#[test]
+fn a_scale_that_a_head_states_is_said_where_values_may_lack_it() {
+    let scale = |head: &str, unit: &str| {
+        let found = of(format!("{head}\nTime (s),A ({unit})\n0.0,0.5\n0.1,1.5\n0.2,0.5\n")).all_findings();
+        let said = found.iter().find(|found| found.code == "scale-in-head")?.facts.clone();
+        Some(format!("{said:?}"))
+    };
+    for (head, words) in [
+        ("Multiplier,0.001", "multiplier: 0.001"),
+        ("Gain = 10", "gain: 10"),
+        ("# Sensitivity: 10.2 mV/(m/s²)", "10.2 mV/(m/s²)"),
+        ("Scale: 1 V/g", "scale: 1 V/g"),
+        ("Voltage divider: 10", "10"),
+    ] {
+        let said = scale(head, "V").unwrap_or_else(|| panic!("{head}"));
+        assert!(said.contains(words), "{head}: {said}");
+    }
+    assert!(scale("Multiplier: 0.001", "m/s²").is_some());
+    for (head, unit) in [
+        ("Gain: 1", "V"),
+        ("Gain: 0 dB", "V"),
+        ("Multiplier: 1", "V"),
+        ("Scale: linear", "V"),
+        // A unit of motion says that the sensitivity is in the values.
+        ("Sensitivity: 10.2 mV/(m/s²)", "m/s²"),
+        ("Gain: 10", "m/s²"),
+    ] {
+        assert_eq!(scale(head, unit), None, "{head}");
+    }
+}
+
+#[test]
+fn a_row_of_units_that_contradicts_a_name_is_said() {
+    let rows = "0.0,0.5\n0.1,1.5\n0.2,0.5\n";
+    let found = of(format!("Time [s],Acc [m/s²]\ns,g\n{rows}"));
+    assert!(has_finding(&found.all_findings(), "unit-row-differs", &["head=m/s²", "used=g"]));
+    let times = of(format!("Time [s],Acc [g]\nms,g\n{rows}"));
+    assert!(has_finding(&times.all_findings(), "unit-row-differs", &["head=s", "used=ms"]));
+    let same = of(format!("Time [s],Acc [m/s²]\ns,m/s²\n{rows}"));
+    assert!(same.all_findings().is_empty(), "{:?}", same.all_findings());
+    assert_eq!(same.records[0].meta().name, "Acc");
+}
+
+#[test]
+fn values_that_stand_several_times_each_are_said() {
+    let sine = |i: usize| (0.7 * i as f64).sin();
+    let said = |value: &dyn Fn(usize) -> f64| {
+        let rows: String =
+            (0..400).fold(String::new(), |all, i| all + &format!("{i},{:.4},{}\n", value(i), sine(i)));
+        let found = of(format!("Time (ms),A (g),B (g)\n{rows}")).findings;
+        found.into_iter().find(|found| found.code == "values-held").map(|found| format!("{:?}", found.facts))
+    };
+    for n in [2, 4] {
+        let found = said(&|i| sine(i / n)).unwrap_or_else(|| panic!("{n}"));
+        assert!(found.contains(&format!("Number({n}.0)")) && found.contains("\"A\""), "{found}");
+    }
+    // Coarse digits, a switch, steps that rise evenly, and plain values.
+    let others: [&dyn Fn(usize) -> f64; 5] = [
+        &|i| (4.0 * (0.05 * i as f64).sin()).round(),
+        &|i| f64::from((i / 4).is_multiple_of(2)),
+        &|i| (i / 4) as f64,
+        &|i| if i < 200 { 0.0 } else { sine(i) },
+        &sine,
+    ];
+    for (at, value) in others.iter().enumerate() {
+        assert_eq!(said(*value), None, "{at}");
+    }
+}
+
+#[test]
+fn a_minus_of_any_kind_is_one_and_brackets_are_asked_about() {
+    let text = |cell: &str| format!("Time (s);Acc (g)\n0.0;0.5\n0.1;{cell}\n0.2;0.5\n");
+    for cell in ["-1.5", "−1.5", "–1.5", "1.5-"] {
+        assert_eq!(values(&of(text(cell)).records[0])[1], -1.5 * 9.806_65, "{cell}");
+    }
+    let brackets = Reader::new().from_reader("x.csv", text("(1.5)").as_bytes()).unwrap_err().to_string();
+    assert!(brackets.contains("write -1.5"), "{brackets}");
+    assert!(Reader::new().from_reader("x.csv", text("--1.5").as_bytes()).is_err());
+}
+
+#[test]
+fn rows_with_names_in_quotes_below_a_shorter_line_of_names() {
+    let rows = "\"1\" 0 0.5 1\n\"2\" 0.001 1.5 3\n\"3\" 0.002 2.5 5\n";
+    let text = format!("\"time\" \"acc.mps2\" \"force (N)\"\n{rows}");
+    let found = Reader::new().from_reader("x.txt", text.as_bytes()).unwrap();
+    let names: Vec<&str> = found.records.iter().map(|record| record.meta().name.as_str()).collect();
+    assert_eq!((names, values(&found.records[1])), (vec!["acc.mps2", "force"], &[1.0, 3.0, 5.0][..]));
+    assert_eq!(found.records[0].axis(), &Axis::time(0.0, 1e-3, 3));
+}
+
+#[test]
+fn magnitude_and_phase_of_a_function_are_one_complex_record() {
+    let table = |names: &str| of(format!("{names}\n1.0,2.0,90\n2.0,4.0,180\n3.0,1.0,-90\n4.0,1.0,0\n"));
+    let function = table("Frequency (Hz),Magnitude (g/N),Phase (deg)");
+    let [Record::Frf(record)] = function.records.as_slice() else { panic!("{:?}", function.records) };
+    let values = &record.values;
+    assert!((values[0] - Complex64::new(0.0, 2.0 * 9.806_65)).norm() < 1e-12, "{values:?}");
+    assert!((values[1] - Complex64::new(-4.0 * 9.806_65, 0.0)).norm() < 1e-12, "{values:?}");
+    // A response beside its force is no function; an angle beside a function no phase.
+    for names in ["Frequency (Hz),Amp (µm),Phase (deg)", "Frequency (Hz),Magnitude (g/N),Tilt (deg)"] {
+        assert_eq!(table(names).records.len(), 2, "{names}");
+    }
+}
+
+#[test]
+fn what_is_said_of_a_table_that_cannot_be_read_as_it_is() {
+    let why = |text: &str| Reader::new().from_reader("x.csv", text.as_bytes()).unwrap_err().to_string();
+    let commas = why("Time (s),Acc (m/s²)\n0,000,1,16602\n0,001,2,24792\n");
+    assert!(commas.contains("cannot separate cells, too"), "{commas}");
+    let rows: String = (0..40)
+        .map(|i| format!("{i},{},0.{}\n", if i % 2 == 0 { "A" } else { "B" }, i * i % 7))
+        .collect::<Vec<_>>()
+        .concat();
+    let words = why(&format!("Time (ms),sensor,acc (g)\n{rows}"));
+    assert!(words.contains("keep the rows of one word") && !words.contains("take out"), "{words}");
+    let numbers = why(&format!("Time (ms),id,acc (g)\n{}", rows.replace('A', "1").replace('B', "2")));
+    assert!(numbers.contains("keep the rows of one number") && !numbers.contains("take out"), "{numbers}");
+    let batch = |rate: f64, lost: bool| {
+        let kept = (0..200).filter(|i| !lost || !(50..100).contains(i));
+        let rows: String =
+            kept.map(|i| format!("{},{}\n", (i / 10) * 20, i * i % 7)).collect::<Vec<_>>().concat();
+        Reader::new()
+            .rate(Some(rate))
+            .from_reader("x.csv", format!("timestamp_ms,acc (g)\n{rows}").as_bytes())
+    };
+    let even = batch(500.0, false).unwrap();
+    assert_eq!(even.records[0].axis(), &Axis::time(0.0, 2e-3, 200));
+    let lost = batch(500.0, true).unwrap_err().to_string();
+    assert!(lost.contains("where samples are missing") && !lost.contains("--rate"), "{lost}");
+}
+
+#[test]
+fn days_of_a_sheet_with_decimal_commas_and_epochs_in_microseconds() {
+    let rows: String = (0..100)
+        .map(|i| format!("45413,{:010};1,{}\n", 5_000_000_000_u64 + 1157 * i, i * i % 7))
+        .collect::<Vec<_>>()
+        .concat();
+    let days = of(format!("Datum;Schwinggeschw. [mm/s]\n{rows}"));
+    assert_eq!(days.records[0].axis().kind, AxisKind::Time);
+    assert!((1.0 / days.records[0].axis().step().unwrap() - 100.0).abs() < 0.1);
+    let rows: String = (0..100)
+        .map(|i| format!("{},1.{}\n", 1_714_556_000_123_456_u64 + 500 * i, i * i % 7))
+        .collect::<Vec<_>>()
+        .concat();
+    let epoch = of(format!("ts,\"Accel, m/s²\"\n{rows}"));
+    assert!((epoch.records[0].axis().step().unwrap() - 5e-4).abs() < 1e-9);
+    // A date that is a number stands beside its clock.
+    let rows: String =
+        (0..20).map(|i| format!("20240501,12:00:{i:02}.000,{}\n", i * i % 7)).collect::<Vec<_>>().concat();
+    let dated = of(format!("Date,Time,acc (g)\n{rows}"));
+    assert!(dated.records.iter().all(|record| record.axis().kind == AxisKind::Time));
+}
+
+#[test]
+fn seconds_and_their_parts_in_two_columns() {
+    for (names, unit) in [("tv_sec,tv_usec", 1000), ("header.stamp.secs,header.stamp.nsecs", 1_000_000)] {
+        let row = |i: usize| {
+            format!("{},{},{}.5\n", 1_714_556_000 + (i + 950) / 1000, (i + 950) % 1000 * unit, i * i % 7)
+        };
+        let found = of(format!("{names},acc (g)\n{}", (0..200).map(row).collect::<String>()));
+        assert_eq!(found.records.len(), 1, "{names}");
+        let step = found.records[0].axis().step().unwrap();
+        assert!((step - 1e-3).abs() < 1e-9, "{names}: {step}");
+    }
+    // A cell that is no whole number.
+    let odd = of("sec,usec,acc (g)\n1.5,3,2.5\n2.5,4,3.5\n3.5,9,4.5\n");
+    assert_eq!((odd.records.len(), odd.records[0].axis().start()), (2, 1.5));
+}
+
+#[test]
+fn a_head_that_says_that_the_abscissa_is_a_frequency() {
+    let rows: String =
+        (0..40).map(|i| format!("{}\t{i}.0\t{}.5\n", i + 1, i * i % 7)).collect::<Vec<_>>().concat();
+    let head =
+        "Function:\tAutospectrum\nX-Axis:\tFrequency [Hz]\nY-Axis:\tAcceleration [dB/1E-6 m/s²]\nData:\n";
+    let Record::Spectrum(spectrum) = plain(&format!("{head}{rows}")) else { panic!() };
+    assert_eq!(spectrum.axis.step(), Some(1.0));
+    assert!(spectrum.meta.unit.is_level(), "{:?}", spectrum.meta);
+    // A rate would make a trace of the spectrum.
+    let rated = Reader::new().rate(Some(100.0)).from_reader("x.txt", format!("{head}{rows}").as_bytes());
+    assert!(rated.unwrap_err().to_string().contains("holds a frequency"));
+}
+
+#[test]
+fn decimal_commas_below_a_rate_tell_that_its_point_groups_digits() {
+    let rate = |text: &str| of(text).records[0].axis().step().map(|step| (1.0 / step).round());
+    assert_eq!(rate("Abtastrate: 1.000 Hz\nA (V);B (V)\n0,5;1,5\n2,5;3,5\n"), Some(1000.0));
+    assert_eq!(rate("Sample rate: 1,000 Hz\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n"), Some(1000.0));
+    // Whole numbers tell nothing.
+    let whole = of("Abtastrate: 1.000 Hz\nA (V);B (V)\n5;15\n25;35\n");
+    assert!(has_finding(&whole.findings, "abscissa-unsaid", &["decimal=1", "grouped=1000"]));
+    // Decimation is said: the rate may be that before it.
+    let kept = of("Sampling rate: 2000 Hz, decimated by 2\nA (V);B (V)\n0.5;1.5\n2.5;3.5\n");
+    assert!(has_finding(&kept.findings, "rate-decimated", &["rate=2000"]), "{:?}", kept.findings);
 }
 
 #[test]

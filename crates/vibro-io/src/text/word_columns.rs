@@ -72,8 +72,16 @@ pub fn left_out(text: &Text) -> Result<Option<LeftOut>> {
     let Some(mut scan) = Scan::of(&whole, separator, first, &columns) else { return Ok(None) };
     let rows = scan.rows;
     let named = |held: &&mut Held| held.names || held.returns * STATE > rows;
-    if let Some(why) = scan.held.iter_mut().find(named).and_then(|held| held.mixed.take()) {
-        return Err(why);
+    if let Some(held) = scan.held.iter_mut().find(named)
+        && let Some(why) = held.mixed.take()
+    {
+        // Words in turns name sensors; what changes now and then may be a state of one.
+        let turns = 2 * held.changes > rows;
+        return Err(why.hint(if turns {
+            "keep the rows of one word in a file, those of the others each in a file of their own"
+        } else {
+            "if the words name sensors, keep the rows of one; if they are a state of one sensor, take out the column"
+        }));
     }
     let found = scan.named_with_units(separator, &columns);
     let source = text.source.with_bytes(scan.kept)?;
@@ -208,7 +216,6 @@ impl Held {
                 let found = format!("{:?} below {:?}", shorten(cell), shorten(last));
                 let place = in_line(line.number).column(line.column(at));
                 Error::input(place, found, "numbers, or words that do not come back")
-                    .hint("write the rows of each word to a file of their own, or take out the column")
             });
         }
         cell.clone_into(&mut self.last);

@@ -106,7 +106,12 @@ impl Measured {
             return Err(refused.unwrap_or_else(|| {
                 let error = Error::refused(format!("no frequency response function{what}"));
                 let traces = records.iter().filter(|record| matches!(record, Record::Trace(_))).count();
+                let spectra = records.iter().any(|record| matches!(record, Record::Spectrum(_)));
                 match traces {
+                    0 if spectra && channel.is_none() => error.hint(
+                        "write amplitudes divided by the force in one column, headed with a unit such as \
+                         Receptance (µm/N), and the phase in the next",
+                    ),
                     0 => error.hint("`vibro info` lists what is in the file"),
                     1 => error
                         .hint("`vibro decay` finds the modes of a free decay; a function needs two channels"),
