@@ -86,12 +86,10 @@ pub use sweep::SweepReader;
 pub use sweep_list::SweepList;
 pub use vibro_record as record;
 
-pub(crate) use options::Options;
-pub(crate) use source::Source;
-
 #[cfg(test)]
 mod tests {
-    use crate::{Header, Reader, Recording, Source};
+    use crate::source::Source;
+    use crate::{Header, Reader, Recording};
     use std::borrow::Cow;
     use vibro_record::{Fact, Finding, Result};
 

@@ -32,9 +32,12 @@ pub(crate) mod unit_words;
 mod word_columns;
 mod wrapped;
 
+use crate::format::Format;
 use crate::held::{Contents, Held};
+use crate::limit::Limit;
 use crate::options::Options;
-use crate::{Format, Limit, Source, level, magnitude, missing, number};
+use crate::source::Source;
+use crate::{level, magnitude, missing, number};
 use decoded::{Text, with_text};
 use dialect::Dialect;
 use fast::RowShape;

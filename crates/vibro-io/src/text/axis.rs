@@ -1,8 +1,8 @@
 //! The abscissa of a text: what a person states, what a column holds, what the header states.
 
 use super::header::{PerhapsRate, Stated};
-use crate::Options;
 use crate::assemble::{NOMINAL, domain, short};
+use crate::options::Options;
 use vibro_record::code;
 use vibro_record::{Axis, AxisKind, Clock, Error, Finding, Grid, Result, evened};
 

@@ -3,7 +3,8 @@
 use super::clock;
 use super::lines::{Fields, Line, Lines, Separator, fields};
 use super::names::Name;
-use crate::{Format, number};
+use crate::format::Format;
+use crate::number;
 use std::ops::Range;
 
 /// Rows that show the decimal mark.

@@ -5,10 +5,10 @@
 
 use super::dialect::Dialect;
 use super::lines::Separator;
-use crate::Source;
 use crate::held::{Held, rises};
 use crate::number::{self, Exponential};
 use crate::source::ReadSeek;
+use crate::source::Source;
 use rayon::prelude::*;
 use std::io::{self, Read, SeekFrom, Take};
 use std::slice::IterMut;

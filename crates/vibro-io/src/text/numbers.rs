@@ -13,7 +13,9 @@ use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::table::beginning;
 use super::{clock, names};
-use crate::{Format, Options, number};
+use crate::format::Format;
+use crate::number;
+use crate::options::Options;
 use num_complex::Complex64;
 use vibro_record::units::Unit;
 use vibro_record::{Error, Result};
@@ -307,7 +309,7 @@ mod tests {
     use super::*;
 
     fn with(text: &str, options: &Options) -> Result<Dialect> {
-        detect(&Text::of(&crate::Source::memory("x.txt", text.as_bytes())?, None), options)
+        detect(&Text::of(&crate::source::Source::memory("x.txt", text.as_bytes())?, None), options)
     }
 
     fn layout(text: &str) -> Result<Dialect> {

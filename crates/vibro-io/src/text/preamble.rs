@@ -13,7 +13,8 @@ use super::decoded::Text;
 use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines, Separator, fields};
 use super::names::Name;
-use crate::{Format, number};
+use crate::format::Format;
+use crate::number;
 use std::borrow::Cow;
 use vibro_record::AxisKind;
 

@@ -10,7 +10,8 @@
 use super::decoded::Text;
 use super::encoding;
 use super::lines::{Fields, Lines, Separator, fields};
-use crate::{Source, number};
+use crate::number;
+use crate::source::Source;
 use vibro_record::Result;
 
 /// Rows that show it.

@@ -6,9 +6,10 @@ use super::dialect::Dialect;
 use super::lines::{Fields, Line, Lines, Separator};
 use super::numbers::complex;
 use super::tail::CUT_OFF;
+use crate::format::Format;
 use crate::held::Held;
 use crate::missing::Missing;
-use crate::{Format, number};
+use crate::number;
 use num_complex::Complex64;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -318,7 +319,8 @@ mod tests {
     use super::super::decoded::Text;
     use super::super::table;
     use super::*;
-    use crate::{Options, Source};
+    use crate::options::Options;
+    use crate::source::Source;
 
     fn rows(text: &str, allow_missing: bool) -> Result<Rows> {
         let source = Source::memory("x.csv", text.as_bytes()).unwrap();

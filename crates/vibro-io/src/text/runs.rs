@@ -11,7 +11,7 @@ use super::dialect::Dialect;
 use super::encoding;
 use super::lines::{Lines, fields};
 use super::word_columns::without;
-use crate::Source;
+use crate::source::Source;
 use vibro_record::{AxisKind, Result};
 
 /// For each of several runs which columns are not its own; none of a text without such runs.

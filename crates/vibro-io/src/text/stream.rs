@@ -1,7 +1,7 @@
 //! Columns of a long text, read again block by block: what was looked at once need not be held.
 
 use super::fast::{Blocks, RowShape, parsed};
-use crate::Source;
+use crate::source::Source;
 use std::path::PathBuf;
 use vibro_record::{Error, Meta, Place, Result, Stream, units};
 

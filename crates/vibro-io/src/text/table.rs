@@ -18,7 +18,9 @@ use super::headings::{headings, is_title, is_types, names_in, rate_of_columns};
 use super::lines::{Fields, Line, Lines, Separator, fields, is_torn};
 use super::names::Name;
 use super::preamble::{BESIDE, Preamble, beside, beside_rows, key_and_value};
-use crate::{Format, Options, number};
+use crate::format::Format;
+use crate::number;
+use crate::options::Options;
 use std::borrow::Cow;
 use vibro_record::units::Unit;
 use vibro_record::{AxisKind, Error, Finding, Result};
@@ -293,7 +295,7 @@ mod tests {
 
     fn found(text: &str, called_csv: bool) -> Option<Dialect> {
         let name = if called_csv { "x.csv" } else { "x" };
-        let source = crate::Source::memory(name, text.as_bytes()).ok()?;
+        let source = crate::source::Source::memory(name, text.as_bytes()).ok()?;
         detect(&Text::of(&source, None), &Options::default())
     }
 

@@ -2,7 +2,8 @@
 
 use super::decoded::Text;
 use super::encoding;
-use crate::{Source, number};
+use crate::number;
+use crate::source::Source;
 use vibro_record::{Finding, Result};
 
 /// How many times as many rows the longer of two tables has: a summary of some rows is short beside what it

@@ -1,7 +1,8 @@
 use super::*;
-use crate::Recording;
+use crate::format::Format;
+use crate::reader::Reader;
+use crate::reader::Recording;
 use crate::tests::has_finding;
-use crate::{Format, Reader};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::fmt::Write as _;

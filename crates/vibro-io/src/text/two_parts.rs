@@ -10,7 +10,7 @@ use super::dialect::Dialect;
 use super::encoding;
 use super::lines::{Lines, Separator, fields};
 use super::names::Name;
-use crate::Source;
+use crate::source::Source;
 use vibro_record::Result;
 
 /// Last words of the names of two columns, and the digits of the parts of a second.
