@@ -167,8 +167,8 @@ impl Excitation {
         changed
     }
 
-    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), with the cycle at `phase` (rad) at time
-    /// 0. NaN for several sines, which need not be harmonics of one cycle.
+    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), with the cycle at `phase` (rad) at the
+    /// start. NaN for several sines, which need not be harmonics of one cycle.
     ///
     /// Impulses F: 2F/T in every harmonic; pulses of force f and width w: (2f/T)(1 − e^{−inωw})/(inω).
     pub(super) fn harmonic(&self, n: u32, phase: f64) -> Complex64 {

@@ -163,10 +163,11 @@ impl Press {
     /// series below is not accurate enough.
     ///
     /// With a flight of 2w/a + 4jw²/3a³, an approach at w − 2jw²/3a², and a pressing acceleration that
-    /// changes by −2jw/a over the flight and by κ(1 + R) times the approach at the impact, where κ = 2M(b₁/m₁
-    /// + b₂/m₂), the sum over all flights is T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² + O(w³), with
-    /// the rate j of the gap's acceleration. The second term must be below a ten thousandth of the first, and
-    /// the first below a ten thousandth of the rig's time scale; then the truncation is below 1e-8 T.
+    /// changes by −2jw/a over the flight and by κ(1 + R) times the approach at the impact, where κ =
+    /// 2M(b₁/m₁ + b₂/m₂), the sum over all flights is T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² +
+    /// O(w³), with the rate j of the gap's acceleration. The second term must be below a ten thousandth of
+    /// the first, and the first below a ten thousandth of the rig's time scale; then the truncation is below
+    /// 1e-8 T.
     pub(crate) fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
         let (a, r) = (self.acceleration, rig.restitution);
         let lost = 1.0 - r;

@@ -312,8 +312,8 @@ fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
     answer
 }
 
-/// Whether the values drift: neighbours differ less than independent values would. Their von Neumann ratio η
-/// = Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)² has the mean 2 and the variance 4(n − 2)/(n² − 1) (J. von Neumann, 1941).
+/// Whether the values drift: neighbours differ less than independent values would. Their von Neumann ratio
+/// η = Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)² has the mean 2 and the variance 4(n − 2)/(n² − 1) (J. von Neumann, 1941).
 fn drifts(values: &[[f64; 2]]) -> bool {
     let n = values.len() as f64;
     let least = 2.0 - DRIFT * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();

@@ -1,10 +1,10 @@
 //! Conversion between contact laws and restitution, for a rebound without other forces.
 //!
 //! Kelvin–Voigt with ζ = c₃/2√(k₃M) and ω₀² = k₃/M, which ends where its force vanishes: with sin ψ = ζ the
-//! contact lasts (π − 2ψ)/(ω₀ cos ψ) and R = exp(−(π − 2ψ) tan ψ); for ζ = 1 it lasts 2/ω₀ and R = e⁻²; for ζ
-//! > 1 it lasts 2 acosh ζ/(ω₀√(ζ² − 1)) and R = exp(−2ζ acosh ζ/√(ζ² − 1)). Derived from the free motion of
-//! mass, spring and damper; the first also in Anagnostopoulos (2004) and Nagurka & Huang (2004). R falls with
-//! ζ, to 1/(4ζ²) for large ζ.
+//! contact lasts (π − 2ψ)/(ω₀ cos ψ) and R = exp(−(π − 2ψ) tan ψ); for ζ = 1 it lasts 2/ω₀ and R = e⁻²;
+//! for ζ > 1 it lasts 2 acosh ζ/(ω₀√(ζ² − 1)) and R = exp(−2ζ acosh ζ/√(ζ² − 1)). Derived from the free
+//! motion of mass, spring and damper; the first also in Anagnostopoulos (2004) and Nagurka & Huang (2004).
+//! R falls with ζ, to 1/(4ζ²) for large ζ.
 //!
 //! The restitution of Hunt–Crossley F = kδⁿ(1 + αδ̇) depends only on αv, not on k, n and mass (Hunt &
 //! Crossley 1975; exact, by integrating v dv/(1 + αv) over the contact): αv(1 + R) = ln((1 + αv)/(1 − Rαv)).
