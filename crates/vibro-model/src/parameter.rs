@@ -6,8 +6,8 @@ use super::rig::Rig;
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
-/// A value of the rig or of its excitation: what a map varies and, of those that can be read from a campaign,
-/// a fit finds.
+/// A parameter of the rig or of its excitation. Maps vary them; fits determine those that a campaign can
+/// name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]

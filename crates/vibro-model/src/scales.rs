@@ -1,8 +1,8 @@
 //! Limits of rigs and excitations for computation in double precision.
 //!
-//! Phases have the relative rounding ε = 2.2e-16. After n swings of a mass its phase is off by 2πnε; half of
-//! all digits, √ε, are left for n ≤ 1/(2π√ε) = 1.07e7. A flight is searched for contacts at each swing, so
-//! this also bounds the work of a cycle.
+//! Phases have the relative rounding ε = 2.2e-16. After n swings of a mass the error of its phase is 2πnε;
+//! half of all digits, √ε, are left for n ≤ 1/(2π√ε) = 1.07e7. A flight is searched for contacts at each
+//! swing, so this also bounds the work of a cycle.
 
 use super::excitation::Excitation;
 use super::parameter::Parameter;

@@ -36,7 +36,7 @@ pub(super) enum ContactStage {
     Together,
 }
 
-/// Event that a root of a watched quantity stands for.
+/// Event at a root of a watched quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Mark {
     Meets,

@@ -151,8 +151,8 @@ impl Motions {
         self.followed = Some(Followed { states: followed, of });
     }
 
-    /// Leaves the motion open if a compliant contact, started from rest, reached another motion (`rest`) than
-    /// the one of its `answer`, and lists that motion.
+    /// Sets the present motion to open, and lists `rest`, if a compliant contact from rest reaches another
+    /// motion than the one of its `answer`.
     pub fn differs(&mut self, answer: &Answer, rest: &Reading, model: Model, question: &Question) {
         if rest.end == Settling::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;

@@ -20,7 +20,7 @@ pub enum Model {
     SoftCorrected,
     /// Exact flights between impacts without duration, chatter and sticking included.
     Restitution,
-    /// Exact flights with a contact of spring and damper.
+    /// Exact flights, and contacts of a spring and a damper.
     KelvinVoigt,
     /// A contact whose force is not linear in the indentation: Hertz, Hunt–Crossley.
     HuntCrossley,
