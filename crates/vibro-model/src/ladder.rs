@@ -2,11 +2,11 @@
 //!
 //! From the simplest model to the richest: the motion without impacts, one impact a cycle in closed form, the
 //! same corrected for the duration of the contact, exact flights between rigid impacts, exact flights with a
-//! contact of spring and damper, contacts of curved bodies, a mass that is loose on its spring. Each rung
-//! passes the validity checks of its own theory, and is compared with the next rung and with the next one
-//! that follows the motion in time; the lowest that passes is chosen. Computing time does not decide (all
-//! rungs take µs to ms): parameters that cannot be identified do. Where one is needed and unknown, nothing is
-//! chosen, and the answer over its range is given instead.
+//! contact of spring and damper, contacts of curved bodies, a mass that is loose on its spring. A rung must
+//! pass the validity checks of its own theory, and its answer is compared with the next rung and with the
+//! next one that follows the motion in time; the lowest that passes is chosen. Computing time does not decide
+//! (all rungs take µs to ms): parameters that cannot be identified do. Where one is needed and unknown,
+//! nothing is chosen, and the answer over its range is given instead.
 //!
 //! ```
 //! use vibro_model::ladder::{Model, Question, choose};
@@ -49,7 +49,7 @@ use vibro_record::{Error, Finding, Result};
 pub struct Choice {
     /// Excitation frequency in Hz.
     pub frequency: f64,
-    /// The lowest rung that is good enough; `None` where an unknown parameter leaves it open.
+    /// The lowest rung that is good enough; `None` where something unknown leaves it open, or no rung is.
     pub chosen: Option<Model>,
     /// All rungs, the simplest first.
     pub rungs: Vec<Rung>,
@@ -63,8 +63,8 @@ pub struct Choice {
     /// Changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where the
     /// chosen model has no answer with that gap.
     pub gap: Vec<Option<Change>>,
-    /// The answers over a range of contact stiffnesses, where the stiffness is unknown and matters; empty
-    /// where they cannot be computed.
+    /// The answers over a range of contact stiffnesses, where the stiffness is unknown and no rung is good
+    /// enough without it; empty where they cannot be computed.
     pub sensitivity: Vec<Sensitivity>,
     /// Known motions that the rig can have at this excitation, coexisting ones included.
     pub motions: Vec<KnownMotion>,
@@ -102,7 +102,7 @@ impl Choice {
     }
 }
 
-/// The law of the contact that a scene states for a model; `None` where impacts take no time.
+/// The contact law that a scene states for a model; `None` for rigid impacts.
 ///
 /// # Errors
 /// If the model needs a number that the scene does not state, or one is impossible.

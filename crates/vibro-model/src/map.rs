@@ -101,8 +101,8 @@ impl Plan {
     /// Checks the plan.
     ///
     /// # Errors
-    /// If both axes vary the same parameter, a corner of the map is impossible, or there are more than 1e8
-    /// cycles in all.
+    /// If both axes vary the same parameter, or one that the excitation does not have; if a corner of the map
+    /// is impossible or has a negative gap; if there are fewer than 4 cycles a cell or more than 1e8 in all.
     pub fn check(&self) -> Result<()> {
         if self.x.key == self.y.key {
             return Err(Error::usage(format!("both axes vary {}", self.x.key.name()), "two parameters"));

@@ -106,8 +106,8 @@ pub struct Pattern {
     /// Whether the pattern repeats within [`SAME`]. A pattern with differences below 1e-2 that still fall is
     /// named before it has settled: near the stability limit settling takes thousands of cycles.
     pub settled: bool,
-    /// Largest difference between the last two repetitions, in the units of [`SAME`]; `None` without a
-    /// pattern.
+    /// Largest difference between the last two repetitions, of phases (in cycles) and of states over the
+    /// largest speed; `None` without a pattern.
     pub distance: Option<f64>,
     /// The impacts of the last repetition.
     pub strikes: Vec<Strike>,

@@ -148,13 +148,13 @@ pub(super) struct Press {
 }
 
 impl Press {
-    /// Reads it from the start of `flight`.
+    /// The pressing at the start of `flight`.
     pub fn of(flight: &Flight) -> Press {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = flight.series(0.0);
         Press { acceleration: a1 - a2, jerk: j2 - j1, noise: flight.noise() }
     }
 
-    /// Whether a separation with speed `w` (m/s) rises no higher than the rounding of the gap.
+    /// Whether a bounce that starts at `w` (m/s) rises at most to four times the rounding of the gap.
     pub(crate) fn is_rest(&self, w: f64) -> bool {
         w * w <= 8.0 * self.acceleration * self.noise
     }

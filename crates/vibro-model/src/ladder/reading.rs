@@ -19,7 +19,7 @@ const MULTIPLE: f64 = 50.0;
 const DECAY: f64 = 0.3;
 /// Fewest and most blocks followed; the fewest where a cycle holds many swings of a mass.
 const BLOCKS: (usize, usize) = (6, 64);
-/// Most cycles for which a motion is followed.
+/// Most cycles for which a motion is followed: 192 000.
 pub const MOST_CYCLES: f64 = BLOCK as f64 * MULTIPLE * BLOCKS.1 as f64;
 /// Most blocks of motions whose contacts are integrated: about a second of computing.
 pub const BRIEF: usize = 12;
