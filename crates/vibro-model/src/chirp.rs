@@ -1,4 +1,4 @@
-//! A slow continuous sweep of the frequency, in steps so fine that they do not matter.
+//! A slow continuous sweep of the frequency, in steps fine enough to be negligible.
 
 use super::motion::{Motion, Piece};
 use super::scales;
@@ -7,9 +7,9 @@ use vibro_record::{Error, Result};
 
 /// A sweep at a constant rate.
 ///
-/// The frequency goes in steps of duration h, each at the frequency of its middle; the phase is right at both
-/// ends of a step and deviates by no more than π|rate|h²/4 within it, so a sine force deviates by that
-/// fraction of its amplitude.
+/// The frequency changes in steps of duration h, each at the frequency of its middle. The phase is exact at
+/// both ends of a step and deviates by at most π|rate|h²/4 within it; a sine force deviates by that fraction
+/// of its amplitude.
 ///
 /// ```
 /// use vibro_model::{Chirp, Motion, Rig, Simulation, Sine};
@@ -22,27 +22,27 @@ use vibro_record::{Error, Result};
 pub struct Chirp {
     /// Rate in Hz/s, negative for a sweep down.
     pub rate: f64,
-    /// Largest deviation of the phase within a step, in rad.
+    /// Largest deviation of the phase within a step, in rad; it sets the length of the steps.
     pub deviation: f64,
 }
 
 impl Chirp {
-    /// Sweep with `rate` in Hz/s, whose phase is right to 1e-4 rad within the steps.
+    /// Sweep with `rate` in Hz/s, whose phase is exact to 1e-4 rad within the steps.
     pub fn new(rate: f64) -> Chirp {
         Chirp { rate, deviation: 1e-4 }
     }
 
-    /// The longest step in s that keeps the deviation; infinite where the frequency stays.
+    /// The longest step in s within the deviation; infinite for a rate of 0.
     pub fn step(&self) -> f64 {
         (4.0 * self.deviation / (PI * self.rate.abs())).sqrt()
     }
 
-    /// Sweeps a motion from its present frequency to the time `until` (s); shows each piece, the last of each
-    /// step with [`super::Event::Reached`].
+    /// Sweeps a motion from its present frequency to the time `until` (s); calls `visit` with each piece, the
+    /// last of each step with [`super::Event::Reached`].
     ///
     /// # Errors
-    /// If rate or deviation is impossible, more than 20 million steps are needed, the frequency does not stay
-    /// above 0, or as [`Motion::advance`].
+    /// If rate or deviation is impossible, more than 1e8 steps are needed, the frequency does not stay above
+    /// 0, or as [`Motion::advance`].
     pub fn advance(
         &self,
         motion: &mut dyn Motion,
@@ -79,7 +79,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     fn far() -> Simulation {
-        // A gap that is never closed: the motion stays linear.
+        // The gap is never closed: the motion stays linear.
         let rig = Rig { gap: 1.0, ..Rig::thesis() };
         Simulation::new(&rig, &Sine { force: 0.1, frequency: 3.0 }).unwrap()
     }
@@ -91,7 +91,7 @@ mod tests {
             Chirp::new(rate).advance(&mut motion, 20.0, &mut |_| {}).unwrap();
             let turns: f64 = 3.0 * 20.0 + rate * 200.0;
             let error = (motion.phase() - TAU * turns.fract()).abs();
-            // Each step rounds a phase below 2π and its own turn, up to 5 rad.
+            // Each step rounds a phase below 2π, and its change of up to 5 rad.
             let steps = (20.0 / Chirp::new(rate).step()).ceil();
             assert!(error.min(TAU - error) < steps * 16.0 * f64::EPSILON + 400.0 * f64::EPSILON, "{error:e}");
             assert!((motion.frequency() - (3.0 + 20.0 * rate)).abs() < 1e-14 * 20.0);
@@ -106,8 +106,7 @@ mod tests {
             motion.state()
         };
         let (coarse, fine) = (state(1e-3), state(1e-7));
-        // A force that deviates by F₀·1e-3 for ever moves mass 1 by no more than at resonance,
-        // F₀·1e-3/(c₁Ω₁).
+        // A lasting force deviation of F₀·1e-3 moves mass 1 at most as much as at resonance, F₀·1e-3/(c₁Ω₁).
         let rig = Rig::thesis();
         let bound = 0.1 * 1e-3 / (rig.c1 * (rig.k1 / rig.m1).sqrt());
         assert!((coarse.x1 - fine.x1).abs() < bound, "{coarse:?} {fine:?}");

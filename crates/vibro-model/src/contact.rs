@@ -1,8 +1,8 @@
-//! Contact that gives way: its laws, what they mean for a rebound, and the motion of the rig with them.
+//! Compliant contact: its laws, the restitution they give, and the motion of the rig with them.
 //!
 //! With the indentation δ = x₁ − x₂ − Δ > 0 the masses push each other apart with a force F that never pulls:
-//! - Kelvin–Voigt: F = k₃δ + c₃δ̇, no less than 0: a further linear mode, flown exactly;
-//! - Hertz: F = kδ^{3/2}; Hunt–Crossley: F = kδⁿ(1 + αδ̇), no less than 0: integrated within the contact.
+//! - Kelvin–Voigt: F = k₃δ + c₃δ̇, cut at 0: one more linear mode, solved exactly;
+//! - Hertz: F = kδ^{3/2}; Hunt–Crossley: F = kδⁿ(1 + αδ̇), cut at 0: integrated during the contact.
 //!
 //! ```
 //! use vibro_model::{Compliant, Excitation, Law, Motion, Event, Rig, Sine, State};

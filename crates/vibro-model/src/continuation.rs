@@ -1,5 +1,5 @@
 //! Branches of periodic motions over frequency, force, or a value of the rig, followed through folds, with
-//! every border of stability marked.
+//! every change of stability marked.
 
 mod walk;
 
@@ -15,13 +15,13 @@ use walk::Walk;
 /// A marked motion on a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// What happens there: the branch turns back at a fold (a multiplier passes +1), motions of twice the
-    /// period branch off at a flip (−1) and turn back there, a pair of complex multipliers leaves or
-    /// enters the unit circle, or an impact fades to a touch or a further contact appears (grazing).
+    /// What happens there: at a fold the branch turns back (a multiplier passes +1); at a flip (−1) motions
+    /// of twice the period branch off, and their branch turns back; at Neimark–Sacker a pair of complex
+    /// multipliers crosses the unit circle; at grazing an impact vanishes or a further contact appears.
     pub kind: Loss,
     /// The motion there.
     pub orbit: PeriodicOrbit,
-    /// It lies behind the point of this index.
+    /// Index of the point before the mark.
     pub after: usize,
 }
 
@@ -29,15 +29,15 @@ pub struct Mark {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum End {
-    /// The end of the range.
+    /// The end of the range is reached.
     Range,
-    /// An impact fades to a touch: beyond it its impulse would have to pull.
+    /// An impact vanishes: beyond it its impulse would have to pull.
     Grazing,
-    /// It came back to where it started.
+    /// The branch is a closed curve: it came back to its start.
     Closed,
-    /// No more steps could be made: two impacts meet, or the equations are singular.
+    /// No further step succeeds: two impacts meet, or the equations are singular.
     Lost,
-    /// The number of points allowed.
+    /// The largest number of points is reached.
     Points,
 }
 
@@ -52,16 +52,16 @@ pub struct Branch {
     pub ends: [End; 2],
 }
 
-/// Swings of a mass in a period up to which a motion is followed: each of thousands of steps searches all of
-/// them.
+/// Most swings of a mass in a period for which a branch is followed: each of thousands of steps searches all
+/// of them for contacts.
 const MOST_SWINGS: f64 = 1000.0;
 
-/// Follows the branch of `start` both ways while the value of `over` lies in `low..=high` (SI units): the
-/// frequency, the force, or a value of the rig.
+/// Follows the branch of `start` in both directions while the value of `over` is in `low..=high` (SI units):
+/// the frequency, the force, or a value of the rig.
 ///
-/// Steps along the branch have at most the length `step` (0.05 is fine), measured in phases (rad), impulses
-/// (shares of the gap or amplitude times ω) and what is varied together (pseudo-arclength; H. B. Keller
-/// 1977): the logarithm of its value, a gap in units of the amplitude, a restitution itself.
+/// Steps along the branch have at most the length `step` (0.05 is fine). It combines phases (rad), impulses
+/// (over M(1 + R)ω times the gap or amplitude) and the varied value (pseudo-arclength; H. B. Keller 1977):
+/// its logarithm, a gap over the gap or amplitude at the start, a restitution itself.
 ///
 /// # Errors
 /// If the range or the step is impossible or does not hold the start; if a mass swings more than 1000 times
@@ -91,7 +91,7 @@ pub fn follow(start: &PeriodicOrbit, over: Parameter, low: f64, high: f64, step:
     Ok(Branch { points, marks, ends: [back.end, forth.end] })
 }
 
-/// Checks a range of `over` that a branch is followed in from a start at `value`.
+/// Checks the range of `over` for a branch with its start at `value`.
 ///
 /// # Errors
 /// If an end is impossible, the upper end is not above the lower one, or the start lies outside.

@@ -1,4 +1,4 @@
-//! Excitation under way, as closed forms take it: the forced motion under its sines.
+//! Excitation during a simulation in closed form: its state, and the forced motion under its sines.
 
 use super::excitation::{Excitation, Sine};
 use super::forcing::Forcing;
@@ -10,18 +10,18 @@ use super::waves::Waves;
 use num_complex::Complex64;
 use vibro_record::Result;
 
-/// What a sine force does, phase 0.
+/// Forced response to one sine force, at phase 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct SineResponse {
-    /// F L₁(iω), of mass 1 alone, in m, and its modulus.
+    /// F L₁(iω) in m, the response of mass 1 alone, and its modulus.
     alone: Complex64,
     amplitude: f64,
-    /// F L(iω) of both masses together, in m; not finite where they are driven at their undamped resonance.
-    /// Against a wall, F in N.
+    /// F L(iω) in m, the response of both masses together; not finite where they are driven at their undamped
+    /// resonance. Against a wall, F in N.
     together: Complex64,
 }
 
-/// An excitation under way.
+/// State of an excitation, with the forced responses to its sines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drive {
     pub forcing: Forcing,
@@ -29,8 +29,7 @@ pub(super) struct Drive {
 }
 
 impl Drive {
-    /// Excitation of `rig` at `phase` of its cycle; each of several sines has its own phase at phase 0 and
-    /// has gone on since.
+    /// Excitation of `rig` at `phase` (rad) of its cycle; at phase 0 each of several sines has its own phase.
     pub fn new(rig: &Rig, excitation: &Excitation, phase: f64) -> Result<Drive> {
         scales::check(rig, excitation)?;
         Drive::with(rig, Forcing::new(excitation, phase)?)
@@ -47,7 +46,7 @@ impl Drive {
         Ok(Drive { forcing, lines })
     }
 
-    /// Goes on under a force that `change` makes of the present one.
+    /// Lets `change` act on the force, and computes the forced responses again.
     pub fn change(&mut self, rig: &Rig, change: impl FnOnce(&mut Forcing) -> Result<()>) -> Result<()> {
         let mut forcing = self.forcing;
         change(&mut forcing)?;

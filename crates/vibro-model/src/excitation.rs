@@ -1,4 +1,4 @@
-//! What drives mass 1.
+//! Excitation of mass 1: sines, impulses or pulses.
 
 use super::least::{NumberRange, number};
 use super::waves::MOST_SINES;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
-/// Excitation of mass 1, told apart by its `kind`.
+/// Excitation of mass 1; files name it by `kind`.
 ///
 /// ```
 /// use vibro_model::{Excitation, Sine};
@@ -29,7 +29,7 @@ pub enum Excitation {
     Sines(Sines),
 }
 
-/// Sine force F₀ cos(ωt + θ); its phase θ belongs to the motion.
+/// Sine force F₀ cos(ωt + θ); the phase θ is set where a motion starts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sine {
@@ -65,7 +65,7 @@ pub struct Pulses {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sines {
-    /// The sines; the first one counts the cycles.
+    /// The sines; cycles are those of the first one.
     pub parts: Vec<Part>,
 }
 
@@ -83,12 +83,12 @@ pub struct Part {
 }
 
 impl Excitation {
-    /// Checks that the numbers can belong to an excitation: all finite, frequencies above 0, amplitudes of
-    /// sines not negative (impulses and pulses may pull), a width above 0 and below the cycle, and one to
-    /// `MOST_SINES` sines.
+    /// Checks that the numbers are possible: all finite, frequencies above 0, amplitudes of sines not
+    /// negative (impulses and pulses may pull), a width above 0 and below the cycle, and one to `MOST_SINES`
+    /// sines.
     ///
     /// # Errors
-    /// If it is not so; it names the key as a setting.
+    /// If a number is impossible; the error names its key as a setting.
     pub fn check(&self) -> Result<()> {
         match self {
             Excitation::Sine(sine) => sine.check(),
@@ -121,12 +121,12 @@ impl Excitation {
         }
     }
 
-    /// Cycles a second, in Hz; of several sines, the first one's. NaN where there is none.
+    /// Frequency of the cycles in Hz; of several sines, that of the first. NaN without sines.
     pub fn frequency(&self) -> f64 {
         self.first().0
     }
 
-    /// Its size: the force of a sine or pulse in N, of several sines that of the first; the impulse in N s.
+    /// Size: the force in N of a sine, a pulse or the first of several sines; the impulse in N s.
     pub fn size(&self) -> f64 {
         self.first().1
     }
@@ -143,20 +143,19 @@ impl Excitation {
         }
     }
 
-    /// The same excitation at another frequency in Hz; of several sines, the ratios of their frequencies
-    /// stay.
+    /// The same excitation at another frequency in Hz; several sines keep the ratios of their frequencies.
     pub fn at_frequency(&self, frequency: f64) -> Excitation {
         let ratio = frequency / self.frequency();
         self.changed(frequency, self.size(), |part| part.frequency *= ratio)
     }
 
-    /// The same excitation of another size; the ratios of several sines stay.
+    /// The same excitation of another size; several sines keep the ratios of their forces.
     pub fn at_size(&self, size: f64) -> Excitation {
         let ratio = size / self.size();
         self.changed(self.frequency(), size, |part| part.force *= ratio)
     }
 
-    /// The same with another frequency and size; of several sines with `change` in each.
+    /// The same with another frequency and size; for several sines, `change` is applied to each.
     fn changed(&self, frequency: f64, size: f64, change: impl FnMut(&mut Part)) -> Excitation {
         let mut changed = self.clone();
         match &mut changed {
@@ -168,10 +167,10 @@ impl Excitation {
         changed
     }
 
-    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), the cycle being at `phase` (rad) at
-    /// time 0; not a number for several sines, which need have none.
+    /// Complex amplitude in N of the force's `n`-th harmonic (n ≥ 1), with the cycle at `phase` (rad) at the
+    /// start. NaN for several sines, which need not be harmonics of one cycle.
     ///
-    /// Impulses F have 2F/T in every harmonic; pulses (2f/T)(1 − e^{−inωw})/(inω).
+    /// Impulses F: 2F/T in every harmonic; pulses of force f and width w: (2f/T)(1 − e^{−inωw})/(inω).
     pub(super) fn harmonic(&self, n: u32, phase: f64) -> Complex64 {
         let size = match *self {
             Excitation::Sine(sine) if n == 1 => sine.force.into(),
@@ -187,7 +186,7 @@ impl Excitation {
         Complex64::cis(f64::from(n) * phase) * size
     }
 
-    /// What the excitation is called in a file: `sine`, `impulse`, `pulse` or `sines`.
+    /// Name of its kind in files: `sine`, `impulse`, `pulse` or `sines`.
     pub fn kind(&self) -> &'static str {
         match self {
             Excitation::Sine(_) => "sine",
@@ -212,7 +211,7 @@ impl Sine {
     /// As [`Excitation::check`].
     ///
     /// # Errors
-    /// If a number cannot be.
+    /// If a number is impossible.
     pub fn check(&self) -> Result<()> {
         check("force", self.force, "N", NumberRange::Zero)?;
         check("frequency", self.frequency, "Hz", NumberRange::AboveZero)

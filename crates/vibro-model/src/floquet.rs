@@ -5,8 +5,8 @@ use nalgebra::{Matrix2, Matrix4, RowVector4, SVD, Schur, Vector4};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂); the force moves every neighbour alike and does not
-/// enter. A wall has no neighbouring motions: its part is 0.
+/// Free flow Φ(t) of both masses in (x₁, v₁, x₂, v₂) over `t` (s). The force does not enter, since it moves
+/// all neighbouring motions alike. A wall has no neighbouring motions: its part is 0.
 fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
     let mut phi = Matrix4::zeros();
     let moving = if rig.has_wall() { 1 } else { 2 };
@@ -17,8 +17,8 @@ fn flow(rig: &Rig, t: f64) -> Matrix4<f64> {
     phi
 }
 
-/// Saltation matrix S = D + (f⁺ − D f⁻)nᵀ/(nᵀf⁻) of an impact, with n = ∇g, D the change of velocities, f the
-/// rate of the state just before and just after (Müller 1995; Leine and Nijmeijer 2004).
+/// Saltation matrix S = D + (f⁺ − D f⁻)nᵀ/(nᵀf⁻) of an impact, with n = ∇g, the velocity change D, and the
+/// rate f of the state just before and just after (Müller 1995; Leine and Nijmeijer 2004).
 ///
 /// Its determinant is R². Its elements grow like 1/vᵣ when the impact grazes.
 fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
@@ -36,10 +36,10 @@ fn saltation(rig: &Rig, before: &[f64; 4], after: &[f64; 4]) -> Matrix4<f64> {
 /// Monodromy Φ(T)S of a motion with one impact a period, from just before one impact to just before the next,
 /// and a bound on its rounding in the Frobenius norm, for relative errors of ε in the arguments.
 ///
-/// `before` and `after` are rates of change of the state (v₁, a₁, v₂, a₂) on both sides of the impact. The
-/// kernels err by ε times their phase ΩT, sums and products of four by 4ε each, the quotient of the saltation
-/// by the four terms of each acceleration; the Schur form by a few ε of the product. Together below 64 (1 +
-/// ΩT) ε of both norms.
+/// `before` and `after` are rates of the state (v₁, a₁, v₂, a₂) just before and after the impact. Errors: of
+/// the free flow, ε times its phase ΩT; of sums and products of four, 4ε each; of the quotient in the
+/// saltation, the four terms of each acceleration; of the Schur form, a few ε of the product. Together they
+/// are below 64 (1 + ΩT) ε times both norms.
 pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64; 4]) -> (Matrix4<f64>, f64) {
     let (flow, saltation) = (flow(rig, period), saltation(rig, before, after));
     let phase = rig.oscillators().iter().map(|o| o.omega2().sqrt() * period).fold(0.0, f64::max);
@@ -48,7 +48,7 @@ pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64;
 }
 
 /// Whether all multipliers lie inside the unit circle; `None` where an error of norm `rounding` in the
-/// monodromy could move one onto it, and none lies outside for certain.
+/// monodromy could move one onto it, and none lies outside with certainty.
 ///
 /// A matrix within `rounding` has the eigenvalue z exactly where the smallest singular value of M − z does
 /// not exceed it (L. N. Trefethen and M. Embree, *Spectra and Pseudospectra* (2005), §2), however
@@ -56,12 +56,12 @@ pub(super) fn monodromy(rig: &Rig, period: f64, before: &[f64; 4], after: &[f64;
 pub(super) fn inside(monodromy: &Matrix4<f64>, multipliers: &[Complex64; 4], rounding: f64) -> Option<bool> {
     let open = |z: &Complex64| {
         let nearest = z / z.norm();
-        // So far from the circle no rounding that leaves multipliers at all reaches it.
+        // At this distance from the circle, rounding cannot move a multiplier onto it.
         if (z.norm() - 1.0).abs() > 0.1 {
             return false;
         }
         let moved = monodromy.map(Complex64::from) - Matrix4::from_diagonal_element(nearest);
-        // The determinant is that of the multipliers, exact for a matrix within `rounding`.
+        // The determinant follows from the multipliers, exact for a matrix within `rounding`.
         let determinant = multipliers.iter().map(|other| other - nearest).product::<Complex64>().norm();
         if singular_floor(determinant, moved.norm_squared()) > 2.0 * rounding {
             return false;
@@ -75,9 +75,8 @@ pub(super) fn inside(monodromy: &Matrix4<f64>, multipliers: &[Complex64; 4], rou
     (!multipliers.iter().any(open)).then_some(true)
 }
 
-/// A bound from below on the smallest singular value of a 4 × 4 matrix by its determinant and the square of
-/// its Frobenius norm, |det| ((n − 1)/‖·‖²)^((n − 1)/2) (Y. Yu and D. Gu, *Linear Algebra Appl.* 253 (1997)
-/// 25).
+/// Lower bound on the smallest singular value of a 4 × 4 matrix from its determinant and the square of its
+/// Frobenius norm, |det| ((n − 1)/‖·‖²)^((n − 1)/2) (Y. Yu and D. Gu, *Linear Algebra Appl.* 253 (1997) 25).
 fn singular_floor(determinant: f64, norm_squared: f64) -> f64 {
     let share = 3.0 / norm_squared;
     determinant * share * share.sqrt()
@@ -86,7 +85,7 @@ fn singular_floor(determinant: f64, norm_squared: f64) -> f64 {
 /// Eigenvalues, largest modulus first.
 ///
 /// # Errors
-/// If the matrix holds a value that is not finite or the iteration does not settle.
+/// If the matrix has a value that is not finite, or the iteration does not converge.
 pub(super) fn multipliers(monodromy: &Matrix4<f64>) -> Result<[Complex64; 4]> {
     let unsettled =
         || Error::refused("the Floquet multipliers could not be computed: the impact grazes too closely");
@@ -130,7 +129,7 @@ mod tests {
 
     #[test]
     fn the_floor_lies_below_the_smallest_singular_value() {
-        // Every entry by itself: all matrices differ.
+        // Independent entries: all matrices differ.
         let mut noise = vibro_math::Noise::new(20_261_120);
         let mut next = || noise.uniform() - 0.5;
         let mut closest: f64 = 0.0;
@@ -141,7 +140,7 @@ mod tests {
             assert!(floor <= least * (1.0 + 1e-12), "{floor} {least}");
             closest = closest.max(floor / least);
         }
-        // Equal where the other three are equal and it is small: the bound is one that can be reached.
+        // Equality holds for one small and three equal singular values: the bound is attained.
         assert!(closest > 0.5, "{closest}");
         let near = Matrix4::from_diagonal(&[1e-6, 1.0, 1.0, 1.0].map(Complex64::from).into());
         let floor = singular_floor(1e-6, near.norm_squared());

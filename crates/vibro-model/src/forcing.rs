@@ -1,5 +1,5 @@
-//! The exciting force from now on: its sines as series in time, where its cycle is, and when its next impulse
-//! or step is due.
+//! State of the excitation during a motion: its sines as time series, the phase of its cycle, and its next
+//! impulse or step.
 
 use super::excitation::{Excitation, Part, Pulses, Sine};
 use super::least::{NumberRange, number};
@@ -9,13 +9,13 @@ use std::f64::consts::TAU;
 use std::mem::discriminant;
 use vibro_record::{Error, Result};
 
-/// 2π less [`TAU`].
+/// 2π − [`TAU`]: the rounding error of [`TAU`].
 const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
-/// Part of a cycle to which the phase is known after thousands of flights: a few hundred roundings of it.
+/// Accuracy of the phase in cycles after thousands of flights: some thousand roundings.
 const KNOWN: f64 = 1e-12;
 
-/// What an excitation does at an instant.
+/// Sudden event of an excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Tick {
     /// An impulse in N s.
@@ -26,18 +26,18 @@ pub(super) enum Tick {
     Off,
 }
 
-/// What comes once a cycle.
+/// The part of the force that comes once a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ForceTrain {
-    /// Nothing: the force is smooth.
+    /// None: the force is smooth.
     None,
     /// An impulse in N s.
     Impulses(f64),
-    /// A force in N for a time in s.
+    /// A force in N that lasts `width` (s).
     Pulses { force: f64, width: f64 },
 }
 
-/// One sine force, with its phase now.
+/// One sine force, with its present phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tone {
     pub force: f64,
@@ -52,33 +52,33 @@ impl Tone {
     }
 }
 
-/// The exciting force from now on.
+/// State of the excitation from now on.
 ///
-/// At phase 0, and only there, the cycle's impulse or pulse is still to come; once it has come the phase is
-/// above 0, if only by the least number there is. So a phase tells whether it is to come, and a motion that
-/// starts again from its phase has it once.
+/// At phase 0, and only there, the impulse or pulse of the cycle is still to come; afterwards the phase is
+/// set to the smallest number above 0. So the phase tells whether it is still to come, and a motion that is
+/// started again from its phase has it once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Forcing {
     tones: [Option<Tone>; MOST_SINES],
     train: ForceTrain,
-    /// Cycles a second.
+    /// Frequency of the cycle in Hz.
     pub frequency: f64,
     /// Phase of the cycle in 0..2π.
     pub phase: f64,
-    /// Rest of the pulse under way in s; 0 where there is none.
+    /// Remaining time in s of the present pulse; 0 between pulses.
     left: f64,
 }
 
 impl Forcing {
-    /// The excitation in a cycle of which `phase` rad are past: a sine is F₀ cos(phase), an impulse falls on
-    /// phase 0, a pulse begins there, and of several sines each is ahead by its own part of the time that
-    /// the phase stands for.
+    /// The excitation at `phase` (rad) of its cycle: a sine is F₀ cos(phase), an impulse falls on phase 0, a
+    /// pulse begins there. Of several sines, each advances from its own phase by the time that `phase` is in
+    /// the first one's cycle.
     pub fn new(excitation: &Excitation, phase: f64) -> Result<Forcing> {
         excitation.check()?;
         number("phase", phase, "rad", NumberRange::Any)?;
         let frequency = excitation.frequency();
         let phase = phase.rem_euclid(TAU);
-        // The remainder of a tiny negative phase rounds to 2π.
+        // For a tiny negative phase, rem_euclid rounds to 2π.
         let phase = if phase < TAU { phase } else { 0.0 };
         let tones = [None; MOST_SINES];
         let mut forcing = Forcing { tones, train: ForceTrain::None, frequency, phase, left: 0.0 };
@@ -104,13 +104,13 @@ impl Forcing {
         Ok(forcing)
     }
 
-    /// Its sines.
+    /// The sines of the force.
     #[inline]
     pub fn tones(&self) -> impl Iterator<Item = &Tone> {
         self.tones.iter().flatten()
     }
 
-    /// Changes the frequency from now on; every phase goes on, and a pulse under way keeps its width.
+    /// Changes the frequency from now on; all phases are continuous, and the present pulse keeps its width.
     pub fn set_frequency(&mut self, hz: f64) -> Result<()> {
         Sine { force: 0.0, frequency: hz }.check()?;
         if let ForceTrain::Pulses { width, .. } = self.train
@@ -121,14 +121,14 @@ impl Forcing {
         }
         let before = std::mem::replace(&mut self.frequency, hz);
         for tone in self.tones.iter_mut().flatten() {
-            // The first sine counts the cycles: no rounding of its frequency.
+            // The first sine gets the exact frequency, since it counts the cycles.
             tone.frequency = if tone.frequency == before { hz } else { tone.frequency * (hz / before) };
         }
         Ok(())
     }
 
-    /// Goes on under another excitation of the same kind, whose phases are those of this one; a pulse under
-    /// way keeps its width.
+    /// Changes to another excitation of the same kind; the phases continue, and the present pulse keeps its
+    /// width.
     pub fn set_excitation(&mut self, excitation: &Excitation) -> Result<()> {
         let mut next = Forcing { phase: self.phase, left: self.left, ..Forcing::new(excitation, 0.0)? };
         if discriminant(&self.train) != discriminant(&next.train)
@@ -144,12 +144,12 @@ impl Forcing {
         Ok(())
     }
 
-    /// Largest angular frequency in rad/s within a smooth stretch of the force.
+    /// Largest angular frequency in rad/s of the smooth force.
     pub fn fastest(&self) -> f64 {
         self.tones().map(Tone::omega).fold(0.0, f64::max)
     }
 
-    /// Force in N that is constant up to the next tick.
+    /// Constant part of the force in N until the next tick.
     #[inline]
     pub fn constant(&self) -> f64 {
         match self.train {
@@ -158,13 +158,13 @@ impl Forcing {
         }
     }
 
-    /// The force in N at `t` seconds from now, before its next tick.
+    /// Force in N, `t` seconds from now, if no tick comes before.
     pub fn force(&self, t: f64) -> f64 {
         self.tones().map(|tone| tone.force * (tone.phase + tone.omega() * t).cos()).sum::<f64>()
             + self.constant()
     }
 
-    /// Terms of the force in powers of time over `duration` seconds.
+    /// Taylor terms of the force in N over `duration` seconds: their sum is the force at its end.
     #[inline]
     pub fn terms(&self, duration: f64) -> Terms {
         let mut terms = [0.0; ORDER + 1];
@@ -182,11 +182,11 @@ impl Forcing {
         terms
     }
 
-    /// Seconds to the next tick in a motion of `span` seconds up to the time `end`, and what it does;
+    /// Time in s to the next tick within a motion of `span` seconds up to the time `end`, and the tick;
     /// infinite where there is none.
     ///
-    /// What falls on the end, as closely as time and phase are known, is left to what follows: a cycle begins
-    /// with its impulse.
+    /// A tick at the end itself, within the accuracy of time and phase, belongs to the next motion: a cycle
+    /// begins with its impulse.
     #[inline]
     pub fn next(&self, span: f64, end: f64) -> (f64, Option<Tick>) {
         let begin = match self.train {
@@ -201,7 +201,7 @@ impl Forcing {
         if wait + known < span { (wait, Some(tick)) } else { (f64::INFINITY, None) }
     }
 
-    /// Lets `t` seconds pass, no more than to the next tick, which stays to come.
+    /// Advances by `t` seconds, at most to the next tick, which is then still to be applied.
     #[inline]
     pub fn pass(&mut self, t: f64) {
         for tone in self.tones.iter_mut().flatten() {
@@ -218,7 +218,7 @@ impl Forcing {
         }
     }
 
-    /// Does what is due now.
+    /// Applies the tick that is due now.
     pub fn tick(&mut self, tick: Tick) {
         if tick == Tick::Off {
             self.left = 0.0;
@@ -231,7 +231,7 @@ impl Forcing {
     }
 }
 
-/// A phase of 0 or more within 0..2π.
+/// Reduces a phase of 0 or more to 0..2π.
 #[inline]
 fn within(phase: f64) -> f64 {
     if phase < TAU {
@@ -282,7 +282,7 @@ mod tests {
         assert!(Forcing::new(&Excitation::Sine(Sine { force: 0.5, frequency: 5.0 }), f64::NAN).is_err());
     }
 
-    /// Goes through the next `n` ticks and says when they come.
+    /// Passes through the next `n` ticks and returns their times in s.
     fn times(clock: &mut Forcing, n: usize) -> Vec<(f64, Tick)> {
         let mut time = 0.0;
         (0..n)
@@ -311,7 +311,7 @@ mod tests {
         }
         clock.pass(0.05);
         clock.set_frequency(10.0).unwrap();
-        // Three quarters of a cycle are left.
+        // Three quarters of the cycle remain.
         assert!((clock.next(f64::INFINITY, 0.0).0 - 0.075).abs() < 1e-16);
     }
 
@@ -319,7 +319,7 @@ mod tests {
     fn a_start_at_its_phase_has_every_impulse_once() {
         let impulses = Excitation::Impulse(Impulses { impulse: 0.009, frequency: 5.0 });
         let mut clock = Forcing::new(&impulses, 0.0).unwrap();
-        // What falls on the end of a motion is left to what follows.
+        // A tick at the end of a motion belongs to the next one.
         assert_eq!(clock.next(0.0, 0.0), (f64::INFINITY, None));
         times(&mut clock, 1);
         assert_eq!(Forcing::new(&impulses, clock.phase).unwrap(), clock);

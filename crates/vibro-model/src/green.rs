@@ -6,14 +6,14 @@ use vibro_record::{Error, Result};
 /// χ(t) = e^{−bt}[sin λt + e^{−bT} sin λ(T − t)] / (mλ(1 + e^{−2bT} − 2e^{−bT} cos λT)), 0 ≤ t ≤ T, in m/(N
 /// s).
 ///
-/// Babitsky, *Theory of Vibro-Impact Systems* (1998); Rosenwasser (1969). Written here as the free motion
-/// that returns to its own start after T with its velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m).
-/// This form holds at any damping. Relative error about ε/(ΩT)² where the period is short against the natural
-/// one.
+/// Babitsky, *Theory of Vibro-Impact Systems* (1998); Rosenwasser (1969). Computed here as the free motion
+/// that returns to its start after T with its velocity lower by 1/m: (χ, χ̇)(0⁺) = (I − Φ(T))⁻¹(0, 1/m). This
+/// form holds at any damping. Its relative error is about ε/(ΩT)² where the period is short against the
+/// natural one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Green {
     pub(crate) oscillator: Oscillator,
-    /// T in s.
+    /// Period T in s.
     pub(crate) period: f64,
     /// χ(0) in m/(N s).
     pub start: f64,
@@ -24,11 +24,11 @@ pub struct Green {
 }
 
 impl Green {
-    /// Periodic response of the oscillator of mass `m` (none where it is infinite) to a unit impulse every
-    /// `period` seconds.
+    /// Periodic response of the oscillator of mass `m` (kg) to a unit impulse every `period` seconds; 0 for
+    /// an infinite mass.
     ///
     /// # Errors
-    /// If the oscillator is undamped and a harmonic of the impulses meets its natural frequency.
+    /// If the oscillator is undamped and its natural frequency is a harmonic of the impulses.
     pub fn new(m: f64, oscillator: Oscillator, period: f64) -> Result<Green> {
         if m == f64::INFINITY {
             return Ok(Green { oscillator, period, start: 0.0, slope_after: 0.0, slope_before: 0.0 });
@@ -36,7 +36,7 @@ impl Green {
         let (_, sine) = oscillator.kernels(period);
         let (less, determinant) = oscillator.closing(period);
         let turn = oscillator.omega2().sqrt() * period;
-        // Undamped the determinant is 4 sin²(λT/2), and λT is known to a few ε only.
+        // Without damping the determinant is 4 sin²(λT/2), and λT is only known to a few ε.
         if oscillator.decay() == 0.0 && determinant <= (4.0 * f64::EPSILON * turn).powi(2) {
             return Err(Error::refused(format!(
                 "a mass without a damper receives an impact every {period} s, a whole multiple ({:.0}) of its own \
@@ -47,8 +47,8 @@ impl Green {
         }
         let b = oscillator.decay();
         let scale = 1.0 / (m * determinant);
-        // 1 − C and 1 − e^{−2bT} are taken whole, because near a lightly damped resonance C and e^{−bT} are
-        // both near 1.
+        // 1 − C and 1 − e^{−2bT} are computed directly, without cancellation: near a lightly damped resonance
+        // C and e^{−bT} are both near 1.
         let lost_twice = -(-2.0 * b * period).exp_m1();
         Ok(Green {
             oscillator,
@@ -59,7 +59,7 @@ impl Green {
         })
     }
 
-    /// χ(t) and χ̇(t) for 0 ≤ t ≤ T, χ̇(0) being the slope just after the impulse.
+    /// χ(t) and χ̇(t) for 0 ≤ t ≤ T (s); χ̇(0) is the slope just after the impulse.
     pub fn at(&self, t: f64) -> (f64, f64) {
         self.oscillator.free(self.start, self.slope_after, t)
     }
@@ -69,8 +69,7 @@ impl Green {
 mod tests {
     use super::*;
 
-    /// The slow oracle: impulse responses S(t + nT)/m of all impulses so far, summed until they have died
-    /// out.
+    /// Slow reference: impulse responses S(t + nT)/m of all past impulses, summed until they have decayed.
     fn sum(m: f64, oscillator: Oscillator, period: f64, t: f64) -> (f64, f64) {
         let mut total = (0.0, 0.0);
         for n in (0..40_000).rev() {
@@ -88,8 +87,8 @@ mod tests {
             let oscillator = Oscillator::new(m, c, k);
             for period in [0.05, 0.1911, 0.6] {
                 let green = Green::new(m, oscillator, period).unwrap();
-                // About 1/(bT) impulses count, each rounded to ε of 1/m (velocity), and t itself is rounded
-                // to ε.
+                // About 1/(bT) impulses contribute, each rounded to ε of 1/m (velocity); t itself is also
+                // rounded to ε.
                 let count = 1.0 + 1.0 / (oscillator.decay() * period);
                 let tolerance = 32.0 * f64::EPSILON * count * count / m;
                 for part in [0.0, 0.3, 0.5, 0.99] {

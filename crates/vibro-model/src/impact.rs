@@ -1,4 +1,4 @@
-//! Impacts of a simulated motion, and how many of what it has met.
+//! Impacts of a simulated motion, and counts of its events.
 
 use serde::Serialize;
 
@@ -15,13 +15,13 @@ pub struct Impact {
     pub impulse: f64,
 }
 
-/// What a motion has met so far.
+/// Counts of a simulated motion so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Counts {
-    /// Stretches of motion in closed form.
+    /// Flights computed in closed form.
     pub flights: u64,
-    /// Impacts below the grazing speed after which the masses part by themselves: a little more gap and
-    /// there is none. What follows depends on them more than on anything else.
+    /// Grazing impacts: slower than the grazing speed, and the masses then part by themselves. With slightly
+    /// more gap they would not happen, so the later motion is very sensitive to them.
     pub grazing: u64,
     /// Times the masses came to rest against each other.
     pub sticks: u64,

@@ -1,12 +1,12 @@
-//! The ladder: no more model than a scene needs.
+//! The model ladder: the simplest model that answers a question about a scene well enough.
 //!
 //! From the simplest model to the richest: the motion without impacts, one impact a cycle in closed form, the
-//! same corrected for the duration of the contact, exact flights between impacts at once, exact flights with
-//! a contact of spring and damper, contacts of curved bodies, a mass that is loose on its spring. Each rung
-//! is checked by what its own theory says of it, and by how far its answer moves at the next rung and at the
-//! next one that follows the motion; the lowest that passes is chosen. Time is not the argument, all rungs
-//! take µs to ms: parameters that nobody can identify are. Where one is needed and not known nothing is
-//! chosen, and the answer over its range is given instead.
+//! same corrected for the duration of the contact, exact flights between rigid impacts, exact flights with a
+//! contact of spring and damper, contacts of curved bodies, a mass that is loose on its spring. A rung must
+//! pass the validity checks of its own theory, and its answer is compared with the next rung and with the
+//! next one that follows the motion in time; the lowest that passes is chosen. Computing time does not decide
+//! (all rungs take µs to ms): parameters that cannot be identified do. Where one is needed and unknown,
+//! nothing is chosen, and the answer over its range is given instead.
 //!
 //! ```
 //! use vibro_model::ladder::{Model, Question, choose};
@@ -49,28 +49,28 @@ use vibro_record::{Error, Finding, Result};
 pub struct Choice {
     /// Excitation frequency in Hz.
     pub frequency: f64,
-    /// The lowest rung that is good enough; `None` where that cannot be told.
+    /// The lowest rung that is good enough; `None` where something unknown leaves it open, or no rung is.
     pub chosen: Option<Model>,
     /// All rungs, the simplest first.
     pub rungs: Vec<Rung>,
-    /// What must be known before a rung can be chosen.
+    /// Parameters that must be known before a rung can be chosen.
     pub needs: Vec<Need>,
     /// The change of the chosen answer at the next rung that follows the motion.
     pub audit: Option<Change>,
-    /// What curved bodies (exponent 1.5) that meet for as long and rebound alike would change, where a
-    /// spring and a damper were chosen, or the correction for them, and their law was not stated.
+    /// Change of the answer with curved bodies (exponent 1.5) of the same contact duration and restitution,
+    /// where a contact of spring and damper, or the correction for one, was chosen.
     pub law: Option<Change>,
-    /// The changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where
-    /// there is then no such answer.
+    /// Changes of the chosen answer where the gap is smaller or larger by its uncertainty; `None` where the
+    /// chosen model has no answer with that gap.
     pub gap: Vec<Option<Change>>,
-    /// The answer over the contact's stiffness, where that is not known and matters; empty where that cannot
-    /// be computed.
+    /// The answers over a range of contact stiffnesses, where the stiffness is unknown and no rung is good
+    /// enough without it; empty where they cannot be computed.
     pub sensitivity: Vec<Sensitivity>,
-    /// Motions that the rig can be in, as far as they are known.
+    /// Known motions that the rig can have at this excitation, coexisting ones included.
     pub motions: Vec<KnownMotion>,
-    /// States that others were looked for from; `None` with a history and for a loose mass.
+    /// Start states from which other motions were searched; `None` with a history and for a loose mass.
     pub followed: Option<Followed>,
-    /// What is to be known of it; why a rung is passed over stands with the rung.
+    /// Findings on the choice; the reasons against a rung are with the rung.
     pub findings: Vec<Finding>,
 }
 
@@ -79,30 +79,30 @@ pub struct Choice {
 pub struct Sensitivity {
     /// k₃ in N/m.
     pub stiffness: f64,
-    /// Part of the cycle in contact.
+    /// Contact duration as part of the cycle.
     pub share: f64,
-    /// The answer: of x₁ and x₂; of impacts the same number twice.
+    /// The answer for x₁ and x₂; for impact quantities the same number twice.
     pub answer: [f64; 2],
-    /// Its change, from impacts without duration.
+    /// Its relative change from the answer with rigid impacts.
     pub change: f64,
-    /// Whether that is allowed, and the motion had settled.
+    /// Whether the change is allowed, and the motion had settled.
     pub enough: bool,
 }
 
 impl Choice {
-    /// The answer of the chosen rung: of x₁ and x₂; of impacts the same number twice.
+    /// The answer of the chosen rung for x₁ and x₂; for impact quantities the same number twice.
     pub fn answer(&self) -> Option<[f64; 2]> {
         self.rung(self.chosen?).answer
     }
 
-    /// What was found of a rung.
+    /// Checks and answer of the rung of a model.
     pub fn rung(&self, model: Model) -> &Rung {
-        // All rungs are listed in their order.
+        // All rungs are listed in the order of `Model`.
         &self.rungs[model as usize]
     }
 }
 
-/// The law of the contact that a scene states for a model; `None` where impacts take no time.
+/// The contact law that a scene states for a model; `None` for rigid impacts.
 ///
 /// # Errors
 /// If the model needs a number that the scene does not state, or one is impossible.
@@ -122,7 +122,7 @@ pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
         Model::HuntCrossley => {
             keys.damping.ok_or_else(|| missing("damping"))?;
             stiffness()?;
-            // A damping that is stated does not depend on the speed.
+            // The speed is not used: a stated damping does not depend on it.
             curved(scene, 1.0).map(Some)
         }
         Model::LooseMass => {
@@ -131,11 +131,11 @@ pub fn law(scene: &Scene, model: Model) -> Result<Option<Law>> {
     }
 }
 
-/// Swings of a mass in a cycle of the excitation up to which motions are followed.
+/// Most swings of a mass in an excitation cycle for which motions are followed; it bounds the computing time.
 const MOST_SWINGS: f64 = 1000.0;
 
-/// The lowest rung that answers `question` for `scene` at `frequency` (Hz), which replaces that of the
-/// excitation.
+/// The lowest rung that answers `question` for `scene` at `frequency` (Hz), which replaces the frequency of
+/// the excitation.
 ///
 /// # Errors
 /// If a parameter or the question is impossible, nothing drives the rig, an undamped mass is driven at
@@ -144,8 +144,8 @@ pub fn choose(scene: &Scene, frequency: f64, question: &Question) -> Result<Choi
     chosen(scene, frequency, question, true)
 }
 
-/// As [`choose`]; `bend` says whether a contact of spring and damper that is chosen is compared with curved
-/// bodies, and the answer with those at both ends of the gap's uncertainty.
+/// As [`choose`]; with `bend`, a chosen contact of spring and damper is compared with curved bodies, and the
+/// answer with those at both ends of the gap's uncertainty.
 fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Result<Choice> {
     question.check()?;
     let Some(excitation) = &scene.excitation else {
@@ -170,7 +170,7 @@ fn chosen(scene: &Scene, frequency: f64, question: &Question, bend: bool) -> Res
     Ok(choice)
 }
 
-/// The changes of the chosen answer at both ends of the gap's uncertainty.
+/// Changes of the chosen answer at the lower and the upper end of the gap's standard uncertainty.
 fn gaps(choice: &Choice, stage: &DrivenScene<'_>) -> Vec<Option<Change>> {
     let (Some(model), Some(value)) = (choice.chosen, choice.answer()) else { return Vec::new() };
     let here = Answer { spread: choice.rung(model).spread, ..Answer::exact(value) };

@@ -1,4 +1,4 @@
-//! Contact laws.
+//! Contact laws: the force from the indentation and its rate.
 
 pub mod conversion;
 
@@ -6,38 +6,38 @@ use crate::least::{NumberRange, number};
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
-/// Force of a contact from its indentation δ in m and the rate δ̇ in m/s; it never pulls.
+/// Contact law: force from the indentation δ in m and its rate δ̇ in m/s; it never pulls.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(tag = "law", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Law {
-    /// F = k₃δ + c₃δ̇: a spring and a damper side by side. The contact ends where the force does, not where δ
-    /// = 0.
+    /// F = k₃δ + c₃δ̇: a spring and a damper in parallel. The contact ends where the force falls to zero, not
+    /// where δ = 0.
     KelvinVoigt {
-        /// k₃ in N/m.
+        /// Stiffness k₃ in N/m.
         stiffness: f64,
-        /// c₃ in N s/m.
+        /// Damping c₃ in N s/m.
         damping: f64,
     },
     /// F = kδ^{3/2}: two curved elastic bodies (Hertz 1882).
     Hertz {
-        /// k in N/m^{3/2}.
+        /// Stiffness k in N/m^{3/2}.
         stiffness: f64,
     },
-    /// F = kδⁿ(1 + αδ̇): losses that grow with the indentation (Hunt & Crossley 1975).
+    /// F = kδⁿ(1 + αδ̇): damping grows with the indentation (Hunt & Crossley 1975).
     HuntCrossley {
-        /// k in N/mⁿ.
+        /// Stiffness k in N/mⁿ.
         stiffness: f64,
-        /// n, 1 or more.
+        /// Exponent n, 1 or more.
         exponent: f64,
-        /// α in s/m.
+        /// Damping α in s/m.
         damping: f64,
     },
 }
 
 impl Law {
-    /// Kelvin–Voigt contact of a `stiffness` in N/m that rebounds with `restitution` where a reduced mass
-    /// `mass` (kg) meets it free of other forces: c₃ = 2ζ√(k₃M).
+    /// Kelvin–Voigt contact with `stiffness` (N/m) that gives `restitution` for the reduced mass `mass` (kg)
+    /// without other forces: c₃ = 2ζ√(k₃M).
     ///
     /// # Errors
     /// If the stiffness or the mass is not above 0, or the restitution is outside 0 < R ≤ 1.
@@ -48,7 +48,7 @@ impl Law {
         Ok(Law::KelvinVoigt { stiffness, damping: 2.0 * ratio * (stiffness * mass).sqrt() })
     }
 
-    /// Hunt–Crossley contact that rebounds with `restitution` where it is met at `speed` (m/s).
+    /// Hunt–Crossley contact that gives `restitution` at the approach speed `speed` (m/s).
     ///
     /// # Errors
     /// If the stiffness or the speed is not above 0, the exponent is below 1, or the restitution is outside 0
@@ -59,7 +59,7 @@ impl Law {
         law.check().map(|()| law)
     }
 
-    /// Checks that the numbers can belong to a contact.
+    /// Checks that the numbers are possible.
     ///
     /// # Errors
     /// If a stiffness is not above 0, a damping is negative, an exponent is outside 1 to 10, or a value is
@@ -76,7 +76,7 @@ impl Law {
         Ok(())
     }
 
-    /// Stiffness, exponent and damping.
+    /// Stiffness, exponent and damping, in the units of the law.
     pub(super) fn numbers(&self) -> (f64, f64, f64) {
         match *self {
             Law::KelvinVoigt { stiffness, damping } => (stiffness, 1.0, damping),
@@ -85,7 +85,7 @@ impl Law {
         }
     }
 
-    /// Force in N at an indentation (m) and its rate (m/s); 0 where the masses are apart, and where the law
+    /// Force in N at an indentation (m) and its rate (m/s); 0 where the masses are apart, or where the law
     /// would pull.
     #[inline]
     pub fn force(&self, indentation: f64, rate: f64) -> f64 {

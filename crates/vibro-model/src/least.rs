@@ -1,8 +1,8 @@
-//! What a number of a rig or an excitation may be.
+//! Allowed ranges of the numbers of a rig or an excitation, and their check.
 
 use vibro_record::{Error, Result};
 
-/// What a number may be.
+/// Allowed range of a finite number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberRange {
     Any,
@@ -12,10 +12,10 @@ pub enum NumberRange {
     Part,
 }
 
-/// Checks that a number is finite, and not too small.
+/// Checks that a number is finite and in its range.
 ///
 /// # Errors
-/// If it is not.
+/// If it is not; the error gives `name`, value and `unit`.
 pub fn number(name: &str, value: f64, unit: &str, least: NumberRange) -> Result<()> {
     let (fine, expected) = match least {
         NumberRange::Any => (true, "a finite value"),

@@ -1,4 +1,4 @@
-//! Models of the two-mass rig: what its motion should be.
+//! Models that predict the motion of the two-mass rig.
 //!
 //! Two oscillators, each on its own spring and damper, face each other across a gap g = Δ + x₂ − x₁ ≥ 0; x₁
 //! (excited) and x₂ (passive) are displacements from their own rest. Contact is instantaneous: with the

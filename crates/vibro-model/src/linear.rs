@@ -1,39 +1,39 @@
-//! One linear mode of the rig, flown in pieces of Taylor series: exact to rounding at any damping, whatever
-//! its matrix.
+//! One linear mode of the rig, solved in pieces by Taylor series: exact to rounding at any damping, for any
+//! matrix.
 //!
 //! In a mode both accelerations are linear in the state: a = A(x₁, v₁, x₂, v₂) + constant + gain·F(t). The
-//! series of the motion follows from it term by term (xₖ₊₁ = vₖ/(k + 1), vₖ₊₁ = aₖ/(k + 1)), for a matrix
-//! without a full set of eigenvectors (critical damping) like for any other. In the norm max(s|xᵢ|, |vᵢ|)
-//! with s² = Cs + K, K and C being the largest row sums of stiffness and damping over mass, ‖A‖ ≤ s. A piece
-//! lasts at most 1/s and 1/ω, so that the series, cut after [`ORDER`] terms, leaves out less than e/(ORDER +
-//! 1)! = 2.3e-17 of the norm: below rounding.
+//! series of the motion follows from it term by term (xₖ₊₁ = vₖ/(k + 1), vₖ₊₁ = aₖ/(k + 1)), also for a
+//! matrix without a full set of eigenvectors (critical damping). In the norm max(s|xᵢ|, |vᵢ|) with s² = Cs +
+//! K, where K and C are the largest row sums of stiffness and damping over mass, ‖A‖ ≤ s. A piece lasts at
+//! most 1/s and 1/ω, so the truncation of the series after the power [`ORDER`] is below e/(ORDER + 1)! =
+//! 2.3e-17 of the norm: below rounding.
 
 use super::flow::State;
 use super::motion::Path;
 use vibro_math::Polynomial;
 
-/// Last power of time in a series.
+/// Highest power of time in a series.
 pub const ORDER: usize = 18;
 
-/// Terms of a series in time over a piece's duration.
+/// Terms of a series in powers of time over the duration of a piece.
 pub type Terms = [f64; ORDER + 1];
 
-/// A linear mode.
+/// A linear mode of the rig.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Linear {
-    /// Acceleration of each mass for each of x₁, v₁, x₂, v₂.
+    /// Accelerations of both masses per unit of x₁, v₁, x₂, v₂.
     matrix: [[f64; 4]; 2],
     /// Constant acceleration of each mass in m/s².
     constant: [f64; 2],
-    /// Acceleration of each mass by the exciting force, in 1/kg.
+    /// Acceleration of each mass per newton of the exciting force, in 1/kg.
     gain: [f64; 2],
-    /// s in 1/s: no part of the motion changes faster.
+    /// Rate s in 1/s, a bound on how fast the free motion changes.
     pub rate: f64,
 }
 
 impl Linear {
-    /// Mode of these accelerations for each of x₁, v₁, x₂, v₂, these constant ones, and these for each newton
-    /// of the exciting force.
+    /// Mode with the accelerations `matrix` per unit of x₁, v₁, x₂, v₂, `constant` (m/s²), and `gain` per
+    /// newton of the exciting force.
     pub fn new(matrix: [[f64; 4]; 2], constant: [f64; 2], gain: [f64; 2]) -> Linear {
         let row_sum = |i: usize| matrix.iter().map(|row| row[i].abs() + row[i + 2].abs()).fold(0.0, f64::max);
         let (stiffness, damping) = (row_sum(0), row_sum(1));
@@ -41,7 +41,7 @@ impl Linear {
         Linear { matrix, constant, gain, rate }
     }
 
-    /// a₁ − a₂: the acceleration with which the masses approach each other.
+    /// a₁ − a₂: the acceleration of the masses towards each other.
     pub fn closing(&self) -> Quantity {
         let [first, second] = &self.matrix;
         let weights = std::array::from_fn(|i| first[i] - second[i]);
@@ -55,7 +55,7 @@ impl Linear {
         std::array::from_fn(|i| dot(&self.matrix[i], &state) + self.gain[i] * force + self.constant[i])
     }
 
-    /// The motion from `state` for `duration` seconds, at most 1/s, under a force of these terms.
+    /// The motion from `state` for `duration` seconds, at most 1/s, under a force with the terms `force`.
     #[inline]
     pub fn fly(&self, state: &State, force: &Terms, duration: f64) -> Taylor {
         let mut terms = [[0.0; 4]; ORDER + 1];
@@ -73,10 +73,10 @@ impl Linear {
     }
 }
 
-/// The motion within one piece.
+/// The motion within one piece, as a Taylor series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Taylor {
-    /// Of x₁, v₁, x₂, v₂, in powers of t over the duration.
+    /// Terms of x₁, v₁, x₂, v₂ in powers of t over the duration.
     terms: [[f64; 4]; ORDER + 1],
     duration: f64,
 }
@@ -115,12 +115,12 @@ pub struct Quantity {
     pub weights: [f64; 4],
     /// Weight of the exciting force.
     pub force: f64,
-    /// What is added.
+    /// Constant part.
     pub offset: f64,
 }
 
 impl Quantity {
-    /// Its value now.
+    /// Its value at a state and an exciting force (N).
     pub fn value(&self, state: &State, force: f64) -> f64 {
         dot(&self.weights, &state.array()) + self.force * force + self.offset
     }
@@ -145,7 +145,8 @@ impl QuantityCourse {
         if self.duration > 0.0 { self.polynomial.integral(t / self.duration) * self.duration } else { 0.0 }
     }
 
-    /// First time in s at which the quantity, not negative at the beginning, falls to zero. None is missed.
+    /// First time in s at which the quantity, not negative at the beginning, falls to zero. No root is
+    /// missed.
     #[inline]
     pub fn first_fall(&self) -> Option<f64> {
         self.polynomial.first_fall().map(|part| part * self.duration)

@@ -1,4 +1,4 @@
-//! Regime and stability over two parameters.
+//! Maps of regime and stability over two parameters.
 
 use super::excitation::Excitation;
 use super::floquet;
@@ -17,7 +17,7 @@ use nalgebra::Matrix4;
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
-/// Values of one parameter with equal distances: the ends finite, the lower one first, and at least 2 values.
+/// Equally spaced values of one parameter: finite ends, the lower one first, and at least 2 values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct MapAxis {
@@ -64,23 +64,23 @@ impl std::str::FromStr for MapAxis {
     }
 }
 
-/// A map to be computed.
+/// Axes, rig and excitation of a map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
-    /// The rig; what an axis names is overwritten.
+    /// The rig; the parameters of the axes are overwritten.
     pub rig: Rig,
-    /// What drives mass 1.
+    /// Excitation of mass 1.
     pub excitation: Excitation,
-    /// Parameter across.
+    /// Parameter of the horizontal axis.
     pub x: MapAxis,
-    /// Parameter upwards.
+    /// Parameter of the vertical axis.
     pub y: MapAxis,
-    /// Cycles a cell, from rest. A cell ends before that where it repeats within 1e-6, or where it is within
-    /// 1e-3 of a stable motion and draws nearer.
+    /// Cycles of a cell, from rest. A cell ends earlier when the motion repeats within 1e-6, or is within
+    /// 1e-3 of a stable motion and approaches it.
     pub cycles: u32,
 }
 
-/// What one cell of a map holds.
+/// Result of one cell of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cell {
     /// The regime; `None` where the rig cannot be computed there (an undamped mass at its resonance).
@@ -90,19 +90,19 @@ pub struct Cell {
     pub spectral_radius: Option<f64>,
 }
 
-/// Share of the cycles that pass before a motion that has not settled is judged.
+/// Part of the cycles that pass before the regime of an unsettled motion is judged.
 const SETTLING: f64 = 0.6;
-/// Differences below this that still fall towards a stable motion end a cell.
+/// A cell ends early if differences below this still fall towards a stable motion.
 const SOON: f64 = 1e-3;
-/// Cycles between two looks whether a motion has settled.
+/// Cycles between two tests whether the motion has settled.
 const LOOK: u32 = 16;
 
 impl Plan {
     /// Checks the plan.
     ///
     /// # Errors
-    /// If both axes vary the same parameter, a corner of the map is impossible, or there are more than 1e8
-    /// cycles in all.
+    /// If both axes vary the same parameter, or one that the excitation does not have; if a corner of the map
+    /// is impossible or has a negative gap; if there are fewer than 4 cycles a cell or more than 1e8 in all.
     pub fn check(&self) -> Result<()> {
         if self.x.key == self.y.key {
             return Err(Error::usage(format!("both axes vary {}", self.x.key.name()), "two parameters"));
@@ -136,13 +136,13 @@ impl Plan {
     /// Rig and excitation of a cell.
     pub fn at(&self, column: usize, row: usize) -> (Rig, Excitation) {
         let (mut rig, mut excitation) = (self.rig, self.excitation.clone());
-        // What an excitation does not have has been refused.
+        // `check` has refused parameters that the excitation does not have.
         let _ = self.x.key.set(&mut rig, &mut excitation, self.x.value(column));
         let _ = self.y.key.set(&mut rig, &mut excitation, self.y.value(row));
         (rig, excitation)
     }
 
-    /// The cells row by row, those of a row in parallel; `done` hears of each row.
+    /// Computes the cells row by row, those of a row in parallel; calls `done` after each row.
     ///
     /// # Errors
     /// As [`Plan::check`].
@@ -160,7 +160,7 @@ impl Plan {
     }
 }
 
-/// Regime and spectral radius of the motion from rest.
+/// Regime and spectral radius of the motion that is reached from rest.
 pub fn cell(rig: &Rig, excitation: &Excitation, cycles: u32) -> Cell {
     judged(rig, excitation, cycles).unwrap_or(Cell { regime: None, spectral_radius: None })
 }
@@ -182,7 +182,7 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
         let (found, seen) = follow(&mut motion, look)?;
         passed += look;
         if let Regime::Periodic { impacts, cycles } = found.regime
-            // Seen at least three times, and settled or drawing near a stable motion.
+            // It has repeated at least three times, and is settled or approaches a stable motion.
             && seen >= 3 * impacts as usize
             && 3 * cycles <= look
             && (found.settled
@@ -203,8 +203,8 @@ fn judged(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Cell> {
     })
 }
 
-/// The cell of a pattern. Under a sine the motion that the pattern is, or settles on, must be there, must not
-/// be unstable, and says what its shortest period is.
+/// The cell of a pattern. Under a sine force its periodic orbit, which must exist and not be unstable, gives
+/// the shortest period; without one, only a settled pattern counts.
 fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell> {
     let Regime::Periodic { cycles, .. } = found.regime else { return None };
     let seen = |settled: bool| {
@@ -223,8 +223,8 @@ fn periodic(rig: &Rig, excitation: &Excitation, found: &Pattern) -> Option<Cell>
     }
 }
 
-/// Spectral radius along a pattern of impacts; `None` under several sines, whose force is not told by the
-/// phase of one.
+/// Spectral radius along a pattern of impacts; `None` under several sines, whose force does not follow from
+/// one phase.
 fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -> Option<f64> {
     if matches!(excitation, Excitation::Sines(_)) {
         return None;
@@ -248,7 +248,8 @@ fn radius(rig: &Rig, excitation: &Excitation, cycles: u32, strikes: &[Strike]) -
     floquet::multipliers(&whole).ok().map(|m| m[0].norm())
 }
 
-/// Spectral radius of a cycle without impacts: e^{−bT}, or that of the slower decay above critical damping.
+/// Spectral radius of a cycle T without impacts: e^{−bT} with the smaller decay rate b of both masses; above
+/// critical damping, that of the slower decay.
 fn free_radius(rig: &Rig, excitation: &Excitation) -> f64 {
     let decay = rig.oscillators().map(|o| o.slowest());
     (-decay[0].min(decay[1]) / excitation.frequency()).exp()

@@ -1,8 +1,8 @@
-//! What an instrument shows of a motion.
+//! Observables: the numbers by which measured and predicted motions are compared.
 //!
 //! A measured displacement spectrum is compared with the complex fundamental |X| of the predicted motion, a
-//! displacement trace with half its peak-to-peak. The two differ by all harmonics that impacts make; one is
-//! never compared with the other.
+//! displacement trace with half its peak-to-peak value. These two differ by all harmonics that impacts cause,
+//! and are never compared with each other.
 
 use super::orbit::{Orbit, Softened};
 use super::steady::NoImpact;
@@ -26,7 +26,7 @@ pub enum Observable {
 }
 
 impl Observable {
-    /// `fundamental`, `peak`, `impact-speed` or `impulse`, and its unit.
+    /// Name and unit of each.
     const TABLE: [(&'static str, &'static str); 4] =
         [("fundamental", "m"), ("peak", "m"), ("impact-speed", "m/s"), ("impulse", "N s")];
 
@@ -40,19 +40,19 @@ impl Observable {
         Observable::TABLE[self as usize].1
     }
 
-    /// Whether it is one number of both masses instead of one of each.
+    /// Whether it is one number for both masses, not one for each.
     pub fn is_of_impacts(self) -> bool {
         matches!(self, Observable::ImpactSpeed | Observable::Impulse)
     }
 
-    /// What it shows of an orbit: x₁ and x₂ in m; of its impacts, which both masses share, the same number
+    /// Its value for an orbit: of x₁ and x₂ in m; of the impacts, which both masses share, the same number
     /// twice.
     pub fn of_orbit(self, orbit: &Orbit) -> [f64; 2] {
         let fundamental = orbit.fundamental.map(Complex64::norm);
         self.of(fundamental, orbit.peak_to_peak, orbit.approach_velocity, orbit.impulse)
     }
 
-    /// What it shows of an orbit with the duration of its contact taken into account.
+    /// Its value for an orbit corrected for the duration of its contact.
     pub(crate) fn of_softened(self, orbit: &Softened) -> [f64; 2] {
         self.of(orbit.fundamental, orbit.peak_to_peak, orbit.approach_velocity, orbit.impulse)
     }
@@ -66,9 +66,9 @@ impl Observable {
         }
     }
 
-    /// What it shows of the motion without impacts: a motion of mass 1, while mass 2 rests.
+    /// Its value for the motion without impacts: mass 1 moves, mass 2 is at rest.
     ///
-    /// Half the peak-to-peak of a train of impulses or pulses is given for its fundamental too.
+    /// Under impulses or pulses the fundamental is also taken as half the peak-to-peak value.
     pub fn of_no_impact(self, motion: &NoImpact) -> [f64; 2] {
         if self.is_of_impacts() { [0.0; 2] } else { [motion.amplitude, 0.0] }
     }
@@ -82,8 +82,8 @@ mod tests {
 
     #[test]
     fn an_impacting_motion_shows_more_in_a_trace_than_in_its_fundamental() {
-        // Harmonics of an impact train add in phase at the impact, so half the peak-to-peak is the larger one
-        // here.
+        // Harmonics of an impact train add in phase at the impact, so here half the peak-to-peak value is
+        // larger.
         let found = orbits(&Rig::thesis(), 0.5, 11.0).unwrap();
         let [line, _] = Observable::Fundamental.of_orbit(&found.orbits[0]);
         let [trace, _] = Observable::HalfPeakToPeak.of_orbit(&found.orbits[0]);

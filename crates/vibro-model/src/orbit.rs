@@ -30,9 +30,9 @@ use serde_json::json;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
-/// One periodic motion with one impact a period; its time counts from the impact.
+/// A periodic motion with one impact a period; its time counts from the impact.
 ///
-/// As JSON all verdicts and amplitudes stand beside each other; a neutral motion is not stable.
+/// Its JSON has all verdicts and amplitudes in one object; `stable` is false for a neutral motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orbit {
     /// Excitation frequency in Hz.
@@ -41,24 +41,24 @@ pub struct Orbit {
     pub cycles: u32,
     /// Impulse J in N s.
     pub impulse: f64,
-    /// Under a sine force φ in 0..2π of the forced part A cos(ωt + φ) of x₁; under impulses or pulses the
-    /// time τ in s from the beginning of the last one to the impact.
+    /// Under a sine force the phase φ in 0..2π of the forced part A cos(ωt + φ) of x₁; under impulses or
+    /// pulses the time τ in s from the beginning of the last one to the impact.
     pub timing: f64,
     /// Phase in 0..2π of the excitation's cycle at the impact: of the force F₀ cos(ωt + θ), or 2πτ/T.
     pub force_phase: f64,
     /// Approach speed vᵣ in m/s.
     pub approach_velocity: f64,
-    /// Complex amplitudes X₁, X₂ in m at the excitation frequency: what a spectrum shows of x₁ and x₂, its
-    /// phase counted from the impact.
+    /// Complex amplitudes X₁, X₂ in m at the excitation frequency, as in spectra of x₁ and x₂; the phase
+    /// counts from the impact.
     pub fundamental: [Complex64; 2],
-    /// Largest minus smallest x₁ and x₂ in m: what a displacement trace shows.
+    /// Peak-to-peak values of x₁ and x₂ in m.
     pub peak_to_peak: [f64; 2],
     /// Floquet multipliers, largest first; `None` where the motion does not exist or grazes.
     pub multipliers: Option<[Complex64; 4]>,
-    /// Is it real?
+    /// Verdicts on whether the orbit is real.
     pub validity: Validity,
-    /// Whether it lies on that side of the fold where a larger impulse would take more energy than the force
-    /// then gives.
+    /// Whether it lies on the side of the fold on which a larger impulse would take more energy than the
+    /// force provides.
     pub(crate) upper: bool,
     rig: Rig,
     excitation: Option<Excitation>,
@@ -104,14 +104,14 @@ impl Orbit {
         self.course.state(self.course.period)
     }
 
-    /// Complex amplitudes X₁, X₂ in m of the line at `n`/T, n ≥ 1, T being the time from impact to impact:
-    /// the line n = `cycles` lies at the excitation frequency.
+    /// Complex amplitudes X₁, X₂ in m of the spectral line at `n`/T, n ≥ 1, with the time T from impact to
+    /// impact: the line n = `cycles` lies at the excitation frequency.
     ///
-    /// X₁ = (F − 2J/T)L₁(iω), X₂ = (2J/T)L₂(iω), F the force's own line.
+    /// X₁ = (F − 2J/T)L₁(iω), X₂ = (2J/T)L₂(iω), with the line F of the force.
     pub fn line(&self, n: u32) -> [Complex64; 2] {
         let period = self.period();
         let [l1, l2] = self.rig.receptances(TAU * f64::from(n) / period);
-        // Every line of a train of impulses J is 2J/T high.
+        // Every line of a train of impulses J has the amplitude 2J/T.
         let train = 2.0 * self.impulse / period;
         let force = match &self.excitation {
             Some(force) if n.is_multiple_of(self.cycles) => force.harmonic(n / self.cycles, self.force_phase),
@@ -120,12 +120,13 @@ impl Orbit {
         [(force - train) * l1, l2 * train]
     }
 
-    /// The orbit among `others`, of the same excitation at a frequency (or with a contact) nearby, that this
-    /// one goes over into: on the same side of the fold, and within a sixth of a cycle in timing.
+    /// The orbit among `others` that this one changes into continuously; they belong to the same excitation
+    /// at a nearby frequency (or contact). It is on the same side of the fold, and within a sixth of a cycle
+    /// in timing.
     pub fn continued<'a>(&self, others: &'a [Orbit]) -> Option<&'a Orbit> {
         let same = others.iter().filter(|other| other.upper == self.upper);
         if self.timing_unit() == "rad" {
-            // One on each side of the fold.
+            // Under a sine force there is one orbit on each side of the fold.
             return same.min_by(|a, b| a.impulse.total_cmp(&b.impulse));
         }
         let apart = |other: &Orbit| {
@@ -135,9 +136,9 @@ impl Orbit {
         same.filter(|other| apart(other) < TAU / 6.0).min_by(|a, b| apart(a).total_cmp(&apart(b)))
     }
 
-    /// Whether the motion is real, and stays so where the gap differs by up to `gap_uncertainty` (m): farther
-    /// from grazing than that by [`Validity::grazing_distance`], and real when solved again at the ends
-    /// and half-way to them.
+    /// Whether the motion is real, and stays real where the gap differs by up to `gap_uncertainty` (m): its
+    /// [`Validity::grazing_distance`] is larger, and orbits solved with the gap at both ends of the
+    /// uncertainty and half-way to them are real.
     pub fn robust(&self, gap_uncertainty: f64) -> bool {
         if !self.validity.real() || self.validity.grazing_distance <= gap_uncertainty {
             return false;
@@ -165,10 +166,10 @@ impl Orbit {
     }
 }
 
-/// All answers at one frequency.
+/// All motions at one frequency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Orbits {
-    /// One for each real root, the larger impulse first; each says whether it is real.
+    /// One for each real root, in the order of [`orbits_of`]; its verdicts tell whether it is real.
     pub orbits: Vec<Orbit>,
     /// The motion without impacts.
     pub no_impact: NoImpact,
@@ -188,8 +189,8 @@ pub fn orbits(rig: &Rig, force: f64, frequency: f64) -> Result<Orbits> {
 /// Under a sine force the larger impulse comes first, under impulses and pulses the earlier impact.
 ///
 /// # Errors
-/// If a parameter is impossible, an undamped mass is driven at resonance, there is no excitation to speak of,
-/// or it is a sum of several sines, for which there is no closed form.
+/// If a parameter is impossible, an undamped mass is driven at resonance, the excitation is 0, or it is a sum
+/// of several sines, for which there is no closed form.
 pub fn orbits_of(rig: &Rig, excitation: &Excitation, cycles: u32) -> Result<Orbits> {
     solve(rig, excitation, cycles, 0.0)
 }
@@ -206,7 +207,7 @@ pub fn no_impact(rig: &Rig, excitation: &Excitation) -> Result<NoImpact> {
     }
 }
 
-/// As [`orbits_of`], the impact following the first touch by `delay` (s).
+/// As [`orbits_of`], with the impact `delay` (s) after the first touch.
 fn solve(rig: &Rig, excitation: &Excitation, cycles: u32, delay: f64) -> Result<Orbits> {
     scales::check(rig, excitation)?;
     let conditions = || Conditions::new(rig, excitation.frequency(), cycles, delay);
@@ -235,7 +236,7 @@ fn train(rig: &Rig, excitation: &Excitation) -> Result<PulseResponse> {
     }
 }
 
-/// An excitation that drives.
+/// Checks that the size of an excitation is not 0.
 pub(super) fn driven(size: f64) -> Result<()> {
     if size == 0.0 {
         let expected = "a value other than 0: nothing moves the masses";

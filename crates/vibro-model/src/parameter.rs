@@ -1,4 +1,4 @@
-//! The table of what can be varied: the rig's values and those of its excitation.
+//! Table of the parameters that can be varied: the values of the rig and of its excitation.
 
 use super::excitation::{Excitation, Sine};
 use super::least::{NumberRange, number};
@@ -6,8 +6,8 @@ use super::rig::Rig;
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
-/// A value of the rig or of its excitation: what a map varies and, of those that can be read from a campaign,
-/// a fit finds.
+/// A parameter of the rig or of its excitation. Maps vary them; fits determine those that a campaign can
+/// name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -41,11 +41,11 @@ pub enum Parameter {
     Width,
 }
 
-/// A parameter's name, unit, least value, the mass that it belongs to (0 or 1; none of the contact and the
-/// excitation), and its place in a rig.
+/// A parameter's name, unit, range of values, the mass that it belongs to (0 or 1; `None` for the contact and
+/// the excitation), and its place in a rig.
 type Row = (Parameter, &'static str, &'static str, NumberRange, Option<u8>, Option<fn(&mut Rig) -> &mut f64>);
 
-/// One row for each, in the order of the names.
+/// One row for each parameter, in the order of the variants.
 const TABLE: [Row; 12] = [
     (Parameter::M1, "m1", "kg", NumberRange::AboveZero, Some(0), Some(|rig| &mut rig.m1)),
     (Parameter::M2, "m2", "kg", NumberRange::AboveZero, Some(1), Some(|rig| &mut rig.m2)),
@@ -62,22 +62,22 @@ const TABLE: [Row; 12] = [
 ];
 
 impl Parameter {
-    /// All of them.
+    /// All parameters.
     pub fn all() -> impl Iterator<Item = Parameter> {
         TABLE.iter().map(|row| row.0)
     }
 
-    /// Those of the rig.
+    /// The parameters of the rig.
     pub fn of_rig() -> impl Iterator<Item = Parameter> {
         TABLE.iter().filter(|row| row.5.is_some()).map(|row| row.0)
     }
 
-    /// Whether a value of the rig has this name.
+    /// Whether a parameter of the rig has this name.
     pub fn is_of_rig(name: &str) -> bool {
         Parameter::of_rig().any(|p| p.name() == name)
     }
 
-    /// The parameter of this name.
+    /// The parameter with this name.
     pub fn named(name: &str) -> Option<Parameter> {
         Parameter::all().find(|p| p.name() == name)
     }
@@ -96,7 +96,7 @@ impl Parameter {
         self.row().2
     }
 
-    /// Least and largest value that it can have.
+    /// Smallest and largest possible value.
     pub fn limits(self) -> (f64, f64) {
         match self.row().3 {
             NumberRange::Any => (f64::NEG_INFINITY, f64::INFINITY),
@@ -115,7 +115,7 @@ impl Parameter {
         self.row().5.is_some() && self.row().4 != Some(0)
     }
 
-    /// Whether a fit can find it: the rig's values, and the force on it.
+    /// Whether a fit can determine it: the rig's values, and the force.
     pub fn can_be_fitted(self) -> bool {
         self.row().5.is_some() || self == Parameter::Force
     }
@@ -125,7 +125,7 @@ impl Parameter {
         self.row().5.map(|place| place(rig))
     }
 
-    /// Its value in a rig under a sine force; NaN where it belongs to another excitation.
+    /// Its value in a rig under a sine force; NaN for parameters of other excitations.
     pub fn of(self, rig: &Rig, sine: &Sine) -> f64 {
         match self {
             Parameter::Frequency => sine.frequency,
@@ -134,18 +134,19 @@ impl Parameter {
         }
     }
 
-    /// Its value in a rig, where it counts: not that of the excitation, nor of a wall.
+    /// Its value in a rig; `None` for the excitation's parameters, and for those of a wall, which have no
+    /// effect.
     pub(crate) fn counting(self, rig: &Rig) -> Option<f64> {
         let counts = self.row().4 != Some(1) || !rig.has_wall();
         self.place(&mut rig.clone()).map(|value| *value).filter(|_| counts)
     }
 
-    /// Checks a value of it.
+    /// Checks that a value is possible.
     pub(crate) fn check(self, value: f64) -> Result<()> {
         number(self.name(), value, if self.unit() == "1" { "" } else { self.unit() }, self.row().3)
     }
 
-    /// Enters a value; `None` where the excitation has no such number.
+    /// Sets its value; `None` where the excitation has no such parameter.
     pub(crate) fn set(self, rig: &mut Rig, excitation: &mut Excitation, value: f64) -> Option<()> {
         if self == Parameter::Frequency {
             *excitation = excitation.at_frequency(value);

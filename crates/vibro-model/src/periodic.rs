@@ -1,8 +1,7 @@
 //! Periodic motions with any number of impacts p in any number of cycles q under a sine force, stable or not.
 //!
-//! Phases and impulses of the impacts are found by Newton's method with the exact Jacobian; between the
-//! impacts everything is closed form. Each motion comes with the verdicts of those with one impact
-//! ([`Validity`]).
+//! Newton's method with the exact Jacobian finds the phases and impulses of the impacts; between the impacts
+//! everything is closed form. Each motion has the same verdicts as orbits with one impact ([`Validity`]).
 
 mod search;
 mod system;
@@ -27,7 +26,7 @@ use vibro_record::{Error, Result};
 /// One impact of a periodic motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Beat {
-    /// Phase θ in rad of the force F₀ cos θ; rises from impact to impact over all cycles of the period.
+    /// Phase θ in rad of the force F₀ cos θ; it grows over all cycles of the period without a step.
     pub phase: f64,
     /// Impulse J in N s.
     pub impulse: f64,
@@ -50,24 +49,24 @@ pub struct PeriodicOrbit {
     pub beats: Vec<Beat>,
     /// Complex amplitudes X₁, X₂ in m at the excitation frequency, phase counted from the first impact.
     pub fundamental: [Complex64; 2],
-    /// Largest minus smallest x₁ and x₂ in m.
+    /// Peak-to-peak values of x₁ and x₂ in m.
     pub peak_to_peak: [f64; 2],
     /// Floquet multipliers over the whole period, largest first; `None` where an impact grazes or does not
     /// exist.
     pub multipliers: Option<[Complex64; 4]>,
-    /// Is it real? Each verdict covers all impacts and all flights.
+    /// Verdicts on whether the motion is real; each covers all impacts and all flights.
     pub validity: Validity,
-    /// Monodromy matrix, from just before the first impact.
+    /// Monodromy matrix over the period that starts just before the first impact.
     pub(super) monodromy: Option<Matrix4<f64>>,
     /// The motion after the first impact.
     course: Course,
 }
 
-/// Newton's steps before it gives up.
+/// Most steps of Newton's method; more are a sign that it does not converge.
 const STEPS: usize = 40;
-/// Newton has settled when its step (rad and shares of an impulse) is below this.
+/// Newton's method has converged when its step (rad, and parts of an impulse) is below this.
 const SETTLED: f64 = 1e-11;
-/// Impacts of one motion whose phases (rad) and impulses (relatively) differ by less are the same impact.
+/// Impacts of one motion are the same if their phases (rad) and impulses (relative) differ by less than this.
 const REPEATED: f64 = 1e-7;
 
 impl PeriodicOrbit {
@@ -94,7 +93,7 @@ impl PeriodicOrbit {
         Ok(PeriodicOrbit::build(&system, *sine, cycles, &u))
     }
 
-    /// The motion near a pattern that a simulation has settled on.
+    /// The periodic motion near the impacts of a settled simulation.
     ///
     /// # Errors
     /// As [`PeriodicOrbit::near`].
@@ -123,12 +122,12 @@ impl PeriodicOrbit {
         self.shorter(REPEATED).is_none()
     }
 
-    /// Whether its impacts repeat within its period, to `close` in phases (rad) and impulses (relatively).
+    /// Whether its impacts repeat within its period, to `close` in phases (rad) and impulses (relative).
     pub(crate) fn repeats_within(&self, close: f64) -> bool {
         self.shorter(close).is_some()
     }
 
-    /// Impacts and cycles after which it repeats within its period, to `close`.
+    /// Number of impacts and of cycles after which it repeats within its period, to `close`.
     fn shorter(&self, close: f64) -> Option<(usize, usize)> {
         let p = self.beats.len();
         let cycles =
@@ -170,7 +169,7 @@ impl PeriodicOrbit {
         self.beats.iter().map(|b| (b.phase, b.impulse)).collect()
     }
 
-    /// All about the motion whose unknowns are `u`, phases rising within the period.
+    /// The motion with its verdicts, from the solution `u`; phases rise within the period.
     pub(super) fn build(system: &System, sine: Sine, cycles: u32, u: &DVector<f64>) -> PeriodicOrbit {
         let (rig, p, unit, omega) = (&system.rig, u.len() / 2, system.impulse(), system.omega);
         let round = TAU * f64::from(cycles);
@@ -202,7 +201,7 @@ impl PeriodicOrbit {
         let own = beats.iter().zip(&sensitivity).map(|(beat, s)| beat.impulse.abs() / s.abs());
         let own = own.fold(f64::INFINITY, f64::min);
         let judged = Judged::new(rig, &flights, exists, None, own, Some(amplified));
-        // Every harmonic of a train of impulses has the amplitude 2/T times their sum with their phases.
+        // Line of a train of several impulses: 2/T times the sum of the impulses with their phases.
         let train: Complex64 = beats.iter().map(|b| Complex64::from_polar(b.impulse, u[0] - b.phase)).sum();
         let [l1, l2] = rig.receptances(omega);
         let train = train * (2.0 / system.period);
@@ -224,7 +223,7 @@ impl PeriodicOrbit {
     }
 }
 
-/// Newton's method from `u`; `None` where it does not settle on impacts in the same order.
+/// Newton's method from `u`; `None` where it does not converge, or the order of the impacts changes.
 fn newton(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
     for _ in 0..STEPS {
         let (left, jacobian) = system.evaluate(&u);
@@ -233,8 +232,8 @@ fn newton(system: &System, mut u: DVector<f64>) -> Option<DVector<f64>> {
         if !size.is_finite() {
             return None;
         }
-        // No more than a fifth of a radian or of an impulse at once, so that far guesses do not leap onto
-        // other motions.
+        // At most a fifth of a radian or of an impulse a step, so that poor guesses do not jump to other
+        // motions.
         if size > 0.2 {
             step *= 0.2 / size;
         }
@@ -253,7 +252,7 @@ pub(super) fn ordered(system: &System, u: &DVector<f64>) -> bool {
     (1..p).all(|i| u[i] > u[i - 1]) && (p < 2 || u[p - 1] < u[0] + round)
 }
 
-/// dJᵢ/dΔ in N s/m of each impact; infinite at a fold.
+/// dJᵢ/dΔ in N s/m, the change of each impulse with the gap; infinite at a fold.
 fn sensitivity(system: &System, u: &DVector<f64>) -> Vec<f64> {
     let p = u.len() / 2;
     let (_, jacobian) = system.evaluate(u);

@@ -1,5 +1,4 @@
-//! What is seen of a motion over some cycles: its impacts, its pattern, its traces, and where it is once a
-//! cycle.
+//! Portrait of a motion over some cycles: its impacts, its pattern, its traces, and its Poincaré section.
 
 use super::flow::State;
 use super::impact::Impact;
@@ -9,7 +8,7 @@ use super::regime::{Pattern, Watch};
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
-/// The most cycles that are kept in a portrait.
+/// Most cycles of a portrait.
 pub(crate) const MOST_CYCLES: u32 = 100_000;
 
 /// A motion over some cycles of its excitation.
@@ -17,42 +16,42 @@ pub(crate) const MOST_CYCLES: u32 = 100_000;
 pub struct Portrait {
     /// Impacts in order.
     pub impacts: Vec<Impact>,
-    /// Times the masses came to rest against each other.
+    /// Number of times the masses came to rest against each other.
     pub sticks: u64,
     /// The pattern of the impacts.
     pub pattern: Pattern,
-    /// The force between the masses.
+    /// Peak, root mean square and impulse of the force between the masses.
     pub reaction: Reaction,
-    /// That force (N) over time (s) in the contacts of the last cycles; empty where impacts take no time.
+    /// Time (s) and force (N) in the contacts of the last cycles; empty for rigid impacts.
     pub force: Vec<(f64, f64)>,
-    /// Sampling times in s, over the last cycles.
+    /// Sampling times in s of the last cycles.
     pub time: Vec<f64>,
     /// States at these times.
     pub states: Vec<State>,
-    /// Time in s of each impact among the samples, and the states before and after it.
+    /// Time in s of each impact during the sampled cycles, and the states before and after it.
     pub jumps: Vec<(f64, State, State)>,
-    /// Beginnings of the cycles in s.
+    /// Start times of the cycles in s.
     pub beginnings: Vec<f64>,
     /// States at the beginning of each cycle (phase 0): a Poincaré section.
     pub section: Vec<State>,
 }
 
-/// How a portrait is taken.
+/// Length and sampling of a portrait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PortraitOptions {
-    /// Cycles followed.
+    /// Number of cycles.
     pub cycles: u32,
     /// Samples a cycle of the traces.
     pub samples: u32,
-    /// Cycles at the end that the traces show.
+    /// Number of cycles at the end that are sampled.
     pub shown: u32,
 }
 
 impl Portrait {
-    /// Follows `motion` for so many cycles.
+    /// Follows `motion` for these cycles and records it.
     ///
     /// # Errors
-    /// If no cycle or more than `MOST_CYCLES` are asked for, or as [`Motion::advance`].
+    /// If there are no cycles or more than `MOST_CYCLES`, or as [`Motion::advance`].
     pub fn take(motion: &mut dyn Motion, sitting: &PortraitOptions) -> Result<Portrait> {
         if !(1..=MOST_CYCLES).contains(&sitting.cycles) {
             return Err(Error::usage(
@@ -105,7 +104,7 @@ impl Portrait {
     }
 }
 
-/// States of a motion at equal distances.
+/// Equally spaced samples of a motion.
 #[derive(Debug, Clone)]
 pub struct Samples {
     first: f64,
@@ -123,11 +122,11 @@ impl Samples {
         Samples { first, step, end, time: Vec::new(), states: Vec::new() }
     }
 
-    /// Takes the samples of a piece; one at its end belongs to what follows.
+    /// Adds the samples of a piece; a sample at its end belongs to the next piece.
     pub fn take(&mut self, piece: &Piece<'_>) {
         loop {
             let time = self.first + self.step * self.time.len() as f64;
-            // The end, as nearly as sums of steps meet it.
+            // Excludes the end, within the accuracy of summed steps.
             if time >= piece.start + piece.duration || time > self.end - 1e-6 * self.step {
                 return;
             }
@@ -156,14 +155,15 @@ mod tests {
         for (time, state) in portrait.time.iter().zip(&portrait.states).step_by(17) {
             again.run(*time, |_| {}).unwrap();
             let other = again.state();
-            // Re-anchoring rounds 10 mm and 0.5 m/s, with phases of up to 300 rad.
+            // The simulation restarted at each sample has rounding errors: of 10 mm, 0.5 m/s, and phases up
+            // to 300 rad.
             assert!((other.x1 - state.x1).abs() < 1e-13 && (other.v2 - state.v2).abs() < 1e-11);
         }
-        // One impact a cycle, wherever it was followed from.
+        // One impact a cycle, wherever the portrait begins.
         assert!((29..=31).contains(&portrait.impacts.len()), "{}", portrait.impacts.len());
         let mut fresh = Simulation::new(&Rig::thesis(), &sine).unwrap();
         fresh.run(5.0 / 11.0, |_| {}).unwrap();
-        // The first section: phase 0 was passed at 4/11 s.
+        // First point of the section: phase 0 is passed at 4/11 s.
         let mut fourth = Simulation::new(&Rig::thesis(), &sine).unwrap();
         fourth.run(4.0 / 11.0, |_| {}).unwrap();
         assert!((fourth.state().x1 - portrait.section[0].x1).abs() < 1e-14);
@@ -180,8 +180,8 @@ mod tests {
         assert!(!portrait.jumps.is_empty());
         for ((time, before, after), impact) in portrait.jumps.iter().zip(&portrait.impacts) {
             assert!((time - impact.time).abs() < 1e-12);
-            // One place, to the rounding with which an impact is found, and the momentum that the impulse
-            // moves.
+            // The displacements are equal to the rounding of the contact search, and the impulse changes the
+            // momenta.
             for mass in [before.x1 - after.x1, before.x2 - after.x2, before.x1 - before.x2 - rig.gap] {
                 assert!(mass.abs() < 1e-15, "{before:?} {after:?}");
             }

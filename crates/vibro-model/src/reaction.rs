@@ -5,27 +5,27 @@ use super::law::Law;
 use super::motion::{Event, Motion, Piece};
 use serde::Serialize;
 
-/// What the force between the masses was over some cycles.
+/// The force between the masses over some cycles.
 ///
-/// An instantaneous impact has an impulse, but no force: its peak is infinite, and so is its mean square.
+/// A rigid impact has an impulse, but its force and its mean square are infinite.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Reaction {
-    /// Largest force in N; `None` where impacts take no time.
+    /// Largest force in N; `None` for rigid impacts.
     pub peak: Option<f64>,
-    /// Root mean square in N over all the time; `None` where impacts take no time.
+    /// Root mean square in N over the whole time; `None` for rigid impacts.
     pub rms: Option<f64>,
-    /// Impulse in N s a cycle of the excitation, forces of masses that rest against each other included;
+    /// Impulse in N s a cycle of the excitation, with the force between masses that rest against each other;
     /// `None` where they rest against a wall.
     pub impulse: Option<f64>,
 }
 
-/// Nodes and weights of Gauss' rule of three points on 0..1.
+/// Nodes and weights of the three-point Gauss rule on 0..1.
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 /// Parts of a piece in contact, which lasts at most a radian of its fastest motion: the rule errs by
-/// h⁷/2016000 of the sixth derivative a part, 2⁶ times that for the square: 5e-8 of either.
+/// h⁷/2016000 of the sixth derivative a part, and 2⁶ times that for the square: 5e-8 of either.
 const PARTS: u32 = 4;
-/// Steps of the golden section: they shorten half a part to 1e-6 of itself, where a peak is flat to 1e-13.
+/// Steps of the golden section: they shorten the interval to 1e-6 of itself, where a peak is flat to 1e-13.
 const STEPS: u32 = 30;
 
 /// Sums the force between the masses piece by piece.
@@ -33,19 +33,19 @@ const STEPS: u32 = 30;
 pub struct Tally {
     law: Option<Law>,
     gap: f64,
-    /// Mass, damper and spring of mass 2.
+    /// Mass (kg), damping (N s/m) and stiffness (N/m) of mass 2.
     second: [f64; 3],
     duration: f64,
     impulse: f64,
     square: f64,
     peak: f64,
-    /// Force (N) over time (s) in contacts after the time `shown`.
+    /// Time (s) and force (N) in contacts after the time `shown`.
     pub(crate) trace: Vec<(f64, f64)>,
     shown: f64,
 }
 
 impl Tally {
-    /// For what `motion` does from now on; the force is kept from the time `shown` (s) on.
+    /// A tally of `motion` from now on; the force is recorded from the time `shown` (s) on.
     pub fn new(motion: &dyn Motion, shown: f64) -> Tally {
         let rig = motion.rig();
         Tally {
@@ -61,7 +61,7 @@ impl Tally {
         }
     }
 
-    /// Takes a piece.
+    /// Adds a piece of the motion.
     pub fn take(&mut self, piece: &Piece<'_>) {
         let Piece { start, duration, path, event } = *piece;
         self.duration += duration;
@@ -106,18 +106,18 @@ impl Tally {
         self.peak = self.peak.max(best.1).max(force(f64::midpoint(low, high)));
     }
 
-    /// Whether the masses move together, to the rounding of their places and speeds.
+    /// Whether the masses move together, within the rounding of displacements and velocities.
     fn rests(&self, state: &State) -> bool {
         let State { x1, v1, x2, v2 } = *state;
         (self.gap + x2 - x1).abs() <= 1e-9 * (x1.abs() + x2.abs() + self.gap.abs())
             && (v1 - v2).abs() <= 1e-9 * (v1.abs() + v2.abs())
     }
 
-    /// What mass 2 takes while the masses move together: m₂v̇₂ + c₂v₂ + k₂x₂, integrated.
+    /// Impulse in N s on mass 2 while the masses move together: ∫(m₂v̇₂ + c₂v₂ + k₂x₂) dt.
     fn pressed(&self, piece: &Piece<'_>) -> f64 {
         let [m2, c2, k2] = self.second;
         let (from, to) = (piece.path.state(0.0), piece.path.state(piece.duration));
-        // A piece may last a cycle: 64 parts have errors of 1e-13.
+        // A piece may last a cycle: with 64 parts the error is 1e-13.
         let h = piece.duration / 64.0;
         let way: f64 = (0..64)
             .flat_map(|i| {
@@ -127,7 +127,7 @@ impl Tally {
         m2 * (to.v2 - from.v2) + c2 * (to.x2 - from.x2) + k2 * way
     }
 
-    /// The force over all that was taken, of so many cycles.
+    /// The force over all pieces, which have the length of `cycles`.
     pub fn read(&self, cycles: u32) -> Reaction {
         let known = |value: f64| self.law.map(|_| value);
         let impulse = Some(self.impulse / f64::from(cycles)).filter(|j| j.is_finite());
@@ -180,12 +180,12 @@ mod tests {
         let start = Simulation::at_rest(&pressed);
         let at_once: [Box<dyn Motion>; 2] = [
             Box::new(Simulation::from_state(&rig, &sine(0.5, 11.0), State::REST, 0.0).unwrap()),
-            // Chatter and rest every cycle.
+            // Chatter and lasting contact every cycle.
             Box::new(Simulation::from_state(&pressed, &sine(0.35, 2.354), start, 0.0).unwrap()),
         ];
         for mut motion in giving.into_iter().chain(at_once) {
             let (found, taken) = seen(&mut *motion, 20.0, 7);
-            // Trapezes of a 400th of a flight of at most half a cycle: (π/400)²/12 = 5e-6.
+            // Trapezes of a 400th of a flight of at most half a cycle: error (π/400)²/12 = 5e-6.
             let error = (found.impulse.unwrap() / taken - 1.0).abs();
             assert!(error < 1e-5, "{error} {found:?} {taken}");
             assert_eq!(found.peak.is_some(), motion.law().is_some());
@@ -195,9 +195,9 @@ mod tests {
 
     #[test]
     fn a_hard_contact_has_the_force_of_a_free_rebound() {
-        // Undamped spring: half a sine of the height v√(kM) and the length π√(M/k), so its mean square is
-        // half the square of its height over that time. Beside the contact force of some 100 N, 0.5 N
-        // and the springs' 1 N press and pull over a thousandth of a second.
+        // Undamped spring: the force is half a sine of the height v√(kM) and the length π√(M/k), so its mean
+        // square is half its height squared over that time. The contact force is some 100 N; beside it act
+        // 0.5 N and the springs' 1 N, over a thousandth of a second.
         let rig = Rig { restitution: 1.0, ..Rig::thesis() };
         let k = 1e8;
         let law = Law::KelvinVoigt { stiffness: k, damping: 0.0 };

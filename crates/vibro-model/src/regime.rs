@@ -1,8 +1,8 @@
-//! Regime of a motion: how many impacts in how many cycles its repeating pattern has.
+//! Regime of a motion: the number of impacts and cycles in its repeating pattern.
 //!
-//! Patterns are found by comparing states: p impacts repeat if each impact meets the masses where, and at the
-//! phase at which, the p-th impact before it did. Counting impacts would call two impacts in two cycles a
-//! pattern of one.
+//! Patterns are found by comparing states: p impacts repeat if the state and the phase at each impact are
+//! those at the p-th impact before. Counting impacts alone would take two different impacts in two cycles for
+//! one impact in one cycle.
 
 use super::flow::State;
 use super::motion::{Event, Motion, Piece};
@@ -14,19 +14,20 @@ use std::fmt;
 use std::ops::Range;
 use vibro_record::Result;
 
-/// Longest pattern looked for, in impacts and in cycles.
+/// Longest pattern that is searched, in impacts and in cycles.
 pub const LONGEST: u32 = 32;
-/// Two impacts are the same where phases (in cycles) and states (in units of the largest speed, displacements
-/// times ω) differ by less.
+/// Two impacts are the same if phases (in cycles) and states (velocities and ω × displacements, over the
+/// largest speed) differ by less than this.
 pub const SAME: f64 = 1e-6;
-/// Differences that still fall count as a pattern that settles, once they are below this.
+/// Differences below this that still fall count as a settling pattern.
 const NEAR: f64 = 1e-2;
-/// From one third of what was watched to the next the differences must fall to this fraction or less.
+/// Largest ratio of the differences in one third of the watched impacts to those of the third before, for a
+/// settling pattern.
 const FALLING: f64 = 0.95;
-/// Impacts kept: nine blocks of the longest pattern and more.
+/// Most impacts kept: ten times the longest pattern, to see whether differences fall.
 const KEPT: usize = 320;
 
-/// What a motion does.
+/// Regime of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Regime {
     /// `impacts` impacts repeat every `cycles` cycles.
@@ -38,9 +39,9 @@ pub enum Regime {
     },
     /// The masses do not meet.
     NoImpact,
-    /// The masses come to rest against each other by ever smaller impacts, and part again.
+    /// Chatter: the masses come to rest against each other by ever smaller impacts, and part again.
     Chatter {
-        /// Cycles after which this repeats; `None` where it does not.
+        /// Cycles in the pattern; `None` where it does not repeat.
         cycles: Option<u32>,
     },
     /// No pattern of up to [`LONGEST`] impacts or cycles.
@@ -71,14 +72,14 @@ impl Serialize for Regime {
     }
 }
 
-/// One impact as it is compared.
+/// An impact, with the values that are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strike {
     /// Time in s.
     pub time: f64,
     /// Phase of the excitation in rad.
     pub phase: f64,
-    /// State just before an impact at once; of a contact that gives way, at its end.
+    /// State just before a rigid impact; for a compliant contact, the state at its end.
     pub before: State,
     /// Impulse in N s; 0 where the masses begin to move together.
     pub impulse: f64,
@@ -87,8 +88,8 @@ pub struct Strike {
 }
 
 impl Strike {
-    /// Distance to another: the largest difference of phase in cycles, and of speeds and ω × displacements in
-    /// units of `speed`.
+    /// Distance from another impact: the largest difference of the phase in cycles, and of velocities and ω ×
+    /// displacements over `speed`.
     fn distance(&self, other: &Strike, omega: f64, speed: f64) -> f64 {
         let turn = (self.phase - other.phase + PI).rem_euclid(TAU) - PI;
         let (a, b) = (&self.before, &other.before);
@@ -97,21 +98,22 @@ impl Strike {
     }
 }
 
-/// A regime and how surely it was found.
+/// A regime, and how closely its pattern repeats.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     /// The regime.
     pub regime: Regime,
-    /// Whether the pattern repeats within [`SAME`]. A pattern whose differences are below 1e-2 and still
-    /// fall is named before it has settled: near the border of stability this takes thousands of cycles.
+    /// Whether the pattern repeats within [`SAME`]. A pattern with differences below 1e-2 that still fall is
+    /// named before it has settled: near the stability limit settling takes thousands of cycles.
     pub settled: bool,
-    /// Largest difference between the last two repetitions; `None` without a pattern.
+    /// Largest difference between the last two repetitions, of phases (in cycles) and of states over the
+    /// largest speed; `None` without a pattern.
     pub distance: Option<f64>,
     /// The impacts of the last repetition.
     pub strikes: Vec<Strike>,
 }
 
-/// Gathers the impacts of a motion under an excitation of one frequency.
+/// Collects the impacts of a motion under an excitation of one frequency.
 #[derive(Debug, Clone)]
 pub struct Watch {
     frequency: f64,
@@ -131,7 +133,7 @@ impl Watch {
         Watch { frequency, start, now: start, phase, strikes, sticks }
     }
 
-    /// Takes the next piece of the motion.
+    /// Adds the next piece of the motion.
     pub fn take(&mut self, piece: &Piece<'_>) {
         self.now = piece.start + piece.duration;
         let (kept, time, phase, impulse, approach_velocity) = match piece.event {
@@ -149,7 +151,7 @@ impl Watch {
         kept.push_back(Strike { time, phase, before, impulse, approach_velocity });
     }
 
-    /// What the motion does, from all that was watched.
+    /// The regime of the motion, from all that was watched.
     pub fn pattern(&self) -> Pattern {
         let watched = self.now - self.start;
         let quiet = |strikes: &VecDeque<Strike>| {
@@ -174,7 +176,7 @@ impl Watch {
         Pattern { regime, settled: distance <= SAME, distance: Some(distance), strikes }
     }
 
-    /// The shortest pattern that repeats.
+    /// The shortest pattern that repeats or settles.
     fn repeated(&self, strikes: &VecDeque<Strike>) -> Option<Repeated> {
         let compared = ComparedStrikes::new(strikes, self.frequency);
         let longest = (LONGEST as usize).min(strikes.len() / 2);
@@ -182,7 +184,7 @@ impl Watch {
     }
 }
 
-/// Impacts to be compared.
+/// Impacts to be compared with each other.
 struct ComparedStrikes<'a> {
     strikes: &'a VecDeque<Strike>,
     frequency: f64,
@@ -195,18 +197,18 @@ impl ComparedStrikes<'_> {
         ComparedStrikes { strikes, frequency, speed: strikes.iter().fold(f64::MIN_POSITIVE, fastest) }
     }
 
-    /// Largest distance of the impacts in `range` to those `p` before.
+    /// Largest distance of the impacts in `range` from those `p` impacts before.
     fn largest(&self, range: Range<usize>, p: usize) -> f64 {
         let omega = TAU * self.frequency;
         let far = |i: usize| self.strikes[i].distance(&self.strikes[i - p], omega, self.speed);
         range.map(far).fold(0.0, f64::max)
     }
 
-    /// The last `p` impacts against those before; `None` where they differ by more than [`NEAR`], do not take
-    /// whole cycles, or too many.
+    /// Compares the last `p` impacts with those before; `None` if they differ by more than [`NEAR`], or take
+    /// no whole cycle or more than [`LONGEST`].
     fn last(&self, p: usize) -> Option<Repeated> {
         let n = self.strikes.len();
-        // Most patterns are turned down by the last impact alone.
+        // A quick test: the last impact alone rules out most patterns.
         if self.largest(n - 1..n, p) > NEAR {
             return None;
         }
@@ -216,8 +218,8 @@ impl ComparedStrikes<'_> {
         counts.then_some(Repeated { impacts: p, cycles: cycles as u32, distance })
     }
 
-    /// Whether the differences over `p` impacts fall: the largest in each third of what was watched, so that
-    /// complex multipliers do no harm.
+    /// Whether the differences over `p` impacts fall. The largest of each third of the watched impacts are
+    /// compared, so that oscillating differences (complex multipliers) also count.
     fn falls(&self, p: usize) -> bool {
         let n = self.strikes.len();
         let third = (n - p) / 3;
@@ -233,7 +235,7 @@ struct Repeated {
     distance: f64,
 }
 
-/// Lets `motion` settle for `settle` cycles, watches it for `cycles` more and says what it does.
+/// Lets `motion` settle for `settle` cycles, watches it for `cycles` more, and returns its pattern.
 ///
 /// # Errors
 /// As [`Motion::advance`].

@@ -20,8 +20,8 @@ use vibro_record::{Error, Result};
 pub struct Rig {
     /// Excited mass in kg.
     pub m1: f64,
-    /// Passive mass in kg. Infinite for a wall: the rig is then an impact oscillator, and `k2` and `c2` do
-    /// not count.
+    /// Passive mass in kg. Infinite for a wall: the rig is then an impact oscillator, and `k2` and `c2` are
+    /// ignored.
     pub m2: f64,
     /// Stiffness of the excited mass' spring in N/m.
     pub k1: f64,
@@ -44,12 +44,12 @@ impl Default for Rig {
 }
 
 impl Rig {
-    /// The thesis' rig; its damping was estimated, its restitution is the one of its closed-form examples.
+    /// The rig of the thesis; its damping was estimated, its restitution is that of its closed-form examples.
     pub fn thesis() -> Rig {
         Rig { m1: 0.125, m2: 0.094, k1: 135.0, k2: 128.0, c1: 0.1, c2: 0.1, gap: 1e-3, restitution: 0.7 }
     }
 
-    /// Checks that the numbers can belong to a rig.
+    /// Checks that the numbers are possible.
     ///
     /// # Errors
     /// If a mass or stiffness is not above 0, a damping is negative, the restitution is outside 0 to 1, or a
@@ -58,7 +58,7 @@ impl Rig {
         self.fault().map_or(Ok(()), |(_, error)| Err(error))
     }
 
-    /// The first value that no rig can have: its key, and the complaint.
+    /// The first impossible value: its key, and the error.
     pub fn fault(&self) -> Option<(&'static str, Error)> {
         Parameter::of_rig().find_map(|p| Some((p.name(), p.check(p.counting(self)?).err()?)))
     }
@@ -68,7 +68,7 @@ impl Rig {
         self.m2 == f64::INFINITY
     }
 
-    /// Checks that a motion can start so: from finite values, a wall where it is.
+    /// Checks that a motion can start from `state` and `phase` (rad): all finite, and a wall at rest at 0.
     pub(super) fn check_start(&self, state: &State, phase: f64) -> Result<()> {
         let State { x1, v1, x2, v2 } = *state;
         if ![x1, v1, x2, v2, phase].iter().all(|v| v.is_finite()) {
@@ -82,7 +82,7 @@ impl Rig {
         Err(Error::usage(found, "0 m and 0 m/s"))
     }
 
-    /// What is wrong with a start at which the masses overlap.
+    /// Error for a start at which the masses overlap.
     pub(super) fn overlap(&self, state: &State) -> Error {
         Error::usage(
             format!("the masses overlap by {} m at the start", state.x1 - state.x2 - self.gap),
@@ -90,7 +90,7 @@ impl Rig {
         )
     }
 
-    /// Speed in m/s of both masses together with their common momentum.
+    /// Common velocity in m/s of both masses after joining, with their momentum kept.
     pub(super) fn common_speed(&self, state: &State) -> f64 {
         let [m1, m2] = self.masses();
         let momentum = m1 * state.v1 + m2 * state.v2;
@@ -108,7 +108,7 @@ impl Rig {
         self.reduced_mass() * (1.0 + self.restitution)
     }
 
-    /// The state just behind an impact.
+    /// The state just after an impact.
     #[inline]
     pub(crate) fn struck(&self, before: State, impulse: f64) -> State {
         let [m1, m2] = self.masses();
@@ -130,13 +130,13 @@ impl Rig {
         ]
     }
 
-    /// What of each mass has to be moved, in kg.
+    /// Mass in kg of each body.
     #[inline]
     pub(crate) fn masses(&self) -> [f64; 2] {
         self.bodies().map(|body| body.mass)
     }
 
-    /// Both masses held together; `None` against a wall.
+    /// Both masses joined to one body; `None` against a wall.
     pub(crate) fn joined(&self) -> Option<Body> {
         let [first, second] = self.bodies();
         (!self.has_wall()).then_some(Body {
@@ -146,7 +146,7 @@ impl Rig {
         })
     }
 
-    /// Free motion of each mass; a wall is free and rests.
+    /// Free motion of each mass; a wall stays at rest.
     pub fn oscillators(&self) -> [Oscillator; 2] {
         self.bodies().map(|body| body.oscillator())
     }
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn natural_frequencies_are_the_measured_ones() {
-        // Printed as 5.23 and 5.87 Hz.
+        // The thesis states 5.23 and 5.87 Hz.
         let [f1, f2] = Rig::thesis().natural_frequencies();
         assert!((f1 - 5.23).abs() < 0.005 && (f2 - 5.87).abs() < 0.005);
     }

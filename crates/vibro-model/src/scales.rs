@@ -1,8 +1,8 @@
-//! Which rigs and excitations double precision can compute.
+//! Limits of rigs and excitations for computation in double precision.
 //!
-//! Phases have the relative rounding ε = 2.2e-16. After n swings of a mass its phase is off by 2πnε; half of
-//! all digits, √ε, are left for n ≤ 1/(2π√ε) = 1.07e7. A flight is searched for contacts at each swing, so
-//! this bounds the work of a cycle as well.
+//! Phases have the relative rounding ε = 2.2e-16. After n swings of a mass the error of its phase is 2πnε;
+//! half of all digits, √ε, are left for n ≤ 1/(2π√ε) = 1.07e7. A flight is searched for contacts at each
+//! swing, so this also bounds the work of a cycle.
 
 use super::excitation::Excitation;
 use super::parameter::Parameter;
@@ -11,20 +11,21 @@ use std::f64::consts::TAU;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
 
-/// Values lie between the reciprocal of this and this, in SI units, or are 0: no formula here multiplies more
+/// Largest value in SI units, and reciprocal of the smallest other than 0: no formula here multiplies more
 /// than six values of a rig, its excitation or its motion, so products stay within 10^±308.
 const LARGEST: f64 = 1e50;
-/// Swings, or decays by e, of a mass in a cycle of the excitation.
+/// Most swings, or decays by e, of a mass in an excitation cycle: about half of the digits of its phase are
+/// left.
 const MOST_SWINGS: f64 = 1e7;
-/// Impacts and other events of a motion in a cycle, or in a swing where that is shorter: a chatter with R =
-/// 0.996 takes 36/(1 − R) from its height to the rounding of that. A million take a second.
+/// Most impacts and other events in a cycle, or in a swing where that is shorter: until its speeds fall to ε
+/// of the first, a chatter with R = 0.996 takes 36/(1 − R) = 9000. A million events take a second.
 pub(super) const MOST_EVENTS: f64 = 1e4;
-/// Swings in which a motion can settle, if hardly: a damping ratio of 1 % leaves e⁻¹ of it.
+/// Fewest swings in which a motion can settle: with a damping ratio of 1 %, transients fall to e⁻¹.
 const SWINGS: f64 = 16.0;
-/// Swings of a mass that the closed forms of a curve are searched over: some ten seconds, with the places of
-/// its changes.
+/// Most swings of a mass over which the closed forms of a curve are searched: about ten seconds, with the
+/// search for the frequencies of its changes.
 const MOST_SEARCHED: f64 = 3e5;
-/// Swings in a period that take no longer than all else of a closed form.
+/// Swings in a period whose search takes no longer than the rest of a closed form.
 const FEW_SWINGS: f64 = 100.0;
 
 /// Checks that a rig and its excitation are possible, and that their motion can be computed in double
@@ -39,8 +40,8 @@ pub(super) fn check(rig: &Rig, excitation: &Excitation) -> Result<()> {
     check_swings(rig, excitation.frequency(), MOST_SWINGS)
 }
 
-/// Checks that the values of a rig, and others beside it, are possible, and within 1e-50 to 1e50 in SI units
-/// or 0.
+/// Checks that the values of a rig, and the values `beside`, are possible, and are 0 or within 1e-50 to 1e50
+/// in SI units.
 ///
 /// # Errors
 /// If one is not.
@@ -57,8 +58,8 @@ pub(super) fn check_values<const N: usize>(rig: &Rig, beside: [f64; N]) -> Resul
     Ok(())
 }
 
-/// Checks that a motion can settle within `most` cycles of `frequency` (Hz): the faster mass swings in them
-/// at least [`SWINGS`] times.
+/// Checks that a motion can settle within `most` cycles of `frequency` (Hz): the faster mass makes at least
+/// [`SWINGS`] swings in them.
 ///
 /// # Errors
 /// If it does not.
@@ -75,8 +76,8 @@ pub(super) fn check_slow(rig: &Rig, frequency: f64, most: f64) -> Result<()> {
     Err(Error::refused(found).hint(format!("give a frequency up to {} Hz", significant(highest, 2))))
 }
 
-/// Checks that closed forms of so many points can be waited for: each is searched for contacts at every swing
-/// of a mass, a million a second.
+/// Checks that the closed forms of `points` points can be computed in reasonable time: each is searched for
+/// contacts at every swing of a mass, a million a second.
 ///
 /// # Errors
 /// If they cannot.
@@ -94,8 +95,8 @@ pub(super) fn check_points(rig: &Rig, frequency: f64, cycles: u32, points: usize
     Err(Error::refused(found).hint("ask for fewer points; a fixed mass 2 is m2=inf").setting("points"))
 }
 
-/// Checks that no mass swings, or is slowed by its damper, more than `most` times in a cycle of `frequency`
-/// (Hz).
+/// Checks that no mass swings, or is slowed by its damper by e, more than `most` times in a cycle of
+/// `frequency` (Hz).
 ///
 /// # Errors
 /// If one does.
@@ -117,7 +118,7 @@ pub(super) fn check_swings(rig: &Rig, frequency: f64, most: f64) -> Result<()> {
 /// Checks that a motion can go on from `now` to `until` (s).
 ///
 /// # Errors
-/// If that is not finite, or in the past.
+/// If `until` is not finite, or in the past.
 pub(super) fn check_time(now: f64, until: f64) -> Result<()> {
     if until.is_finite() && until >= now {
         return Ok(());
@@ -126,8 +127,7 @@ pub(super) fn check_time(now: f64, until: f64) -> Result<()> {
     Err(Error::usage(found, "a finite time that is not in the past"))
 }
 
-/// Checks that a piece of work of so many cycles of the excitation can be waited for: 1e8 cycles take about a
-/// minute.
+/// Checks that `cycles` of the excitation can be computed in reasonable time: 1e8 cycles take about a minute.
 ///
 /// # Errors
 /// If it cannot.
@@ -187,8 +187,8 @@ mod tests {
 
     #[test]
     fn a_chatter_of_any_size_comes_to_its_end() {
-        // The scales of all ways, speeds and forces are free: 2e12 times the force across 2e12 times the gap
-        // is the same motion.
+        // Displacements, speeds and forces scale together: 2e12 times the force across 2e12 times the gap
+        // gives the same motion.
         let pattern = |scale: f64| {
             let rig = Rig { gap: 5e-16 * scale, restitution: 0.1, ..Rig::thesis() };
             let sine = Sine { force: 0.5 * scale, frequency: 6.11 };
@@ -227,8 +227,8 @@ mod tests {
 
     #[test]
     fn bounces_without_loss_end_at_any_force() {
-        // Ways, speeds and forces have no scale of their own: with 2e20 times the force the gap is 2e20 times
-        // smaller beside them.
+        // Displacements, speeds and forces scale together: 2e20 times the force is the same motion as a gap
+        // 2e20 times smaller.
         let rig = Rig { restitution: 1.0, c1: 0.0, c2: 0.0, ..Rig::thesis() };
         let flights = |gap: f64, force: f64| {
             let mut motion = Simulation::new(&Rig { gap, ..rig }, &Sine { force, frequency: 11.0 }).unwrap();
@@ -236,7 +236,7 @@ mod tests {
             motion.counts().flights
         };
         assert_eq!(flights(1e-3, 1e20), flights(5e-24, 0.5));
-        // Between both, bounces may be more than are followed: 50 000 a cycle.
+        // At forces between these, there may be more bounces than are followed: 50 000 a cycle.
         let mut motion = Simulation::new(&rig, &Sine { force: 1e13, frequency: 11.0 }).unwrap();
         let said = motion.run(20.0 / 11.0, |_| {}).unwrap_err().to_string();
         assert!(said.starts_with("more than 200000 impacts"), "{said}");

@@ -1,4 +1,4 @@
-//! A scene: the rig, what drives it, and how its contact is made.
+//! A scene: the rig, its excitation, and its contact.
 
 mod draft;
 
@@ -10,7 +10,7 @@ use super::rig::Rig;
 use serde::{Deserialize, Serialize};
 use vibro_record::Result;
 
-/// All that a computation of the rig's motion starts from.
+/// The input of a computation of the rig's motion.
 ///
 /// As a TOML file: the keys of [`Rig`] at the top, `[excitation]` with `kind` and the keys of that kind,
 /// `[contact]` with `stiffness`, `damping`, `exponent`, and `[buffer]` with `gap`
@@ -28,24 +28,24 @@ pub struct Scene {
     /// The rig.
     #[serde(flatten)]
     pub rig: Rig,
-    /// What drives mass 1.
+    /// Excitation of mass 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excitation: Option<Excitation>,
-    /// A contact that gives way.
+    /// A compliant contact.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactKeys>,
-    /// Spring and damper of mass 1 act beyond a gap of its own: a loose mass.
+    /// Buffer of a loose mass 1: its spring and damper act only beyond a gap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub buffer: Option<Buffer>,
 }
 
-/// Numbers of a contact that gives way; which are needed depends on its law.
+/// Numbers of a compliant contact; its law determines which are needed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct ContactKeys {
     /// Stiffness k of the force kδⁿ, in N/mⁿ.
     pub stiffness: Option<f64>,
-    /// Damping: c in N s/m beside a spring, α in s/m in Hunt and Crossley's law.
+    /// Damping: c in N s/m beside a linear spring, α in s/m in the Hunt–Crossley law.
     pub damping: Option<f64>,
     /// Exponent n.
     pub exponent: Option<f64>,
@@ -55,9 +55,9 @@ pub struct ContactKeys {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table")]
 pub struct Buffer {
-    /// Way in m that mass 1 can go freely from its rest before its spring and damper act.
+    /// Distance in m that mass 1 can move freely from its rest before its spring and damper act.
     pub gap: f64,
-    /// The damper acts always, not in compression only.
+    /// The damper always acts, not only in compression.
     pub damper_always: bool,
 }
 
@@ -68,7 +68,7 @@ impl Default for Buffer {
 }
 
 impl Buffer {
-    /// The buffer of the thesis' simulations with a loose mass: 1 mm away from it at rest.
+    /// The buffer of the thesis' simulations with a loose mass: it begins 1 mm from the rest of mass 1.
     pub const fn thesis() -> Buffer {
         Buffer { gap: 1e-3, damper_always: false }
     }
@@ -78,7 +78,7 @@ impl Scene {
     /// Names of its tables in files; every other key is the rig's.
     pub const TABLES: [&str; 3] = ["excitation", "contact", "buffer"];
 
-    /// The thesis' rig, driven by nothing.
+    /// The rig of the thesis, without excitation.
     pub fn thesis() -> Scene {
         Scene { rig: Rig::thesis(), excitation: None, contact: None, buffer: None }
     }
@@ -91,7 +91,7 @@ impl Scene {
         Draft::from_toml(text)?.scene()
     }
 
-    /// Spring and damper of this stiffness (N/m) between the masses: the damper stated, or that which gives
+    /// Contact law of a spring of this stiffness (N/m) and a damper: the stated one, or the one that gives
     /// the rig's restitution.
     ///
     /// # Errors

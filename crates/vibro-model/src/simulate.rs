@@ -2,9 +2,9 @@
 //!
 //! Nothing is integrated in steps. Each flight is a closed form; it ends at the first root of the gap; the
 //! impact changes the velocities; the next flight starts from the state found there, so errors do not grow
-//! with a flight's length. Where impacts accumulate, their end is computed; from there both masses move
-//! together, again in closed form, up to the first root of the force between them. The phase is kept within
-//! 2π and runs on when the frequency is changed.
+//! with a flight's length. Where impacts accumulate (chatter), the time of their end is computed; from there
+//! both masses move together, again in closed form, up to the first root of the force between them. The phase
+//! is kept within 2π and is continuous when the frequency is changed.
 
 mod meet;
 
@@ -20,19 +20,19 @@ use vibro_math::Oscillator;
 use vibro_record::units::notation::significant;
 use vibro_record::{Error, Result};
 
-/// Approach speed in m/s below which an impact after which the masses part by themselves is counted as
-/// grazing, unless [`Simulation::grazing_below`] says otherwise.
+/// Approach speed in m/s below which an impact is counted as grazing, if the masses then part by themselves,
+/// unless [`Simulation::grazing_below`] sets another.
 pub const GRAZING_SPEED: f64 = 1e-3;
 
-/// The most legs that one call follows: some ten seconds of work.
+/// Most legs in one call: about ten seconds of work.
 const MOST_LEGS: f64 = 2e7;
-/// Cycles whose events a shorter call may use up: a chatter at its beginning is no reason to end.
+/// Fewest cycles whose events one call may use: a shorter call may begin with a long chatter.
 const AT_LEAST: f64 = 10.0;
 
-/// How both masses move in a leg.
+/// Motion of both masses in a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LegMotion {
-    /// Each on its own.
+    /// Each on its own spring and damper.
     Apart(Flight),
     /// In contact.
     Together(Pair),
@@ -47,16 +47,16 @@ impl Path for LegMotion {
     }
 }
 
-/// A stretch of a simulated motion and the event that ended it.
+/// A part of a simulated motion between two events, and the event that ended it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leg {
-    /// Time in s of its start.
+    /// Start time in s.
     pub start: f64,
     /// Duration in s.
     pub duration: f64,
     /// The motion.
     pub course: LegMotion,
-    /// What ended it.
+    /// The event that ended it.
     pub event: Event,
 }
 
@@ -66,7 +66,7 @@ impl Leg {
         self.course.state(t)
     }
 
-    /// The impact at its end, if one ended it.
+    /// The impact that ended the leg, if one did.
     pub fn impact(&self) -> Option<Impact> {
         match self.event {
             Event::Impact(impact) => Some(impact),
@@ -75,18 +75,18 @@ impl Leg {
     }
 }
 
-/// How the masses are to each other.
+/// Contact state of the masses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Hold {
     Apart,
-    /// They have just parted from rest against each other.
+    /// They have just parted after resting against each other.
     Parting,
-    /// A chatter that ends in so many seconds.
+    /// In chatter, which ends after this time in s; they already move together.
     Settling(f64),
     Together,
 }
 
-/// A simulated motion: where it is now, and what drives it on.
+/// A simulated motion: its present state, excitation and contact state.
 ///
 /// ```
 /// use vibro_model::{Rig, Simulation, Sine};
@@ -102,10 +102,10 @@ pub struct Simulation {
     rig: Rig,
     drive: Drive,
     oscillators: [Oscillator; 2],
-    /// M(1 + R).
+    /// M(1 + R) in kg: the impulse of an impact over its approach speed.
     exchange: f64,
     time: f64,
-    /// What the rounding of `time` has left out, in s.
+    /// Part of the time in s that is lost to the rounding of `time`.
     carry: f64,
     state: State,
     hold: Hold,
@@ -152,7 +152,7 @@ impl Simulation {
         let State { x1, v1, x2, v2 } = state;
         let drive = Drive::new(rig, &excitation.clone().into(), phase)?;
         let overlap = x1 - x2 - rig.gap;
-        // A state left behind by an impact overlaps by its rounding.
+        // After an impact the state may overlap by its rounding.
         let rounding = 4.0 * f64::EPSILON * (x1.abs() + x2.abs() + rig.gap.abs());
         if overlap > rounding {
             return Err(rig.overlap(&state));
@@ -179,22 +179,22 @@ impl Simulation {
         Ok(motion)
     }
 
-    /// Counts as grazing what approaches with less than `speed` (m/s) instead of [`GRAZING_SPEED`].
+    /// Counts impacts with less than `speed` (m/s) as grazing, instead of [`GRAZING_SPEED`].
     pub fn grazing_below(mut self, speed: f64) -> Simulation {
         self.grazing_speed = speed;
         self
     }
 
-    /// What the motion has met so far.
+    /// Numbers of flights, grazing impacts and lasting contacts so far.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Goes to the next event, or to the time `until` if that comes before; an impulse or a step of force at
-    /// `until` itself is left to what follows. Does not allocate.
+    /// Follows the motion to the next event, or to the time `until` (s) if that is earlier; an impulse or a
+    /// step of force at `until` itself belongs to the next call. Does not allocate.
     ///
     /// # Errors
-    /// If `until` is not finite or in the past, or the motion grows beyond all numbers.
+    /// If `until` is not finite or in the past, or the motion exceeds the range of numbers.
     pub fn fly(&mut self, until: f64) -> Result<Leg> {
         check_time(self.time, until)?;
         let remaining = ((until - self.time) - self.carry).max(0.0);
@@ -257,7 +257,7 @@ impl Simulation {
         Ok(Leg { start, duration, course, event })
     }
 
-    /// Lets time and phase go on. Time is summed with what its rounding leaves out (W. Kahan, 1965).
+    /// Advances time and phase. Time is summed with the part that rounding leaves out (W. Kahan, 1965).
     #[inline]
     fn go(&mut self, duration: f64) {
         let step = duration + self.carry;
@@ -267,7 +267,7 @@ impl Simulation {
         self.drive.forcing.pass(duration);
     }
 
-    /// Motion of masses that are apart, from now on.
+    /// Flight of the separate masses from now on.
     #[inline]
     fn flight(&self) -> Flight {
         let rest = self.drive.forcing.constant() / self.rig.bodies()[0].stiffness;
@@ -289,7 +289,8 @@ impl Simulation {
         .hint("give c1 or c2 a value above 0, or move the frequency"))
     }
 
-    /// Follows the motion to the time `until`, showing each leg, the last with [`Event::Reached`].
+    /// Follows the motion to the time `until` (s), and calls `visit` with each leg; the last one ends with
+    /// [`Event::Reached`].
     ///
     /// # Errors
     /// As [`Simulation::fly`]; if more than 1e8 cycles are asked for, or more than 10 000 legs a cycle or 20

@@ -25,7 +25,7 @@ impl Steady {
         rig.check()?;
         sine.check()?;
         let omega = sine.omega();
-        // k − mω² is a difference of numbers rounded to about 2ε of k: below that it is no number.
+        // k − mω² has a rounding of about 2ε of k: within that it counts as 0.
         let [Body { mass, damping, stiffness }, _] = rig.bodies();
         if damping == 0.0 && (stiffness - mass * omega * omega).abs() <= 4.0 * f64::EPSILON * stiffness {
             return Err(Error::refused(format!(
@@ -38,7 +38,7 @@ impl Steady {
         Ok(Steady { response: l1 * sine.force, omega })
     }
 
-    /// A in m.
+    /// Amplitude A in m.
     pub fn amplitude(&self) -> f64 {
         self.response.norm()
     }
@@ -51,7 +51,7 @@ pub struct NoImpact {
     pub possible: bool,
     /// Amplitude A of x₁ in m: half its peak-to-peak value.
     pub amplitude: f64,
-    /// Largest x₁ in m, counted from its rest; under a sine force the amplitude.
+    /// Largest x₁ in m from its rest; under a sine force it is the amplitude.
     pub largest: f64,
 }
 
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn the_linear_motion_grazes_where_it_should() {
-        // Independent number: A = Δ at ν = 2.168715614919 for 0.5 N.
+        // From an independent calculation: A = Δ at ν = 2.168715614919 for 0.5 N.
         let rig = Rig::thesis();
         let unit = (rig.k1 / rig.m1).sqrt() / std::f64::consts::TAU;
         let possible = |nu: f64| {

@@ -1,4 +1,4 @@
-//! Both masses together: their motion, the force between them, and how a chatter ends in it.
+//! Both masses in lasting contact: their motion, the force between them, and the chatter that leads to it.
 
 use super::body::Body;
 use super::flow::Free;
@@ -13,8 +13,8 @@ use vibro_math::root::{Bounded, first_fall};
 /// a constant force P and sine forces, x₂ = x₁ − Δ. The contact force on mass 2 is N = m₂ẍ₂ + c₂ẋ₂ + k₂x₂;
 /// the masses part where it vanishes.
 ///
-/// Against a wall (m₂ infinite) mass 1 stays at x₁ = Δ, and N = P + Σ Re(Fe^{iωt}) − k₁Δ is what the forces
-/// press with.
+/// Against a wall (m₂ infinite) mass 1 stays at x₁ = Δ, and the contact force is N = P + Σ Re(Fe^{iωt}) −
+/// k₁Δ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// Forced motion in m, or the sine forces in N on a wall.
@@ -23,11 +23,11 @@ pub struct Pair {
     course: PairMotion,
 }
 
-/// How a pair moves.
+/// Motion of a pair of masses in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum PairMotion {
     Moving {
-        /// Where x₁ would rest, in m.
+        /// Equilibrium of x₁ in m.
         rest: f64,
         free: Free,
         /// Mass 2.
@@ -35,7 +35,7 @@ enum PairMotion {
     },
     /// Held against a wall.
     Still {
-        /// Constant force P in N and k₁.
+        /// Constant force P in N and stiffness k₁ in N/m.
         force: f64,
         stiffness: f64,
     },
@@ -60,7 +60,7 @@ impl Pair {
         Pair { waves, gap: rig.gap, course }
     }
 
-    /// State at `t` ≥ 0.
+    /// State at the time `t` ≥ 0 (s).
     pub fn state(&self, t: f64) -> State {
         match &self.course {
             PairMotion::Still { .. } => State { x1: self.gap, ..State::REST },
@@ -71,7 +71,7 @@ impl Pair {
         }
     }
 
-    /// Contact force N in N at `t`, its rate, and a bound on its second derivative for all later times.
+    /// Contact force N in N at `t` (s), its rate, and a bound on its second derivative for all later times.
     pub fn force(&self, t: f64) -> Bounded {
         match &self.course {
             PairMotion::Still { force, stiffness } => {
@@ -104,7 +104,7 @@ impl Pair {
         8.0 * f64::EPSILON * size
     }
 
-    /// Time in `0..=duration` at which the contact force vanishes; at once where it pulls at the start.
+    /// Time in s in `0..=duration` at which the contact force vanishes; 0 where it pulls at the start.
     pub fn release(&self, duration: f64) -> Option<f64> {
         if self.force(0.0).value < -self.noise() {
             return Some(0.0);
@@ -112,7 +112,8 @@ impl Pair {
         first_fall(0.0, duration, 0.0, |t| self.force(t))
     }
 
-    /// x₁ with its first five derivatives at `t`, and bounds on the second to the fourth for all later times.
+    /// x₁ in m with its first five derivatives at `t` (s), and bounds on the second to the fourth for all
+    /// later times.
     fn series(&self, rest: f64, free: &Free, t: f64) -> ([f64; 6], [f64; 3]) {
         let mut terms = free.series(t);
         let limits = self.waves.limits;
@@ -125,7 +126,7 @@ impl Pair {
         (terms, bounds)
     }
 
-    /// Whether the motion is a number: not where the pair is driven at its undamped resonance.
+    /// Whether the motion is finite: false where the pair is driven at its undamped resonance.
     pub(super) fn is_finite(&self) -> bool {
         let free = match &self.course {
             PairMotion::Still { .. } => true,
@@ -135,7 +136,7 @@ impl Pair {
     }
 }
 
-/// How a flight from contact would go on.
+/// How the masses are pressed together at the start of a flight from contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Press {
     /// Acceleration a in m/s² with which free motion presses the masses together.
@@ -147,26 +148,26 @@ pub(super) struct Press {
 }
 
 impl Press {
-    /// What `flight` does at its start.
+    /// The pressing at the start of `flight`.
     pub fn of(flight: &Flight) -> Press {
         let [[_, _, a1, j1, ..], [_, _, a2, j2, ..]] = flight.series(0.0);
         Press { acceleration: a1 - a2, jerk: j2 - j1, noise: flight.noise() }
     }
 
-    /// Whether a separation with speed `w` (m/s) rises no higher than the rounding of the gap.
+    /// Whether a bounce that starts at `w` (m/s) rises at most to four times the rounding of the gap.
     pub(crate) fn is_rest(&self, w: f64) -> bool {
         w * w <= 8.0 * self.acceleration * self.noise
     }
 
-    /// Seconds in which the impacts that follow a separation with speed `w` (m/s) accumulate; `None` where
-    /// that cannot be told closely.
+    /// Time in s in which the impacts after a separation with speed `w` (m/s) accumulate; `None` where the
+    /// series below is not accurate enough.
     ///
     /// With a flight of 2w/a + 4jw²/3a³, an approach at w − 2jw²/3a², and a pressing acceleration that
     /// changes by −2jw/a over the flight and by κ(1 + R) times the approach at the impact, where κ =
     /// 2M(b₁/m₁ + b₂/m₂), the sum over all flights is T = 2w/(a(1 − R)) + [4j/3a³ − 2Rκ/a²] w²/(1 − R)² +
-    /// O(w³), j being the rate of the gap's acceleration. The second term has to be below a ten
-    /// thousandth of the first, and the first below a ten thousandth of the rig's time scale; then what is
-    /// left out is below 1e-8 T.
+    /// O(w³), with the rate j of the gap's acceleration. The second term must be below a ten thousandth of
+    /// the first, and the first below a ten thousandth of the rig's time scale; then the truncation is below
+    /// 1e-8 T.
     pub(crate) fn accumulation(&self, rig: &Rig, w: f64) -> Option<f64> {
         let (a, r) = (self.acceleration, rig.restitution);
         let lost = 1.0 - r;

@@ -1,5 +1,5 @@
-//! Sweeps: a motion whose excitation changes in steps or slowly, up and down, its state carried on all the
-//! way.
+//! Sweeps: the excitation of a motion changes in steps or slowly, up or down; each point starts from the
+//! state at the end of the one before.
 
 mod gauge;
 
@@ -16,14 +16,14 @@ use std::f64::consts::TAU;
 use vibro_record::{Direction, Error, Result};
 
 /// Steps a cycle of a continuous sweep. A step has the frequency of its middle, so the phase is exact at its
-/// ends and errs by at most 2πrh²/8 inside, r being the rate in Hz/s and h the step in s: 7e-6 rad at 3 Hz
-/// and 0.02 Hz/s.
+/// ends and errs by at most 2πrh²/8 inside, with the rate r in Hz/s and the step h in s: 7e-6 rad at 3 Hz and
+/// 0.02 Hz/s.
 const STEPS: u32 = 16;
 
 /// How a sweep passes from one value to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pace {
-    /// `points` values with equal distances; at each `settle` cycles pass before `measure` cycles are read.
+    /// `points` equally spaced values; at each `settle` cycles pass before `measure` cycles are read.
     Steps {
         /// Values, both ends included.
         points: usize,
@@ -32,25 +32,25 @@ pub enum Pace {
         /// Cycles read.
         measure: u32,
     },
-    /// Frequency changes by `rate` Hz/s; whole cycles are read, about `points` groups of them.
+    /// The frequency changes by `rate` Hz/s; whole cycles are read, in about `points` groups.
     Rate {
         /// Rate in Hz/s, above 0 in both directions.
         rate: f64,
-        /// Points wanted; never more than cycles.
+        /// Wanted number of points; at most one a cycle.
         points: usize,
     },
 }
 
-/// What a sweep does.
+/// Range, pace and observable of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
     /// Lower end (Hz, or N for a sweep of the force).
     pub from: f64,
     /// Upper end.
     pub to: f64,
-    /// How fast.
+    /// Steps or rate.
     pub pace: Pace,
-    /// What is read.
+    /// The observable that is read.
     pub observable: Observable,
 }
 
@@ -59,13 +59,13 @@ pub struct Plan {
 pub struct Point {
     /// Excitation frequency in Hz: the mean over the cycles read.
     pub frequency: f64,
-    /// Force amplitude in N, or whatever the excitation's size is.
+    /// Force amplitude in N, or the size of another excitation.
     pub force: f64,
     /// The observable of x₁ in m.
     pub x1: f64,
     /// The observable of x₂ in m.
     pub x2: f64,
-    /// Standard deviation of x₁'s from cycle to cycle in m: 0 where every cycle is the same.
+    /// Standard deviation in m of x₁'s observable from cycle to cycle: 0 where all cycles are equal.
     pub x1_scatter: f64,
     /// The same of x₂.
     pub x2_scatter: f64,
@@ -73,16 +73,15 @@ pub struct Point {
     pub reaction: Reaction,
 }
 
-/// Swings of a mass in a cycle up to which a sweep is followed: a hundred cycles at each of a hundred points
-/// are then a minute.
+/// Most swings of a mass in a cycle for which a sweep is simulated: a hundred cycles at each of a hundred
+/// points then take a minute.
 const MOST_SWINGS: f64 = 1e4;
 
 impl Plan {
     /// Checks the plan.
     ///
     /// # Errors
-    /// If an end is not a value that can be swept, no points or cycles are asked for, or more than 1e8
-    /// cycles.
+    /// If an end is not a value that can be swept, there are no points or cycles, or more than 1e8 cycles.
     pub fn check(&self) -> Result<()> {
         let Plan { from, to, .. } = *self;
         if !(from.is_finite() && to.is_finite() && from >= 0.0 && to > from) {
@@ -110,8 +109,8 @@ impl Plan {
         scales::check_work(cycles)
     }
 
-    /// Sweeps the frequency of `motion` (driven with `force`) from one end to the other; with a rate, each
-    /// cycle in several steps of constant frequency.
+    /// Sweeps the frequency of `motion`, whose force has the size `force`, from one end to the other; with a
+    /// rate, each cycle has several steps of constant frequency.
     ///
     /// # Errors
     /// As [`Plan::check`] and [`Motion::advance`].
@@ -130,7 +129,7 @@ impl Plan {
             Direction::Up => (self.from, self.to, rate),
             Direction::Down => (self.to, self.from, -rate),
         };
-        // Phase in cycles after t: f₀t + rt²/2, so a frequency f is reached after (f² − f₀²)/2r cycles.
+        // Phase in cycles after t: f₀t + rt²/2, so the frequency f is reached after (f² − f₀²)/2r cycles.
         let all = ((end * end - start * start) / (2.0 * rate)).floor().max(1.0) as u64;
         let group = all.div_ceil(points as u64);
         let at = |cycle: f64| (start * start + 2.0 * rate * cycle).max(0.0).sqrt();
@@ -144,7 +143,7 @@ impl Plan {
             for c in cycle..until {
                 for step in 0..STEPS {
                     let begun = c as f64 + f64::from(step) / f64::from(STEPS);
-                    // The step's mean frequency: its ends are 1/STEPS cycles apart in phase.
+                    // The mean frequency of the step: the phases at its ends are 1/STEPS cycles apart.
                     let ends = [at(begun), at(begun + 1.0 / f64::from(STEPS))];
                     motion.set_frequency(f64::midpoint(ends[0], ends[1]))?;
                     pass(motion, 1.0 / f64::from(STEPS), &mut gauge, Some(&mut tally))?;
@@ -159,11 +158,11 @@ impl Plan {
         Ok(found)
     }
 
-    /// Sweeps anything in steps: `set` changes it and says the frequency (Hz) and the force (N) that then
-    /// hold.
+    /// Sweeps any parameter in steps: `set` changes it, and returns the frequency (Hz) and the force (N)
+    /// after the change.
     ///
     /// # Errors
-    /// As [`Plan::check`] and [`Motion::advance`], if the pace is a rate, and what `set` complains of.
+    /// As [`Plan::check`] and [`Motion::advance`], if the pace is a rate, and the errors of `set`.
     pub fn steps(
         &self,
         motion: &mut dyn Motion,
@@ -182,7 +181,7 @@ impl Plan {
                 let share = if direction == Direction::Up { share } else { 1.0 - share };
                 let (frequency, force) = set(motion, self.from + share * (self.to - self.from))?;
                 if self.observable == Observable::Rms {
-                    // Its running mean must see the whole motion.
+                    // The running mean must include the settling cycles.
                     for _ in 0..settle {
                         pass(motion, 1.0, &mut gauge, None)?;
                     }
@@ -201,7 +200,7 @@ impl Plan {
     }
 }
 
-/// Goes on by `cycles` of the present frequency and reads.
+/// Follows the motion for `cycles` at the present frequency, and reads it.
 fn pass(
     motion: &mut dyn Motion,
     cycles: f64,
@@ -226,13 +225,13 @@ fn point(gauge: &Gauge, frequency: f64, force: f64, reaction: Reaction) -> Point
 /// A sweep up and one down.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Swept {
-    /// Points in the order in which they were passed, values rising; empty where not asked for.
+    /// Points of the sweep up, in the order of time; empty without one.
     pub up: Vec<Point>,
-    /// The same with falling values.
+    /// Points of the sweep down, in the order of time; empty without one.
     pub down: Vec<Point>,
 }
 
-/// Does `one` for each direction asked for, at the same time.
+/// Runs `one` for each of the directions, in parallel.
 ///
 /// # Errors
 /// Those of `one`.

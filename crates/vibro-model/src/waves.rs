@@ -4,10 +4,10 @@ use num_complex::Complex64;
 use vibro_math::cis::sin_cos;
 use vibro_math::root::Limits;
 
-/// The most sines that can act at once.
+/// Most sines that can act at once.
 pub(crate) const MOST_SINES: usize = 4;
 
-/// One term Re(Xe^{iωt}).
+/// One term Re(Xe^{iωt}) of a forced motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Wave {
     /// Re X in m.
@@ -18,14 +18,14 @@ struct Wave {
     omega: f64,
 }
 
-/// x(t) = Σ Re(Xe^{iωt}), of no more than [`MOST_SINES`] terms.
+/// Forced motion x(t) = Σ Re(Xe^{iωt}), with at most [`MOST_SINES`] terms.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Waves {
     terms: [Wave; MOST_SINES],
     count: usize,
     /// Σ|X| in m, a bound on |x|.
     pub amplitude: f64,
-    /// Bounds on derivatives, Σωⁿ|X|.
+    /// Bounds Σωⁿ|X| on the derivatives.
     pub limits: Limits,
 }
 
@@ -52,7 +52,7 @@ impl Waves {
         waves
     }
 
-    /// x and its first five derivatives at `t`.
+    /// x in m and its first five derivatives at `t` (s).
     #[inline]
     pub fn at(&self, t: f64) -> [f64; 6] {
         let mut sum = [0.0; 6];
@@ -77,7 +77,7 @@ impl Waves {
         self.terms.iter().take(self.count).fold(0.0, |most, wave| most.max(wave.omega))
     }
 
-    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; gives a bound on the next
+    /// Adds x and its derivatives at time 0, each times its weight, to `terms`; returns a bound on the next
     /// derivative.
     #[inline]
     pub fn terms<const N: usize>(&self, weights: &[f64; N], terms: &mut [f64; N]) -> f64 {
@@ -92,7 +92,7 @@ impl Waves {
     }
 }
 
-/// Xe^{iωt}.
+/// Real and imaginary part of Xe^{iωt}.
 #[inline]
 fn turned(wave: &Wave, t: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(wave.omega * t);

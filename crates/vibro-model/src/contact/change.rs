@@ -1,4 +1,4 @@
-//! What events change: the stage of a contact, the velocities, the spring of mass 1.
+//! Effects of events: on the stage of a contact, the velocities, the spring of mass 1.
 
 use super::compliant::{Compliant, ContactStage, Mark};
 use super::still::Still;
@@ -6,11 +6,11 @@ use crate::forcing::Tick;
 use crate::impact::Impact;
 use crate::motion::{Event, Piece};
 
-/// Separation speed in m/s below which a rebound does not part masses that are pressed together.
+/// Separation speed in m/s below which pressed masses stay together after a rebound; it ends a chatter.
 const REST_SPEED: f64 = 1e-9;
 
 impl Compliant {
-    /// What a root changes, and what it is called.
+    /// Applies the change at a root, and returns its event.
     pub(super) fn mark(&mut self, mark: Mark) -> Event {
         match mark {
             Mark::Meets if self.law.is_none() => self.rebound(),
@@ -18,7 +18,7 @@ impl Compliant {
                 self.touch();
                 Event::Touch
             }
-            // Without a damper the force ends where the surfaces are back at their rest.
+            // Without a damper the force falls to zero just where the indentation does.
             Mark::ForceEnds if self.indentation() > 0.0 && self.modes.contact_force.weights[1] != 0.0 => {
                 self.stage = ContactStage::Released;
                 Event::Part
@@ -38,14 +38,14 @@ impl Compliant {
             }
             Mark::SpringActs | Mark::SpringFree => {
                 self.spring_acts = mark == Mark::SpringActs;
-                // The damper's force steps.
+                // The damper's force changes in a step.
                 self.find_stage();
                 Event::Switch
             }
         }
     }
 
-    /// What an impact now is, without its impulse.
+    /// An impact with the present state, its impulse not yet known.
     fn met(&self) -> Impact {
         let (time, phase) = (self.time, self.drive.phase);
         Impact { time, phase, approach_velocity: self.state.approach(), impulse: 0.0 }
@@ -65,8 +65,8 @@ impl Compliant {
         Event::Impact(Impact { impulse, ..met })
     }
 
-    /// After a rebound too slow to part the masses against the force that presses them together, they move
-    /// together.
+    /// Lets the masses move together after a rebound that is too slow to part them against the force that
+    /// presses them together.
     pub(super) fn come_to_rest(&mut self, visit: &mut dyn FnMut(Piece<'_>)) {
         if self.law.is_some() || -self.state.approach() >= REST_SPEED {
             return;
@@ -87,7 +87,7 @@ impl Compliant {
         visit(Piece { start: self.time, duration: 0.0, path: &end, event: Event::Stick });
     }
 
-    /// Does what the excitation does now.
+    /// Applies an event of the excitation: a kick or a step of force.
     pub(super) fn tick(&mut self, tick: Tick) -> Event {
         self.drive.tick(tick);
         let event = match tick {
@@ -101,7 +101,7 @@ impl Compliant {
         event
     }
 
-    /// Finds the stage of a contact whose force has jumped.
+    /// Finds the contact's stage after a jump of the force.
     pub(super) fn find_stage(&mut self) {
         let pulls = self.modes.contact_force.value(&self.state, 0.0) < 0.0;
         match self.stage {

@@ -1,5 +1,5 @@
-//! Any motion of the rig with a contact that gives way, or a mass 1 that is loose on its spring: followed
-//! from event to event through its linear modes, and through integrated contacts between them.
+//! Any motion of the rig with a compliant contact, or with a mass 1 that is loose on its spring. It is
+//! followed from event to event: exactly in linear modes, by integration in contacts that are not linear.
 
 use super::modes::Modes;
 use super::still::Still;
@@ -18,25 +18,25 @@ use crate::scales;
 use crate::scene::Buffer;
 use vibro_record::{Error, Result};
 
-/// Pieces of one call at most, of linear motion: some minutes. An integrated one counts as ten.
+/// Most pieces of linear motion in one call: some minutes of work. An integrated piece counts as ten.
 const MOST_WORK: f64 = 1e9;
-/// Events in a row without time passing after which a motion is given up.
+/// Events in a row without time passing after which the simulation stops with an error.
 const MOST_AT_ONCE: u32 = 1000;
 
-/// Where a contact is.
+/// Stage of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ContactStage {
     /// Apart.
     Apart,
-    /// Pushing each other.
+    /// In contact with a force.
     Touching,
-    /// The force has come to zero with the surfaces not yet back at their rest.
+    /// The force has fallen to zero while the surfaces are still indented.
     Released,
-    /// Moving together (without rebound).
+    /// Moving together after rigid impacts without rebound.
     Together,
 }
 
-/// What a root of a watched quantity means.
+/// Event at a root of a watched quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Mark {
     Meets,
@@ -48,20 +48,20 @@ pub(super) enum Mark {
     SpringFree,
 }
 
-/// A motion with a contact that gives way: where it is now, and what drives it on.
+/// A motion with a compliant contact: its present state and its excitation.
 ///
 /// Flights and Kelvin–Voigt contacts are linear modes, exact to rounding; Hertz and Hunt–Crossley contacts
-/// are integrated to a relative error of 1e-13 a step. The rig's restitution is not used: the contact's law
-/// makes the rebound. Mass 2 may be a wall (m₂ infinite): the impact oscillator.
+/// are integrated with a relative error of 1e-13 a step. The rig's restitution is not used: the contact law
+/// determines the rebound. Mass 2 may be a wall (m₂ infinite): the impact oscillator.
 ///
-/// Pieces end with `Touch` where the surfaces meet, `Part` where the force comes to zero before the surfaces
-/// are back at their rest (the damper holds them back), `Touch` again where it returns before that, and with
-/// `Impact` once they are back: it tells the time, the phase and the approach speed of the beginning, and the
-/// whole impulse. Long stretches come in several pieces that end with `Reached`.
+/// Pieces end with `Touch` where the surfaces meet, with `Part` where the force falls to zero while the
+/// surfaces are still indented (the damper slows their return), with `Touch` again where the force returns
+/// before they separate, and with `Impact` once they do. The impact has the time, phase and approach speed of
+/// the first touch, and the whole impulse. Long stretches are split into pieces that end with `Reached`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compliant {
     pub(super) rig: Rig,
-    /// `None` where the masses meet at once, with the rig's restitution.
+    /// `None` for rigid impacts with the rig's restitution.
     pub(super) law: Option<Law>,
     loose: bool,
     pub(super) modes: Modes,
@@ -71,10 +71,10 @@ pub struct Compliant {
     pub(super) state: State,
     pub(super) stage: ContactStage,
     pub(super) spring_acts: bool,
-    /// The contact under way, with the impulse so far.
+    /// The present contact, with its impulse so far.
     pub(super) impact: Impact,
-    /// Overlap in m, of the size of roundings, that is not yet a meeting: masses that leave each other from
-    /// rest.
+    /// Overlap in m, of the order of rounding, that does not yet count as contact, for masses that have just
+    /// parted from rest.
     pub(super) slack: f64,
 }
 
@@ -88,14 +88,14 @@ impl Compliant {
         Compliant::start(rig, excitation, Some(law), None, state, phase)
     }
 
-    /// A motion with a loose mass 1, whose contact with mass 2 gives way by a spring and a damper, or
-    /// rebounds at once with the rig's restitution.
+    /// A motion with a loose mass 1. Its contact with mass 2 is a spring and a damper, or a rigid impact with
+    /// the rig's restitution.
     ///
     /// Behind mass 1, on the side away from mass 2, its spring and damper are a buffer that begins `gap` (m)
-    /// away from its rest: the force on mass 1 is −k₁(x₁ + gap) − c₁v₁ for x₁ < −gap and none elsewhere,
-    /// or −c₁v₁ there with [`Buffer::damper_always`]. Pieces end with `Switch` where it begins and ceases
-    /// to act; with rebounds at once, with `Impact`, with `Stick` where the masses have chattered to rest
-    /// against each other and with `Release` where they cease to move together.
+    /// away from its rest: the force on mass 1 is −k₁(x₁ + gap) − c₁v₁ for x₁ < −gap and none elsewhere, or
+    /// −c₁v₁ there with [`Buffer::damper_always`]. Pieces end with `Switch` where the buffer begins or ceases
+    /// to act. With rigid impacts they also end with `Impact`, with `Stick` where the masses have chattered
+    /// to rest against each other, and with `Release` where they cease to move together.
     ///
     /// ```
     /// use vibro_model::{Buffer, Compliant, Event, Excitation, Motion, Rig, Sine, State};
@@ -109,7 +109,7 @@ impl Compliant {
     ///
     /// # Errors
     /// If a parameter is impossible, the state or the phase is not finite, the masses overlap without a law,
-    /// or it is not that of Kelvin and Voigt.
+    /// or the law is not Kelvin–Voigt.
     pub fn loose(
         rig: &Rig,
         excitation: &Excitation,
@@ -163,7 +163,7 @@ impl Compliant {
         Ok(motion)
     }
 
-    /// Whether contacts are integrated.
+    /// Whether contacts are integrated: their force is not linear.
     pub(crate) fn integrates(&self) -> bool {
         self.within.law.is_some()
     }
@@ -186,7 +186,7 @@ impl Compliant {
         &by_spring[usize::from(self.spring_acts)]
     }
 
-    /// Computes one piece; whether it reached `until`.
+    /// Computes one piece; returns whether it reached `until`.
     fn piece(&mut self, until: f64, visit: &mut dyn FnMut(Piece<'_>)) -> Result<bool> {
         let remaining = until - self.time;
         let due = self.drive.next(remaining, until);
@@ -242,8 +242,8 @@ impl Compliant {
         Ok(self.pass(&taylor, duration, first.map(|(_, mark)| mark), due, until, visit))
     }
 
-    /// Goes on along `path` for `duration` seconds, to a mark or to what the excitation does; whether it
-    /// reached the end.
+    /// Advances along `path` by `duration` seconds, and applies the mark or the event of the excitation
+    /// there; returns whether `until` was reached.
     fn pass(
         &mut self,
         path: &dyn Path,

@@ -5,20 +5,20 @@ use crate::linear::{Linear, Quantity};
 use crate::rig::Rig;
 use crate::scene::Buffer;
 
-/// All linear modes of a rig, each with the spring and damper of mass 1 acting or not.
+/// All linear modes of a rig, each without and with the spring and damper of mass 1 acting.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Modes {
-    /// Apart, by whether the spring of mass 1 acts.
+    /// Apart; the index is whether the spring of mass 1 acts.
     pub apart: [Linear; 2],
-    /// Pushing each other by a spring and a damper.
+    /// In contact through a spring and a damper.
     pub pushing: [Linear; 2],
     /// Moving together.
     pub together: [Linear; 2],
-    /// δ = x₁ − x₂ − Δ.
+    /// Indentation δ = x₁ − x₂ − Δ in m.
     pub indentation: Quantity,
-    /// Force of the contact's spring and damper, pulling included.
+    /// Force in N of the contact's spring and damper; negative where it would pull.
     pub contact_force: Quantity,
-    /// How far the spring of mass 1 is compressed; negative where mass 1 is loose.
+    /// Compression in m of the spring of mass 1; negative where mass 1 is loose.
     pub compression: Quantity,
     /// Reduced mass M in kg; m₁ where mass 2 is a wall.
     pub reduced_mass: f64,
@@ -26,7 +26,7 @@ pub(super) struct Modes {
 
 impl Modes {
     /// Modes of `rig` (m₂ may be infinite) with a contact of spring and damper. Spring and damper of a loose
-    /// mass 1 act in compression, beyond the gap of its `buffer`; its damper may act always.
+    /// mass 1 act only in compression, beyond the gap of its `buffer`; its damper may act always.
     pub fn new(rig: &Rig, law: Option<Law>, buffer: Option<Buffer>) -> Modes {
         let [first, second] = rig.bodies();
         let inverse = rig.masses().map(|mass| 1.0 / mass);
@@ -40,7 +40,7 @@ impl Modes {
             let c1 = if acting || buffer.is_some_and(|b| b.damper_always) { first.damping } else { 0.0 };
             ([[-k1, -c1, 0.0, 0.0], [0.0, 0.0, -second.stiffness, -second.damping]], -k1 * gap)
         };
-        // With a spring k and a damper c between the masses.
+        // Modes with a spring k and a damper c between the masses.
         let free = |k: f64, c: f64| {
             [false, true].map(|acting| {
                 let (own, preload) = own(acting);
@@ -68,8 +68,8 @@ impl Modes {
         }
     }
 
-    /// Force in N with which the masses would press on each other if they moved together: M(a₁ − a₂), each
-    /// without the other.
+    /// Contact force in N that would keep the masses together: M(a₁ − a₂), with the acceleration of each mass
+    /// alone.
     #[inline]
     pub fn pressing(&self, spring_acts: bool) -> Quantity {
         self.apart[usize::from(spring_acts)].closing().times(self.reduced_mass)

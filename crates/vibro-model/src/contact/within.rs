@@ -1,4 +1,4 @@
-//! Contacts whose force is not linear, integrated while they last.
+//! Contacts whose force is not linear: they are integrated.
 
 use crate::flow::State;
 use crate::forcing::Forcing;
@@ -9,13 +9,13 @@ use crate::rig::Rig;
 use vibro_math::runge_kutta::{Dop853, Integrator, Step, Tolerance};
 use vibro_record::Result;
 
-/// Relative error of a step; its floor are the indentation and the speed of the contact.
+/// Relative error of a step, of the state or of its floor, whichever is larger.
 const RELATIVE: f64 = 1e-13;
 
-/// Displacements, velocities, and the impulse since the step's start.
+/// Size of the integrated state: two displacements, two velocities, and the impulse since the step's start.
 const SIZE: usize = 5;
 
-/// Where an integrated contact is.
+/// The present contact and its integration.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Within {
     /// `None` where contacts are linear.
@@ -23,10 +23,11 @@ pub(super) struct Within {
     inverse: [f64; 2],
     gap: f64,
     reduced_mass: f64,
-    /// Speed in m/s and time in s of the contact, the latter of a free rebound.
+    /// Approach speed in m/s at the start of the contact.
     speed: f64,
+    /// Time scale of the contact in s, as of a rebound without losses.
     scale: f64,
-    /// Step to be tried next, in s.
+    /// First step to try next, in s.
     next: f64,
 }
 
@@ -37,12 +38,12 @@ impl Within {
         Within { law, inverse, gap: rig.gap, reduced_mass, speed: 0.0, scale: 0.0, next: 0.0 }
     }
 
-    /// A contact begins with an approach at `speed`.
+    /// Starts a contact with the approach speed `speed` (m/s).
     pub fn begin(&mut self, speed: f64) {
         let (stiffness, exponent) = self.spring();
-        // Below 1 nm/s only the size of errors is meant.
+        // At least 1 nm/s: the speed only scales the step and the errors.
         self.speed = speed.max(1e-9);
-        // T with V² = k(VT)^{n+1}/M.
+        // Time scale T of the speed V: V² = k(VT)^{n+1}/M.
         self.scale = (self.reduced_mass / stiffness).powf(1.0 / (exponent + 1.0))
             * self.speed.powf((1.0 - exponent) / (exponent + 1.0));
         self.next = 1e-3 * self.scale;
@@ -53,10 +54,10 @@ impl Within {
         self.law.map_or((0.0, 1.0), |law| (law.numbers().0, law.numbers().1))
     }
 
-    /// Sizes below which errors need not fall: indentation and speed of the contact, and what roundings of
-    /// the displacements allow. An indentation is known to εX, X = |x₁| + |x₂| + |Δ|, so with ω the
-    /// contact's frequency a speed is known to εωX; a fiftieth of X and ωX, times the relative error, is
-    /// nine times that.
+    /// Floors of the sizes that the relative error refers to: indentation and speed of the contact, and the
+    /// rounding of the displacements. An indentation is known to εX, X = |x₁| + |x₂| + |Δ|, so with the
+    /// contact's angular frequency ω a speed is known to εωX; X/50 and ωX/50, times the relative error, are
+    /// nine times these.
     fn floor(&self, state: &State) -> [f64; SIZE] {
         let (stiffness, exponent) = self.spring();
         let depth = (state.x1 - state.x2 - self.gap).max(self.speed * self.scale);
@@ -66,8 +67,8 @@ impl Within {
         [way, speed, way, speed, speed * self.reduced_mass]
     }
 
-    /// One step of at most `span` > 0 seconds from `state`; `mode` holds what acts beside the contact. Its
-    /// last component is the impulse.
+    /// One step of at most `span` > 0 seconds from `state`; `mode` gives the accelerations without the
+    /// contact. The last component is the impulse in N s.
     pub fn step(&mut self, mode: &Linear, drive: &Forcing, state: &State, span: f64) -> Result<Step<SIZE>> {
         let law = self.law;
         let [inverse1, inverse2] = self.inverse;
@@ -86,7 +87,7 @@ impl Within {
         Ok(step)
     }
 
-    /// When in a step the surfaces are back at their rest.
+    /// Time in s in the step at which the surfaces separate.
     pub fn first_fall(&self, step: &Step<SIZE>) -> Option<f64> {
         step.first_fall(&[1.0, 0.0, -1.0, 0.0, 0.0], -self.gap)
     }

@@ -23,12 +23,12 @@ fn the_branch_of_one_impact_a_cycle_is_the_closed_form_through_its_folds() {
             let closed = orbits(&rig, force, point.sine.frequency).unwrap().orbits;
             let off = |o: &Orbit| (o.impulse / beat.impulse - 1.0).abs();
             let off = closed.iter().map(off).fold(f64::INFINITY, f64::min);
-            // Newton's last step is below 1e-10 and squares; near a fold roundings are enlarged by the
-            // sensitivity.
+            // Newton's last step is below 1e-10, and its error is the square of that; near a fold rounding is
+            // amplified by the sensitivity.
             let amplified = 1.0 + point.peak_to_peak[0] / point.validity.grazing_distance.max(1e-12);
             assert!(off < 1e-12 * amplified, "{off} {beat:?} at {}", point.sine.frequency);
         }
-        // Folds are where the closed form gains or loses both roots.
+        // At a fold the closed form gains or loses both roots.
         for fold in branch.marks.iter().filter(|m| m.kind == Loss::Fold) {
             let f = fold.orbit.sine.frequency;
             let roots = |f: f64| orbits(&rig, force, f).unwrap().orbits.len();
@@ -41,7 +41,8 @@ fn the_branch_of_one_impact_a_cycle_is_the_closed_form_through_its_folds() {
 
 #[test]
 fn losses_of_stability_are_marked_where_multipliers_pass_the_circle() {
-    // Golden: F₀ 0.9 N, R 1, ν 1.2 has the multiplier −1.326; F₀ 0.05 N, R 1, ν 1.3 the pair 0.389 ± 1.047i.
+    // Reference values: multiplier −1.326 for F₀ 0.9 N, R 1, ν 1.2; pair 0.389 ± 1.047i for F₀ 0.05 N, R 1, ν
+    // 1.3.
     let rig = Rig { restitution: 1.0, ..Rig::thesis() };
     let at = |nu: f64| nu * (rig.k1 / rig.m1).sqrt() / TAU;
     for (force, nu, kind) in [(0.9, 1.2, Loss::Flip), (0.05, 1.3, Loss::NeimarkSacker)] {
@@ -84,12 +85,12 @@ fn branches_over_force_gap_and_restitution_are_the_closed_form() {
             let closed = orbits(&point.rig, point.sine.force, 10.5).unwrap().orbits;
             let off = |o: &Orbit| (o.impulse / beat.impulse - 1.0).abs();
             let off = closed.iter().map(off).fold(f64::INFINITY, f64::min);
-            // As over the frequency.
+            // Amplification as for the branch over frequency.
             let amplified = 1.0 + point.peak_to_peak[0] / point.validity.grazing_distance.max(1e-12);
             assert!(off < 1e-12 * amplified, "{over:?} {off} {beat:?}");
         }
-        // Roots come and go at folds, and a root's impulse passes through zero where the branch ends by
-        // grazing.
+        // Roots appear and vanish at folds; where the branch ends by grazing, the impulse of a root passes
+        // through zero.
         for fold in branch.marks.iter().filter(|m| m.kind == Loss::Fold) {
             let roots = |share: f64| {
                 let (mut rig, mut sine) = (fold.orbit.rig, fold.orbit.sine);
@@ -110,28 +111,28 @@ fn branches_over_force_gap_and_restitution_are_the_closed_form() {
 #[test]
 fn the_published_impact_oscillator_grazes_where_its_stop_touches() {
     // Example 15.2 of "Recipes for Continuation" (H. Dankowicz, F. Schilder 2013), in COCO's folder of the
-    // toolbox hspo: ẍ + 0.1ẋ + x = A cos t with a stop at 1 and restitution 0.8. Its first solution, A =
-    // 1, leaves the stop with −1.36 at the phase 0.076, as printed. Its family over A ends where it
-    // grazes: the linear amplitude A/0.1 is the way to the stop.
+    // toolbox hspo: ẍ + 0.1ẋ + x = A cos t with a stop at 1 and restitution 0.8. Published: its first
+    // solution, A = 1, leaves the stop with −1.36 at the phase 0.076. Its family over A ends where it grazes:
+    // there the linear amplitude A/0.1 equals the distance to the stop.
     let rig =
         Rig { m1: 1.0, m2: f64::INFINITY, k1: 1.0, k2: 1.0, c1: 0.1, c2: 0.0, gap: 1.0, restitution: 0.8 };
     let start = one(&rig, 1.0, 1.0 / TAU);
     let beat = start.beats[0];
-    // Printed digits.
+    // Tolerance: half of the last published digit.
     assert!((0.8 * beat.approach_velocity - 1.36).abs() < 0.005, "{beat:?}");
     assert!(((beat.phase + 1.0).rem_euclid(TAU) - 1.0 - 0.076).abs() < 0.005, "{beat:?}");
     assert!(start.validity.real(), "{:?}", start.validity);
     let branch = follow(&start, Parameter::Force, 0.01, 1.0, 0.05).unwrap();
     let grazing: Vec<_> = branch.marks.iter().filter(|m| m.kind == Loss::Grazing).collect();
     let own = grazing.iter().map(|m| (m.orbit.sine.force / 0.1 - 1.0).abs()).fold(1.0, f64::min);
-    // Located by bisection to 1e-11 of a step; ω = 2π/2π to a rounding.
+    // Located by bisection to 1e-11 of a step; ω = 2π/2π to rounding.
     assert!(own < 1e-6, "{own} {:?}", branch.ends);
 }
 
 #[test]
 fn two_impacts_in_two_cycles_turn_back_where_one_impact_flips() {
-    // Between the two flips of one impact a cycle lies the motion of twice the period; round it goes with its
-    // impacts in either order.
+    // Between the two flips of one impact a cycle there is the motion of twice the period; its branch is
+    // closed, with its two impacts in either order.
     let rig = Rig { restitution: 0.9, ..Rig::thesis() };
     let sine = Sine { force: 0.9, frequency: 6.3 };
     let start = crate::search(&rig, &sine, 2, 2).unwrap().remove(0);
@@ -147,8 +148,8 @@ fn two_impacts_in_two_cycles_turn_back_where_one_impact_flips() {
     assert!(double.len() == 2 && single.len() >= 2, "{double:?} {single:?}");
     for flip in double {
         let off = single.iter().map(|f| (f / flip - 1.0).abs()).fold(1.0, f64::min);
-        // The turn is flat: where halves differ by no more than 1e-2, the frequency is off by the square of
-        // that.
+        // The branch turns back with zero slope: where the halves differ by at most 1e-2, the error of the
+        // frequency is that squared.
         assert!(off < 1e-4, "{flip} {single:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! A walk along a branch, by predictor and corrector.
+//! Continuation along a branch, by predictor and corrector.
 
 use super::{End, Mark};
 use crate::excitation::Sine;
@@ -11,15 +11,15 @@ use nalgebra::{DMatrix, DVector, Matrix4, Matrix6};
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// Points at most, each way.
+/// Most points in each direction.
 const POINTS: usize = 20_000;
-/// Newton's steps of a corrector.
+/// Most Newton steps of a corrector.
 const CORRECTOR: usize = 12;
-/// Both halves of a motion at a flip are the same to this (rad and shares of an impulse): branches cross
-/// there, so the equations are nearly singular about the place, which is located as nearly as they can be
-/// solved.
+/// At a flip the two halves of a doubled motion are equal; they count as equal to this difference (rad, and
+/// parts of an impulse). Branches cross there, so the equations are nearly singular, which limits how closely
+/// the place can be found.
 const HALVES: f64 = 1e-2;
-/// Where a walk begins, how far it goes, and in what steps.
+/// Start of a continuation, its parameter with its range, and its largest step.
 pub struct Walk<'a> {
     pub start: &'a PeriodicOrbit,
     pub over: Parameter,
@@ -28,14 +28,14 @@ pub struct Walk<'a> {
     pub step: f64,
 }
 
-/// One way along a branch.
+/// The branch in one direction.
 pub struct Way {
     pub points: Vec<PeriodicOrbit>,
     pub marks: Vec<Mark>,
     pub end: End,
 }
 
-/// A point of the extended space: unknowns and the coordinate of what is varied; with its tangent.
+/// A point of the extended space: unknowns and the coordinate of the varied parameter; with its tangent.
 #[derive(Clone)]
 pub struct Spot {
     z: DVector<f64>,
@@ -43,8 +43,8 @@ pub struct Spot {
 }
 
 impl Walk<'_> {
-    /// Coordinate of a value of what is varied: its logarithm, the gap in units of the branch's length, the
-    /// restitution itself.
+    /// Coordinate of a value of the varied parameter: its logarithm; for the gap, its ratio to the branch's
+    /// length; the restitution itself.
     fn coordinate(&self, value: f64) -> f64 {
         match self.over {
             Parameter::Gap => value / self.length(),
@@ -66,7 +66,7 @@ impl Walk<'_> {
     fn scene(&self, z: &DVector<f64>) -> (Rig, Sine) {
         let (mut rig, mut sine) = (self.start.rig, self.start.sine);
         let (least, most) = self.over.limits();
-        // A step may look beyond a bound: `system` goes on there.
+        // A step may go beyond a bound: `system` continues the equations there.
         let value = self.value(z[z.len() - 1]).clamp(least, most);
         match self.over {
             Parameter::Frequency => sine.frequency = value,
@@ -84,33 +84,33 @@ impl Walk<'_> {
         let (rig, sine) = self.scene(z);
         let mut system = System::new(&rig, &sine, self.start.cycles)?;
         if self.over == Parameter::Restitution {
-            // The equations have a meaning beyond 0 and 1, too.
+            // The equations also hold for restitutions outside 0 to 1.
             system.contact = 1.0 / Rig { restitution: z[z.len() - 1], ..rig }.exchange();
         }
-        // One length along the whole branch: that of its start.
+        // One length scale along the whole branch: that of its start.
         system.length = self.length();
         Ok(system)
     }
 
-    /// Length that the branch is measured with.
+    /// Length scale of the branch in m: the gap or the amplitude of x₁, whichever is larger.
     fn length(&self) -> f64 {
         let range = self.start.peak_to_peak[0] / 2.0;
         self.start.rig.gap.abs().max(range)
     }
 
-    /// Unknowns without the frequency.
+    /// Unknowns without the coordinate of the varied parameter.
     fn inner(z: &DVector<f64>) -> DVector<f64> {
         z.rows(0, z.len() - 1).into_owned()
     }
 
-    /// What is left of the equations, and the Jacobian with the derivative by the coordinate of what is
-    /// varied as last column.
+    /// Residuals of the equations, and their Jacobian; its last column is the derivative by the coordinate of
+    /// the varied parameter.
     fn evaluate(&self, z: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>)> {
         let n = z.len() - 1;
         let (left, jacobian) = self.system(z)?.evaluate(&Self::inner(z));
         let mut all = DMatrix::zeros(n + 1, n + 1);
         all.view_mut((0, 0), (n, n)).copy_from(&jacobian);
-        // Central difference; the corrector's answer does not depend on it.
+        // Central difference; the corrector's result does not depend on its error.
         let h = 1e-6;
         let at = |place: f64| -> Result<DVector<f64>> {
             let mut moved = z.clone();
@@ -121,7 +121,7 @@ impl Walk<'_> {
         Ok((left, all))
     }
 
-    /// Direction of the branch at `z`, forward as seen along `along`.
+    /// Direction of the branch at `z`, with the sense of `along`.
     fn tangent(&self, z: &DVector<f64>, along: &DVector<f64>) -> Result<Option<DVector<f64>>> {
         let n = z.len() - 1;
         let (_, mut all) = self.evaluate(z)?;
@@ -132,7 +132,7 @@ impl Walk<'_> {
         Ok(found.filter(|t| t.iter().all(|v| v.is_finite())))
     }
 
-    /// The place of `orbit` on the branch, with the direction in which the varied value grows.
+    /// The point of `orbit` on the branch, with the direction in which the varied parameter grows.
     ///
     /// # Errors
     /// If the branch folds there.
@@ -151,8 +151,8 @@ impl Walk<'_> {
         Ok(Spot { z, tangent })
     }
 
-    /// The point of the branch at the distance `s` along the tangent; `None` where Newton's method does not
-    /// settle there.
+    /// The point of the branch at the distance `s` along the tangent, and the number of Newton steps; `None`
+    /// where Newton's method does not converge.
     fn ahead(&self, from: &Spot, s: f64) -> Option<(Spot, usize)> {
         let mut z = &from.z + &from.tangent * s;
         let n = z.len() - 1;
@@ -168,7 +168,7 @@ impl Walk<'_> {
                 return None;
             }
             if step.amax() < 1e-10 {
-                // One more step would double the digits; this one has done so.
+                // Newton's method doubles the digits with each step: this one is exact to rounding.
                 let tangent = self.tangent(&z, &from.tangent).ok()??;
                 return Some((Spot { z, tangent }, k + 1));
             }
@@ -181,10 +181,10 @@ impl Walk<'_> {
         Ok(PeriodicOrbit::build(&system, self.scene(z).1, self.start.cycles, &Self::inner(z)))
     }
 
-    /// From `origin` on, forth (1) or back (−1), to the end of the branch.
+    /// Follows the branch from `origin`, forward (1) or backward (−1), to its end.
     ///
     /// # Errors
-    /// If a motion on the way cannot be computed.
+    /// If a motion on the branch cannot be computed.
     pub fn run(&self, origin: &Spot, sign: f64) -> Result<Way> {
         let mut here = Spot { z: origin.z.clone(), tangent: &origin.tangent * sign };
         let mut way = Way { points: vec![self.orbit(&here.z)?], marks: Vec::new(), end: End::Points };
@@ -192,7 +192,7 @@ impl Walk<'_> {
         let n = here.z.len() - 1;
         while way.points.len() < POINTS {
             let Some((next, effort)) = self.ahead(&here, s).filter(|(next, _)| {
-                // A sharp bend: the step may have landed on another branch.
+                // Rejects a sharp bend: the step may have jumped to another branch.
                 next.tangent.dot(&here.tangent) > 0.8
             }) else {
                 s /= 2.0;
@@ -204,7 +204,7 @@ impl Walk<'_> {
             let value = self.value(next.z[n]);
             let faded = (n / 2..n).any(|k| next.z[k] <= 0.0);
             if faded || value < self.low || value > self.high {
-                // The end is where an impulse is zero or the value at its bound.
+                // The branch ends where an impulse is zero or the parameter is at its bound.
                 let bound = if value < self.low { self.low } else { self.high };
                 let distance = |spot: &Spot| {
                     if faded { spot.z.rows(n / 2, n / 2).min() } else { spot.z[n] - self.coordinate(bound) }
@@ -240,7 +240,7 @@ impl Walk<'_> {
         Ok(way)
     }
 
-    /// Enters what changed between two points, in their order.
+    /// Adds marks for the changes between two points, in their order along the branch.
     fn mark(&self, here: &Spot, next: &Spot, s: f64, way: &mut Way, orbit: &PeriodicOrbit) -> Result<()> {
         let n = here.z.len() - 1;
         let last = &way.points[way.points.len() - 1];
@@ -275,8 +275,8 @@ impl Walk<'_> {
         for (kind, spot) in found {
             let orbit = self.orbit(&spot.z)?;
             if confirmed(kind, &orbit) {
-                // At a motion of half the period, too, it turns back, and goes on with the impacts of the
-                // other half.
+                // At a flip the branch of doubled period also turns back, and continues with its halves
+                // exchanged.
                 let halves = kind == Loss::Fold && orbit.repeats_within(HALVES);
                 let kind = if halves { Loss::Flip } else { kind };
                 way.marks.push(Mark { kind, orbit, after });
@@ -285,16 +285,16 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The point within `s` ahead of `here` where `test` changes its sign, by bisection with false position.
+    /// The point within `s` ahead of `here` where `test` changes its sign, by false position and bisection.
     fn locate(&self, here: &Spot, s: f64, test: &dyn Fn(&Spot) -> f64) -> Option<Spot> {
         let (mut low, mut high) = (0.0, s);
         let (mut at_low, mut at_high) = (test(here), test(&self.ahead(here, s)?.0));
         let mut best = None;
         for k in 0..60 {
-            // False position, every third time the middle.
+            // False position; every third step bisection.
             let share = at_low / (at_low - at_high);
             let share = if k % 3 == 2 || !share.is_finite() { 0.5 } else { share.clamp(0.01, 0.99) };
-            // Where branches cross, the equations are singular: look beside it.
+            // The equations are singular where branches cross: then try points beside it.
             let places = [share, 0.45, 0.6].map(|part| low + part * (high - low));
             let near = places.into_iter().find_map(|place| Some((place, self.ahead(here, place)?.0)));
             let Some((middle, spot)) = near else { return best };
@@ -334,7 +334,7 @@ fn pair(orbit: &PeriodicOrbit) -> Option<f64> {
     Some((wedge - Matrix6::identity()).determinant())
 }
 
-/// Whether the motion found is what the mark says, not a step of a test.
+/// Whether the orbit found has the property of the mark; else the test has only jumped in sign.
 fn confirmed(kind: Loss, orbit: &PeriodicOrbit) -> bool {
     let near = |distance: &dyn Fn(&Complex64) -> f64| {
         orbit.multipliers.is_some_and(|m| m.iter().any(|z| distance(z) < 1e-5))

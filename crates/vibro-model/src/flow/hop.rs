@@ -1,16 +1,17 @@
-//! Short flights from contact to contact, as they follow each other in a chatter: one Taylor series about the
-//! start serves for the proof that the masses land, for the time and for the state.
+//! Short flights from contact to contact, as in a chatter. One Taylor series about the start proves that the
+//! masses land, and gives time and state of the landing.
 
 use super::{Flight, Free, Landing, State};
 
-/// What counts as short, over the fastest rate: twenty terms leave out (1.3)²⁰/20! = 8e-17 of a displacement,
-/// eleven (0.2)¹¹/11! = 5e-16 and six (0.003)⁶/6! = 1e-18, of a speed 2e-15. Whether that is below the
-/// rounding of the flight itself is looked at each time.
+/// Longest flight for 20 terms, times the fastest rate: they leave out (1.3)²⁰/20! = 8e-17 of a displacement.
+/// Each flight is also checked against its own rounding.
 const LONGEST: f64 = 1.3;
+/// The same for 11 terms: they leave out (0.2)¹¹/11! = 5e-16 of a displacement.
 const SHORT: f64 = 0.2;
+/// The same for 6 terms: they leave out (0.003)⁶/6! = 1e-18 of a displacement, and 2e-15 of a speed.
 const SHORTEST: f64 = 0.003;
 
-/// 1/n!.
+/// Weights 1/n! of a Taylor series.
 const fn weights<const N: usize>() -> [f64; N] {
     let mut weights = [1.0; N];
     let mut n = 1;
@@ -22,8 +23,8 @@ const fn weights<const N: usize>() -> [f64; N] {
 }
 
 impl Free {
-    /// Displacement and its derivatives at the start, over n!, and a bound on the next one for all later
-    /// times.
+    /// Displacement and its derivatives at the start, over n!, and a bound on the next derivative for all
+    /// later times.
     #[inline]
     fn terms<const N: usize>(&self) -> ([f64; N], f64) {
         let mut last = [self.x, self.v];
@@ -39,7 +40,7 @@ impl Free {
     }
 }
 
-/// Σ terms tⁿ and its rate.
+/// Σ termsₙ tⁿ and its rate.
 #[inline]
 fn at<const N: usize>(terms: &[f64; N], t: f64) -> (f64, f64) {
     let (mut value, mut rate) = (0.0, 0.0);
@@ -51,13 +52,13 @@ fn at<const N: usize>(terms: &[f64; N], t: f64) -> (f64, f64) {
 }
 
 impl Flight {
-    /// The landing of a short flight that begins at contact; nothing where the series proves none within
-    /// `duration`.
+    /// The landing of a short flight that begins at contact; `None` where the series proves none within
+    /// `duration` (s).
     ///
-    /// With g = g₀ + t q(t), g₀ being rounding, q falls where −g̈/2 outweighs Σ|gₙ|(n − 1)tⁿ⁻²/n!, n from 3
-    /// on. So within twice and a half the flight of a constant g̈, if it falls up to there and is below 0
-    /// there, q has one root, and g was positive before it. What the series leaves out, Mtᴺ/N! of N
-    /// terms, has to be below `rounding`.
+    /// Write the gap as g = g₀ + t q(t), where g₀ is only rounding. q falls where −g̈/2 outweighs Σ|gₙ|(n −
+    /// 1)tⁿ⁻²/n! from n = 3 on. If it falls up to 2.5 times the flight of a constant g̈, and is below 0
+    /// there, q has one root before, and g was positive up to it. The truncation Mtᴺ/N! of N terms must be
+    /// below `rounding` (m).
     #[inline]
     pub(super) fn hop(&self, duration: f64, rounding: f64) -> Option<Landing> {
         let [first, second] = &self.free;
@@ -79,8 +80,8 @@ impl Flight {
         landing.filter(|l| l.time <= duration)
     }
 
-    /// The landing within `longest` seconds by series of `N` terms, after a separation at `w` (m/s) against
-    /// an acceleration `pressed` (m/s²).
+    /// The landing within `longest` (s) by a series of `N` terms, after a separation at `w` (m/s) against an
+    /// acceleration `pressed` (m/s²).
     #[inline]
     fn summed<const N: usize>(&self, longest: f64, [w, pressed]: [f64; 2], rounding: f64) -> Option<Landing> {
         let [(mut one, first), (two, second)] = [self.free[0].terms::<N>(), self.free[1].terms::<N>()];
@@ -89,7 +90,7 @@ impl Flight {
         let left = (first + second + forced) * const { weights::<N>()[N - 1] / N as f64 };
         let mut gap: [f64; N] = std::array::from_fn(|n| two[n] - one[n]);
         gap[0] += self.gap;
-        // Powers of the time from the third term on, and what q's rate has of them.
+        // Powers of the time from the third term on, and their part in the rate of q.
         let (mut power, mut bends) = (1.0, 0.0);
         for (n, term) in gap.iter().enumerate().skip(3) {
             power *= longest;
@@ -101,7 +102,7 @@ impl Flight {
         {
             return None;
         }
-        // Newton's method from the flight of a constant jerk: a step of 1e-8 leaves 1e-16.
+        // Newton's method from the flight of a constant jerk: after a step of 1e-8 the error is 1e-16.
         let mut time = 2.0 * w / pressed * (1.0 + 4.0 * gap[3] * w / (pressed * pressed));
         for _ in 0..6 {
             let (value, rate) = at(&gap, time);

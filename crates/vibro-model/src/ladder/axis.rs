@@ -1,4 +1,4 @@
-//! The ladder along an axis of frequencies: it may choose differently, and says where.
+//! The ladder along a frequency axis: the choice may differ between frequencies.
 
 use super::{Change, Choice, Model, Need, Question, choose, chosen};
 use crate::parallel;
@@ -7,18 +7,18 @@ use crate::scene::Scene;
 use serde::Serialize;
 use vibro_record::Result;
 
-/// The most points of an axis.
+/// Most points of an axis.
 pub const MOST_POINTS: usize = 2000;
 
 /// Choices along an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Survey {
-    /// The lowest rung that is good enough at every point; `None` where there is none, or nothing is chosen
-    /// somewhere.
+    /// The lowest rung that is good enough at every point; `None` where there is none, or a point has no
+    /// choice.
     pub chosen: Option<Model>,
     /// Each rung over the whole axis.
     pub rungs: Vec<Summary>,
-    /// Neighbouring points at which the same was found.
+    /// Runs of neighbouring points with the same choice and the same needs.
     pub stretches: Vec<Stretch>,
     /// The choice at each point, frequencies rising.
     pub points: Vec<Choice>,
@@ -41,7 +41,7 @@ pub struct Summary {
     pub chosen_at: usize,
 }
 
-/// Neighbouring points at which the same was found.
+/// Neighbouring points with the same choice and the same needs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stretch {
     /// Frequency in Hz of the first point.
@@ -52,15 +52,15 @@ pub struct Stretch {
     pub points: usize,
     /// The rung chosen.
     pub chosen: Option<Model>,
-    /// What must be known before one can be chosen.
+    /// Parameters that must be known before one can be chosen.
     pub needs: Vec<Need>,
     /// The largest change of the chosen answer at the next rung that follows the motion.
     pub audit: Option<Change>,
-    /// Frequency in Hz at which it is so large.
+    /// Frequency in Hz of the largest change.
     pub worst_at: Option<f64>,
 }
 
-/// [`choose`] at `points` frequencies with equal distances between `from` and `to` (Hz), in parallel.
+/// [`choose`] at `points` equally spaced frequencies from `from` to `to` (Hz), in parallel.
 ///
 /// # Errors
 /// As [`choose`]; if the ends are not finite and above 0 with the lower one first, or there are fewer than 2
@@ -85,8 +85,8 @@ pub fn choose_over(scene: &Scene, from: f64, to: f64, points: usize, question: &
     })
 }
 
-/// Points at which a contact of spring and damper that is chosen, or the correction for one, is held against
-/// curved bodies: the ends of each stretch and its peak.
+/// Points at which a chosen contact of spring and damper, or the correction for one, is compared with curved
+/// bodies: the first, the last and the largest answer of each run of points with the same choice.
 fn probes(all: &[Choice]) -> Vec<usize> {
     let size = |i: &usize| all[*i].answer().map_or(0.0, |a| a[0].abs().max(a[1].abs()));
     let mut probes = Vec::new();

@@ -1,4 +1,4 @@
-//! From rung to rung: what each answers, how far that moves at the rungs above, and which one is good enough.
+//! Compares the answer of each rung with those above, and chooses the lowest that is good enough.
 
 use super::motions::{CurrentMotion, Motions};
 use super::question::{Answer, Change};
@@ -11,16 +11,16 @@ use crate::law::conversion;
 use std::f64::consts::PI;
 use vibro_record::{Finding, Result};
 
-/// Parts of the cycle in contact between which stiffnesses are tried: in half of the softest the masses would
-/// hardly part, and the stiffest is no different from none.
+/// Longest and shortest contact, as parts of the cycle, of the stiffnesses tried. With much softer contacts
+/// the masses would hardly part; the shortest contacts act like rigid impacts.
 const SHARES: (f64, f64) = (0.1, 1e-4);
-/// Decades tried at most.
+/// Most decades of stiffness tried.
 const DECADES: i32 = 7;
 
-/// All rungs of a scene.
+/// All rungs of a scene before the choice.
 pub struct Climb<'a> {
     stage: DrivenScene<'a>,
-    /// `None` for a mass that is loose on its spring, of which no motion is known before.
+    /// `None` for a mass that is loose on its spring: it is only simulated.
     motions: Option<Motions>,
     rungs: Vec<Rung>,
 }
@@ -48,13 +48,13 @@ impl<'a> Climb<'a> {
         &self.rungs[model as usize]
     }
 
-    /// What a rung answers.
+    /// The answer of a rung.
     pub fn answer(&self, model: Model) -> Option<Answer> {
         self.of(model).full()
     }
 
-    /// Rungs at which the answer of `model` is looked at again: the next one that knows more, and the next
-    /// one that follows the motion.
+    /// Rungs that check the answer of `model`: the next more detailed one, and the next one that follows the
+    /// motion.
     fn above(&self, model: Model) -> Vec<Model> {
         let valid = |model: &Model| self.of(*model).valid;
         let soft = Some(Model::SoftCorrected).filter(valid);
@@ -68,7 +68,7 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// A rung held against those above.
+    /// A rung with its changes at the rungs above, and whether it is good enough.
     fn rung(&self, model: Model) -> Rung {
         let (scene, question) = (self.stage.scene, self.stage.question);
         let mut rung = self.of(model).clone();
@@ -87,11 +87,11 @@ impl<'a> Climb<'a> {
                 Model::ClosedForm | Model::SoftCorrected | Model::Restitution => {
                     still && (!rung.changes.is_empty() || self.is_lawless())
                 }
-                // What lies above a law that is stated is another law.
+                // Only another law lies above a stated one: its answer does not decide.
                 Model::KelvinVoigt | Model::HuntCrossley => true,
                 Model::LooseMass => keys(scene).stiffness.is_some(),
             };
-        // What curved bodies change is said of the choice.
+        // The choice reports the effect of curved contact surfaces.
         let audited = rung.changes.iter().filter(|c| c.at != Model::HuntCrossley).map(|c| {
             let found = if c.enough { Finding::note("answer-holds") } else { Finding::note("answer-moves") };
             found.number("change", c.change).name("rung", c.at.name())
@@ -108,8 +108,8 @@ impl<'a> Climb<'a> {
         rung
     }
 
-    /// Whether no law of the contact matters: masses stay in contact, and no spring between them is stated,
-    /// or a curved contact is stated and nothing strikes.
+    /// Whether the contact law does not matter: the masses stay in contact and no stiffness is stated, or a
+    /// curved contact is stated and there are no impacts.
     fn is_lawless(&self) -> bool {
         self.motions.as_ref().is_some_and(|Motions { reading, .. }| match keys(self.stage.scene).stiffness {
             None => reading.end == Settling::Pressed,
@@ -121,8 +121,8 @@ impl<'a> Climb<'a> {
         self.answer(model).is_some_and(|a| a.known(self.stage.question))
     }
 
-    /// Chooses. Where `bend` says so, a contact of spring and damper that is chosen is compared with curved
-    /// bodies that meet for as long.
+    /// Chooses the lowest rung that is good enough. With `bend`, a chosen contact of spring and damper is
+    /// compared with curved bodies of the same contact duration.
     pub fn choose(mut self, bend: bool) -> Choice {
         let mut choice = Choice {
             frequency: self.stage.excitation.frequency(),
@@ -155,7 +155,7 @@ impl<'a> Climb<'a> {
         choice
     }
 
-    /// Compares the spring of a rung that was chosen with curved bodies.
+    /// Compares the chosen contact of spring and damper with curved bodies.
     fn bend(&mut self, chosen: Model, choice: &mut Choice) {
         let Some(motions) = &self.motions else { return };
         let curved = Rung::of(Model::HuntCrossley, self.stage.curved_alike(motions));
@@ -168,7 +168,7 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// The answer over the stiffness, and the rung that holds whatever it is.
+    /// Computes the answers over unknown stiffnesses, and chooses the lowest valid rung if all of them agree.
     fn without_stiffness(&self, choice: &mut Choice) {
         let lowest = [Model::ClosedForm, Model::Restitution, Model::LooseMass];
         let base = lowest.into_iter().find(|model| self.of(*model).valid).filter(|m| self.is_known(*m));
@@ -180,12 +180,12 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// Answers over the stiffnesses, in decades, that keep the masses in contact for 10 % to 0.01 % of the
-    /// cycle; none where none rebounds with the scene's restitution, or one cannot be computed.
+    /// Answers over the stiffnesses, one a decade, with contact durations from 10 % to 0.01 % of the cycle.
+    /// `None` if no spring and damper has the scene's restitution, or an answer cannot be computed.
     fn sensitivity(&self, base: &Answer) -> Option<Vec<Sensitivity>> {
         let (scene, frequency) = (self.stage.scene, self.stage.excitation.frequency());
         let mass = scene.rig.reduced_mass();
-        // π√(M/k) of the cycle, without losses.
+        // Undamped contact duration π√(M/k) as part of the cycle, times √k.
         let half = PI * mass.sqrt() * frequency;
         let [low, high] = [SHARES.0, SHARES.1].map(|s| 2.0 * (half / s).log10());
         let low = low.ceil() as i32;

@@ -1,10 +1,10 @@
-//! What a choice found that a person should know, beside the reasons of its rungs.
+//! Findings on a choice, beside the reasons of its rungs.
 
 use super::motions::MOST_CYCLES;
 use super::{Change, Choice, Followed, KnownMotion, Need, Question};
 use vibro_record::Finding;
 
-/// What is to be known of a choice.
+/// Findings on motions, search, stiffness, contact law and gap.
 pub fn findings(choice: &Choice, question: &Question) -> Vec<Finding> {
     let names = |of: &dyn Fn(&KnownMotion) -> bool| {
         choice.motions.iter().filter(|m| of(m)).map(|m| m.pattern.to_string()).collect::<Vec<_>>().join(", ")
@@ -15,7 +15,7 @@ pub fn findings(choice: &Choice, question: &Question) -> Vec<Finding> {
         return vec![if unstable.is_empty() { found } else { found.name("unstable", unstable) }];
     }
     let mut found = Vec::new();
-    // Motions beside the one that is answered for strike less than once a cycle.
+    // Coexisting motions with less than one impact a cycle.
     let rare = choice.motions.iter().filter(|m| m.rare).count();
     if rare > 0 {
         found.push(Finding::caution("rare-motions").count("n", rare).name("motions", names(&|m| m.rare)));
@@ -37,7 +37,7 @@ pub fn findings(choice: &Choice, question: &Question) -> Vec<Finding> {
     found
 }
 
-/// How far other motions were looked for.
+/// Finding on the search for other motions: how many start states of all were simulated.
 fn searched(Followed { states, of }: Followed) -> Finding {
     let found =
         if states < of { Finding::caution("search-cut") } else { Finding::note("other-motions-searched") };
@@ -45,7 +45,7 @@ fn searched(Followed { states, of }: Followed) -> Finding {
     found.count("cycles", MOST_CYCLES as usize)
 }
 
-/// What an unknown stiffness of the contact does, and why no rung can be chosen.
+/// Finding on an unknown contact stiffness: its effect, and why no rung can be chosen.
 fn stiffness(choice: &Choice) -> Option<Finding> {
     let rows = &choice.sensitivity;
     let range = |found: Finding| match (rows.first(), rows.last()) {

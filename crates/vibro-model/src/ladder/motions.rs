@@ -1,4 +1,4 @@
-//! The motions of a rig at one excitation, as far as they are known, and the one that it is in.
+//! The known motions of a rig at one excitation, and which of them it is in.
 
 use super::question::{APART, Answer, Question};
 use super::reading::{MotionReader, Reading, Settling};
@@ -15,11 +15,11 @@ use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 use vibro_record::{Error, Finding, Result};
 
-/// Cycles up to which motions with one impact are looked for in closed form.
+/// Longest period, in cycles, of the motions with one impact that are computed in closed form.
 pub(crate) const MOST_CYCLES: u32 = 6;
-/// Cycles after which no further state is started from.
+/// Cycles followed in all after which the search starts from no further state; it bounds the computing time.
 const MOST_FOLLOWED: u32 = 40_000;
-/// Part of the speeds by which a motion starts beside an orbit.
+/// Relative reduction of the speeds for a start near an orbit.
 const BESIDE: f64 = 0.02;
 
 /// A motion that the rig can be in.
@@ -28,18 +28,18 @@ pub struct KnownMotion {
     /// Its pattern; in JSON `no impact`, impacts/cycles, `chatter` or `irregular`.
     #[serde(serialize_with = "as_text")]
     pub pattern: Regime,
-    /// The model by which it is known.
+    /// The model that it was found with.
     pub model: Model,
-    /// What is shown of it.
+    /// Its observable for x₁ and x₂.
     pub answer: [f64; 2],
-    /// Standard error of that, where it is a mean over a motion that does not repeat; else 0.
+    /// Standard errors of the answer, where it is a mean over a motion that does not repeat; else 0.
     pub spread: [f64; 2],
-    /// Whether it lasts. One that does not is listed where it divides the motion without impacts from others
-    /// with impacts round it.
+    /// Whether it is stable. An unstable motion is listed where it separates the motion without impacts from
+    /// motions with impacts around it.
     pub stable: bool,
-    /// Whether it strikes less than once a cycle, and was found beside the motion to which the rig comes
-    /// from rest, or the way it came, and to which no contact that gives way comes from rest. It is
-    /// warned of, and asks for no history.
+    /// Whether it is a coexisting motion with less than one impact a cycle that the rig reaches neither from
+    /// rest nor along its history, and no compliant contact reaches from rest. It gives a caution, and
+    /// requires no history.
     pub rare: bool,
 }
 
@@ -48,14 +48,14 @@ fn as_text<S: serde::Serializer>(pattern: &Regime, serializer: S) -> std::result
 }
 
 impl KnownMotion {
-    /// A motion that was followed, and lasts.
+    /// A stable motion, as read from a simulation.
     fn followed(reading: &Reading, model: Model, rare: bool) -> KnownMotion {
         let Answer { value, spread, .. } = reading.answer;
         KnownMotion { pattern: reading.regime, model, answer: value, spread, stable: true, rare }
     }
 
-    /// Whether it may be the motion that was read: both without impacts, or their answers no farther apart
-    /// than is allowed.
+    /// Whether it may be the motion of `reading`: both have no impacts, or their answers agree within what is
+    /// allowed.
     fn may_be(&self, reading: &Reading, question: &Question) -> bool {
         let still = reading.regime == Regime::NoImpact && self.pattern == Regime::NoImpact;
         let own = Answer { spread: self.spread, ..Answer::exact(self.answer) };
@@ -63,46 +63,46 @@ impl KnownMotion {
     }
 }
 
-/// The motion that the rig is in.
+/// Which of the motions the rig is in.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CurrentMotion {
     Free,
     Orbit(Box<Orbit>),
-    /// None of those known in closed form.
+    /// Any other motion: not known in closed form, of a longer period, or not settled.
     Other,
-    /// Several are known, and nothing says which.
+    /// Several are known, and no history selects one.
     Open,
 }
 
-/// What is known of the motions.
+/// The known motions, and the simulation with rigid impacts.
 #[derive(Debug)]
 pub struct Motions {
-    /// In closed form.
+    /// Motion without impacts, and orbits with one impact a cycle, in closed form.
     pub closed: Result<Orbits>,
-    /// Time in ns that that took.
+    /// Computing time of the closed forms in ns.
     pub closed_cost: f64,
-    /// In closed form with one impact in 2 to [`MOST_CYCLES`] cycles: those whose masses do not pass through
-    /// each other.
+    /// Admissible orbits in closed form with one impact in 2 to [`MOST_CYCLES`] cycles: the masses do not
+    /// pass through each other.
     longer: Vec<Orbit>,
     pub known: Vec<KnownMotion>,
     pub on: CurrentMotion,
-    /// How far mass 1 alone stays clear of mass 2, in m; `None` without a closed form.
+    /// Smallest distance in m between mass 1 without impacts and mass 2; `None` without a closed form.
     pub clearance: Option<f64>,
-    /// The way the rig came there, where that is known.
+    /// The sweep along which the rig came to this excitation, where a history is stated.
     pub way: Option<Approach>,
-    /// States that other motions were looked for from; `None` where none was looked for.
+    /// Start states from which other motions were searched; `None` without a search.
     pub followed: Option<Followed>,
-    /// The motion followed with impacts at once, from rest or the way it came.
+    /// Reading of the simulation with rigid impacts, from rest or along the history.
     pub reading: Reading,
-    /// Time in ns that that took.
+    /// Computing time of this simulation in ns.
     pub cost: f64,
-    /// Where it ended.
+    /// State of this simulation at its end.
     pub end: Simulation,
 }
 
 impl Motions {
-    /// Looks for them: in closed form, and by following the rig the way it came, or from rest and other
-    /// states.
+    /// Finds the motions in closed form, and by simulation: along the history, or else from rest and from
+    /// other states.
     pub fn new(stage: &DrivenScene<'_>) -> Result<Motions> {
         let (rig, excitation, question) = (&stage.scene.rig, stage.excitation, stage.question);
         let (closed, closed_cost) = timed(|| orbits_of(rig, excitation, 1));
@@ -129,7 +129,7 @@ impl Motions {
         Ok(motions)
     }
 
-    /// Looks for a second motion from other states: near orbits that have lost their stability, and those of
+    /// Searches for coexisting motions by simulation from other states: near unstable orbits, and those of
     /// [`starts`].
     fn seek(&mut self, stage: &DrivenScene<'_>, reader: &MotionReader) {
         let (rig, excitation) = (&stage.scene.rig, stage.excitation);
@@ -143,7 +143,7 @@ impl Motions {
                 break;
             }
             let started = Simulation::from_state(rig, excitation, state, phase).and_then(at_phase_0);
-            // Some states lead beyond what can be followed.
+            // From some states the motion cannot be followed.
             let Ok(reading) = started.and_then(|mut motion| reader.read(&mut motion)) else { continue };
             (followed, cycles) = (followed + 1, cycles + reading.cycles);
             self.add(&reading, stage.question);
@@ -151,8 +151,8 @@ impl Motions {
         self.followed = Some(Followed { states: followed, of });
     }
 
-    /// Whether a contact that gives way leads from `rest` to another motion than the one that its `answer` is
-    /// read from.
+    /// Sets the present motion to open, and lists `rest`, if a compliant contact from rest reaches another
+    /// motion than the one of its `answer`.
     pub fn differs(&mut self, answer: &Answer, rest: &Reading, model: Model, question: &Question) {
         if rest.end == Settling::Under || !answer.steady || answer.agrees(&rest.answer, question, APART) {
             return;
@@ -161,14 +161,13 @@ impl Motions {
         let found = KnownMotion::followed(rest, model, false);
         let same = |known: &&mut KnownMotion| known.pattern == found.pattern && known.may_be(rest, question);
         match self.known.iter_mut().find(same) {
-            // From rest it is come to, if not with impacts at once.
+            // With a compliant contact it is reached from rest, so it is not rare.
             Some(known) => known.rare = false,
             None => self.known.push(found),
         }
     }
 
-    /// Adds a motion with impacts at once, where that is not on its way and answers differently from those
-    /// known.
+    /// Adds a settled motion with rigid impacts whose answer differs from those of all known motions.
     fn add(&mut self, reading: &Reading, question: &Question) {
         let settled = |reading: &Reading| reading.end != Settling::Under;
         let own = settled(&self.reading) && self.reading.answer.agrees(&reading.answer, question, APART);
@@ -178,12 +177,12 @@ impl Motions {
         }
     }
 
-    /// Orbits with one impact a cycle that can be and stay.
+    /// Admissible and stable orbits with one impact a cycle.
     fn stable(&self) -> impl Iterator<Item = &Orbit> {
         self.closed.iter().flat_map(|found| &found.orbits).filter(|orbit| orbit.validity.real())
     }
 
-    /// The orbit that the motion which was followed is on; `fine` is the part of its states to which it has
+    /// The orbit that the simulated motion is on; `fine` is the relative accuracy to which its state has
     /// settled.
     fn own(&self, fine: f64) -> Option<&Orbit> {
         let (strike, Regime::Periodic { impacts: 1, cycles }) = (self.reading.strike?, self.reading.regime)
@@ -196,7 +195,7 @@ impl Motions {
         nearest.filter(|(far, orbit)| *far <= reach(fine, orbit)).map(|(_, orbit)| orbit)
     }
 
-    /// Lists the motions known, and which of them was followed.
+    /// Lists the known motions, and finds which of them was simulated.
     fn list(&mut self, question: &Question, fine: f64) {
         let own = self.own(fine).filter(|_| self.reading.end == Settling::Settled);
         let on = match own {
@@ -225,22 +224,22 @@ impl Motions {
         if on == CurrentMotion::Other && self.reading.end != Settling::Under && own.is_none() {
             known.push(KnownMotion::followed(&self.reading, Model::Restitution, false));
         }
-        // Where nothing else is known with impacts, orbits that have lost their stability tell of others
-        // round them.
+        // If no other motion with impacts is known, the unstable orbits are listed: other motions may lie
+        // around them.
         if let Some(found) = found.filter(|found| common(&known) == 1 && several(found)) {
             known.extend(found.orbits.iter().filter(|o| o.validity.admissible).map(known_as));
         }
         (self.known, self.on) = (known, on);
     }
 
-    /// The speed in m/s at which the masses meet.
+    /// The approach speed in m/s of the simulated impacts.
     pub fn speed(&self) -> std::result::Result<f64, Finding> {
         let speed = self.reading.speed;
         if speed > 0.0 { Ok(speed) } else { Err(Finding::note("impacts-missing")) }
     }
 
-    /// The orbit to speak of: the one the rig is in, else the first that can be and stay, else the first that
-    /// exists.
+    /// The orbit to report: the one the rig is in, else the first admissible and stable one, else the first
+    /// that exists.
     pub fn orbit(&self) -> std::result::Result<Option<&Orbit>, &Error> {
         if let CurrentMotion::Orbit(orbit) = &self.on {
             return Ok(Some(orbit));
@@ -250,25 +249,26 @@ impl Motions {
     }
 }
 
-/// Motions between which only the history decides.
+/// Number of motions among which only the history can decide.
 fn common(known: &[KnownMotion]) -> usize {
     known.iter().filter(|m| !m.rare).count()
 }
 
-/// The state after the impact of an orbit, with speeds that are a little less.
+/// State after the impact of an orbit, with slightly smaller speeds.
 fn beside(orbit: &Orbit) -> State {
     let state = orbit.state(0.0);
     State { v1: (1.0 - BESIDE) * state.v1, v2: (1.0 - BESIDE) * state.v2, ..state }
 }
 
-/// The same motion at the next phase 0 of the excitation, where cycles that are read begin.
+/// The motion, advanced to the next phase 0 of the excitation, where the cycles of a reading begin.
 fn at_phase_0(mut motion: Simulation) -> Result<Simulation> {
     let left = (-motion.phase()).rem_euclid(TAU) / (TAU * motion.frequency());
     motion.advance(motion.time() + left, &mut |_| {})?;
     Ok(motion)
 }
 
-/// Distance of an impact to that of an orbit: of phases in rad, and of states in units of the largest.
+/// Distance of an impact from that of an orbit: the largest difference of the phases in rad, and of the
+/// states over the largest speed.
 fn distance(strike: &Strike, orbit: &Orbit) -> f64 {
     let omega = TAU * orbit.frequency;
     let (a, b) = (&strike.before, &orbit.before_impact());
@@ -277,16 +277,16 @@ fn distance(strike: &Strike, orbit: &Orbit) -> f64 {
     moved.iter().fold(turn.abs(), |far, d| far.max(d.abs() / speed(orbit)))
 }
 
-/// The largest of the speeds and ω × displacements at the impact, in m/s.
+/// The larger of all speeds and ω × displacements just before the impact, in m/s.
 fn speed(orbit: &Orbit) -> f64 {
     let (omega, s) = (TAU * orbit.frequency, orbit.before_impact());
     [s.x1 * omega, s.v1, s.x2 * omega, s.v2].iter().fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs()))
 }
 
-/// How far from its orbit the impact of a motion may be whose state is off by the part `fine` once a cycle.
-/// Both masses are off, by that of what each moves at most: some twice what they do at the impact. They meet
-/// earlier or later by the distance over the approach speed, which turns the phase, and the speeds by as much
-/// again.
+/// Largest [`distance`] from its orbit at which the impact of a settled motion may lie; `fine` is the
+/// relative deviation of its state once a cycle. Both masses deviate, by this part of their largest motion,
+/// about twice that at the impact: hence 4. The impact is early or late by the deviation over the approach
+/// speed, which shifts the phase, and the speeds by as much again.
 fn reach(fine: f64, orbit: &Orbit) -> f64 {
     let moves = orbit.peak_to_peak[0].max(orbit.peak_to_peak[1]) * TAU * orbit.frequency;
     let size = moves.max(speed(orbit));

@@ -1,4 +1,4 @@
-//! What a motion shows, followed until it has settled.
+//! Reads the observable of a motion, which is followed until it has settled.
 
 use super::question::{Answer, Question};
 use crate::motion::{Event, Motion};
@@ -9,37 +9,37 @@ use crate::sweep::{self, Gauge};
 use std::f64::consts::TAU;
 use vibro_record::Result;
 
-/// Cycles read at once, or a multiple of them: whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles. Of
-/// others several blocks are.
+/// Cycles of a block: it holds whole patterns of 1 to 6, 10, 12, 15, 20 and 30 cycles. Other patterns need
+/// several blocks.
 const BLOCK: u32 = 60;
-/// The multiple at most.
+/// Most multiples of [`BLOCK`] in a block, for slowly decaying motions.
 const MULTIPLE: f64 = 50.0;
-/// A block lasts this part of the longest time in which free motion falls by e, so that the way to the end is
-/// seen in it.
+/// Shortest block, over the longest time in which free motion falls by e: shorter ones would not show the
+/// remaining decay.
 const DECAY: f64 = 0.3;
-/// Blocks at most, and at least where a cycle holds many swings of a mass.
+/// Fewest and most blocks followed; the fewest where a cycle holds many swings of a mass.
 const BLOCKS: (usize, usize) = (6, 64);
-/// Cycles that a motion is followed for at most.
+/// Most cycles for which a motion is followed: 192 000.
 pub const MOST_CYCLES: f64 = BLOCK as f64 * MULTIPLE * BLOCKS.1 as f64;
-/// Blocks at most of motions whose contacts are integrated: no more than can be had in a second or so.
+/// Most blocks of motions whose contacts are integrated: about a second of computing.
 pub const BRIEF: usize = 12;
-/// Swings of the faster mass that are followed at most, where that leaves enough blocks: as many as with five
-/// in a cycle.
+/// Most swings of the faster mass that are followed, with at least the fewest blocks: the most blocks of 60
+/// cycles, with five swings in a cycle.
 const SWINGS: f64 = 5.0 * 60.0 * 64.0;
-/// The motion has settled where what is left of its way is this part of the tolerance, and of no more than
-/// this tolerance.
+/// A motion has settled where its remaining change is below this part of the tolerance. Tolerances above this
+/// count as this.
 const SETTLED: f64 = 0.02;
-/// Of both masses, less than this part of what the larger one does is nothing.
+/// A mass that moves less than this part of the other one's motion is judged by this part of that motion.
 const NOTHING: f64 = 1e-3;
-/// Longest pattern of states looked for, in cycles.
+/// Longest pattern that the states are tested for, in cycles.
 const LONGEST: usize = 32;
-/// Differences below this part of the state are roundings and what integrators leave.
+/// Relative difference of states that may come from rounding and from integration errors.
 const ROUNDING: f64 = 1e-11;
-/// Standard deviations below its expectation from which von Neumann's ratio tells a drift: of a hundred
-/// steady motions less than one.
+/// Standard deviations of von Neumann's ratio below its expectation that mean a drift: fewer than one in a
+/// hundred steady motions reach it.
 const DRIFT: f64 = 2.5;
 
-/// What a motion shows.
+/// The observable of a motion, its pattern, and how it ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     pub answer: Answer,
@@ -50,49 +50,49 @@ pub struct Reading {
     pub end: Settling,
     /// Cycles followed.
     pub cycles: u32,
-    /// Mean over the cycles with impacts of the fastest one's approach speed in m/s, in the last block; 0
-    /// without impacts.
+    /// Approach speed in m/s of the fastest impact of a cycle, as the mean over the last block's cycles with
+    /// impacts; 0 without impacts.
     pub speed: f64,
 }
 
-/// What a motion that was followed came to.
+/// State of a motion at the end of its simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Settling {
-    /// It repeats.
+    /// It repeats periodically.
     Settled,
-    /// The masses stay in contact, and the motion repeats.
+    /// The masses stay in contact, and the motion repeats periodically.
     Pressed,
-    /// It does not repeat, and its means over long stretches are no different from each other.
+    /// It does not repeat, and its block means show no drift.
     Steady,
-    /// Neither: it was not followed for long enough.
+    /// Not settled, or with a drift: more cycles are needed.
     Under,
 }
 
-/// How motions are read.
+/// Settings by which motions are followed and read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionReader {
     pub observable: Observable,
     pub tolerance: f64,
     /// Cycles of a block.
     pub block: u32,
-    /// Blocks at most.
+    /// Most blocks.
     pub blocks: usize,
-    /// How far the motion without impacts stays clear of the other mass, in m, where that is known: below 0
-    /// there is none. No motion without impacts is taken as settled that may yet come nearer.
+    /// Smallest distance in m to mass 2 of the motion without impacts, where it is known; below 0 the masses
+    /// would meet. A motion without impacts has settled only if its remaining change is smaller.
     pub clearance: Option<f64>,
 }
 
-/// What a block of cycles shows.
+/// Means over a block of cycles.
 struct Block {
     value: [f64; 2],
-    /// What it counts beside other blocks.
+    /// Weight of the block in means over blocks: the cycles with impacts for impact quantities, else 1.
     weight: f64,
     /// Mean approach speed in m/s.
     speed: f64,
 }
 
 impl MotionReader {
-    /// For motions of `rig` at `frequency` (Hz).
+    /// Settings for motions of `rig` at `frequency` (Hz).
     pub fn new(rig: &Rig, frequency: f64, question: &Question) -> MotionReader {
         let decays = rig.oscillators().map(|o| o.decay()).into_iter().filter(|b| *b > 0.0);
         let slowest = decays.fold(f64::INFINITY, f64::min);
@@ -105,13 +105,13 @@ impl MotionReader {
         MotionReader { observable, tolerance, block, blocks, clearance: None }
     }
 
-    /// The part of the tolerance to which motions settle.
+    /// Relative remaining change below which motions count as settled.
     pub fn fine(&self) -> f64 {
         SETTLED * self.tolerance.min(SETTLED)
     }
 
-    /// Follows `motion` until its state, once a cycle, has nearly come to where it goes, and what is shown of
-    /// it holds still; where it does not settle, the second half of all is averaged.
+    /// Follows `motion` until its state once a cycle and its observable have settled. If it does not settle,
+    /// the answer is the mean over the second half of the blocks.
     pub fn read(&self, motion: &mut dyn Motion) -> Result<Reading> {
         let mut blocks: Vec<Block> = Vec::with_capacity(self.blocks);
         let mut watch = Watch::new(motion);
@@ -125,9 +125,9 @@ impl MotionReader {
             // Masses that chatter to rest may be in contact at the end of each cycle, too.
             let pressed = pattern.regime == Regime::NoImpact && strobe.pressed(motion.rig().gap);
             let left = (1..=LONGEST).find_map(|q| strobe.left(q, self.fine()));
-            // What repeats is followed until three means hold whole patterns.
+            // Patterns that repeat are followed until there are three means over whole patterns.
             let most = if left.is_some() { self.blocks.max(n + 2) } else { self.blocks };
-            // Without impacts the motion is that of mass 1 alone, of which it is known how far it goes.
+            // Without impacts mass 1 moves alone, and its clearance in the steady state is known.
             let free = pattern.regime == Regime::NoImpact && !pressed;
             let apart = |left: f64| !free || self.clearance.is_none_or(|clear| left < clear);
             let settled = left.is_some_and(apart) && still(&whole, self.fine());
@@ -154,7 +154,7 @@ impl MotionReader {
         }
     }
 
-    /// Blocks that hold whole patterns.
+    /// Number of blocks that together hold whole patterns.
     fn blocks_of(&self, regime: Regime) -> usize {
         match regime {
             Regime::Periodic { cycles, .. } | Regime::Chatter { cycles: Some(cycles) } => {
@@ -164,7 +164,7 @@ impl MotionReader {
         }
     }
 
-    /// One block, and the states at the ends of its cycles: x₁, v₁/ω, x₂, v₂/ω in m.
+    /// Reads one block, and appends the states at the ends of its cycles: x₁, v₁/ω, x₂, v₂/ω in m.
     fn block(&self, motion: &mut dyn Motion, watch: &mut Watch, states: &mut Vec<[f64; 4]>) -> Result<Block> {
         let (observable, frequency) = (self.observable, motion.frequency());
         let omega = TAU * frequency;
@@ -209,14 +209,14 @@ impl MotionReader {
     }
 }
 
-/// The state of a motion once a cycle, looked at in blocks.
+/// The state of a motion once a cycle (stroboscopic), read in blocks.
 struct Strobe<'a> {
     states: &'a [[f64; 4]],
     block: usize,
 }
 
 impl Strobe<'_> {
-    /// The largest state of each mass over the last block.
+    /// Largest size in m of each mass's state, √(x² + (v/ω)²), over the last block.
     fn sizes(&self) -> [f64; 2] {
         let last = &self.states[self.states.len() - self.block..];
         [0, 2].map(|i| last.iter().map(|s| s[i].hypot(s[i + 1])).fold(0.0, f64::max))
@@ -230,12 +230,12 @@ impl Strobe<'_> {
         self.states[self.states.len() - self.block..].iter().all(|s| s[0] - s[2] >= gap - noise)
     }
 
-    /// How far the masses together still go, in m, where the motion repeats in `q` cycles and that is the
-    /// part `fine` of what each moves at most; `None` where it is more, or cannot be told.
+    /// Remaining change in m of both masses together, if the motion repeats in `q` cycles and the change of
+    /// each is below the part `fine` of its largest state; `None` if it is more, or the states are too few.
     ///
-    /// What falls by the ratio ρ from one repetition to the next has dρ/(1 − ρ) of its last step d before it.
-    /// Steps are the largest of a block, and ρ is taken from those of the block before: so that neither
-    /// beats nor a turning point look like the end.
+    /// If the step between repetitions falls by the ratio ρ each time, the remaining change is dρ/(1 − ρ)
+    /// with the last step d. Steps are the largest of a block, and ρ is their ratio to those of the block
+    /// before, so that neither beats nor a turning point look settled.
     fn left(&self, q: usize, fine: f64) -> Option<f64> {
         let end = self.states.len();
         if end < 2 * self.block + q {
@@ -243,7 +243,7 @@ impl Strobe<'_> {
         }
         let sizes = self.sizes();
         let largest = sizes[0].max(sizes[1]);
-        // The largest way of a mass in q cycles.
+        // Largest step of a mass between repetitions.
         let step = |range: std::ops::Range<usize>, mass: usize| {
             let i = 2 * mass;
             let way = |(a, b): (&[f64; 4], &[f64; 4])| (a[i] - b[i]).hypot(a[i + 1] - b[i + 1]);
@@ -251,7 +251,7 @@ impl Strobe<'_> {
             self.states[range].iter().zip(before).map(way).fold(0.0, f64::max)
         };
         let allowed = |mass: usize| fine * sizes[mass].max(NOTHING * largest);
-        // Most patterns are turned down by the last cycle alone.
+        // A quick test: the last cycle alone rules out most patterns.
         if (0..2).any(|mass| step(end - 1..end, mass) > allowed(mass)) {
             return None;
         }
@@ -273,7 +273,7 @@ impl Strobe<'_> {
     }
 }
 
-/// Mean over successive blocks.
+/// Mean over successive blocks, with their weights.
 fn mean_of(blocks: &[Block]) -> [f64; 2] {
     let all: f64 = blocks.iter().map(|b| b.weight).sum();
     [0, 1].map(|i| {
@@ -282,29 +282,29 @@ fn mean_of(blocks: &[Block]) -> [f64; 2] {
     })
 }
 
-/// Whether the last of these values is the end of the way: what falls by the ratio ρ a block has ρ/(1 − ρ) of
-/// its last step before it.
+/// Whether the last three values have settled: if steps fall by the ratio ρ from block to block, the
+/// remaining change is ρ/(1 − ρ) times the last step.
 fn still(values: &[[f64; 2]], fine: f64) -> bool {
     let [.., a, b, c] = values else { return false };
     let largest = c[0].abs().max(c[1].abs());
     (0..2).all(|i| {
         let (before, last) = ((b[i] - a[i]).abs(), (c[i] - b[i]).abs());
         let ratio = if before > 0.0 { (last / before).min(0.999) } else { 0.0 };
-        // Two steps that happen to be small are not yet the end: the larger of both counts.
+        // One step may be small by chance: the larger of the two counts.
         let left = before.max(last) * (ratio / (1.0 - ratio)).max(1.0);
         left <= fine * c[i].abs().max(NOTHING * largest)
     })
 }
 
-/// Mean of several blocks with its standard error: s²(1 + ρ)/(1 − ρ)/n, ρ being their correlation with the
-/// next one.
+/// Mean of several blocks with its standard error, √(s²(1 + ρ)/((1 − ρ)n)), with the correlation ρ of
+/// neighbouring blocks.
 fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
     let n = values.len() as f64;
     let mut answer = Answer { steady, ..Answer::exact([0.0; 2]) };
     for i in 0..2 {
         let (mean, square, eta) = scatter(values, i);
-        // η = 2(1 − ρ). Blocks that take turns are not trusted to make the mean better than independent ones
-        // would.
+        // η = 2(1 − ρ). Alternating blocks (ρ < 0) count as independent: they must not make the error look
+        // smaller.
         let rho = (1.0 - eta / 2.0).clamp(0.0, 0.99);
         answer.value[i] = mean;
         answer.spread[i] = (square / (n - 1.0) / n * (1.0 + rho) / (1.0 - rho)).sqrt();
@@ -312,8 +312,8 @@ fn mean(values: &[[f64; 2]], steady: bool) -> Answer {
     answer
 }
 
-/// Whether successive values are nearer to each other than independent ones are: Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)²
-/// has the mean 2 and the variance 4(n − 2)/(n² − 1) for independent ones (J. von Neumann, 1941).
+/// Whether the values drift: neighbours differ less than independent values would. Their von Neumann ratio
+/// η = Σ(xᵢ₊₁ − xᵢ)²/Σ(xᵢ − x̄)² has the mean 2 and the variance 4(n − 2)/(n² − 1) (J. von Neumann, 1941).
 fn drifts(values: &[[f64; 2]]) -> bool {
     let n = values.len() as f64;
     let least = 2.0 - DRIFT * (4.0 * (n - 2.0) / (n * n - 1.0)).sqrt();
@@ -323,7 +323,7 @@ fn drifts(values: &[[f64; 2]]) -> bool {
     })
 }
 
-/// Mean, sum of squares about it, and von Neumann's ratio.
+/// Mean, sum of squared deviations, and von Neumann's ratio (2, as if independent, where all are equal).
 fn scatter(values: &[[f64; 2]], i: usize) -> (f64, f64, f64) {
     let mean = values.iter().map(|v| v[i]).sum::<f64>() / values.len() as f64;
     let square: f64 = values.iter().map(|v| (v[i] - mean).powi(2)).sum();

@@ -1,4 +1,4 @@
-//! A rung of the ladder and what was found of it.
+//! A rung of the ladder: a model with its checks and its answer.
 
 use super::question::{Answer, Change};
 use super::reading::{Reading, Settling};
@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use serde::Serialize;
 use vibro_record::{Error, Finding};
 
-/// A model of the rig, from the least to the most that it knows.
+/// A model of the rig, from the simplest to the most detailed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
@@ -20,16 +20,16 @@ pub enum Model {
     SoftCorrected,
     /// Exact flights between impacts without duration, chatter and sticking included.
     Restitution,
-    /// Exact flights with a contact of spring and damper.
+    /// Exact flights, and contacts of a spring and a damper.
     KelvinVoigt,
-    /// A contact whose force is no straight line: Hertz, Hunt and Crossley.
+    /// A contact whose force is not linear in the indentation: Hertz, Hunt–Crossley.
     HuntCrossley,
     /// A mass 1 that is loose on its spring.
     LooseMass,
 }
 
 impl Model {
-    /// All, the simplest first.
+    /// All models, the simplest first.
     pub const ALL: [Model; 7] = [
         Model::Linear,
         Model::ClosedForm,
@@ -40,8 +40,8 @@ impl Model {
         Model::LooseMass,
     ];
 
-    /// The name of each, and the parameters that it needs beside those of mass 1, the gap and the excitation;
-    /// in their order.
+    /// In the order of the variants: name, and parameters needed beside those of mass 1, the gap and the
+    /// excitation.
     const TABLE: [(&'static str, &'static [Need]); 7] = [
         ("linear", &[]),
         ("closed-form", &[Need::Mass2, Need::Restitution]),
@@ -58,13 +58,13 @@ impl Model {
         Model::TABLE[self as usize].0
     }
 
-    /// Parameters that it needs beside those of mass 1, the gap and the excitation.
+    /// Parameters needed beside those of mass 1, the gap and the excitation.
     pub fn needs(self) -> &'static [Need] {
         Model::TABLE[self as usize].1
     }
 }
 
-/// What a model needs to know.
+/// A parameter that a model needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(into = "&'static str")]
 pub enum Need {
@@ -72,7 +72,7 @@ pub enum Need {
     Mass2,
     /// The coefficient of restitution.
     Restitution,
-    /// That, or the contact's damping: what the rebound loses.
+    /// The coefficient of restitution or the contact's damping: either sets the loss of the rebound.
     Rebound,
     /// The contact's stiffness.
     Stiffness,
@@ -80,17 +80,17 @@ pub enum Need {
     Damping,
     /// The exponent of the contact's law.
     Exponent,
-    /// The gap of the buffer behind mass 1.
+    /// The gap of the buffer on which mass 1 rests loosely.
     Buffer,
-    /// The way the frequency came.
+    /// The direction of the sweep that led to the frequency.
     History,
 }
 
-/// Whether a scene has something.
+/// Whether a scene states a parameter.
 type Known = fn(&Scene) -> bool;
 
 impl Need {
-    /// Its key, or what it is, and whether a scene has it; in the order of the parameters.
+    /// In the order of the variants: key or name, and whether a scene states it.
     const TABLE: [(&'static str, Known); 8] = [
         ("mass 2", |_| true),
         ("restitution", |_| true),
@@ -102,7 +102,7 @@ impl Need {
         ("history", |_| false),
     ];
 
-    /// Its key, or what it is.
+    /// Its key, or its name where it has none.
     pub fn name(self) -> &'static str {
         Need::TABLE[self as usize].0
     }
@@ -112,7 +112,7 @@ impl Need {
         needs.iter().map(|need| need.name()).collect::<Vec<_>>().join(", ")
     }
 
-    /// Whether a scene has it.
+    /// Whether a scene states it.
     pub(super) fn known(self, scene: &Scene) -> bool {
         Need::TABLE[self as usize].1(scene)
     }
@@ -124,52 +124,52 @@ impl From<Need> for &'static str {
     }
 }
 
-/// A parameter that a model needs.
+/// A parameter that a model needs, and whether it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Needed {
-    /// What it is.
+    /// The parameter.
     pub parameter: Need,
-    /// Whether the scene has it.
+    /// Whether the scene states it.
     pub known: bool,
 }
 
-/// What was found of a rung.
+/// A model with its checks and its answer at one excitation.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Rung {
     /// The model.
     pub model: Model,
-    /// Time in ns that its answer took on this machine; of models that are followed until they settle, all
-    /// of it. `None` without an answer.
+    /// Computing time in ns of its answer on this machine, for simulated motions until they settle. `None`
+    /// without an answer.
     pub cost_ns: Option<f64>,
-    /// Largest change of its answer at the rungs above that answer, over the answer: at the next one, and at
-    /// the next one that follows the motion. `None` where there is none.
+    /// Largest relative change of its answer at two rungs above: the next one with an answer, and the next
+    /// one that follows the motion. `None` where there is none.
     pub error: Option<f64>,
-    /// Whether its own checks pass.
+    /// Whether the validity checks of its own theory pass.
     pub valid: bool,
-    /// Whether it is good enough: valid, its answer known as exactly as is asked for, and within what is
-    /// allowed at the rungs above, or over all stiffnesses of a contact of which nothing is known.
+    /// Whether it is good enough: valid, with an answer as accurate as required, which changes within what is
+    /// allowed at the rungs above, or over all stiffnesses of a contact of unknown stiffness.
     pub sufficient: bool,
     /// Whether its answer comes from a motion that has settled, or is a mean over one that does not repeat.
     pub settled: bool,
-    /// Why.
+    /// Findings on its validity and its answer.
     pub reasons: Vec<Finding>,
-    /// The error that left it without an answer.
+    /// The error because of which it has no answer.
     pub refused: Option<String>,
-    /// Parameters it needs beside those of mass 1, the gap and the excitation, and whether the scene has
+    /// Parameters needed beside those of mass 1, the gap and the excitation, and whether the scene states
     /// them.
     pub needs: Vec<Needed>,
-    /// Its answer: of x₁ and x₂; of impacts the same number twice.
+    /// Its answer for x₁ and x₂; for impact quantities the same number twice.
     pub answer: Option<[f64; 2]>,
     /// Standard error of the answer, where it is a mean over a motion that does not repeat; else 0.
     pub spread: [f64; 2],
-    /// The changes that `error` is the largest of.
+    /// The changes of its answer at the rungs above; `error` is the largest.
     pub changes: Vec<Change>,
 }
 
-/// A rung, its model left out, or why it has no answer.
+/// A rung before its model is set, or why it has no answer.
 pub(super) type Found = Result<Rung, Miss>;
 
-/// Why a rung has no answer: for a reason, or since it cannot be computed.
+/// Why a rung has no answer: it does not apply, or its computation failed.
 pub(super) enum Miss {
     Reason(Finding),
     Refused(String),
@@ -203,14 +203,14 @@ impl Rung {
         Rung { model, ..rung }
     }
 
-    /// One with an answer, which took this time in ns.
+    /// A rung with an answer, which took `cost` ns to compute.
     pub(super) fn answering(answer: Answer, cost: f64, valid: bool, reasons: Vec<Finding>) -> Rung {
         let Answer { value, spread, steady } = answer;
         let (answer, cost_ns) = (Some(value), Some(cost));
         Rung { valid, answer, spread, settled: steady, cost_ns, reasons, ..Rung::default() }
     }
 
-    /// What was read of a motion, with how it was read after other reasons.
+    /// A rung with the answer of a simulated motion; whether it settled is added to the reasons.
     pub(super) fn read(reading: &Reading, cost: f64, mut reasons: Vec<Finding>) -> Rung {
         let Answer { value, spread, .. } = reading.answer;
         let part = |i: usize| if value[i] == 0.0 { 0.0 } else { spread[i] / value[i].abs() };
@@ -223,7 +223,7 @@ impl Rung {
         Rung::answering(reading.answer, cost, true, reasons)
     }
 
-    /// Its answer with all that is known of it.
+    /// Its answer with standard error and whether it is settled.
     pub(super) fn full(&self) -> Option<Answer> {
         Some(Answer { value: self.answer?, spread: self.spread, steady: self.settled })
     }

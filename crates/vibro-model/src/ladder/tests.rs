@@ -10,13 +10,13 @@ use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use vibro_record::{Direction, Fact, Finding, Severity};
 
-/// Hz of a frequency over the natural one of mass 1.
+/// Frequency in Hz at the ratio ν to the natural frequency of mass 1.
 fn hz(nu: f64) -> f64 {
     let rig = Rig::thesis();
     nu * (rig.k1 / rig.m1).sqrt() / TAU
 }
 
-/// The fastest approach in each of these cycles that has an impact, in m/s.
+/// Fastest approach speed in m/s of each of the next `cycles` that has an impact.
 pub(super) fn fastest(motion: &mut Simulation, cycles: u32) -> Vec<f64> {
     let one = |_| {
         let (mut most, until) = (0.0_f64, motion.time() + 1.0 / motion.frequency());
@@ -44,7 +44,7 @@ fn reason<'a>(rung: &'a Rung, code: &str) -> &'a Finding {
     found.unwrap_or_else(|| panic!("no {code} in {:?}", rung.reasons))
 }
 
-/// The thesis' rig at ν 2.1 under 0.5 N, by its impact speed.
+/// Scene B: the thesis' rig at ν 2.1 under 0.5 N, with its impact speed as observable.
 fn scene_b(stiffness: Option<f64>) -> Choice {
     choose(&scene(0.5, stiffness), hz(2.1), &Question::new(Observable::ImpactSpeed)).unwrap()
 }
@@ -53,8 +53,8 @@ fn change(choice: &Choice, from: Model, to: Model) -> f64 {
     choice.rung(from).changes.iter().find(|c| c.at == to).unwrap().change
 }
 
-/// Impact speed of scene B from the quadratic (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0 with C + t*/(M(1+R)) in
-/// the place of C (Babitsky's periodic Green's functions; no acceleration within the contact).
+/// Impact speed in m/s of scene B from the quadratic (C² + (P/ω)²)J² + 2ΔCJ + Δ² − A² = 0 with C +
+/// t*/(M(1+R)) in place of C (Babitsky's periodic Green's functions; no acceleration within the contact).
 fn plain_speed(delay: f64) -> f64 {
     let rig = Rig::thesis();
     let (omega, period) = (TAU * hz(2.1), 1.0 / hz(2.1));
@@ -72,16 +72,16 @@ fn scene_b_takes_the_corrected_closed_form() {
     let choice = scene_b(Some(1e6));
     assert_eq!(choice.chosen, Some(Model::SoftCorrected));
     assert!(choice.rung(Model::ClosedForm).valid && !choice.rung(Model::Linear).valid);
-    // The delay of the contact alone moves the speed by −20.7 %, which is known independently to its last
-    // digit.
+    // The contact's delay alone changes the speed by −20.7 %; all these digits are confirmed by an
+    // independent calculation.
     let delay = Compliance::new(&Rig::thesis(), 1e6, None).unwrap().delay;
     let plain = plain_speed(delay) / plain_speed(0.0) - 1.0;
     assert!((plain + 0.207).abs() < 5e-4, "{plain}");
-    // The correction also takes the acceleration within the contact into account: a change of the order of
-    // the share in contact, 0.74 %, of the speed, and less than half of that.
+    // The correction also includes the acceleration within the contact. Its effect is of the order of the
+    // share in contact, 0.74 % of the speed; here it is less than half of that.
     let moved = change(&choice, Model::ClosedForm, Model::SoftCorrected);
     assert!((moved - plain).abs() < 0.0037, "{moved} {plain}");
-    // Audit by the motion itself: promised within 0.3 %.
+    // Audit by simulation: within the promised 0.3 %.
     let audit = choice.audit.unwrap();
     assert_eq!(audit.at, Model::KelvinVoigt);
     assert!(audit.change.abs() < 0.003 && audit.enough, "{audit:?}");
@@ -92,7 +92,7 @@ fn scene_b_takes_the_corrected_closed_form() {
 #[test]
 fn a_stiff_contact_is_corrected_to_a_five_thousandth() {
     let choice = scene_b(Some(1e8));
-    // The share in contact and with it the change falls with √k₃: −20.9 %/10 is just above 2 %.
+    // Share in contact and change fall with √k₃: −20.9 %/10 is just above 2 %.
     assert_eq!(choice.chosen, Some(Model::SoftCorrected));
     let audit = choice.audit.unwrap();
     assert!(audit.at == Model::KelvinVoigt && audit.change.abs() < 2.5e-4, "{audit:?}");
@@ -120,7 +120,7 @@ fn the_law_of_a_contact_is_asked_for_wherever_its_duration_counts() {
         assert!(((curved / own - 1.0) / law.change - 1.0).abs() < 1e-9 && !law.enough, "{law:?}");
         assert_eq!(choice.law.map(|l| l.change), finding(&choice, "law-matters").get("change"));
     }
-    // A contact of 0.07 % of the cycle, whatever its law.
+    // The contact lasts 0.07 % of the cycle: its law does not matter.
     assert!(scene_b(Some(1e8)).law.is_none_or(|law| law.enough));
 }
 
@@ -150,17 +150,17 @@ fn without_a_stiffness_it_refuses_and_gives_the_sensitivity() {
     assert!(
         rows.windows(2).all(|w| w[1].stiffness > w[0].stiffness && w[1].change.abs() < w[0].change.abs())
     );
-    // Rows and rungs are the same models.
+    // The rows use the same model as the rung.
     let at = rows.iter().find(|row| row.stiffness == 1e6).unwrap();
     let known = scene_b(Some(1e6)).rung(Model::KelvinVoigt).answer.unwrap();
     assert!((at.answer[0] / known[0] - 1.0).abs() < 1e-4);
     assert!(!at.enough && rows.last().unwrap().enough);
     let needed = finding(&choice, "stiffness-needed");
     assert_eq!(needed.fact("needs"), Some(&Fact::Name("contact.stiffness".to_owned())));
-    // The share in contact is that of the law.
+    // The share in contact follows from the contact law.
     let duration = Compliance::new(&Rig::thesis(), 1e6, None).unwrap().duration;
     assert!((at.share - duration * hz(2.1)).abs() < 1e-9, "{at:?}");
-    // A tolerance that allows for every stiffness makes it needless.
+    // If the tolerance covers the change at every stiffness, the stiffness is not needed.
     let coarse = Question { tolerance: 0.99, ..Question::new(Observable::ImpactSpeed) };
     let choice = choose(&scene(0.5, None), hz(2.1), &coarse).unwrap();
     assert_eq!(choice.chosen, Some(Model::ClosedForm));
@@ -197,12 +197,12 @@ fn two_motions_ask_for_the_history() {
     assert!(linear.valid && closed.valid && open.motions.len() == 2);
     let several = finding(&open, "several-motions");
     assert_eq!(several.fact("motions"), Some(&Fact::Name("no impact, 1/1".to_owned())));
-    // A falling frequency comes from where the masses do not meet, a rising one from where they must.
+    // A sweep down starts where the masses do not meet, a sweep up where they must.
     let came =
         |direction| choose(&scene, hz(1.5), &Question { history: Some(direction), ..question }).unwrap();
     assert_eq!(came(Direction::Down).chosen, Some(Model::Linear));
     let up = came(Direction::Up);
-    // As the correction says (3 % of x₁): the closed form alone is not enough.
+    // As the correction predicts (3 % of x₁), the closed form alone is not enough.
     assert_eq!(up.chosen, Some(Model::SoftCorrected), "{:?}", up.findings);
     assert_eq!(came(Direction::Up).rung(Model::ClosedForm).answer, closed.answer);
 }
@@ -213,7 +213,7 @@ fn an_inadmissible_orbit_is_followed_event_by_event() {
     let choice = choose(&scene(0.5, Some(1e6)), hz(0.8), &question).unwrap();
     assert_eq!(choice.chosen, Some(Model::Restitution), "{:?}", choice.findings);
     let closed = choice.rung(Model::ClosedForm);
-    // The depth by which they would pass through each other is known independently.
+    // The overlap of 6.2 mm is known from an independent calculation.
     let depth = reason(closed, "orbit-overlaps").get("depth").unwrap();
     assert!(!closed.valid && (depth - 6.2e-3).abs() < 0.05e-3, "{depth}");
     let motion = reason(choice.rung(Model::Restitution), "rest-leads-to").fact("motion");
@@ -225,7 +225,7 @@ fn noise_and_tolerance_count_the_larger() {
     let question = Question::new(Observable::Fundamental);
     let orbit = orbits(&Rig::thesis(), 0.5, hz(2.1)).unwrap().orbits.remove(0);
     let largest = Observable::Fundamental.of_orbit(&orbit).into_iter().fold(0.0, f64::max);
-    // Noise as large as the answers: a change of a fifth does not matter.
+    // The noise is as large as the answers: a change of a fifth does not matter.
     let faint = Question { noise: 0.3 * largest, ..question };
     assert_eq!(choose(&scene(0.5, Some(1e6)), hz(2.1), &faint).unwrap().chosen, Some(Model::ClosedForm));
 }
@@ -244,20 +244,20 @@ fn an_orbit_near_grazing_is_not_relied_on() {
 #[test]
 fn other_scenes_find_their_rung() {
     let question = Question::new(Observable::ImpactSpeed);
-    // A stated exponent leaves springs out.
+    // A stated exponent rules out the rungs with a spring.
     let curved = ContactKeys { stiffness: Some(1e9), exponent: Some(1.5), damping: None };
     let choice = choose(&Scene { contact: Some(curved), ..scene(0.5, None) }, hz(2.1), &question).unwrap();
     assert!(!choice.rung(Model::KelvinVoigt).valid && choice.rung(Model::HuntCrossley).valid);
     assert!(choice.chosen.is_some(), "{:?}", choice.findings);
-    // Pressed together for good: no law of impacts matters.
+    // The masses stay pressed together: the contact law does not matter.
     let held = Rig { gap: -5e-3, ..Rig::thesis() };
     let still = Scene { rig: held, contact: Some(curved), ..scene(0.01, None) };
     assert_eq!(choose(&still, hz(2.1), &question).unwrap().chosen, Some(Model::Restitution));
-    // A buffer leaves out all that hold mass 1 both ways.
+    // A buffer rules out all models whose spring of mass 1 acts in both directions.
     let loose = Scene { buffer: Some(Buffer { gap: 0.0, damper_always: true }), ..scene(0.1, Some(1e6)) };
     assert_eq!(choose(&loose, 4.5, &question).unwrap().chosen, Some(Model::LooseMass));
     let unknown = choose(&Scene { contact: None, ..loose.clone() }, 4.5, &question).unwrap();
-    // From 1e4 N/m on its stiffness moves the speed by less than a fiftieth.
+    // From 1e4 N/m on, the stiffness changes the speed by less than 2 %.
     assert_eq!(unknown.chosen, Some(Model::LooseMass), "{:?}", unknown.findings);
     assert!(unknown.sensitivity.len() >= 5 && unknown.sensitivity.iter().all(|row| row.enough));
     let came = Question { history: Some(Direction::Up), ..question };
@@ -265,11 +265,11 @@ fn other_scenes_find_their_rung() {
     for code in ["history-not-followed", "spring-only-pushes"] {
         reason(choice.rung(Model::LooseMass), code);
     }
-    // No rebound: no finite damper makes it.
+    // R = 0: no finite damper gives it.
     let dead = Scene { rig: Rig { restitution: 0.0, ..Rig::thesis() }, ..scene(0.5, Some(1e6)) };
     let choice = choose(&dead, hz(2.1), &question).unwrap();
     assert_eq!((choice.chosen, choice.needs.as_slice()), (None, &[Need::Damping][..]));
-    // A wall, impulses, a gap below zero, whatever is looked at.
+    // A wall, impulses, and a negative gap, with each observable.
     let wall = Scene { rig: Rig { m2: f64::INFINITY, ..Rig::thesis() }, ..scene(0.5, Some(1e6)) };
     let kicked = Scene {
         excitation: Some(Excitation::Impulse(Impulses { impulse: 0.009, frequency: 5.7 })),
@@ -278,7 +278,7 @@ fn other_scenes_find_their_rung() {
     let pressed = Scene { rig: Rig { gap: -5e-4, ..Rig::thesis() }, ..scene(0.35, Some(1e6)) };
     for (scene, frequency, expected) in [
         (wall, hz(2.1), Model::SoftCorrected),
-        // The contact lasts a four-hundredth of the cycle, and impulses, not the contact, set the speed.
+        // The contact lasts a four-hundredth of the cycle, and the impulses, not the contact, set the speed.
         (kicked, 5.7, Model::ClosedForm),
         (pressed, hz(0.45), Model::Restitution),
     ] {
@@ -305,8 +305,8 @@ fn a_gap_that_is_hardly_known_lets_no_mass_stay_clear() {
 
 #[test]
 fn what_is_good_enough_along_an_axis_is_so_at_each_point() {
-    // From one motion with one impact a cycle to the one without: each has its own closed form, and neither
-    // holds on the other side.
+    // The sweep goes from one impact a cycle to no impact: each has its own closed form, which fails on the
+    // other side.
     let question = Question { history: Some(Direction::Down), ..Question::new(Observable::Fundamental) };
     let over =
         |stiffness, points| choose_over(&scene(0.3, Some(stiffness)), 9.0, 14.0, points, &question).unwrap();
@@ -318,7 +318,7 @@ fn what_is_good_enough_along_an_axis_is_so_at_each_point() {
     for point in &survey.points {
         assert!(point.rung(model).sufficient, "{:?}", point.findings);
     }
-    // No lower one is.
+    // No lower model is good enough at all points.
     for lower in &Model::ALL[..model as usize] {
         assert!(survey.points.iter().any(|p| !p.rung(*lower).sufficient), "{lower:?}");
     }
@@ -326,14 +326,14 @@ fn what_is_good_enough_along_an_axis_is_so_at_each_point() {
 
 #[test]
 fn the_stiffest_contact_tried_is_not_taken_for_enough() {
-    // The change falls with 1/√k: at 0.01 %, no stiffness that was tried is stiff enough for scene B.
+    // The change falls with 1/√k: for a tolerance of 0.01 % no stiffness that is tried is large enough.
     let fine = Question { tolerance: 1e-4, ..Question::new(Observable::ImpactSpeed) };
     let choice = choose(&scene(0.5, None), hz(2.1), &fine).unwrap();
     let last = choice.sensitivity.last().unwrap();
     assert!(!last.enough && last.change.abs() > 1e-4);
     let needed = finding(&choice, "stiffness-needed");
     assert_eq!((needed.get("still"), needed.get("enough_from")), (Some(last.change), None));
-    // At 2 % it is so from a stiffness on, and that one is within.
+    // For 2 % all stiffnesses from one of the rows on are enough.
     let choice = scene_b(None);
     let from = choice.sensitivity.iter().find(|row| row.enough).unwrap().stiffness;
     let needed = finding(&choice, "stiffness-needed");
@@ -346,31 +346,30 @@ fn a_motion_on_its_way_widens_nothing() {
     let question = Question::new(Observable::ImpactSpeed);
     let of = |value: f64, spread: f64, steady| Answer { value: [value; 2], spread: [spread; 2], steady };
     let enough = |a: Answer, b: Answer| a.change(&b, Model::KelvinVoigt, &question).enough;
-    // 4 % apart, standard errors of 1.5 %, 2.1 % together: no difference is told where the means are steady.
+    // 4 % apart, with a joint standard error of 2.1 %: not a significant difference, so steady means agree.
     assert!(enough(of(1.0, 0.015, true), of(1.04, 0.015, true)));
-    // Nor is anything else told where they are known no better than to 3 % or a third: not that they agree
-    // within 2 %.
+    // Means known to 3 % or 30 % only cannot confirm agreement within 2 %.
     for spread in [0.03, 0.3] {
         assert!(!enough(of(1.0, spread, true), of(1.0, 0.0, true)));
         assert!(!enough(of(1.0, 0.0, true), of(1.0, spread, true)));
     }
-    // That does not make them two motions; nor does it make one of what lies farther apart.
+    // They still may be the same motion within two standard errors; means farther apart are not.
     assert!(of(1.0, 0.03, true).agrees(&of(1.08, 0.03, true), &question, 2.0));
     assert!(!of(1.0, 0.03, true).agrees(&of(1.09, 0.03, true), &question, 2.0));
     for (a, b) in [(true, false), (false, true), (false, false)] {
         assert!(!enough(of(1.0, 0.015, a), of(1.04, 0.015, b)));
-        // Nor does equality tell anything: both may have left from the same state.
+        // Equal values of unsettled motions confirm nothing: both may have started from the same state.
         assert!(!enough(of(1.0, 0.0, a), of(1.0, 0.0, b)));
     }
-    // Hardly damped near its resonance the rig takes thousands of cycles to the gap and does not come to rest
-    // again.
+    // With little damping near its resonance the rig takes thousands of cycles to close the gap, and does not
+    // return to a motion without impacts.
     let rig = Rig { c1: 1e-3, c2: 1e-3, ..Rig::thesis() };
     let excitation = Some(Excitation::Sine(Sine { force: 4.272_235_95e-5, frequency: 5.230_365_15 }));
     let slow = Scene { rig, excitation, ..scene(0.1, Some(1e9)) };
     let choice = choose(&slow, 5.230_365_15, &question).unwrap();
     assert!(choice.rung(Model::Restitution).answer.unwrap()[0] > 0.0);
     assert!(choice.chosen.is_none(), "{:?}", choice.chosen);
-    // None that is settled is without impacts.
+    // No settled rung reports a motion without impacts.
     let still = |rung: &&Rung| rung.settled && rung.model != Model::Linear && rung.answer == Some([0.0; 2]);
     assert_eq!(choice.rungs.iter().find(still), None);
 }
@@ -381,13 +380,13 @@ fn along_an_axis_it_chooses_where_it_must() {
     let scene = scene(0.3, Some(1e7));
     let survey = choose_over(&scene, hz(1.9), hz(2.6), 21, &question).unwrap();
     assert_eq!(survey.points.len(), 21);
-    // Every point is as if asked alone, and the stretches hold all of them in order.
+    // Each point is as if chosen alone, and the stretches cover all points in order.
     let alone = choose(&scene, hz(2.6), &question).unwrap();
     assert_eq!(survey.points[20].chosen, alone.chosen);
     assert_eq!(survey.stretches.iter().map(|s| s.points).sum::<usize>(), 21);
     assert!(survey.stretches.windows(2).all(|w| w[0].to < w[1].from));
     assert_eq!(survey.stretches.last().unwrap().chosen, Some(Model::Linear));
-    // Under the grazing frequency, where A(ν) = Δ, impacts are certain.
+    // Where A(ν) > Δ, impacts are certain, and the linear model must not be chosen.
     let graze = |nu: f64| {
         let (rig, omega) = (Rig::thesis(), TAU * hz(nu));
         0.3 / (rig.k1 - rig.m1 * omega * omega).hypot(rig.c1 * omega) < rig.gap
@@ -428,8 +427,8 @@ fn impossible_questions_are_named() {
 
 #[test]
 fn a_mean_that_is_hardly_known_is_not_enough() {
-    // Without losses the motion never repeats; its mean after some thousand cycles is known to more than 1 %,
-    // and less than 20 %.
+    // Without losses the motion never repeats; after some thousand cycles its mean has a standard error
+    // between 1 % and 20 %.
     let rig = Rig { restitution: 1.0, c1: 0.0, c2: 0.0, ..Rig::thesis() };
     let asked = |tolerance: f64| {
         let question =

@@ -1,16 +1,16 @@
-//! What a contact law means for a rebound free of other forces, and the way back.
+//! Conversion between contact laws and restitution, for a rebound without other forces.
 //!
-//! Kelvin–Voigt of damping ratio ζ = c₃/2√(k₃M) and ω₀² = k₃/M, left where its force vanishes: with sin ψ = ζ
-//! the contact lasts (π − 2ψ)/(ω₀ cos ψ) and R = exp(−(π − 2ψ) tan ψ); for ζ = 1 it lasts 2/ω₀ and R = e⁻²;
+//! Kelvin–Voigt with ζ = c₃/2√(k₃M) and ω₀² = k₃/M, which ends where its force vanishes: with sin ψ = ζ the
+//! contact lasts (π − 2ψ)/(ω₀ cos ψ) and R = exp(−(π − 2ψ) tan ψ); for ζ = 1 it lasts 2/ω₀ and R = e⁻²;
 //! for ζ > 1 it lasts 2 acosh ζ/(ω₀√(ζ² − 1)) and R = exp(−2ζ acosh ζ/√(ζ² − 1)). Derived from the free
-//! motion of mass, spring and damper; the first also in Anagnostopoulos (2004) and Nagurka & Huang (2004). R
-//! falls with ζ to 1/(4ζ²) for large ζ.
+//! motion of mass, spring and damper; the first also in Anagnostopoulos (2004) and Nagurka & Huang (2004).
+//! R falls with ζ, to 1/(4ζ²) for large ζ.
 //!
-//! Hunt–Crossley F = kδⁿ(1 + αδ̇) loses the same at any k, n and mass (Hunt & Crossley 1975; exact, by
-//! integrating v dv/(1 + αv) over the contact): αv(1 + R) = ln((1 + αv)/(1 − Rαv)).
+//! The restitution of Hunt–Crossley F = kδⁿ(1 + αδ̇) depends only on αv, not on k, n and mass (Hunt &
+//! Crossley 1975; exact, by integrating v dv/(1 + αv) over the contact): αv(1 + R) = ln((1 + αv)/(1 − Rαv)).
 //!
 //! Hertz F = kδ^{3/2} (Johnson 1985, 11.22 to 11.24): largest indentation (5Mv²/4k)^{2/5}, duration 2.9432
-//! times that over v.
+//! times this over v.
 
 use vibro_math::bisected;
 use vibro_record::{Error, Result};
@@ -45,13 +45,13 @@ pub fn duration(damping_ratio: f64, stiffness: f64, mass: f64) -> f64 {
     if damping_ratio >= 0.0 { turn(damping_ratio) / (stiffness / mass).sqrt() } else { f64::NAN }
 }
 
-/// ζ of a Kelvin–Voigt contact that rebounds with R, by bisection of ln R to the last digit.
+/// ζ of a Kelvin–Voigt contact with the restitution R, by bisection of ln R to the last digit.
 ///
 /// # Errors
-/// If R is outside 0 < R ≤ 1: no finite damping stops a rebound altogether.
+/// If R is outside 0 < R ≤ 1: with finite damping there is always a rebound.
 pub fn damping_ratio(restitution: f64) -> Result<f64> {
     let wanted = check(restitution)?;
-    // −ln R rises with ζ, without end.
+    // −ln R rises with ζ without limit.
     let exact = |ratio: f64| ratio * turn(ratio);
     let mut high = 1.0;
     while exact(high) < wanted && high < 1e160 {
@@ -60,7 +60,7 @@ pub fn damping_ratio(restitution: f64) -> Result<f64> {
     Ok(solve(0.0, high, wanted, exact))
 }
 
-/// αv of a Hunt–Crossley contact that rebounds with R where it is met at v.
+/// αv of a Hunt–Crossley contact with the restitution R at the approach speed v.
 ///
 /// # Errors
 /// If R is outside 0 < R ≤ 1.
@@ -70,13 +70,13 @@ pub fn loss(restitution: f64) -> Result<f64> {
     if r == 1.0 {
         return Ok(0.0);
     }
-    // The balance of energies over (αv)² rises from −(1 − R²)/2 at 0 through zero once, before its pole at αv
-    // = 1/R.
+    // The energy balance over (αv)² rises from −(1 − R²)/2 at 0 and crosses zero once before its pole at αv =
+    // 1/R.
     let balance = |a: f64| if a >= 1.0 / r { f64::INFINITY } else { less(a) - less(-r * a) };
     Ok(solve(0.0, 1.0 / r, 0.0, balance))
 }
 
-/// ln(1 + x) − x without cancellation; the series leaves out less than 0.05¹⁵/15 of x.
+/// ln(1 + x) − x without cancellation; the truncation of the series is below 0.05¹⁵/15 of x.
 fn less(x: f64) -> f64 {
     if x.abs() < 0.05 {
         let mut sum = 0.0;
@@ -90,8 +90,8 @@ fn less(x: f64) -> f64 {
     }
 }
 
-/// Largest indentation in m of a Hertz contact met at `speed` (m/s) by a reduced mass `mass` (kg):
-/// (5Mv²/4k)^{2/5}.
+/// Largest indentation (5Mv²/4k)^{2/5} in m of a Hertz contact at the approach speed `speed` (m/s), with the
+/// reduced mass `mass` (kg).
 pub(crate) fn hertz_depth(stiffness: f64, mass: f64, speed: f64) -> f64 {
     (1.25 * mass * speed * speed / stiffness).powf(0.4)
 }
@@ -113,7 +113,7 @@ fn check(restitution: f64) -> Result<f64> {
     ))
 }
 
-/// Where a function that crosses `wanted` upwards once between `low` and `high` does so, to the last digit.
+/// Root of f = `wanted` between `low` and `high`, to the last digit; f crosses it once, upwards.
 fn solve(low: f64, high: f64, wanted: f64, f: impl Fn(f64) -> f64) -> f64 {
     bisected(low, high, usize::MAX, |x| f(x) < wanted).1
 }
@@ -132,7 +132,7 @@ mod tests {
         for ratio in [1e-6, 0.05, 0.181, 0.5, 0.9, 0.95, 0.97, 0.999] {
             let psi = f64::asin(ratio);
             let turn = (std::f64::consts::PI - 2.0 * psi) / (1.0 - ratio * ratio).sqrt();
-            // The plain form loses digits to 1 − ζ².
+            // The formula without the series loses digits as 1 − ζ² becomes small.
             let lost = 16.0 * f64::EPSILON / (1.0 - ratio);
             assert!((restitution(ratio) - (-ratio * turn).exp()).abs() < lost, "{ratio}");
             assert!((duration(ratio, 1.0, 1.0) - turn).abs() < 4.0 * lost);
@@ -142,7 +142,7 @@ mod tests {
             let lost = 32.0 * f64::EPSILON / (ratio - 1.0).min(1.0);
             assert!((restitution(ratio) / expected - 1.0).abs() < lost, "{ratio}");
         }
-        // Far above, 1/(2ζ)².
+        // For large ζ, R = 1/(2ζ)².
         assert!((restitution(1e8) * 4e16 - 1.0).abs() < 1e-6);
         assert!(restitution(-0.1).is_nan() && restitution(f64::NAN).is_nan());
     }
@@ -152,7 +152,7 @@ mod tests {
         for ratio in [0.0, 0.1, 0.7, 0.99, 1.0, 1.01, 3.0] {
             let oscillator = Oscillator::new(1.0, 2.0 * ratio, 1.0);
             let (x, v) = oscillator.free(0.0, 1.0, duration(ratio, 1.0, 1.0));
-            // Roundings of numbers of order 1, and of 2ζ times them.
+            // Rounding of numbers of order 1, and of 2ζ times them.
             let tolerance = 16.0 * f64::EPSILON * (1.0 + ratio);
             assert!(oscillator.acceleration(x, v).abs() < tolerance, "{ratio}");
             assert!((v + restitution(ratio)).abs() < tolerance, "{ratio} {v}");
@@ -167,7 +167,7 @@ mod tests {
         }
         for zeta in [1e-9, 0.01, 0.5, 0.999_999, 1.0, 1.000_001, 5.0] {
             let back = damping_ratio(restitution(zeta)).unwrap();
-            // Near R = 1 a rounding of R is one of πζ.
+            // Near R = 1, R = 1 − πζ: the rounding of R limits ζ.
             assert!((back - zeta).abs() < 1e-12 * (1.0 + zeta), "{zeta} {back}");
         }
         for impossible in [0.0, -0.1, 1.1, f64::NAN] {
@@ -180,7 +180,7 @@ mod tests {
         for r in [0.99, 0.7, 0.3, 0.05] {
             let a = loss(r).unwrap();
             let right = ((1.0 + a) / (1.0 - r * a)).ln();
-            // 1 − Rαv is left with a rounding of 1.
+            // For αv near 1/R, 1 − Rαv is a small difference with a rounding of 1.
             assert!(
                 (a * (1.0 + r) - right).abs() < 8.0 * f64::EPSILON * (1.0 + a + 1.0 / (1.0 - r * a)),
                 "{r}"

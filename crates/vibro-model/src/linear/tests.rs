@@ -8,7 +8,7 @@ fn product(p: &[[f64; 5]; 5], q: &[[f64; 5]; 5]) -> [[f64; 5]; 5] {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..5).map(|k| p[i][k] * q[k][j]).sum()))
 }
 
-/// Slow oracle: exp(At) − I of the state and a constant 1, halved 30 times and squared again as 2E + E².
+/// Slow reference: exp(At) − I for the state and a constant 1, from t/2³⁰ by 30 squarings as 2E + E².
 fn exponential(mode: &Linear, t: f64) -> [[f64; 5]; 5] {
     let h = t / f64::powi(2.0, 30);
     let mut a = [[0.0; 5]; 5];
@@ -70,7 +70,7 @@ fn a_mode_is_the_matrix_exponential_at_any_damping() {
                 let expected: [f64; 4] =
                     std::array::from_fn(|i| y[i] + (0..5).map(|j| e[i][j] * y[j]).sum::<f64>());
                 let found = fly_far(&mode, start, t);
-                // In the norm of max(s|x|, |v|), 0.5 + s·2 mm: some 30 squarings of the oracle, each with a
+                // In the norm max(s|x|, |v|), 0.5 + s·2 mm: some 30 squarings of the reference, each with a
                 // few roundings.
                 let s = mode.rate;
                 let size = (0.5 + 3e-3 * s) * f64::max(1.0, turns);
@@ -100,7 +100,7 @@ fn a_driven_flight_is_the_closed_form() {
     let longest = 1.0 / mode.rate.max(sine.omega());
     let (mut state, mut time) = (start, 0.0);
     for _ in 0..40 {
-        // The force in powers of the time.
+        // Terms of the force in powers of time.
         let mut force = [0.0; ORDER + 1];
         let (mut re, mut im) =
             (0.5 * (0.7 + sine.omega() * time).cos(), 0.5 * (0.7 + sine.omega() * time).sin());
@@ -112,7 +112,7 @@ fn a_driven_flight_is_the_closed_form() {
         let piece = mode.fly(&state, &force, longest);
         for part in [0.2, 0.9] {
             let (found, exact) = (piece.state(part * longest), flight.state(time + part * longest));
-            // Roundings of 0.3 m/s, and of a phase up to 40 rad, over 40 pieces.
+            // Rounding of 0.3 m/s, and of a phase up to 40 rad, over 40 pieces.
             assert!((found.v1 - exact.v1).abs() < 1e-14 && (found.v2 - exact.v2).abs() < 1e-14);
             assert!((found.x1 - exact.x1).abs() < 1e-15 && (found.x2 - exact.x2).abs() < 1e-15);
         }
@@ -123,7 +123,7 @@ fn a_driven_flight_is_the_closed_form() {
 
 #[test]
 fn falls_and_integrals_of_quantities() {
-    // x₁ = cos t, and −sin t is its rate; the sum with the force 2 and an offset −2 changes nothing.
+    // x₁ = cos t with the rate −sin t; the force 2 and the offset −2 cancel.
     let mode = Linear::new([[-1.0, 0.0, 0.0, 0.0], [0.0; 4]], [0.0; 2], [0.0; 2]);
     let mut force = [0.0; ORDER + 1];
     force[0] = 2.0;

@@ -19,12 +19,12 @@ fn giving(rig: &Rig, excitation: &Excitation, state: State, phase: f64) -> Compl
     Compliant::new(rig, excitation, law, state, phase).unwrap()
 }
 
-/// Rounded matrix product.
+/// Matrix product.
 fn times(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     [0, 1].map(|i| [0, 1].map(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j]))
 }
 
-/// e^{At} of mass 1 alone, by Taylor's series of a 1024th and ten squarings.
+/// e^{At} of mass 1 alone, by the Taylor series for t/1024 and ten squarings.
 fn exponential(rig: &Rig, t: f64) -> [[f64; 2]; 2] {
     let h = t / 1024.0;
     let a = [[0.0, h], [-rig.k1 / rig.m1 * h, -rig.c1 / rig.m1 * h]];
@@ -36,8 +36,8 @@ fn exponential(rig: &Rig, t: f64) -> [[f64; 2]; 2] {
     (0..10).fold(sum, |e, _| times(e, e))
 }
 
-/// A sweep over the impulse is z ← e^{AT}(z + (0, J/m₁)), J being that of the step to which the cycle
-/// belongs.
+/// A sweep over the impulse follows z ← e^{AT}(z + (0, J/m₁)), with the impulse J of the step to which the
+/// cycle belongs.
 fn swept<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
     let rig = Rig::thesis();
     for frequency in FREQUENCIES {
@@ -51,7 +51,7 @@ fn swept<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
             let mut compare = |motion: &dyn Motion, impulse: Option<f64>| {
                 let State { x1, v1, x2, v2 } = motion.state();
                 // Some 60 cycles, each with a few roundings of at most 0.1 mm and 4 mm/s (1e-20 m and 1e-18
-                // m/s), the exponential's ten squarings with a relative 1e-13.
+                // m/s); the ten squarings of the exponential have a relative error of 1e-13.
                 let close = (x1 - z[0]).abs() < 1e-17 + 1e-12 * z[0].abs().max(1e-5)
                     && (v1 - z[1]).abs() < 1e-15 + 1e-12 * z[1].abs().max(1e-4);
                 assert!(close && x2 == 0.0 && v2 == 0.0, "{frequency} Hz, step {steps}: {x1} {v1} {z:?}");
@@ -78,7 +78,7 @@ fn a_sweep_over_the_impulse_is_a_linear_recursion() {
     swept(giving);
 }
 
-/// A motion that starts again where another one has stopped, against one that goes on.
+/// Compares a motion that is stopped and restarted with one that continues.
 fn resumed<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
     let rig = Rig { gap: 2e-4, ..Rig::thesis() };
     for frequency in FREQUENCIES {
@@ -96,8 +96,8 @@ fn resumed<M: Motion>(make: impl Fn(&Rig, &Excitation, State, f64) -> M) {
                 let mut second = make(&rig, &excitation, first.state(), first.phase());
                 second.advance((3.0 - stop) / frequency, &mut |_| {}).unwrap();
                 let (a, b) = (whole.state(), second.state());
-                // Roundings of 1 mm and 0.1 m/s, enlarged by some impacts in three cycles; an impulse is
-                // worth 8 mm/s.
+                // Rounding of 1 mm and 0.1 m/s, amplified by some impacts in three cycles; one impulse
+                // changes the speed by 8 mm/s.
                 let close = (a.x1 - b.x1).abs() < 1e-13 && (a.v1 - b.v1).abs() < 1e-10;
                 assert!(close && (a.v2 - b.v2).abs() < 1e-10, "{excitation:?} {stop}: {a:?} {b:?}");
             }

@@ -1,4 +1,4 @@
-//! What all orbits of a rig at one period share.
+//! Conditions for orbits with one impact in a period, and the orbit of each solution.
 
 use super::validity::Judged;
 use super::{Course, Orbit};
@@ -9,16 +9,17 @@ use crate::scales;
 use num_complex::Complex64;
 use vibro_record::{Error, Result};
 
-/// The most swings of a mass that a period may hold.
+/// Most swings of a mass in a period; it bounds the work of searching them for contacts.
 const MOST_SWINGS: f64 = 5e4;
 
-/// With y the steady motion of mass 1 alone, the masses meet where y = Δ + JC and part as the impact law says
-/// where ẏ = JP (Babitsky, *Theory of Vibro-Impact Systems* (1998), periodic Green's functions).
+/// Conditions of an impact J, with the steady motion y of mass 1 alone: the masses meet where y = Δ + JC, and
+/// part by the impact law where ẏ = JP (Babitsky, *Theory of Vibro-Impact Systems* (1998), periodic Green's
+/// functions).
 #[derive(Debug, Clone, Copy)]
 pub struct Conditions {
     pub rig: Rig,
     pub cycles: u32,
-    /// Cycles of the excitation a second, in Hz.
+    /// Excitation frequency in Hz.
     pub frequency: f64,
     pub greens: [Green; 2],
     /// C = χ₁(0) + χ₂(0) in m/(N s).
@@ -30,9 +31,9 @@ pub struct Conditions {
 /// A solution of the conditions.
 #[derive(Debug, Clone, Copy)]
 pub struct Root {
-    /// J in N s.
+    /// Impulse J in N s.
     pub impulse: f64,
-    /// φ in rad or τ in s.
+    /// Timing: φ in rad or τ in s.
     pub timing: f64,
     /// Phase of the excitation's cycle at the impact, in rad.
     pub force_phase: f64,
@@ -40,16 +41,16 @@ pub struct Root {
     pub sensitivity: f64,
     /// Size of the terms of y = Δ + JC, in m.
     pub size: f64,
-    /// Whether a larger impulse would take more energy than the force then gives: the side of the fold.
+    /// Whether a larger impulse would take more energy than the force provides: the side of the fold.
     pub upper: bool,
 }
 
 impl Conditions {
     /// Conditions of one impact in `cycles` cycles at `frequency` (Hz), each `delay` (s) after the first
-    /// touch: the ways then overlap by vᵣ times it.
+    /// touch: by then the rigid motions overlap by vᵣ times the delay.
     ///
     /// # Errors
-    /// If `cycles` is 0, the period holds too many swings, or an undamped mass meets its own period.
+    /// If `cycles` is 0, the period has too many swings, or the period resonates with an undamped mass.
     pub fn new(rig: &Rig, frequency: f64, cycles: u32, delay: f64) -> Result<Conditions> {
         if cycles == 0 {
             return Err(Error::usage("0 cycles in a period", "1 or more").hint("1").setting("cycles"));
@@ -69,15 +70,15 @@ impl Conditions {
         })
     }
 
-    /// T in s.
+    /// Period T in s.
     pub fn period(&self) -> f64 {
         self.greens[0].period
     }
 
-    /// The orbit of a root, with its verdicts; without an excitation a free motion.
+    /// The orbit of a root, with its verdicts; without an excitation it is a free motion.
     pub fn orbit(&self, root: &Root, course: Course, excitation: Option<Excitation>) -> Orbit {
         let rig = &self.rig;
-        // Roundings of the terms reach the impulse through its sensitivity.
+        // Rounding of the terms is passed on to the impulse by its sensitivity.
         let amplified = excitation.is_some().then(|| 1.0 + root.size * root.sensitivity / root.impulse);
         let (exists, own) = (root.impulse > 0.0, root.impulse.abs() / root.sensitivity);
         let courses = std::slice::from_ref(&course);

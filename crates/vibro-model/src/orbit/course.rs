@@ -1,9 +1,10 @@
-//! The motion of an orbit from just after an impact to just before the next, stretch by stretch.
+//! The motion of an orbit from just after an impact to just before the next, as a sequence of smooth
+//! stretches.
 
 use super::turns::Signal;
 use crate::flow::{Flight, State};
 
-/// Flights without an impulse or a step of the force inside, one after the other.
+/// Successive flights without an impulse or a step of the force inside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// Time from impact to impact in s.
@@ -18,7 +19,7 @@ impl Course {
         Course { period, stretches: vec![(period, *flight)] }
     }
 
-    /// State at `t`, 0 ≤ `t` ≤ T; at 0 that after the impact, at T that before the next.
+    /// State at `t` (s), 0 ≤ `t` ≤ T; at 0 the state after the impact, at T the state before the next.
     pub fn state(&self, mut t: f64) -> State {
         let last = self.stretches.len() - 1;
         for (duration, stretch) in &self.stretches[..last] {
@@ -41,10 +42,10 @@ impl Course {
         self.stretches.iter().map(|(_, stretch)| stretch.noise()).fold(0.0, f64::max)
     }
 
-    /// How far both masses move, and every smallest gap inside the period, the impact left out.
+    /// Ranges of both masses, and the smallest gap inside the period, without the impact itself.
     pub fn survey(&self) -> Excursion {
-        // What lies nearer to the impact than this is the impact itself (without rebound the gap starts at
-        // zero rate).
+        // Minima nearer to the impact than this are the impact itself (without rebound the gap starts at zero
+        // rate).
         let margin = 1e-9 * self.period;
         let inside = |t: f64| t > margin && t < self.period - margin;
         let mut survey = Excursion { ranges: [(f64::INFINITY, f64::NEG_INFINITY); 2], closest: None };
@@ -52,7 +53,7 @@ impl Course {
         for (duration, stretch) in &self.stretches {
             let duration = *duration;
             let (first, last) = (stretch.series(0.0), stretch.series(duration));
-            // A corner or a smooth least gap on the border of two stretches.
+            // A corner or a smooth minimum of the gap on the border of two stretches.
             if inside(start) && before.is_some_and(|rate| rate < 0.0 && first[1][1] >= first[0][1]) {
                 survey.near(stretch.gap + first[1][0] - first[0][0]);
             }
@@ -64,7 +65,7 @@ impl Course {
             stretch.each_turn(duration, |signal, t, value, bend| match signal {
                 Signal::X1 => survey.reach(0, value),
                 Signal::X2 => survey.reach(1, value),
-                // Rate rising through zero: a smallest gap.
+                // The rate rises through zero: a minimum of the gap.
                 Signal::Gap if bend > 0.0 && inside(start + t) => survey.near(value),
                 Signal::Gap => {}
             });
@@ -74,7 +75,7 @@ impl Course {
     }
 }
 
-/// What a course reaches.
+/// Extremes of a course.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Excursion {
     /// Smallest and largest x₁ and x₂ in m.

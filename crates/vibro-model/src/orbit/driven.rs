@@ -1,12 +1,12 @@
-//! Steady motion of mass 1 alone under impulses or rectangular pulses, once a cycle.
+//! Steady motion of mass 1 alone under one impulse or rectangular pulse a cycle.
 
 use crate::green::Green;
 use crate::steady::NoImpact;
 use vibro_math::Oscillator;
 use vibro_record::Result;
 
-/// The steady motion, piece by piece free: during the pulse about f/k₁, after it about 0. An impulse is a
-/// pulse of no width.
+/// The steady motion, in two pieces of free motion: during the pulse about f/k₁, after it about 0. An impulse
+/// is a pulse of no width.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PulseResponse {
     pub oscillator: Oscillator,
@@ -14,28 +14,28 @@ pub struct PulseResponse {
     pub cycle: f64,
     /// Duration of the pulse in s; 0 for an impulse.
     pub width: f64,
-    /// Force during the pulse over k₁, in m; 0 for an impulse.
+    /// Equilibrium during the pulse in m, force over k₁; 0 for an impulse.
     pub rest: f64,
-    /// Free part at the beginning of the pulse.
+    /// Free part of displacement (m) and velocity (m/s) at the beginning of the pulse.
     on: (f64, f64),
-    /// Displacement and velocity after the pulse (or impulse).
+    /// Displacement (m) and velocity (m/s) just after the pulse (or impulse).
     off: (f64, f64),
 }
 
 /// A piece of the steady motion.
 #[derive(Debug, Clone, Copy)]
 pub struct Piece {
-    /// Time from the beginning of the pulse to that of the piece, in s.
+    /// Time in s from the beginning of the pulse to the start of the piece.
     pub start: f64,
     pub duration: f64,
-    /// Where mass 1 would rest.
+    /// Equilibrium of mass 1 in m.
     pub rest: f64,
-    /// Free displacement and velocity at the piece's start.
+    /// Free displacement (m) and velocity (m/s) at the piece's start.
     pub free: (f64, f64),
 }
 
 impl PulseResponse {
-    /// Steady motion under an impulse (N s) once a cycle: F times the periodic Green's function.
+    /// Steady motion under one impulse (N s) a cycle: F times the periodic Green's function.
     ///
     /// # Errors
     /// As [`Green::new`].
@@ -47,7 +47,8 @@ impl PulseResponse {
 
     /// Steady motion under a force (N) that acts for `width` seconds of each cycle.
     ///
-    /// After the pulse u = (I − Φ(T))⁻¹ (f/m) ∫₀ʷ Φ(s)(0, 1) ds, the Green's function summed over the pulse.
+    /// After the pulse u = (I − Φ(T))⁻¹ (f/m) ∫₀ʷ Φ(s)(0, 1) ds, the Green's function integrated over the
+    /// pulse.
     ///
     /// # Errors
     /// As [`Green::new`].
@@ -60,7 +61,7 @@ impl PulseResponse {
     ) -> Result<PulseResponse> {
         let unit = Green::new(m, oscillator, cycle)?;
         let (c, s) = oscillator.kernels(width);
-        // (I − Φ)⁻¹ of (0, S(w)) is that of the Green's function, of (∫S, 0) its companion.
+        // (I − Φ)⁻¹ applied to (0, S(w)) gives the Green's function, applied to (∫S, 0) its companion.
         let area = ramp(&oscillator, width, c, s);
         let (less, determinant) = oscillator.closing(cycle);
         let (_, sine) = oscillator.kernels(cycle);
@@ -74,13 +75,14 @@ impl PulseResponse {
         Ok(PulseResponse { oscillator, cycle, width, rest, on: (before.0 - rest, before.1), off })
     }
 
-    /// The piece at the time `at` after the beginning of the pulse, 0 ≤ `at` ≤ cycle, and the time within it.
+    /// The piece at the time `at` (s) after the beginning of the pulse, 0 ≤ `at` ≤ cycle, and the time within
+    /// it.
     pub fn piece(&self, at: f64) -> (Piece, f64) {
         let [on, off] = self.pieces();
         if at < self.width { (on, at) } else { (off, at - self.width) }
     }
 
-    /// Pulse and pause; of an impulse the first has no duration.
+    /// Pulse and pause; for an impulse the pulse has no duration.
     pub fn pieces(&self) -> [Piece; 2] {
         [
             Piece { start: 0.0, duration: self.width, rest: self.rest, free: self.on },
@@ -88,7 +90,7 @@ impl PulseResponse {
         ]
     }
 
-    /// Displacement, velocity and acceleration at the time `at` after the beginning of the pulse.
+    /// Displacement, velocity and acceleration at the time `at` (s) after the beginning of the pulse.
     pub fn at(&self, at: f64) -> [f64; 3] {
         let (piece, t) = self.piece(at);
         let (x, v) = self.oscillator.free(piece.free.0, piece.free.1, t);
@@ -109,14 +111,14 @@ impl PulseResponse {
         (low, high)
     }
 
-    /// The motion as one without impacts on a rig with this `gap` in m.
+    /// The steady motion as a motion without impacts on a rig with this `gap` in m.
     pub fn no_impact(&self, gap: f64) -> NoImpact {
         let (low, high) = self.range();
         NoImpact { possible: high < gap, amplitude: (high - low) / 2.0, largest: high }
     }
 }
 
-/// ∫₀ʷ S(s) ds = (1 − C(w) − bS(w))/Ω², as a power series where that would cancel.
+/// ∫₀ʷ S(s) ds = (1 − C(w) − bS(w))/Ω², by a power series where the formula would cancel.
 fn ramp(oscillator: &Oscillator, width: f64, c: f64, s: f64) -> f64 {
     let (b, omega2) = (oscillator.decay(), oscillator.omega2());
     if omega2.sqrt() * width > 0.5 || b * width > 0.25 {

@@ -1,4 +1,4 @@
-//! Orbits in limits: against a wall, without losses, with contacts that last.
+//! Limits of orbits: a wall, no losses, contacts with a duration.
 
 use super::*;
 use crate::excitation::{Impulses, Pulses};
@@ -6,7 +6,7 @@ use crate::motion::{Event, Motion};
 use crate::simulate::Simulation;
 use vibro_math::bisected;
 
-/// ν = ω/Ω₁ to a frequency in Hz.
+/// Frequency in Hz at the frequency ratio ν = ω/Ω₁.
 fn at(rig: &Rig, nu: f64) -> f64 {
     nu * (rig.k1 / rig.m1).sqrt() / TAU
 }
@@ -17,8 +17,8 @@ fn wall() -> Rig {
 
 #[test]
 fn an_impact_oscillator_without_losses_has_its_textbook_impulse() {
-    // Undamped, R = 1: x = A cos ωt at φ = 0 or π less J times Green's function cot(πΩ/ω)/(2mΩ), so J = 2mΩ
-    // tan(πΩ/ω)(±|A| − Δ).
+    // Undamped, R = 1: x = A cos ωt at φ = 0 or π, minus J times the Green's function cot(πΩ/ω)/(2mΩ), so J =
+    // 2mΩ tan(πΩ/ω)(±|A| − Δ).
     let rig = Rig { c1: 0.0, restitution: 1.0, ..wall() };
     let natural = (rig.k1 / rig.m1).sqrt();
     for nu in [0.7, 1.3, 1.72, 2.4] {
@@ -29,7 +29,7 @@ fn an_impact_oscillator_without_losses_has_its_textbook_impulse() {
             .map(|a| 2.0 * rig.m1 * natural * (std::f64::consts::PI / nu).tan() * (a - rig.gap));
         expected.sort_by(|a, b| b.total_cmp(a));
         for (orbit, expected) in found.orbits.iter().zip(expected) {
-            // Roundings of πΩ/ω through the tangent, and of A near the resonance.
+            // Rounding of πΩ/ω, amplified by the tangent, and of A near resonance.
             assert!((orbit.impulse / expected - 1.0).abs() < 1e-13, "{} {expected}", orbit.impulse);
             assert_eq!(
                 (orbit.state(0.03).x2, orbit.peak_to_peak[1], orbit.fundamental[1].norm()),
@@ -48,11 +48,11 @@ fn a_very_heavy_mass_is_a_wall() {
         let heavy = Rig { m2: 1e9, k2: 1e9 * 900.0, c2: 1e8, ..wall };
         let (a, b) = (orbits(&wall, 0.5, frequency).unwrap(), orbits(&heavy, 0.5, frequency).unwrap());
         for (a, b) in a.orbits.iter().zip(&b.orbits) {
-            // Mass ratio 1e-10, enlarged by the slope of J over the mass.
+            // Mass ratio 1e-10, amplified by the sensitivity of J to the mass.
             assert!((a.impulse / b.impulse - 1.0).abs() < 1e-8, "{} {}", a.impulse, b.impulse);
             assert_eq!(a.validity.admissible, b.validity.admissible);
             let Some(m) = a.multipliers else { continue };
-            // Two of the wall, two of the mass, with the product R²e^{−2bT}.
+            // Two multipliers of the wall, which are 0, and two of the mass, with the product R²e^{−2bT}.
             assert_eq!((m[2].norm(), m[3].norm()), (0.0, 0.0));
             let b1 = wall.oscillators()[0].decay();
             let expected = restitution.powi(2) * (-2.0 * b1 * a.period()).exp();
@@ -61,8 +61,7 @@ fn a_very_heavy_mass_is_a_wall() {
     }
 }
 
-/// Impulse, phase and approach speed of the last impact of a simulation of the `excitation` after `settle`
-/// seconds.
+/// The last impact of a simulation under `excitation` after `settle` seconds.
 fn settled(rig: &Rig, excitation: &Excitation, start: State, phase: f64, settle: f64) -> crate::Impact {
     let mut motion = Simulation::from_state(rig, excitation, start, phase).unwrap();
     let mut last = None;
@@ -98,14 +97,15 @@ fn simulations_stay_on_stable_orbits_of_every_excitation() {
                         {
                             continue;
                         }
-                        // From a point half way, a little off: the disturbance dies by 0.97^(800/2).
+                        // Starts near the middle of the period with a small disturbance, which decays by
+                        // 0.97^(800/2).
                         let half = orbit.period() * 0.47;
                         let mut start = orbit.state(half);
                         start.v1 += 1e-6;
                         let phase = orbit.force_phase + TAU * f64::from(cycles) * 0.47;
                         let impact = settled(rig, excitation, start, phase, 800.0 / frequency);
-                        // Rounding of some 10 mm and 1 m/s, enlarged by 1/(1 − 0.97) and by the reciprocal of
-                        // the speed.
+                        // Rounding of some 10 mm and 1 m/s, amplified by 1/(1 − 0.97) and by the reciprocal
+                        // of the speed.
                         assert!(
                             (impact.impulse / orbit.impulse - 1.0).abs() < 1e-10,
                             "{excitation:?} {cycles}: {impact:?} {orbit:?}"
@@ -128,13 +128,13 @@ fn the_backbone_is_the_limit_of_small_losses_and_forces() {
         let frequency = at(&rig, nu);
         let Some(free) = backbone(&rig, frequency).unwrap() else { continue };
         met += 1;
-        // Small losses and a force in balance with them leave both roots near the free motion; their middle
-        // to second order.
+        // With small losses and a force that balances them, both roots are near the free motion, and their
+        // mean equals it to second order.
         let slight = Rig { c1: 0.0, c2: 0.0, restitution: 1.0, ..rig };
         let pair = orbits(&slight, 1e-7, frequency).unwrap().orbits;
         let middle = f64::midpoint(pair[0].impulse, pair[1].impulse);
         assert!((middle / free.impulse - 1.0).abs() < 1e-9, "ν {nu}: {middle} {}", free.impulse);
-        // Masses meet, and the impact only turns their relative speed round.
+        // The masses meet, and the impact only reverses their relative speed.
         let (before, after) = (free.before_impact(), free.state(0.0));
         assert!(
             (rig.gap + after.x2 - after.x1).abs() < 1e-15
@@ -158,8 +158,8 @@ fn the_backbone_is_the_limit_of_small_losses_and_forces() {
     assert!(backbone(&rig, -1.0).is_err() && backbone(&rig, 1e-9).is_err());
 }
 
-/// The rig with a contact of spring and damper that cannot pull, by Runge and Kutta's fourth-order steps that
-/// end at touch and release.
+/// Reference: the rig with a contact of spring and damper that cannot pull, by fourth-order Runge–Kutta steps
+/// that end at touch and release.
 struct Slow<'a> {
     rig: &'a Rig,
     contact: Compliance,
@@ -198,9 +198,9 @@ impl Slow<'_> {
         std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
     }
 
-    /// One step, cut at touch or release; the approach speed where it touches.
+    /// One step, which ends at touch or release; returns the approach speed at a touch.
     fn go(&mut self, h: f64) -> Option<f64> {
-        // What falls through zero: the gap, or the force of the contact.
+        // The quantity whose zero ends the step: the gap, or the contact force.
         let height = |s: [f64; 4]| if self.touching { self.push(s) } else { self.rig.gap + s[2] - s[0] };
         let (start, end) = (height(self.state), height(self.step(h)));
         if end >= 0.0 || start < 0.0 || (start == 0.0 && !self.touching) {
@@ -249,10 +249,10 @@ fn a_contact_that_lasts_is_corrected_for() {
             100.0 * plain,
             100.0 * corrected
         );
-        // What is left is of second order in the share, enlarged as the first order is.
+        // The remaining error is of second order in the share in contact, amplified like the first-order one.
         assert!(corrected.abs() < plain.abs().max(0.1) * 3.0 * soft.share + 1e-4, "{plain} {corrected}");
     }
-    // Outside its domain it is refused.
+    // Contacts that last too long are refused.
     let excitation = Excitation::Sine(Sine { force: 0.5, frequency: at(&rig, 2.1) });
     let found = orbits_of(&rig, &excitation, 1).unwrap();
     let contact = Compliance::new(&rig, 5e3, None).unwrap();

@@ -1,4 +1,4 @@
-//! Orbits under a sine force, and without any: a quadratic.
+//! Orbits under a sine force, or without force: roots of a quadratic equation in the impulse.
 
 use super::conditions::{Conditions, Root};
 use super::{Course, Orbit, driven};
@@ -20,15 +20,15 @@ struct Quadratic {
     a: f64,
     /// ΔC.
     half: f64,
-    /// Square of the half distance of the roots times a, written so that it does not cancel; negative beyond
-    /// the fold.
+    /// Discriminant half² − a(Δ² − A²), written without cancellation; negative beyond the fold.
     discriminant: f64,
     /// Product of the roots.
     product: f64,
 }
 
 impl Quadratic {
-    /// That of these conditions, for a steady motion of mass 1 alone of `amplitude` (m) at `omega` (rad/s).
+    /// Equation for these conditions, with the steady motion of mass 1 alone of `amplitude` (m) at `omega`
+    /// (rad/s).
     fn new(conditions: &Conditions, amplitude: f64, omega: f64) -> Quadratic {
         let (c, p, gap) = (conditions.c, conditions.p / omega, conditions.rig.gap);
         let a = c * c + p * p;
@@ -40,14 +40,14 @@ impl Quadratic {
         }
     }
 
-    /// Whether it has roots.
+    /// Whether its roots are real.
     fn has_roots(&self) -> bool {
         self.a > 0.0 && self.discriminant >= 0.0
     }
 
-    /// Its roots, the larger first; beyond the fold twice the place where they met.
+    /// Its roots, the larger first; beyond the fold, twice the double root at the fold.
     fn roots(&self) -> [f64; 2] {
-        // The root in which the terms add up first, the other from their product.
+        // First the root without cancellation, then the other from the product.
         let root = self.discriminant.max(0.0).sqrt();
         let first = -(self.half + root.copysign(self.half)) / self.a;
         let second = match (first == 0.0, self.discriminant > 0.0) {
@@ -59,7 +59,8 @@ impl Quadratic {
     }
 }
 
-/// The motion after an impact J under a forced motion of mass 1: mass 1 has −Jχ₁ on top, mass 2 Jχ₂.
+/// The motion after an impact J with the forced motion `forced` of mass 1: −Jχ₁ is added to it, mass 2 moves
+/// by Jχ₂.
 fn course(conditions: &Conditions, impulse: f64, forced: Waves) -> Course {
     let [one, two] = &conditions.greens;
     let free = [
@@ -70,7 +71,7 @@ fn course(conditions: &Conditions, impulse: f64, forced: Waves) -> Course {
     Course::smooth(conditions.period(), &Flight::of(rig.oscillators(), forced, 0.0, rig.gap, free))
 }
 
-/// Orbits under the force `sine` whose steady motion is `steady`, larger impulse first.
+/// Orbits under the force `sine`, with the steady motion `steady` of mass 1 alone; larger impulse first.
 pub fn orbits(conditions: &Conditions, steady: &Steady, sine: &Sine) -> Vec<Orbit> {
     let (c, p, gap) = (conditions.c, conditions.p / steady.omega, conditions.rig.gap);
     let amplitude = steady.amplitude();
@@ -97,8 +98,8 @@ pub fn orbits(conditions: &Conditions, steady: &Steady, sine: &Sine) -> Vec<Orbi
     [(larger, true), (smaller, false)].map(one).into()
 }
 
-/// The orbit of the larger root as a spectrum shows it, without its verdicts: for fits, which ask for it a
-/// million times.
+/// Amplitudes of the orbit of the larger root, without verdicts: fast, for fits, which compute it a million
+/// times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShownOrbit {
     /// Impulse J in N s.
@@ -106,13 +107,13 @@ pub struct ShownOrbit {
     /// Amplitudes of x₁ and x₂ in m at the excitation frequency.
     pub amplitude: [f64; 2],
     /// Whether the orbit exists: its root is real and J > 0. Beyond the fold the numbers are those of the
-    /// place where the roots would have met, so that they change continuously; whether the orbit is
-    /// admissible and stable, [`super::orbits`] tells.
+    /// double root, so that they change continuously. [`super::orbits`] tells whether the orbit is admissible
+    /// and stable.
     pub exists: bool,
 }
 
-/// The orbit of the larger root with one impact a cycle under a sine force; X₁ = Ae^{iφ} − (2J/T)L₁, X₂ =
-/// (2J/T)L₂.
+/// Computes the orbit of the larger root with one impact a cycle under a sine force; X₁ = Ae^{iφ} − (2J/T)L₁,
+/// X₂ = (2J/T)L₂.
 ///
 /// # Errors
 /// As [`super::orbits`].
@@ -125,7 +126,7 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<ShownOrbit> {
     let [impulse, _] = quadratic.roots();
     let [l1, l2] = rig.receptances(omega);
     let train = 2.0 * impulse * sine.frequency;
-    // cos φ and sin φ times A; beyond the fold their squares do not add up to A².
+    // A cos φ and A sin φ; beyond the fold their squares do not add up to A².
     let forced = Complex64::new(rig.gap + impulse * conditions.c, -impulse * conditions.p / omega);
     let forced = forced * (steady.amplitude() / forced.norm());
     Ok(ShownOrbit {
@@ -135,14 +136,14 @@ pub fn shown(rig: &Rig, sine: &Sine) -> Result<ShownOrbit> {
     })
 }
 
-/// The motion with one impact a cycle at `frequency` (Hz) that the rig would keep up without force, dampers
-/// and losses in the impact; `None` where there is none.
+/// The free motion with one impact a cycle at `frequency` (Hz) of the rig without dampers and impact losses;
+/// `None` where there is none.
 ///
-/// Without losses P = 0, any size goes with the impact law, and the masses meet where Δ + JC = 0 (Babitsky,
-/// *Theory of Vibro-Impact Systems* (1998)). Resonances of the driven rig lie along this curve.
+/// Without losses P = 0, every impulse satisfies the impact law, and the masses meet where Δ + JC = 0
+/// (Babitsky, *Theory of Vibro-Impact Systems* (1998)). Resonances of the driven rig lie along this curve.
 ///
 /// # Errors
-/// If a parameter is impossible, or the frequency is a whole part of a natural frequency.
+/// If a parameter is impossible, or the frequency is a natural frequency divided by a whole number.
 pub fn backbone(rig: &Rig, frequency: f64) -> Result<Option<Orbit>> {
     number("frequency", frequency, "Hz", NumberRange::AboveZero)?;
     check_values(rig, [frequency])?;
@@ -184,8 +185,8 @@ mod tests {
                 continue;
             };
             assert_eq!(shown.exists, orbit.validity.exists);
-            // The phase goes through an angle and back there: rounded to ε, and x₁ is a difference of parts
-            // that are up to so much larger.
+            // The phase is converted to an angle and back, rounded to ε, and x₁ is a difference of terms that
+            // are larger by this factor.
             for (a, x) in shown.amplitude.iter().zip(orbit.fundamental) {
                 let parts = 1.0 + all.no_impact.amplitude / x.norm();
                 assert!((a / x.norm() - 1.0).abs() < 64.0 * f64::EPSILON * parts, "{frequency}: {a} {x}");
@@ -197,13 +198,14 @@ mod tests {
 
     #[test]
     fn beyond_the_fold_it_goes_on_without_a_step() {
-        // The fold is found by halving between a frequency with roots and one without.
+        // The fold is located by bisection between a frequency with roots and one without.
         let rig = Rig { restitution: 0.98, ..Rig::thesis() };
         let at = |frequency| shown(&rig, &Sine { force: 0.1, frequency }).unwrap();
         let (low, high) = bisected(10.0, 11.0, 60, |frequency| at(frequency).exists);
         let (before, behind) = (at(low), at(high));
         assert!(before.exists && !behind.exists);
-        // Beside a fold the root goes as the square root of the distance, here one rounding of the frequency.
+        // Near a fold the root changes as the square root of the distance, here one rounding of the
+        // frequency.
         for (a, b) in before.amplitude.iter().zip(behind.amplitude) {
             assert!((a / b - 1.0).abs() < 64.0 * f64::EPSILON.sqrt(), "{a} {b}");
         }

@@ -1,4 +1,4 @@
-//! What a contact that gives way changes in an orbit, to first order in the duration of the contact.
+//! Correction of an orbit for a compliant contact, to first order in the duration of the contact.
 
 use super::{Orbit, Orbits};
 use crate::excitation::Excitation;
@@ -9,34 +9,35 @@ use num_complex::Complex64;
 use serde::Serialize;
 use vibro_record::{Error, Result};
 
-/// The longest part of the period in contact for which the correction was checked.
+/// Longest contact, as part of the period, for which the correction was checked.
 pub(crate) const LONGEST_CONTACT: f64 = 0.025;
 
-/// A contact of spring k₃ and damper c₃ (Kelvin and Voigt) that cannot pull, as two masses M meet it alone.
+/// A contact of spring k₃ and damper c₃ (Kelvin–Voigt) that cannot pull, and its rebound of a reduced mass M
+/// without other forces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Compliance {
-    /// k₃ in N/m.
+    /// Stiffness k₃ in N/m.
     pub stiffness: f64,
-    /// c₃ in N s/m.
+    /// Damping c₃ in N s/m.
     pub damping: f64,
-    /// ζ = c₃/(2√(k₃M)).
+    /// Damping ratio ζ = c₃/(2√(k₃M)).
     pub damping_ratio: f64,
     /// Restitution of this spring and damper.
     pub restitution: f64,
     /// Duration of the contact in s.
     pub duration: f64,
-    /// Time t* in s by which an impact without duration would follow the first touch, to leave the masses on
-    /// the same ways.
+    /// Time t* in s from the first touch to the equivalent rigid impact, which gives the same motion after
+    /// the contact.
     pub delay: f64,
-    /// Change of the restitution in s by the acceleration a that presses the masses together, per a/v: `(1 −
-    /// R)t_c − 2d_r/v`.
+    /// Change of the restitution per a/v in s, `(1 − R)t_c − 2d_r/v`, with the acceleration a that presses
+    /// the masses together and the approach speed v.
     #[serde(skip)]
     pressed: f64,
 }
 
 impl Compliance {
-    /// Contact of stiffness k₃ (N/m) on a rig; without `damping` (N s/m) the damper is the one that gives the
-    /// rig's restitution.
+    /// Contact of stiffness k₃ (N/m) on a rig; without `damping` (N s/m) the damper is such that the contact
+    /// has the rig's restitution.
     ///
     /// With ψ = asin ζ: `t_c = (π − 2ψ)/ω_d`, `R = e^{−ζω₀t_c}`; the masses part at the indentation `d_r = vR
     /// sin(2ψ)/ω_d`, where the force vanishes, and `t* = (d_r/v + Rt_c)/(1 + R)`.
@@ -74,39 +75,39 @@ impl Compliance {
     }
 }
 
-/// An orbit with the duration of its contact taken into account.
+/// An orbit corrected for the duration of its contact.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Softened {
     /// Impulse in N s.
     pub impulse: f64,
-    /// φ in rad or τ in s of the impact without duration, `delay` after the first touch.
+    /// φ in rad or τ in s of the equivalent rigid impact, `delay` after the first touch.
     pub timing: f64,
     /// Approach speed in m/s at the first touch.
     pub approach_velocity: f64,
-    /// Restitution in m/s over m/s of the impact without duration: that of the contact, changed by what
+    /// Restitution of the equivalent rigid impact: that of the contact, changed by the acceleration that
     /// presses the masses together.
     pub restitution: f64,
-    /// Largest minus smallest x₁ and x₂ in m; the way within the contact is not in it.
+    /// Peak-to-peak values of x₁ and x₂ in m, without the indentation of the contact.
     pub peak_to_peak: [f64; 2],
     /// Amplitudes of x₁ and x₂ in m at the excitation frequency.
     pub fundamental: [f64; 2],
-    /// Relative change of the impulse. Where it matters, so does the contact's stiffness.
+    /// Relative change of the impulse. Where it is too large to neglect, the contact's stiffness matters.
     pub change: f64,
-    /// Part of the period in contact.
+    /// Contact duration as part of the period.
     pub share: f64,
 }
 
-/// What `compliance` changes in each of the orbits `found` of this rig and excitation; `None` where the orbit
-/// has no counterpart left, or only one whose restitution is none (above 1 or below 0).
+/// Corrects each of the orbits `found` of this rig and excitation for `compliance`; `None` where the
+/// corrected orbit does not exist, or needs a restitution above 1 or below 0.
 ///
-/// The contact's force f over the masses' reduced one gives I = ∫f dt at the time t* = ∫tf dt/I after the
-/// touch: an impact without duration then and of that size leaves the masses on the same ways. At that time
-/// the ways already overlap by vt*, so C + t*/(M(1+R)) takes the place of C = χ₁(0) + χ₂(0). An acceleration
-/// a that presses the masses together (to first order) lets them meet at the speed v + at* then, and makes
-/// the restitution `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ =
-/// M(c₁/m₁² + c₂/m₂²): between touch and parting the two ways without duration lose `κt_c` of it, while in
-/// the contact, where it turns round, its envelope falls by `κt_c/2`; so `R(1 + κt_c/2)` takes the place of
-/// R, and a is what presses without the dampers.
+/// The contact force f over the reduced mass gives I = ∫f dt, centred at t* = ∫tf dt/I after the touch: a
+/// rigid impact of this size at that time gives the same motion after the contact. At that time the rigid
+/// motions already overlap by vt*, so C + t*/(M(1+R)) replaces C = χ₁(0) + χ₂(0). An acceleration a that
+/// presses the masses together (to first order) raises their speed by then to v + at*, and changes the
+/// restitution to `R + (a/v)((1 − R)t_c − 2d_r/v)`. The rig's own dampers slow a relative speed u by κu, κ =
+/// M(c₁/m₁² + c₂/m₂²): between touch and parting the two rigid flights lose `κt_c` of it, but in the contact,
+/// where the speed reverses, its envelope falls by only `κt_c/2`; so `R(1 + κt_c/2)` replaces R, and a is the
+/// acceleration without the dampers.
 ///
 /// # Errors
 /// If the contact lasts longer than `LONGEST_CONTACT` of the period.
@@ -134,10 +135,10 @@ pub fn softened(
         // κ = M(c₁/m₁² + c₂/m₂²): the rig's own dampers slow the masses' approach by κ times its speed.
         let [first, second] = rig.bodies().map(|body| body.damping / (body.mass * body.mass));
         let drag = rig.reduced_mass() * (first + second);
-        // Each round leaves about the share in contact of the change that is left: 0.025⁸ is nothing.
+        // Each iteration reduces the remaining change by about the share of contact: 0.025⁸ is negligible.
         for _ in 0..8 {
-            // The flights take κt_c off a relative speed that in the contact, where it turns round, falls by
-            // half of that.
+            // The rigid flights lose κt_c of the relative speed; in the contact, where it reverses, only half
+            // of that is lost.
             let turned = rig.restitution * (1.0 + 0.5 * drag * compliance.duration);
             let [_, steady] = pressing(&at, drag);
             let changed = turned + compliance.pressed * steady / at.approach_velocity;
@@ -166,8 +167,8 @@ pub fn softened(
     found.orbits.iter().map(soften).collect()
 }
 
-/// Accelerations in m/s² that would press the masses together if they did not meet: just before the impact,
-/// and that part of it that their approach, slowed by `drag` (1/s), does not change.
+/// Accelerations in m/s² that would press the masses together without contact: just before the impact; and
+/// the mean of just before and after, without the deceleration of their relative speed by `drag` (1/s).
 fn pressing(orbit: &Orbit, drag: f64) -> [f64; 2] {
     let (before, after) = orbit.course.rates();
     let [first, last] = [before, after].map(|rate| rate[1] - rate[3]);

@@ -1,4 +1,5 @@
-//! Orbits against their own conditions, their energy balance, other computations of them, and golden numbers.
+//! Orbits against their own conditions, their energy balance, other methods of computation, and reference
+//! values.
 
 use super::*;
 use crate::excitation::{Impulses, Pulses, Sines};
@@ -6,7 +7,7 @@ use crate::floquet;
 use crate::motion::Motion;
 use crate::simulate::Simulation;
 
-/// ν = ω/Ω₁ to a frequency in Hz.
+/// Frequency in Hz at the frequency ratio ν = ω/Ω₁.
 fn at(rig: &Rig, nu: f64) -> f64 {
     nu * (rig.k1 / rig.m1).sqrt() / TAU
 }
@@ -48,7 +49,7 @@ fn each(mut check: impl FnMut(&Rig, &Excitation, &Orbit)) {
     assert!(counts.iter().all(|c| *c > 40), "{counts:?} orbits");
 }
 
-/// Size of the terms that add up to the displacements, for rounding.
+/// Size in m of the terms that add up to the displacements; rounding is relative to it.
 fn scale(orbit: &Orbit) -> f64 {
     let [x1, x2] = orbit.peak_to_peak;
     x1 + x2 + orbit.course.noise() / f64::EPSILON
@@ -73,19 +74,19 @@ fn both_masses_meet_and_part_as_the_impact_law_says() {
 #[test]
 fn work_of_the_force_is_what_dampers_and_impact_take() {
     each(|rig, excitation, orbit| {
-        // Simpson errs by (hβ)⁴/180 of the whole, β = 192/s for the square of the fastest decay, h below 0.1
-        // ms.
+        // Simpson's error is (hβ)⁴/180 of the whole, with β = 192/s for the square of the fastest decay and h
+        // below 0.1 ms.
         let n = 10_000_u32;
         let omega = TAU * orbit.frequency;
         let (mut work, mut loss, mut put_in, mut before) = (0.0, 0.0, 0.0, None::<State>);
         let mut start = 0.0;
         for (duration, stretch) in &orbit.course.stretches {
             let duration = *duration;
-            // An impulse does the work F(v⁻ + v⁺)/2.
+            // The work of an impulse is F(v⁻ + v⁺)/2.
             if let (Excitation::Impulse(train), Some(before)) = (excitation, before) {
                 put_in += train.impulse * f64::midpoint(before.v1, stretch.state(0.0).v1);
             }
-            // A constant force works over the way.
+            // The work of a constant force is force times displacement.
             let force = stretch.rest * rig.k1;
             put_in += force * (stretch.state(duration).x1 - stretch.state(0.0).x1);
             // Simpson on an even number of panels.
@@ -104,7 +105,7 @@ fn work_of_the_force_is_what_dampers_and_impact_take() {
         }
         let v = orbit.approach_velocity;
         let impact = rig.reduced_mass() * (1.0 - rig.restitution.powi(2)) * v * v / 2.0;
-        // 1e-10 of what goes through; or of the largest energy, where nothing is lost.
+        // 1e-10 of the energies exchanged; or of the stored energy, where nothing is lost.
         let turned = loss.abs() + impact.abs() + put_in.abs() + work.abs();
         let stored = rig.k1 * orbit.peak_to_peak[0].powi(2) + rig.k2 * orbit.peak_to_peak[1].powi(2);
         let balance = work + put_in - loss - impact;
@@ -116,8 +117,8 @@ fn work_of_the_force_is_what_dampers_and_impact_take() {
 fn lines_are_the_dft_of_the_trace() {
     each(|rig, excitation, orbit| {
         let n = 4096_u32;
-        // Kinks of J/m (and F/m) in slope: harmonics fall like 2J/(T m ω²), and those near multiples of 4096
-        // fold; steps of the acceleration count less.
+        // Impacts and impulses make kinks of J/m and F/m in the velocity: harmonics fall like 2J/(T m ω²),
+        // and those near multiples of 4096 alias; steps of the acceleration contribute less.
         let kick = match excitation {
             Excitation::Impulse(train) => train.impulse.abs() * f64::from(orbit.cycles),
             Excitation::Pulse(pulse) => pulse.force.abs() * pulse.width * f64::from(orbit.cycles),
@@ -160,7 +161,7 @@ fn peaks_and_gaps_are_those_of_a_dense_trace() {
             least = least.min(rig.gap + s.x2 - s.x1);
             speed = speed.max(s.v1.abs() + s.v2.abs());
         }
-        // A corner lies at most half a step off a sample.
+        // A corner is at most half a step away from a sample.
         let missed = speed * orbit.period() / f64::from(n) + 1e-12 * scale(orbit);
         for (exact, (low, high)) in orbit.peak_to_peak.iter().zip(ends) {
             assert!(
@@ -178,8 +179,8 @@ fn peaks_and_gaps_are_those_of_a_dense_trace() {
 
 #[test]
 fn pulses_are_impulses_summed() {
-    // The steady motion under a pulse is the Green's function summed over it: 10-point Gauss-Legendre in 8
-    // parts of the pulse, with error (ΩΔ)²⁰/(20!…), far below rounding.
+    // The steady motion under a pulse is the integral of the Green's function over it: 10-point
+    // Gauss–Legendre in 8 parts of the pulse, with an error (ΩΔ)²⁰/(20!…), far below rounding.
     let nodes = [
         (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
         (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
@@ -206,7 +207,7 @@ fn pulses_are_impulses_summed() {
                     }
                 }
                 let [y, dy, _] = response.at(at);
-                // Rounding of the Green's function, enlarged towards a period (1 − e^{−bT} ≥ 0.06 here;
+                // Rounding of the Green's function, amplified near resonance (1 − e^{−bT} ≥ 0.06 here;
                 // undamped sin λT/2 = 0.3).
                 let size = force * width / 0.125 * 1e3 * f64::EPSILON;
                 assert!(
@@ -214,7 +215,7 @@ fn pulses_are_impulses_summed() {
                     "c {c} w {width} at {at}: {y} {x}, {dy} {v}"
                 );
             }
-            // In the pulse, and continuous at both its ends.
+            // The motion is continuous at both ends of the pulse.
             let [start, end] = [response.at(0.0), response.at(cycle * (1.0 - 1e-15))];
             let loss = 64.0 * f64::EPSILON * (force / 135.0 + force * width / (0.125 * omega));
             assert!((start[0] - end[0]).abs() < loss && (start[1] - end[1]).abs() < loss * omega);
@@ -237,8 +238,8 @@ fn a_vanishing_pulse_is_an_impulse() {
         for width in [1e-3, 1e-4] {
             let pulse = Pulses { force: 0.02 / width, width, frequency };
             let mut pulses = orbits_of(&rig, &Excitation::Pulse(pulse), 1).unwrap().orbits;
-            // Where the impulse makes G jump across zero, the pulse makes it pass through: an impact during
-            // the pulse.
+            // Where an impulse makes G jump across zero, a short pulse makes it pass through zero: an extra
+            // orbit with its impact during the pulse.
             pulses.retain(|orbit| orbit.timing > width);
             assert_eq!(train.len(), pulses.len(), "ν {nu}");
             let mut error = 0.0_f64;
@@ -247,7 +248,7 @@ fn a_vanishing_pulse_is_an_impulse() {
                 error = error.max((a.timing - (b.timing - width / 2.0)).abs() * frequency);
                 assert_eq!((a.validity.exists, a.validity.stable), (b.validity.exists, b.validity.stable));
             }
-            // Symmetric about its middle, the pulse differs in second order.
+            // The pulse is symmetric about its middle: it differs from the impulse in second order.
             assert!(error < 10.0 * (width * TAU * frequency).powi(2) * 10.0, "ν {nu} w {width}: {error}");
             if let Some(last) = last {
                 assert!(error < last / 50.0, "ν {nu}: {last} then {error}");
@@ -257,7 +258,7 @@ fn a_vanishing_pulse_is_an_impulse() {
     }
 }
 
-/// At G' = 0 two orbits meet: below it a real multiplier lies beyond +1, whatever else the others do.
+/// At G' = 0 two orbits meet: orbits that break the energy rule have a real multiplier beyond +1.
 #[test]
 fn what_breaks_the_energy_rule_is_unstable_by_a_fold() {
     let (mut broken, mut kept, mut lost) = (0, 0, 0);
@@ -299,7 +300,8 @@ fn multipliers_have_the_determinant_of_dampers_and_impact() {
         let [b1, b2] = rig.oscillators().map(|o| o.decay());
         let expected = rig.restitution.powi(2) * (-2.0 * (b1 + b2) * orbit.period()).exp();
         let product: Complex64 = multipliers.iter().product();
-        // ε times the square of the monodromy's size, which grows like accelerations over the approach speed.
+        // ε times the square of the monodromy's norm, which grows like the accelerations over the approach
+        // speed.
         let (before, after) = orbit.course.rates();
         let size = floquet::monodromy(rig, orbit.period(), &before, &after).0.norm();
         let tolerance = f64::max(1e-12, 64.0 * f64::EPSILON * size * size);
@@ -309,7 +311,7 @@ fn multipliers_have_the_determinant_of_dampers_and_impact() {
 
 #[test]
 fn multipliers_are_those_of_a_disturbed_simulation() {
-    // Central differences of the simulated map over one period, from half way between two impacts.
+    // Central differences of the simulated map over one period, starting half-way between two impacts.
     let rig = Rig::thesis();
     let frequency = at(&rig, 2.1);
     let orbit = orbits(&rig, 0.5, frequency).unwrap().orbits.remove(0);
@@ -339,25 +341,25 @@ fn multipliers_are_those_of_a_disturbed_simulation() {
     }
     let found = floquet::multipliers(&map).unwrap();
     for (a, b) in found.iter().zip(orbit.multipliers.unwrap()) {
-        // Third derivatives of the map times h², relative to the gap scale: about (1e-7/1e-3)².
+        // Error: third derivatives of the map times h², relative to the gap: about (1e-7/1e-3)².
         assert!((a - b).norm() < 1e-6, "{a} {b}");
     }
 }
 
 #[test]
 fn golden_numbers_of_the_clapping_scene() {
-    // 0.5 N, R 0.7, ν 2.1. Impulses by arithmetic with 40 digits from the formulas for (C, P, J).
+    // 0.5 N, R 0.7, ν 2.1. Impulses from the formulas for (C, P, J) in 40-digit arithmetic.
     let rig = Rig::thesis();
     let found = orbits(&rig, 0.5, at(&rig, 2.1)).unwrap();
     let [first, second] = [&found.orbits[0], &found.orbits[1]];
-    // ν goes through a frequency in Hz and back, three roundings, and J changes by some 30 % per percent of
-    // ν.
+    // ν is converted to a frequency in Hz and back, with three roundings, and J changes by some 30 % per
+    // percent of ν.
     let tolerance = 100.0 * f64::EPSILON;
     assert!((first.impulse / 0.026_238_325_207_374_714 - 1.0).abs() < tolerance, "{:.17}", first.impulse);
     assert!((second.impulse / -0.008_944_428_353_726_752 - 1.0).abs() < tolerance);
     let expected = [-0.970_287_19, -0.944_010_47, 0.832_533_01, 0.542_278_39];
     for (m, e) in first.multipliers.unwrap().iter().zip(expected) {
-        // Printed to 8 digits.
+        // The reference has 8 digits.
         assert!((m - e).norm() < 0.6e-8, "{m} {e}");
     }
     let product: Complex64 = first.multipliers.unwrap().iter().product();
@@ -369,13 +371,13 @@ fn golden_numbers_of_the_clapping_scene() {
 #[test]
 fn golden_losses_of_stability() {
     let rig = Rig { restitution: 1.0, ..Rig::thesis() };
-    // A flip, printed as −1.326.
+    // A flip; reference value −1.326.
     let flip = orbits(&rig, 0.9, at(&rig, 1.2)).unwrap().orbits.remove(0);
     let m = flip.multipliers.unwrap()[0];
     assert!((m - Complex64::new(-1.326, 0.0)).norm() < 6e-4, "{m}");
     assert!(flip.validity.exists && flip.validity.stable == Some(false) && flip.validity.energy_rule);
     assert_eq!(flip.validity.instability, Some(Loss::Flip));
-    // A pair outside the circle, printed as 0.389 ± 1.047i.
+    // A pair outside the circle; reference value 0.389 ± 1.047i.
     let pair = orbits(&rig, 0.05, at(&rig, 1.3)).unwrap().orbits.remove(0);
     let m = pair.multipliers.unwrap();
     assert!(
@@ -383,13 +385,13 @@ fn golden_losses_of_stability() {
         "{m:?}"
     );
     assert_eq!(pair.validity.instability, Some(Loss::NeimarkSacker));
-    // Passes through the other mass by 6.2 mm.
+    // Passes through the other mass by 6.2 mm (reference value).
     let deep = orbits(&Rig::thesis(), 0.5, at(&rig, 0.8)).unwrap().orbits.remove(0);
     assert!((deep.validity.min_gap + 6.2e-3).abs() < 0.05e-3 && !deep.validity.admissible);
 }
 
-/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1 with w = z + 1/z from
-/// w² − aw + b − 2. All lie on the circle where both w are real and within ±2; else one lies outside. None is
+/// Without losses the multipliers come in pairs z, 1/z: z⁴ − az³ + bz² − az + 1, with w = z + 1/z from w² −
+/// aw + b − 2. All lie on the circle if both w are real and within ±2; otherwise one lies outside. None is
 /// ever stable.
 #[test]
 fn a_rig_without_losses_is_neutral_or_unstable() {
@@ -409,7 +411,8 @@ fn a_rig_without_losses_is_neutral_or_unstable() {
                 let w = [-1.0, 1.0].map(|sign| f64::midpoint(a, sign * root.max(0.0).sqrt()));
                 let outermost = w[0].abs().max(w[1].abs());
                 let place = format!("{force} N, ν {nu}: {m:?}");
-                // The margin is far above the rounding of a and b, far below what separates the two.
+                // The margin is far above the rounding of a and b, and far below the distance between both
+                // cases.
                 if root > 1e-6 && outermost < 2.0 - 1e-6 {
                     assert_eq!(
                         (orbit.validity.stable, orbit.validity.stability()),
@@ -431,7 +434,7 @@ fn a_rig_without_losses_is_neutral_or_unstable() {
 
 #[test]
 fn the_clapping_peak_is_where_it_was_found() {
-    // Independent: largest impact speed 0.46903 m/s at ν 2.00992.
+    // From an independent calculation: largest impact speed 0.46903 m/s at ν 2.00992.
     let rig = Rig::thesis();
     let speed = |nu: f64| orbits(&rig, 0.5, at(&rig, nu)).unwrap().orbits[0].approach_velocity;
     let top =
@@ -450,14 +453,14 @@ fn grazing_distance_is_the_change_of_gap_that_grazes() {
     let near = Rig { gap: amplitude * (1.0 - 1e-5), ..rig };
     let orbit = orbits(&near, 0.1, frequency).unwrap().orbits.remove(0);
     let expected = amplitude * 1e-5;
-    // What second order leaves is some tens of times the relative distance, because C is small against P/ω.
+    // The second-order error is some tens of times the relative distance, because C is small against P/ω.
     assert!((orbit.validity.grazing_distance / expected - 1.0).abs() < 100.0 * 1e-5, "{:?}", orbit.validity);
     assert!(!orbit.robust(2.0 * expected));
 }
 
 #[test]
 fn a_motion_that_a_little_more_gap_makes_unstable_is_not_robust() {
-    // To first order its impact grazes 38 mm away, but it has lost its stability when the gap is 1.6 mm wider
+    // To first order its impact grazes at a gap 38 mm wider, but it is already unstable at a gap 1.6 mm wider
     // (found by solving at gaps 0.01 mm apart).
     let rig =
         Rig { m1: 0.5, m2: 1.0, k1: 3e4, k2: 8e4, c1: 10.0, c2: 20.0, restitution: 0.5, ..Rig::thesis() };
@@ -479,7 +482,7 @@ fn the_verdict_on_contacts_is_that_of_the_contact_search() {
     let (mut clear, mut pierced) = (0, 0);
     each(|rig, excitation, orbit| {
         let Excitation::Sine(sine) = excitation else { return };
-        // Without rebound the search would start at rest on the contact.
+        // Without rebound the search would start at rest in contact.
         if rig.restitution == 0.0 || orbit.impulse <= 0.0 {
             return;
         }
@@ -507,7 +510,7 @@ fn no_force_and_undamped_resonance_have_no_orbit() {
     assert!(orbits_of(&rig, &Excitation::Sines(Sines { parts: Vec::new() }), 1).is_err());
     let tuned = Rig { c1: 0.0, m1: 1.0, k1: TAU * TAU, ..rig };
     assert!(orbits_of(&tuned, &Excitation::Impulse(Impulses { impulse: 0.1, frequency: 0.5 }), 1).is_err());
-    // Work without end is refused.
+    // Unbounded work is refused.
     let text =
         orbits_of(&rig, &Sine { force: 0.5, frequency: 5.0 }.into(), 1_000_000_000).unwrap_err().to_string();
     assert!(text.contains("swings"), "{text}");

@@ -1,9 +1,9 @@
-//! Where x₁, x₂ and the gap turn in a flight: no impact, impulse or step of the force inside.
+//! Extremes of x₁, x₂ and the gap in a flight without an impact, an impulse or a step of the force inside.
 
 use crate::flow::Flight;
 use vibro_math::Oscillator;
 
-/// What is looked at: x₁, x₂, or the gap g = Δ + x₂ − x₁.
+/// The signal whose extremes are searched: x₁, x₂, or the gap g = Δ + x₂ − x₁.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
     X1,
@@ -12,7 +12,7 @@ pub enum Signal {
 }
 
 impl Signal {
-    /// Of both masses' values the signal's, the rest gap left out.
+    /// Value of the signal from the values of both masses, without the rest gap.
     #[inline]
     fn of(self, [one, two]: [f64; 2]) -> f64 {
         match self {
@@ -24,7 +24,7 @@ impl Signal {
 }
 
 impl Flight {
-    /// Value, slope and acceleration of a signal.
+    /// Value, rate and acceleration of a signal at `t` (s).
     #[inline]
     fn signal(&self, signal: Signal, t: f64) -> [f64; 3] {
         let [one, two] = self.series(t);
@@ -32,18 +32,18 @@ impl Flight {
         [if signal == Signal::Gap { self.gap + value } else { value }, slope, bend]
     }
 
-    /// Visits every smallest and largest value of x₁, x₂ and the gap inside `0..duration`: its time, its
+    /// Calls `visit` with every minimum and maximum of x₁, x₂ and the gap inside `0..duration`: its time, its
     /// value, and the signal's acceleration there.
     ///
-    /// The rates are carried over a grid fine against the motion by the matrices of one step. Between two
-    /// points with the rates f and slopes s lies no zero where parabolas of the largest curvature M
-    /// cannot bring both ends down to it, one where f changes its sign and s cannot; what is neither is
-    /// halved. Pairs closer than a millionth of the duration may be taken for none: between them the
-    /// signal changes by less than M(1e-6 duration)³.
+    /// Zeros of the rates are searched on a grid that is fine against the motion; the free motion is carried
+    /// from point to point by matrices. Between two points with the rates f and slopes s there is no zero if
+    /// parabolas of the largest curvature M cannot bring both ends down to it, and one zero if f changes its
+    /// sign and s cannot. Other intervals are halved. Pairs of zeros closer than a millionth of the duration
+    /// may be missed: between them the signal changes by less than M(1e-6 duration)³.
     pub(crate) fn each_turn(&self, duration: f64, mut visit: impl FnMut(Signal, f64, f64, f64)) {
         let own = self.free.map(|part| part.oscillator.omega2().sqrt());
         let fastest = self.waves.fastest().max(own[0]).max(own[1]);
-        // At 0.35 a step, the cubic through both ends errs by 0.35⁴/384 = 4e-5 of the rate.
+        // At 0.35 rad a step, the error of the cubic through both ends is 0.35⁴/384 = 4e-5 of the rate.
         let steps = (fastest * duration / 0.35).ceil().max(1.0);
         let step = duration / steps;
         let kernels = self.free.map(|part| Carry::new(&part.oscillator, step));
@@ -53,7 +53,7 @@ impl Flight {
         while n < steps {
             let right_t = (n + 1.0) * step;
             n += 1.0;
-            // Afresh now and then: roundings of the steps add up.
+            // Computed anew every 64 steps, since the rounding errors of the steps add up.
             free = if n % 64.0 == 0.0 {
                 self.free.map(|part| part.oscillator.free(part.x, part.v, right_t))
             } else {
@@ -86,7 +86,7 @@ impl Flight {
         rates
     }
 
-    /// Turns of a signal within a part, between whose ends it has these rates and slopes.
+    /// Extremes of a signal within a part, given its rates and slopes at both ends.
     fn turns_between(
         &self,
         part: &Subinterval,
@@ -96,7 +96,7 @@ impl Flight {
         let Subinterval { signal, start, width, limit, duration } = *part;
         let change = left.0 * right.0 <= 0.0;
         if !change {
-            // The chord bounds the rate from below but for M width²/8.
+            // The rate is above its chord minus M width²/8.
             if left.0.abs().min(right.0.abs()) > limit * width * width / 8.0 {
                 return;
             }
@@ -106,7 +106,7 @@ impl Flight {
                 return;
             }
         } else if left.0 == 0.0 && right.0 == 0.0 && left.1 == 0.0 {
-            // At rest.
+            // The signal is at rest.
             return;
         }
         let steady = left.1 * right.1 > 0.0 && left.1.abs() + right.1.abs() > limit * width;
@@ -116,7 +116,7 @@ impl Flight {
             if right.0 != 0.0 || start + width >= duration {
                 let t = start + cubic_zero(left, right, width);
                 let [value, rate, bend] = self.signal(signal, t);
-                // The rate is zero a little off: the value's change to there is of second order.
+                // The rate is not exactly zero there: a step to its zero changes the value in second order.
                 let ahead = if bend == 0.0 { 0.0 } else { -rate / bend };
                 let ahead = if ahead.abs() <= width { ahead } else { 0.0 };
                 visit(signal, t + ahead, value + rate * ahead / 2.0, bend);
@@ -134,7 +134,7 @@ impl Flight {
     }
 }
 
-/// A part of a stretch of `duration`, in which a signal's rate has a curvature of `limit` at most.
+/// A part of a flight of `duration` s, in which the curvature of a signal's rate is at most `limit`.
 #[derive(Clone, Copy)]
 struct Subinterval {
     signal: Signal,
@@ -153,7 +153,7 @@ struct Rates {
     limit: [f64; 2],
 }
 
-/// One step of a free motion.
+/// Matrix of one step of a free motion.
 #[derive(Clone, Copy)]
 struct Carry([f64; 4]);
 
@@ -170,7 +170,7 @@ impl Carry {
     }
 }
 
-/// How far a value f > 0 with this slope stays above zero, whatever it does with a curvature of up to
+/// Time for which a value f > 0 with this slope certainly stays above zero, if its curvature is at most
 /// `limit`.
 #[inline]
 fn reach(value: f64, slope: f64, limit: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Is a computed orbit real? Four verdicts, each on its own.
+//! Verdicts on whether a computed orbit is real: four, independent of each other.
 
 use super::Course;
 use crate::floquet;
@@ -8,34 +8,33 @@ use num_complex::Complex64;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`; how far it
-/// is from losing one of them is in `grazing_distance`.
+/// Verdicts on an orbit. A motion that can be measured needs `exists`, `admissible` and `stable`;
+/// `grazing_distance` tells how far it is from losing one of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Validity {
     /// The impulse pushes and the masses approach: J > 0.
     pub exists: bool,
-    /// The masses do not pass through each other between the impacts, found by a search that misses no
-    /// contact.
+    /// The masses do not pass through each other between the impacts, by a search that misses no contact.
     pub admissible: bool,
-    /// Every Floquet multiplier lies inside the unit circle; `None` where rounding cannot tell the largest
-    /// from 1. False where there are no multipliers.
+    /// Every Floquet multiplier lies inside the unit circle; `None` where the largest may equal 1 within
+    /// rounding. False where there are no multipliers.
     pub stable: Option<bool>,
-    /// How an unstable motion has lost its stability; `None` for any other.
+    /// How an unstable motion has lost its stability; `None` for other motions.
     pub instability: Option<Loss>,
-    /// The energy rule: a larger impulse would take more energy than the force then gives. "The positive
-    /// root is stable" is this rule for a sine force. It sees only the loss through a multiplier +1, so
-    /// a motion that breaks it is unstable, and one that keeps it need not be stable.
+    /// The energy rule: a larger impulse would take more energy than the force provides. "The positive root
+    /// is stable" is this rule for a sine force. It only detects the loss of stability through a multiplier
+    /// +1: a motion that breaks it is unstable, but one that meets it need not be stable.
     pub energy_rule: bool,
-    /// Smallest gap over the period in m: 0, that of the impact itself, or the depth by which the masses
-    /// would pass through each other, as a negative number.
+    /// Smallest gap over the period in m: 0 (at the impact itself), or negative, the depth by which the
+    /// masses would pass through each other.
     pub min_gap: f64,
-    /// Gap in m at the closest approach that is not the impact; `None` where the masses part and return
+    /// Gap in m at the closest approach other than the impact; `None` where the masses part and return
     /// without one.
     pub clearance: Option<f64>,
-    /// Change of the rest gap in m, to first order, by which the impact would graze, the orbit fold, or a
-    /// second contact appear; the motion may lose its stability before. Where this is not larger than
-    /// the uncertainty of the gap, the verdicts and the multipliers are not to be relied on: near
-    /// grazing the multipliers grow like the reciprocal of the approach speed.
+    /// Change of the rest gap in m, to first order, at which the impact would graze, the orbit fold, or a
+    /// second contact appear; stability may be lost earlier. If this is not larger than the uncertainty of
+    /// the gap, verdicts and multipliers are not reliable: near grazing the multipliers grow with the
+    /// reciprocal of the approach speed.
     pub grazing_distance: f64,
 }
 
@@ -43,14 +42,14 @@ pub struct Validity {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Loss {
-    /// A real one beyond +1: disturbances grow to one side. Where one passes +1 the motion meets another one
-    /// and both vanish.
+    /// A real multiplier beyond +1: disturbances grow to one side. Where one passes +1 the motion meets
+    /// another one, and both vanish.
     Fold,
-    /// A real one beyond −1: the period doubles.
+    /// A real multiplier beyond −1: the period doubles.
     Flip,
-    /// A pair: a slow beat grows.
+    /// A complex pair: a slow beat grows.
     NeimarkSacker,
-    /// None can be computed: the impact grazes.
+    /// No multipliers: the impact grazes.
     Grazing,
 }
 
@@ -60,7 +59,7 @@ impl Loss {
         ["fold", "flip", "Neimark–Sacker", "grazing"][self as usize]
     }
 
-    /// The loss that the largest of these multipliers shows.
+    /// The loss of stability that the largest of these multipliers means.
     pub(super) fn of(multipliers: Option<&[Complex64; 4]>) -> Loss {
         match multipliers.map(|m| m[0]) {
             None => Loss::Grazing,
@@ -72,7 +71,7 @@ impl Loss {
 }
 
 impl Validity {
-    /// The verdicts by the keys under which programs read them.
+    /// The verdicts with their keys in JSON.
     pub fn keys(&self) -> [(&'static str, Value); 9] {
         [
             ("min_gap", json!(self.min_gap)),
@@ -106,17 +105,17 @@ impl Validity {
 /// A periodic motion with its verdicts.
 pub struct Judged {
     pub validity: Validity,
-    /// Floquet multipliers, largest first, and their matrix, where the motion exists and is driven.
+    /// Floquet multipliers, largest first, and the monodromy matrix, where the motion exists and is driven.
     pub multipliers: Option<[Complex64; 4]>,
     pub monodromy: Option<Matrix4<f64>>,
-    /// Largest minus smallest x₁ and x₂ in m.
+    /// Peak-to-peak values of x₁ and x₂ in m.
     pub peak_to_peak: [f64; 2],
 }
 
 impl Judged {
-    /// Verdicts on a motion along `courses`, each from an impact to the next: whether its impacts push, the
-    /// energy rule where it is known, the change of the gap in m at which an impact itself grazes
-    /// (`own`), and by how much roundings are `amplified`; nothing for a free motion.
+    /// Verdicts on a motion along `courses`, each from one impact to the next. Inputs: whether its impacts
+    /// push, the energy rule where it is known, the change of the gap in m at which an impact itself grazes
+    /// (`own`), and the factor by which rounding is `amplified`; `None` for a free motion.
     pub fn new(
         rig: &Rig,
         courses: &[Course],
@@ -126,7 +125,7 @@ impl Judged {
         amplified: Option<f64>,
     ) -> Judged {
         let (mut multipliers, mut monodromy) = (None, None);
-        // A free motion is one of a family: it neither dies away nor grows.
+        // A free motion is one of a family: neighbours neither decay nor grow.
         let mut stable = amplified.map(|_| false);
         if let Some(amplified) = amplified.filter(|_| exists) {
             let (whole, rounding) = product(rig, courses);
@@ -135,13 +134,13 @@ impl Judged {
                 multipliers.as_ref().map_or(stable, |m| floquet::inside(&whole, m, amplified * rounding));
             monodromy = Some(whole);
         }
-        // The energy rule of one impact is that the multipliers beyond +1 are even in number. So it is taken
-        // of several.
+        // For one impact the energy rule means that an even number of multipliers lies beyond +1. This
+        // replaces it for several impacts.
         let even = || monodromy.is_some_and(|m| (Matrix4::identity() - m).determinant() > 0.0);
         let surveys: Vec<_> = courses.iter().map(Course::survey).collect();
         let clearance = surveys.iter().filter_map(|s| s.closest).reduce(f64::min);
         let noise = courses.iter().map(Course::noise).fold(0.0, f64::max);
-        // The gap is zero at the impacts, so wherever it is negative it has a smallest value between them.
+        // The gap is zero at the impacts, so where it becomes negative it has a minimum between them.
         let min_gap = clearance.filter(|gap| *gap < -8.0 * noise).unwrap_or(0.0);
         let validity = Validity {
             exists,

@@ -1,4 +1,4 @@
-//! Motions with p impacts in q cycles at one frequency, stable or not, from close returns of simulations.
+//! Search for motions with p impacts in q cycles, stable or not, from close returns of simulations.
 
 use super::PeriodicOrbit;
 use crate::excitation::{Excitation, Sine};
@@ -11,25 +11,25 @@ use crate::simulate::Simulation;
 use std::f64::consts::TAU;
 use vibro_record::{Error, Result};
 
-/// Cycles that each start is followed for.
+/// Cycles simulated from each start state.
 const CYCLES: f64 = 200.0;
-/// Newton's method is tried from so many close returns of each start.
+/// Most close returns of each start from which Newton's method is tried.
 const TRIES: usize = 60;
-/// Largest number of impacts and of cycles.
+/// Largest number of impacts and of cycles in a period.
 pub const MOST: u32 = 32;
-/// Motions whose phases (rad) and impulses (relatively) differ by less are one.
+/// Motions are the same if phases (rad) and impulses (relative) differ by less than this.
 const SAME: f64 = 1e-6;
 
-/// Motions with `impacts` impacts in `cycles` cycles, the largest impulse first; those that repeat after
-/// fewer are left out.
+/// Motions with `impacts` impacts in `cycles` cycles, the largest impulse first; those with a shorter period
+/// are left out.
 ///
-/// Simulations from rest and from states all around are searched for p impacts after which nearly q cycles
-/// have passed (close returns; D. Auerbach et al. 1987), and Newton's method goes on from there. That finds
-/// unstable motions, too, but proves of none that there are no more.
+/// Simulations from rest and from other states are searched for p impacts during which nearly q cycles pass
+/// (close returns; D. Auerbach et al. 1987); Newton's method starts from there. It also finds unstable
+/// motions, but does not prove that it has found all.
 ///
 /// # Errors
-/// If a parameter is impossible, nothing drives the rig, or no or more than 32 impacts or cycles are asked
-/// for.
+/// If a parameter is impossible, nothing drives the rig, or the number of impacts or of cycles is 0 or above
+/// 32.
 pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<PeriodicOrbit>> {
     for (key, count) in [("impacts", impacts), ("cycles", cycles)] {
         if !(1..=MOST).contains(&count) {
@@ -59,7 +59,7 @@ pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<P
         let late = |w: &[Impact]| ((w[p].time - w[0].time) * sine.frequency - f64::from(cycles)).abs();
         let mut near: Vec<&[Impact]> = all.windows(p + 1).filter(|w| late(w) < 0.25).collect();
         near.sort_by(|a, b| late(a).total_cmp(&late(b)));
-        // The closest ones and others all along.
+        // The closest returns, and others evenly from the rest.
         let step = (near.len() / (TRIES / 2)).max(1);
         let others = near.iter().skip(TRIES / 2).step_by(step).take(TRIES / 2);
         for window in near.iter().take(TRIES / 2).chain(others) {
@@ -80,7 +80,7 @@ pub fn search(rig: &Rig, sine: &Sine, impacts: u32, cycles: u32) -> Result<Vec<P
 }
 
 impl PeriodicOrbit {
-    /// Whether it is the same motion as another under the same force, counted from any of its impacts.
+    /// Whether it is the same motion as another under the same force, with any impact as the first.
     pub fn is(&self, other: &PeriodicOrbit) -> bool {
         let p = self.beats.len();
         let near = |a: f64, b: f64| (a - b + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
@@ -113,7 +113,7 @@ mod tests {
                 let near = |o: &crate::Orbit| (o.impulse / orbit.beats[0].impulse - 1.0).abs() < 1e-9;
                 assert!(closed.iter().any(near), "{orbit:?}");
             }
-            // What is stable and real is reached from somewhere.
+            // Real orbits are attractors, and are found from some start.
             let real = closed.iter().filter(|o| o.validity.real()).count();
             assert!(
                 found.iter().filter(|o| o.validity.real()).count() == real,
@@ -124,7 +124,8 @@ mod tests {
 
     #[test]
     fn behind_a_flip_there_are_two_impacts_in_two_cycles() {
-        // Golden: F₀ 0.9 N, R 1, ν 1.2 has the multiplier −1.326: one impact a cycle is unstable there.
+        // Reference value: F₀ 0.9 N, R 1, ν 1.2 has the multiplier −1.326: one impact a cycle is unstable
+        // there.
         let rig = Rig { restitution: 0.9, ..Rig::thesis() };
         let unit = rig.natural_frequencies()[0];
         let mut seen = 0;
@@ -134,9 +135,9 @@ mod tests {
             let found = search(&rig, &sine, 2, 2).unwrap();
             for orbit in &found {
                 assert_eq!((orbit.impacts(), orbit.cycles), (2, 2));
-                // Not one impact a cycle, twice.
+                // It is not one impact a cycle, counted twice.
                 assert!(one.iter().all(|o| (o.impulse - orbit.beats[0].impulse).abs() > 1e-6 * o.impulse));
-                // What leaves it exactly comes back: the flight over the period, impacts and all.
+                // A simulation from its state has the same impacts over the period.
                 let start = orbit.state(0.0);
                 let mut motion = Simulation::from_state(&rig, &sine, start, orbit.beats[0].phase).unwrap();
                 let mut impacts = 0;

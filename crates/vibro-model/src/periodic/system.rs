@@ -9,14 +9,14 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use vibro_record::Result;
 
-/// What impacts at the phases θᵢ with the impulses Jᵢ must fulfil, tᵢ = θᵢ/ω, T = 2πq/ω:
+/// Equations of impacts at the phases θᵢ with the impulses Jᵢ, tᵢ = θᵢ/ω, T = 2πq/ω:
 ///
 /// gap Eᵢ = Δ − Re(Xe^{iθᵢ}) + Σⱼ Jⱼχ(tᵢ − tⱼ) = 0 and velocity Fᵢ = Jᵢ/M(1+R) − ȧ(tᵢ) + Σⱼ Jⱼχ̇(tᵢ − tⱼ,
 /// before) = 0,
 ///
 /// where a = Re(Xe^{iωt}), χ = χ₁ + χ₂ (periodic Green's functions over T; Babitsky 1998). For p = 1 these
-/// are the two conditions of the closed form. Impacts are linear in the impulses, so nothing is flown and
-/// every derivative is known.
+/// are the two conditions of the closed form. The equations are linear in the impulses and need no
+/// simulation, and all derivatives are exact.
 pub(crate) struct System {
     pub rig: Rig,
     pub omega: f64,
@@ -25,7 +25,7 @@ pub(crate) struct System {
     pub greens: [Green; 2],
     /// 1/M(1 + R) in 1/kg.
     pub contact: f64,
-    /// Length that equations and impulses are measured with, in m.
+    /// Length scale of equations and impulses, in m.
     pub length: f64,
 }
 
@@ -45,7 +45,7 @@ impl System {
         })
     }
 
-    /// Impulse in N s of which an unknown is 1.
+    /// Unit of the unknown impulses, in N s.
     pub fn impulse(&self) -> f64 {
         self.length * self.omega / self.contact
     }
@@ -57,7 +57,7 @@ impl System {
         DVector::from_vec([phases, impulses].concat())
     }
 
-    /// χ, χ̇, χ̈ of both masses together, `t` in 0..T.
+    /// χ, χ̇, χ̈ of both masses together, `t` in 0..T (s).
     fn chi(&self, t: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for green in &self.greens {
@@ -69,7 +69,7 @@ impl System {
         sum
     }
 
-    /// What is left of the 2p equations at `u` = (θ₁ … θₚ, J₁ … Jₚ in units of [`System::impulse`]), and the
+    /// Residuals of the 2p equations at `u` = (θ₁ … θₚ, J₁ … Jₚ in units of [`System::impulse`]), and their
     /// Jacobian.
     pub(crate) fn evaluate(&self, u: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let p = u.len() / 2;
@@ -110,7 +110,7 @@ impl System {
         (left, jacobian)
     }
 
-    /// Free parts (displacement, velocity) of both masses just after impact `i`.
+    /// Free parts of displacement (m) and velocity (m/s) of both masses just after impact `i`.
     pub(crate) fn free_after(&self, u: &DVector<f64>, i: usize) -> [(f64, f64); 2] {
         let p = u.len() / 2;
         let unit = self.impulse();

@@ -18,7 +18,7 @@ fn one_impact_a_cycle_is_the_closed_form() {
             let guess = (orbit.force_phase + 0.02, orbit.impulse * 1.03);
             let found = PeriodicOrbit::near(&rig, &Sine { force, frequency }, 1, &[guess]).unwrap();
             let beat = found.beats[0];
-            // Both solve the same two equations; their roundings (a few ε of A) reach J through its
+            // Both solve the same two equations; their rounding (a few ε of A) is amplified to J by its
             // sensitivity.
             let amplified =
                 rig.gap.max(orbit.fundamental[0].norm()) / orbit.validity.grazing_distance.max(1e-9);
@@ -46,7 +46,7 @@ fn patterns_that_simulations_settle_on_are_found() {
             let frequency = 2.0 + 0.35 * f64::from(k);
             let (rig, sine) = (Rig { restitution, ..Rig::thesis() }, Sine { force, frequency });
             let mut motion = Simulation::new(&rig, &sine).unwrap();
-            // Sticking ends a simulation by restitution without completion.
+            // A simulation that cannot go on is left out.
             let Ok(found) = regime(&mut motion, 1500, 200) else { continue };
             let Regime::Periodic { impacts, cycles } = found.regime else { continue };
             if found.distance.unwrap() > 1e-9 || (impacts, cycles) == (1, 1) {
@@ -54,18 +54,19 @@ fn patterns_that_simulations_settle_on_are_found() {
             }
             let orbit = PeriodicOrbit::from_strikes(&rig, &sine, cycles, &found.strikes).unwrap();
             for (beat, strike) in orbit.beats.iter().zip(&found.strikes) {
-                // What the simulation still has to settle, enlarged by the slowest multiplier.
+                // Remaining transient of the simulation, amplified by the largest multiplier.
                 assert!((beat.impulse - strike.impulse).abs() < 1e-6 * strike.impulse, "{beat:?} {strike:?}");
             }
             assert!(orbit.validity.exists && orbit.validity.admissible, "{orbit:?}");
             assert_ne!(orbit.validity.stable, Some(false), "{orbit:?}");
-            // det M = R^{2p} exp(−2(b₁ + b₂)T); eigenvalues belong to a matrix that differs by a few ε‖M‖.
+            // det M = R^{2p} exp(−2(b₁ + b₂)T); the eigenvalues are those of a matrix that differs by a few
+            // ε‖M‖.
             let [b1, b2] = rig.oscillators().map(|o| o.decay());
             let expected = restitution.powi(2 * impacts as i32) * (-2.0 * (b1 + b2) * orbit.period()).exp();
             let det = orbit.multipliers.unwrap().iter().product::<Complex64>();
             let scale = orbit.monodromy.unwrap().norm().powi(4).max(1.0);
             assert!((det - expected).norm() < 1e-13 * scale, "{det} {expected}");
-            // Back at its start after a period, from state to state.
+            // After a period the state is that of the start.
             let (a, b) = (orbit.state(0.0), orbit.state(orbit.period() * (1.0 - 1e-15)));
             assert!((a.x1 - b.x1).abs() < 1e-12, "{a:?} {b:?}");
             seen.push((impacts, cycles));

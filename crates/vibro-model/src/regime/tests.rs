@@ -14,9 +14,9 @@ fn one_impact_a_cycle_none_and_a_doubled_pattern_are_told_apart() {
     let one = of(&rig, 0.5, 11.0, 1500, 64);
     assert_eq!(one.regime, Regime::Periodic { impacts: 1, cycles: 1 });
     assert!(one.settled && one.strikes.len() == 1, "{one:?}");
-    // A = 0.01/(0.125·(2π·20)² − 135) = 5 µm stays below the gap.
+    // A = 0.01/(0.125·(2π·20)² − 135) = 5 µm is below the gap.
     assert_eq!(of(&rig, 0.01, 20.0, 100, 64).regime, Regime::NoImpact);
-    // Golden: F₀ 0.9 N, R 1, ν 1.2 has lost its one impact a cycle by a flip (multiplier −1.33).
+    // Reference: for F₀ 0.9 N, R 1, ν 1.2 one impact a cycle is unstable by a flip (multiplier −1.33).
     let frequency = 1.2 * (rig.k1 / rig.m1).sqrt() / TAU;
     let flipped = of(&Rig { restitution: 1.0, ..rig }, 0.9, frequency, 1500, 200);
     assert_ne!(flipped.regime, Regime::Periodic { impacts: 1, cycles: 1 }, "{flipped:?}");
@@ -24,7 +24,7 @@ fn one_impact_a_cycle_none_and_a_doubled_pattern_are_told_apart() {
 
 #[test]
 fn a_pattern_is_named_while_it_still_settles() {
-    // Scene B: the slowest multiplier is −0.9703, so after 100 cycles differences are still near 0.05.
+    // Scene B: the largest multiplier is −0.9703, so after 100 cycles differences are still near 0.05.
     let rig = Rig::thesis();
     let frequency = 2.1 * (rig.k1 / rig.m1).sqrt() / TAU;
     let found = of(&rig, 0.5, frequency, 120, 100);
@@ -34,7 +34,7 @@ fn a_pattern_is_named_while_it_still_settles() {
 
 #[test]
 fn differences_that_do_not_fall_are_no_pattern() {
-    // Phases on a logistic map at 4 (chaotic), and on a circle with an irrational turn.
+    // Phases of a logistic map at 4 (chaotic), and of a circle map with an irrational rotation.
     let mut watch =
         Watch::new(&Simulation::new(&Rig::thesis(), &Sine { force: 0.5, frequency: 1.0 }).unwrap());
     let strike = |i: u32, phase: f64| Strike {
@@ -56,7 +56,8 @@ fn differences_that_do_not_fall_are_no_pattern() {
         watch.strikes.push_back(strike(i, 1.0 + 1e-3 * (f64::from(i) * 2.0_f64.sqrt()).sin()));
     }
     assert_eq!(watch.pattern().regime, Regime::Irregular);
-    // Two values in turn, 1e-5 apart, are a pattern of two; of one while they approach each other.
+    // Two alternating values, 1e-5 apart, are a pattern of two; if they approach each other, a pattern of
+    // one.
     for (shrink, impacts) in [(1.0_f64, 2), (0.97, 1)] {
         watch.strikes.clear();
         for i in 0..300_i32 {

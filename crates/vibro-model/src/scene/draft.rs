@@ -1,4 +1,4 @@
-//! A scene in the making: keys from a file and from a command line, read alike.
+//! Draft of a scene: keys from a file and from a command line, read in the same way.
 
 use super::{Buffer, ContactKeys, Scene};
 use crate::excitation::{Excitation, Part};
@@ -11,7 +11,7 @@ use toml::de::DeTable;
 use toml::{Spanned, Table, Value};
 use vibro_record::{Error, Place, Result, Written, nearest};
 
-/// Kinds of excitation, each with the keys that belong to it.
+/// Kinds of excitation, each with its keys.
 const KINDS: [(&str, &[&str]); 4] = [
     ("sine", &["force", "frequency"]),
     ("impulse", &["impulse", "frequency"]),
@@ -19,7 +19,7 @@ const KINDS: [(&str, &[&str]); 4] = [
     ("sines", &["parts", "frequency"]),
 ];
 
-/// The tables beside the rig's own keys.
+/// The tables of a file, beside the rig's own keys.
 #[derive(Deserialize)]
 #[expect(dead_code, reason = "of the excitation, what is read is that each key is known and of its kind")]
 struct Sections {
@@ -28,7 +28,7 @@ struct Sections {
     buffer: Option<Buffer>,
 }
 
-/// Keys of the excitation, whatever its kind.
+/// Keys of all kinds of excitation.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 #[expect(dead_code, reason = "what is read is that each is known and of its kind")]
@@ -41,7 +41,7 @@ struct ExcitationKeys {
     parts: Option<Vec<Part>>,
 }
 
-/// Keys of a scene, of which later ones replace earlier ones.
+/// Keys of a scene; later ones replace earlier ones.
 ///
 /// ```
 /// use vibro_model::Draft;
@@ -57,7 +57,7 @@ pub struct Draft {
     path: Option<PathBuf>,
     text: String,
     table: Table,
-    /// Keys that did not come from the text.
+    /// Keys that were set after the text was read.
     later: Vec<String>,
 }
 
@@ -85,7 +85,7 @@ impl Draft {
         Ok(Draft { path: None, text: text.to_owned(), table: table(text)?, later: Vec::new() })
     }
 
-    /// Sets one key as `key=value`, tables with a dot: `excitation.force=0.5`. Words need no quotes.
+    /// Sets one key by `key=value`, in tables with a dot: `excitation.force=0.5`. Words need no quotes.
     ///
     /// # Errors
     /// If the key is unknown or the value of the wrong kind.
@@ -96,7 +96,8 @@ impl Draft {
             let expected = "KEY=VALUE, such as gap=0.5e-3 or excitation.force=0.5";
             return Err(Error::usage(format!("{assignment:?} sets no key"), expected));
         }
-        // TOML knows no `.3` and no `5.`, people do; what is neither TOML nor a number is a word.
+        // `.3` and `5.` are numbers here, though not in TOML; text that is neither TOML nor a number is a
+        // word.
         let plain = format!("{key} = {value}");
         let text = match value.parse::<f64>() {
             _ if DeTable::parse(&plain).is_ok() => plain,
@@ -115,8 +116,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Sets a key to a number or a text; a table's key with a dot. Keys of an excitation that do not belong
-    /// to a new kind of it are dropped.
+    /// Sets a key to a number or a text; a table's key has a dot. A new kind of excitation drops the keys
+    /// that do not belong to it.
     pub fn put(&mut self, key: &str, value: impl Into<Value>) {
         let value = value.into();
         self.later.push(key.to_owned());
@@ -125,7 +126,7 @@ impl Draft {
             return;
         };
         let section = self.table.entry(section).or_insert_with(|| Value::Table(Table::new()));
-        // Other values have been refused.
+        // A section that is not a table has been refused before.
         let Value::Table(section) = section else { return };
         if let Some((_, belonging)) =
             KINDS.iter().find(|k| key == "excitation.kind" && value.as_str() == Some(k.0))
@@ -151,8 +152,8 @@ impl Draft {
     /// The scene, checked.
     ///
     /// # Errors
-    /// If a value is impossible, or a key of the excitation is missing or belongs to another kind; the
-    /// complaint points at its line where it stands in the file.
+    /// If a value is impossible, or a key of the excitation is missing or belongs to another kind; the error
+    /// shows the line in the file.
     pub fn scene(&self) -> Result<Scene> {
         let (sections, own): (Table, Table) =
             self.table.clone().into_iter().partition(|(key, _)| Scene::TABLES.contains(&key.as_str()));
@@ -178,7 +179,7 @@ impl Draft {
     }
 
     fn excitation(&self, mut section: Table) -> Result<Excitation> {
-        // Each kind but a sine has a key of its own.
+        // Each kind except a sine has a key of its own.
         let inferred = [("impulse", "impulse"), ("width", "pulse"), ("parts", "sines")];
         let inferred = inferred.into_iter().find(|(key, _)| section.contains_key(*key));
         let kind = section.get("kind").and_then(Value::as_str);
@@ -192,7 +193,7 @@ impl Draft {
             let expected = format!("its keys: {}", belonging.join(", "));
             return Err(self.at(&format!("excitation.{stray}"), Error::usage(found, expected)));
         }
-        // Several sines have their own frequencies; one of the whole keeps their ratios.
+        // Several sines have their own frequencies; `frequency` scales all of them, with their ratios kept.
         let whole = if kind == "sines" { section.remove("frequency") } else { None };
         let whole = whole.and_then(|hz| f64::deserialize(hz).ok());
         let optional = if kind == "sines" { "frequency" } else { "" };
@@ -213,7 +214,7 @@ impl Draft {
         Ok(excitation)
     }
 
-    /// Points an error at the line of a key that has its value from the file.
+    /// Adds the line of the file to an error, if the key has its value from there.
     fn at(&self, key: &str, error: Error) -> Error {
         let (section, inner) = key.split_once('.').map_or((None, key), |(s, k)| (Some(s), k));
         let span = DeTable::parse(&self.text).ok().filter(|_| !self.later.iter().any(|k| k == key)).and_then(
@@ -232,7 +233,7 @@ impl Draft {
     }
 }
 
-/// Keys and values of a text, each known and of its kind.
+/// Parses a text, and checks that each key is known and each value of the right type.
 fn table(text: &str) -> Result<Table> {
     let written = Written { text, ..Written::default() };
     let all = written.parse()?;
@@ -252,13 +253,12 @@ fn table(text: &str) -> Result<Table> {
     written.read(&written.parse()?, 0..0)
 }
 
-/// A key that is of its kind and cannot be read with the others.
+/// Error for keys of the right type that do not form a valid value together.
 fn unread(error: &toml::de::Error) -> Error {
     Error::usage(error.message(), "")
 }
 
-/// The complaint about a campaign where a rig file should stand: it has the rig in a table, or lists of
-/// tables.
+/// Error for a campaign in place of a rig file; a campaign has the rig in a table, or lists of tables.
 fn campaign(path: &Path, text: &str) -> Option<Error> {
     let table: Table = toml::from_str(text).ok()?;
     let (key, _) = table.iter().find(|(key, value)| *key == "rig" || value.is_array())?;
@@ -334,7 +334,7 @@ mod tests {
         let scene = draft.scene().unwrap();
         assert_eq!(scene.rig.gap, 1e-4);
         assert_eq!(scene.excitation, Some(Excitation::Sine(Sine { force: 0.5, frequency: 7.0 })));
-        // Another kind drops what does not belong to it.
+        // Another kind drops the keys that do not belong to it.
         draft.set("excitation.kind=impulse").unwrap();
         draft.set("excitation.impulse=9e-3").unwrap();
         let impulses = Impulses { impulse: 9e-3, frequency: 7.0 };

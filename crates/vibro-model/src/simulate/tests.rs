@@ -17,8 +17,8 @@ fn scene_b() -> Simulation {
 
 #[test]
 fn a_start_from_rest_meets_its_golden_impacts() {
-    // Number, time and approach speed by arithmetic with 40 digits (Newton on the same equations of motion),
-    // cut to 17.
+    // Number, time (s) and approach speed (m/s), in 40-digit arithmetic (Newton's method on the same
+    // equations of motion), cut to 17 digits.
     let golden = [
         (1_u16, 0.030_744_282_246_676_34, 0.078_330_829_224_466_23),
         (2, 0.144_162_776_471_947_4, 0.147_727_906_853_932_83),
@@ -31,12 +31,13 @@ fn a_start_from_rest_meets_its_golden_impacts() {
     motion.run(100.0, |leg| impacts.extend(leg.impact())).unwrap();
     for (number, time, speed) in golden {
         let impact = impacts[usize::from(number) - 1];
-        // Time is summed without loss; roundings of the gap (terms up to 10 mm) over the speed, 1e-17 s, and
-        // of the phase, over ω 3e-18 s, are enlarged before they decay and add up over the 33 impacts
-        // of a multiplier of 0.97.
+        // Times are summed without loss. Rounding of the gap (terms up to 10 mm) over the speed gives 1e-17
+        // s, of the phase over ω 3e-18 s. These errors are amplified before they decay, and add up over the
+        // 33 impacts that correspond to a multiplier of 0.97.
         let tolerance: f64 = if time < 2.0 { 1e-14 } else { 1e-12 };
         assert!((impact.time - time).abs() < tolerance, "{number}: {:.17} {time:.17}", impact.time);
-        // Accelerations reach 20 m/s²; the speed does not suffer from the sum of times, but from the phase's.
+        // Accelerations reach 20 m/s²; the error of the speed comes from the phase, not from the summed
+        // times.
         let error = impact.approach_velocity - speed;
         assert!(
             error.abs() < 20.0 * f64::EPSILON * (1.0 + 0.5 * f64::from(number)),
@@ -49,13 +50,14 @@ fn a_start_from_rest_meets_its_golden_impacts() {
 #[test]
 fn it_settles_on_the_closed_form_orbit() {
     let mut motion = scene_b();
-    // The slowest multiplier of this orbit is 0.9703: below 1e-16 after 1250 periods of 0.091 s.
+    // The largest multiplier of this orbit is 0.9703: its transient is below 1e-16 after 1250 periods of
+    // 0.091 s.
     motion.run(150.0, |_| {}).unwrap();
     let mut last = None;
     motion.run(150.2, |leg| last = leg.impact().or(last)).unwrap();
     let orbit = orbits(motion.rig(), 0.5, motion.frequency()).unwrap().orbits.remove(0);
     let impact = last.unwrap();
-    // Rounding of a state near 10 mm, enlarged by 1/(1 − 0.97).
+    // Rounding of a state near 10 mm, amplified by 1/(1 − 0.97).
     let tolerance = 16.0 * f64::EPSILON / 0.03;
     assert!((impact.impulse / orbit.impulse - 1.0).abs() < 100.0 * tolerance, "{impact:?}");
     assert!((impact.phase - orbit.force_phase).abs() < 100.0 * tolerance, "{impact:?}");
@@ -63,7 +65,8 @@ fn it_settles_on_the_closed_form_orbit() {
 
 #[test]
 fn energy_of_a_flight_balances() {
-    // Work of the force less loss in the dampers is the change of energy, by quadrature of each leg.
+    // The work of the force minus the losses of the dampers is the change of energy, integrated over each
+    // leg.
     let rig = Rig { c1: 0.4, ..Rig::thesis() };
     let sine = Sine { force: 0.5, frequency: 9.0 };
     let mut motion = Simulation::new(&rig, &sine).unwrap();
@@ -74,7 +77,7 @@ fn energy_of_a_flight_balances() {
     let mut phase = motion.phase();
     for _ in 0..100 {
         let leg = motion.fly(1e3).unwrap();
-        // Composite Gauss-Legendre with three points on 512 panels of 0.4 ms: sixth order, error below
+        // Composite Gauss–Legendre with three points on 512 panels of 0.4 ms: sixth order, error below
         // (0.4e-3 · 114/s)⁶/2e6 = 5e-15 of the energy.
         let panel = leg.duration / 512.0;
         let power = |t: f64| {
@@ -99,7 +102,7 @@ fn energy_of_a_flight_balances() {
         phase = motion.phase();
         largest = largest.max(energy(motion.state()));
     }
-    // 51200 panels, each rounded to a few ε of the energy that passes through.
+    // 51200 panels, each rounded to a few ε of the energy exchanged.
     assert!((put_in - energy(motion.state())).abs() < 51_200.0 * 4.0 * f64::EPSILON * largest);
 }
 
@@ -126,7 +129,7 @@ fn samples_do_not_depend_on_how_the_motion_is_cut() {
     }
     assert_eq!((states.len(), impacts), (3000, met));
     for (a, b) in states.iter().zip(&pieces) {
-        // Four more re-anchorings, each a few roundings of 10 mm and 0.5 m/s.
+        // Four more restarts of flights, each with some roundings of 10 mm and 0.5 m/s.
         assert!((a.x1 - b.x1).abs() < 1e-14 && (a.v2 - b.v2).abs() < 1e-12, "{a:?} {b:?}");
     }
 }
@@ -144,7 +147,7 @@ fn a_change_of_frequency_makes_no_step() {
     assert_eq!(leg.duration, 0.0);
 }
 
-/// Pressed together at rest: gap −0.5 mm, x₁ − x₂ = −2 mm at the start.
+/// Scene C: at rest the masses are pressed together (gap −0.5 mm); at the start x₁ − x₂ = −2 mm.
 fn scene_c() -> Simulation {
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     let frequency = 0.45 * (rig.k1 / rig.m1).sqrt() / TAU;
@@ -154,7 +157,7 @@ fn scene_c() -> Simulation {
 
 #[test]
 fn chatter_ends_in_sticking_and_release() {
-    // Independent numbers, by arithmetic with 40 digits.
+    // Reference values in 40-digit arithmetic.
     let golden = [
         (Event::Stick, 0.152_721_089_353_360_45),
         (Event::Release, 0.220_247_418_265_660_51),
@@ -175,9 +178,8 @@ fn chatter_ends_in_sticking_and_release() {
     assert_eq!(found.len(), 3, "{found:?}");
     for ((event, time), (expected, golden)) in found.iter().zip(&golden) {
         assert_eq!(event, expected);
-        // Displacements near 2 mm are rounded to 1e-18 m, which shifts an impact at 1e-7 m/s, the last that
-        // are computed, by 1e-11 s, and the end of the chatter by (1 + R)/(1 − R) = 5.7 times as
-        // much.
+        // Displacements near 2 mm are rounded to 1e-18 m. This shifts the last computed impacts, at 1e-7 m/s,
+        // by 1e-11 s, and the end of the chatter by (1 + R)/(1 − R) = 5.7 times as much.
         assert!((time - golden).abs() < 1e-10, "{event:?} {time:.17} {golden:.17}");
     }
     assert_eq!(motion.counts().sticks, 2);

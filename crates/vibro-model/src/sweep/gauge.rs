@@ -1,4 +1,4 @@
-//! What is read off a motion while a sweep passes.
+//! Reads an observable of a motion during a sweep.
 
 use crate::flow::State;
 use crate::motion::Path;
@@ -28,17 +28,17 @@ impl Observable {
     }
 }
 
-/// Corner of the running mean square's low-pass in rad/s.
+/// Corner frequency in rad/s of the low-pass that forms the running mean square.
 pub(crate) const LOW_PASS: f64 = 10.0;
 
-/// Samples a cycle of the excitation, or a swing of the faster mass where that is shorter. Displacements and
-/// velocities are both sampled, so between two samples the motion is a cubic (its peaks err by h⁴/384 of the
-/// fourth derivative, 4e-6 of the amplitude for h = 2π/32) and integrals are trapezes with end corrections,
+/// Samples in a cycle of the excitation, or in a swing of the faster mass if that is shorter. Displacements
+/// and velocities are both sampled, so between two samples the motion is a cubic: its peaks err by h⁴/384 of
+/// the fourth derivative, 4e-6 of the amplitude for h = 2π/32. Integrals are trapezes with end corrections,
 /// whose error is h⁴/720 of the third derivative's step at each impact (Euler–Maclaurin): 3e-6 of the
 /// amplitude.
 const SAMPLES: f64 = 32.0;
 
-/// What was summed over a stretch of time, of each mass.
+/// Sums over a time, for each mass.
 #[derive(Debug, Clone, Copy)]
 struct Sums {
     integral: [Complex64; 2],
@@ -68,21 +68,22 @@ impl Sums {
 #[derive(Debug, Clone)]
 pub struct Gauge {
     observable: Observable,
-    /// Fastest natural motion of the masses in rad/s.
+    /// Largest undamped natural frequency of the masses in rad/s.
     natural: f64,
-    /// Running mean square.
+    /// Running mean square of each mass in m².
     square: [f64; 2],
-    /// The cycle under way.
+    /// Sums of the present cycle.
     cycle: Sums,
-    /// All cycles since the last [`Gauge::clear`].
+    /// Sums of all cycles since the last [`Gauge::clear`].
     total: Sums,
-    /// Their number, and sum of the values and of their squares.
+    /// Number of these cycles.
     cycles: f64,
+    /// Sum of their values and of the squares, for each mass.
     scatter: [(f64, f64); 2],
 }
 
 impl Gauge {
-    /// For motions of `rig`.
+    /// A gauge for motions of `rig`.
     pub fn new(observable: Observable, rig: &Rig) -> Gauge {
         let natural = rig.oscillators().map(|o| o.omega2().sqrt());
         let natural = natural.into_iter().filter(|n| n.is_finite()).fold(0.0, f64::max);
@@ -90,13 +91,13 @@ impl Gauge {
         Gauge { observable, natural, square: [0.0; 2], cycle, total, cycles: 0.0, scatter }
     }
 
-    /// Forgets the cycles read, not the running mean square.
+    /// Deletes the cycles read, but keeps the running mean square.
     pub fn clear(&mut self) {
         (self.cycle, self.total, self.cycles) = (Sums::NONE, Sums::NONE, 0.0);
         self.scatter = [(0.0, 0.0); 2];
     }
 
-    /// Takes a piece of `duration` s that begins at `phase` (rad) under `omega` (rad/s).
+    /// Adds a piece of `duration` s that begins at `phase` (rad) under `omega` (rad/s).
     pub fn take(&mut self, path: &dyn Path, duration: f64, phase: f64, omega: f64) {
         let n = (duration * omega.max(self.natural) / TAU * SAMPLES).ceil().max(1.0);
         let h = duration / n;
@@ -155,8 +156,8 @@ impl Gauge {
         *cycles += 1.0;
     }
 
-    /// Value over all cycles since [`Gauge::clear`] and standard deviation from cycle to cycle, for each
-    /// mass.
+    /// Value over all cycles since [`Gauge::clear`], and standard deviation from cycle to cycle, for each
+    /// mass, in m.
     pub fn read(&self) -> [(f64, f64); 2] {
         let Gauge { observable, total, cycles, scatter, .. } = self;
         [0, 1].map(|mass| {
@@ -167,7 +168,7 @@ impl Gauge {
     }
 }
 
-/// Displacement and velocity of a mass.
+/// Displacement (m) and velocity (m/s) of a mass.
 fn coordinate(state: &State, mass: usize) -> (f64, f64) {
     if mass == 0 { (state.x1, state.v1) } else { (state.x2, state.v2) }
 }

@@ -19,8 +19,8 @@ fn both<M: Motion + Clone + Sync>(
 
 const BOTH: [Direction; 2] = [Direction::Up, Direction::Down];
 
-/// The thesis' contact: c₃ = 0.1 N s/m on k₃ = 1e5 N/m, so ζ = c₃/2√(k₃M) and R = exp(−ζ(π − 2 asin ζ)/√(1 −
-/// ζ²)).
+/// The contact of the thesis: c₃ = 0.1 N s/m on k₃ = 1e5 N/m, so ζ = c₃/2√(k₃M) and
+/// R = exp(−ζ(π − 2 asin ζ)/√(1 − ζ²)).
 fn thesis() -> Rig {
     let rig = Rig::thesis();
     let zeta = 0.1 / (2.0 * (1e5 * rig.reduced_mass()).sqrt());
@@ -39,22 +39,22 @@ fn the_thesis_sweep_has_its_peaks() {
     let plan = Plan { from: 3.0, to: 14.0, pace, observable: Observable::Rms };
     let motion = Simulation::new(&thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
     let swept = both(&plan, &motion, 0.1, &BOTH).unwrap();
-    // Printed: 5.58 and 10.59 Hz up, 5.44 Hz only down, with a contact that gives way. One that does not has
-    // its upper peak a little higher: without the time in contact (2.3 ms) a cycle is that much shorter,
-    // up to 10.85 Hz.
+    // Thesis, with a compliant contact: 5.58 and 10.59 Hz up, only 5.44 Hz down. With rigid impacts the upper
+    // peak is slightly higher: without the time in contact (2.3 ms) the cycle is shorter by that, up to 10.85
+    // Hz.
     assert!((highest(&swept.up, 3.0, 8.0).frequency - 5.58).abs() < 0.05);
     let clapping = highest(&swept.up, 8.0, 14.0);
     assert!((10.5..10.9).contains(&clapping.frequency), "{clapping:?}");
     assert!((highest(&swept.down, 3.0, 14.0).frequency - 5.44).abs() < 0.1);
-    // Down there is nothing near the upper peak but the linear response.
+    // In the sweep down there is only the linear response near the upper peak.
     let down = highest(&swept.down, 8.5, 14.0);
     assert!(down.x1 < 0.2 * clapping.x1, "{down:?} {clapping:?}");
 }
 
-/// An independent simulation of the thesis' sweeps (continuous, 0.02 Hz/s, running RMS) gave: sine 0.1 N 5.58
-/// and 10.59 Hz up, only 5.44 Hz down; pulse 0.5 N of 10 ms 5.58 and 10.71 Hz up with a sub-harmonic peak
-/// near 2.81 Hz, 5.42 Hz down; loose mass under 0.1 N (spring and damper in compression only, beyond 1 mm)
-/// 4.66 and 10.23 Hz up.
+/// Peaks of an independent simulation of the thesis' sweeps (continuous, 0.02 Hz/s, running RMS). Sine 0.1 N:
+/// 5.58 and 10.59 Hz up, only 5.44 Hz down. Pulse 0.5 N of 10 ms: 5.58 and 10.71 Hz up with a sub-harmonic
+/// peak near 2.81 Hz, 5.42 Hz down. Loose mass under 0.1 N (spring and damper in compression only, beyond 1
+/// mm): 4.66 and 10.23 Hz up.
 #[test]
 fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     let rig = Rig::thesis();
@@ -75,9 +75,9 @@ fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     println!("sine: {:?}", tops(&swept));
     let [grazing, clapping, down] = tops(&swept);
     assert!((grazing - 5.58).abs() < 0.05 && (clapping - 10.59).abs() < 0.1 && (down - 5.44).abs() < 0.1);
-    // From 3 Hz, as the thesis swept: between 6 and 7.5 Hz the motion is irregular, and the start decides
-    // whether it leaves that with impacts (2 of 6 starts from 1.5 to 1.6 Hz do not come to the clapping
-    // branch). The sub-harmonic peak lies below.
+    // The sweep starts at 3 Hz, as in the thesis: between 6 and 7.5 Hz the motion is irregular, and the start
+    // decides whether the impacts persist (2 of 6 starts from 1.5 to 1.6 Hz do not reach the clapping
+    // branch). The sub-harmonic peak is below 3 Hz.
     let pulses = |frequency| {
         let pulses = Excitation::Pulse(Pulses { force: 0.5, width: 0.01, frequency });
         Compliant::new(&rig, &pulses, law, State::REST, 0.0)
@@ -99,7 +99,8 @@ fn the_thesis_contact_that_gives_way_has_the_known_peaks() {
     let up = plan(3.0).frequency(&mut loose, 0.1, Direction::Up).unwrap();
     let [grazing, clapping] = [highest(&up, 3.0, 8.0), highest(&up, 8.0, 14.0)];
     println!("loose: {grazing:?} {clapping:?}");
-    // Irregular about the lower peak: two starts of the independent one differ by 0.04 Hz there.
+    // The motion is irregular around the lower peak: two starts of the independent simulation differ by 0.04
+    // Hz.
     assert!((grazing.frequency - 4.66).abs() < 0.1 && (clapping.frequency - 10.23).abs() < 0.05);
 }
 
@@ -117,7 +118,8 @@ fn a_settled_step_is_the_closed_form() {
                 0 => orbit.fundamental.map(num_complex::Complex64::norm),
                 _ => orbit.peak_to_peak.map(|x| x / 2.0),
             };
-            // 32 samples a cycle: 3e-6 and 4e-6 of the amplitude in its leading term, some harmonics on top.
+            // 32 samples a cycle: errors of 3e-6 and 4e-6 of the amplitude in the leading term, plus those of
+            // the harmonics.
             for (found, expected) in [point.x1, point.x2].into_iter().zip(expected) {
                 assert!((found / expected - 1.0).abs() < 1e-5, "{observable:?} {found} {expected}");
             }
@@ -128,8 +130,8 @@ fn a_settled_step_is_the_closed_form() {
 
 #[test]
 fn the_running_rms_of_a_linear_motion_is_its_amplitude() {
-    // x² = A²/2 (1 + cos 2ωt): the low-pass leaves the mean and 2ω by 10/√(100 + 4ω²), 4 % at 20 Hz; the mean
-    // over whole cycles of its root is lower than √(mean) by the square of that over 16.
+    // x² = A²/2 (1 + cos 2ωt): the low-pass reduces the term 2ω by 10/√(100 + 4ω²), to 4 % at 20 Hz. The mean
+    // of the root over whole cycles is then lower than √(mean) by that squared over 16.
     let rig = Rig { c1: 1.0, ..Rig::thesis() };
     let pace = Pace::Steps { points: 3, settle: 200, measure: 10 };
     let plan = Plan { from: 20.0, to: 22.0, pace, observable: Observable::Rms };
@@ -152,8 +154,8 @@ fn a_slow_rate_follows_the_steps_and_ends_in_phase() {
     let points = plan.frequency(&mut motion, 0.5, Direction::Up).unwrap();
     for point in &points[5..] {
         let orbit = orbits(&rig, 0.5, point.frequency).unwrap().orbits.remove(0);
-        // The motion lags by the time it needs to settle, about 2 s: 0.004 Hz, over which the amplitude
-        // changes by less than 1 %.
+        // The motion lags by its settling time of about 2 s: 0.004 Hz, over which the amplitude changes by
+        // less than 1 %.
         assert!((point.x1 / orbit.fundamental[0].norm() - 1.0).abs() < 0.01, "{point:?}");
     }
     // (10.1² − 9.9²)/2·0.002 = 1000 whole cycles.
@@ -203,14 +205,14 @@ fn impossible_sweeps_are_refused() {
         let text = plan.check().unwrap_err().to_string();
         assert!(text.contains(word), "{text}");
     }
-    // A frequency of 0 is the motion's to refuse.
+    // The simulation refuses a frequency of 0.
     let mut motion = Simulation::new(&Rig::thesis(), &Sine { force: 0.1, frequency: 3.0 }).unwrap();
     assert!(Plan { from: 0.0, ..good }.frequency(&mut motion, 0.1, Direction::Up).is_err());
 }
 
-/// Under slow pulses the masses swing many times a cycle: the line of the excitation is small beside what
-/// they do, and must be read off all the same. In closed form: that of the force, 2F/π sin(πw/T), times the
-/// receptance.
+/// Under slow pulses the masses swing many times a cycle: the line at the excitation frequency is small
+/// beside the whole motion, and must still be read exactly. Reference: the line of the force, 2F/π sin(πw/T),
+/// times the receptance.
 #[test]
 fn slow_pulses_are_read_like_fast_ones() {
     let rig = Rig::thesis();
@@ -227,7 +229,7 @@ fn slow_pulses_are_read_like_fast_ones() {
         let line = 2.0 * force / std::f64::consts::PI * (omega * width / 2.0).sin();
         let expected = line * rig.receptances(omega)[0].norm();
         let (found, peak) = (read(Observable::Fundamental), read(Observable::Peak).x1);
-        // 60 s leave e^{−24} of the start; the gauge errs by 3e-6 of what it sees, the largest displacement.
+        // After 60 s e^{−24} of the transient remains; the gauge's error is 3e-6 of the largest displacement.
         assert!((found.x1 - expected).abs() < 1e-5 * peak, "{frequency} Hz: {found:?} {expected} {peak}");
         let exact = orbits_of(&rig, &pulses, 1).unwrap().no_impact.amplitude;
         assert!((peak / exact - 1.0).abs() < 1e-5, "{frequency} Hz: {peak} {exact}");

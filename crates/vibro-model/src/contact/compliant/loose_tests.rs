@@ -7,12 +7,12 @@ fn sine(force: f64, frequency: f64) -> Excitation {
     Excitation::Sine(Sine { force, frequency })
 }
 
-/// The damper acts always.
+/// A buffer whose damper always acts.
 const ALWAYS: Buffer = Buffer { gap: 2e-3, damper_always: true };
 
 #[test]
 fn a_loose_mass_drifts_freely_and_swings_back_by_half_a_period() {
-    // 1 mm at 10 mm/s until it meets mass 2, and the same to the buffer of the thesis.
+    // At 10 mm/s mass 1 drifts 1 mm until it meets mass 2, and also 1 mm to the thesis' buffer.
     let rig = Rig::thesis();
     for (v1, event) in [(0.01, "Impact"), (-0.01, "Switch")] {
         let start = State { v1, ..State::REST };
@@ -30,7 +30,7 @@ fn a_loose_mass_drifts_freely_and_swings_back_by_half_a_period() {
             let b = rig.c1 / (2.0 * rig.m1);
             let half = std::f64::consts::PI / (rig.k1 / rig.m1 - b * b).sqrt();
             assert!((times[1] - times[0] - half).abs() < 1e-15, "{times:?}");
-            // Its speed back is that of the damped half swing, and stays so: nothing holds it.
+            // It returns with the speed of the damped half swing, and keeps it: no force acts on it.
             assert!((motion.state().v1 - 0.01 * (-b * half).exp()).abs() < 1e-16, "{:?}", motion.state());
         }
     }
@@ -53,7 +53,7 @@ fn a_loose_mass_drifts_with_its_damper_only() {
     let tau = rig.m1 / rig.c1;
     let expected = -tau * (1.0 - 1e-3 / (0.01 * tau)).ln();
     assert!((met.unwrap() - expected).abs() < 1e-15, "{met:?} {expected}");
-    // The other way it meets its spring after 2 mm.
+    // In the other direction it meets its spring after 2 mm.
     let start = State { v1: -0.01, ..State::REST };
     let mut motion = Compliant::loose(&rig, &sine(0.0, 5.0), ALWAYS, None, start, 0.0).unwrap();
     let mut switches = Vec::new();
@@ -67,7 +67,7 @@ fn a_loose_mass_drifts_with_its_damper_only() {
     let expected = -tau * (1.0 - 2e-3 / (0.01 * tau)).ln();
     assert_eq!(switches.len(), 2);
     assert!((switches[0] - expected).abs() < 1e-15, "{switches:?} {expected}");
-    // It leaves the spring where its force is zero, half a period of the damped oscillator later.
+    // It leaves the spring where the compression is zero again, half a period of the damped oscillator later.
     let b = rig.c1 / (2.0 * rig.m1);
     let half = std::f64::consts::PI / (rig.k1 / rig.m1 - b * b).sqrt();
     assert!((switches[1] - switches[0] - half).abs() < 1e-15, "{switches:?}");
@@ -113,16 +113,16 @@ fn agrees(buffer: Buffer) {
     }
     let s = motion.state();
     for (found, expected) in [s.x1, s.v1, s.x2, s.v2].iter().zip(plain.y()) {
-        // Some thousand steps of 1e-14, and kinks within steps that the estimate sees to 1e-14.
+        // Some thousand steps of 1e-14, and kinks within steps, which the error estimate limits to 1e-14.
         assert!((found - expected).abs() < 1e-10, "{s:?} {:?}", plain.y());
     }
 }
 
 #[test]
 fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
-    // The thesis' contact: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. An
-    // independent integration (Runge–Kutta of fourth order, 10 µs) has its highest running RMS through a
-    // 10 rad/s low-pass at 4.62 to 4.66 Hz: irregular there, so by its start.
+    // Contact of the thesis: 1e5 N/m with a damper of 0.1 N s/m; 0.1 N, 0.02 Hz/s in steps of 1 ms. In an
+    // independent integration (Runge–Kutta of fourth order, 10 µs) the running RMS through a 10 rad/s
+    // low-pass is largest at 4.62 to 4.66 Hz: the motion is irregular there, so this depends on the start.
     let law = Law::KelvinVoigt { stiffness: 1e5, damping: 0.1 };
     let mut motion =
         Compliant::loose(&Rig::thesis(), &sine(0.1, 3.0), Buffer::thesis(), Some(law), State::REST, 0.0)
@@ -143,7 +143,8 @@ fn the_upward_sweep_has_its_resonance_where_the_thesis_has() {
 
 #[test]
 fn chatter_and_cuts_do_not_stop_a_loose_mass() {
-    // Cut every millisecond, with a frequency that moves: rests against mass 2 begin and end many times.
+    // Interrupted every millisecond, with a changing frequency: contacts with mass 2 begin and end many
+    // times.
     let rig = Rig { restitution: 0.2, ..Rig::thesis() };
     let mut motion =
         Compliant::loose(&rig, &sine(0.1, 3.0), Buffer::thesis(), None, State::REST, 0.0).unwrap();

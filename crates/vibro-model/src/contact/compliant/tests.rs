@@ -45,8 +45,8 @@ fn thirty_contacts_agree_with_arithmetic_of_forty_digits() {
         for (time, expected) in [(impact.time, row[0]), (*part, row[1]), (*back, row[2])] {
             worst = worst.max((time - expected).abs());
         }
-        // Roundings of 10 mm enlarged by some hundred of contacts that repel, over speeds of 0.1 m/s; the
-        // goal is 1e-9 s.
+        // Rounding of 10 mm, amplified some hundred times by the contacts, over speeds of 0.1 m/s; 1e-9 s is
+        // required.
         assert!(worst < 1e-13, "{worst:e} at {}", row[0]);
         assert!((impact.approach_velocity - row[3]).abs() < 1e-12, "{impact:?} {}", row[3]);
         assert!((impact.impulse / row[4] - 1.0).abs() < 1e-12, "{impact:?} {}", row[4]);
@@ -54,8 +54,8 @@ fn thirty_contacts_agree_with_arithmetic_of_forty_digits() {
     println!("worst time {worst:e} s");
 }
 
-/// Work of the force less what the dampers and the contact take, by quadrature over each piece, against the
-/// energy.
+/// Compares the energy with the work of the force minus the losses of dampers and contact, integrated over
+/// each piece.
 fn check_balance(law: Law, rig: &Rig, seconds: f64) {
     let (force, frequency) = (0.5, 9.0);
     let mut motion = Compliant::new(rig, &sine(force, frequency), law, State::REST, 0.0).unwrap();
@@ -69,7 +69,7 @@ fn check_balance(law: Law, rig: &Rig, seconds: f64) {
     let (mut put_in, mut through, mut taken, mut impacts) = (0.0, 0.0, 0.0, Vec::new());
     let (touching, mut back_and_forth) = (Cell::new(false), 0.0);
     let mut visit = |piece: Piece<'_>| {
-        // Gauss-Legendre with three points on 64 panels; within a contact the law's own force times the rate.
+        // Gauss–Legendre with three points on 64 panels; in a contact, the force of the law times the rate.
         let panel = piece.duration / 64.0;
         let node = 0.6_f64.sqrt() / 2.0;
         for i in 0..64 {
@@ -104,7 +104,7 @@ fn check_balance(law: Law, rig: &Rig, seconds: f64) {
     assert!(impacts.len() > 5, "{law:?}: {} impacts", impacts.len());
     let error = (put_in - energy(motion.state())).abs();
     assert!(error < 1e-10 * through, "{law:?}: {error:e} of {through:e}");
-    // A contact without losses takes nothing.
+    // A contact without losses takes no energy.
     let elastic = matches!(law, Law::Hertz { .. } | Law::KelvinVoigt { damping: 0.0, .. });
     assert_eq!(taken.abs() < 1e-10 * back_and_forth, elastic, "{law:?} {taken} {back_and_forth}");
 }
@@ -150,10 +150,10 @@ fn a_stiff_contact_approaches_the_rebound() {
             .zip(&hard)
             .map(|(s, h)| (s.approach_velocity - h.approach_velocity).abs())
             .fold(0.0, f64::max);
-        // The contact's duration falls as 1/√k, and with it what it leaves out: tenfold for a hundredfold
-        // stiffness.
+        // The difference is proportional to the contact's duration, which falls as 1/√k: tenfold for a
+        // hundredfold stiffness.
         assert!(off < before / 5.0, "{stiffness}: {off} after {before}");
-        // The forces outside the contact accelerate the masses by less than 20 m/s² while it lasts.
+        // The forces outside the contact accelerate the masses by less than 20 m/s² during it.
         let lasts = conversion::duration(
             conversion::damping_ratio(rig.restitution).unwrap(),
             stiffness,
@@ -168,7 +168,7 @@ fn a_stiff_contact_approaches_the_rebound() {
 
 #[test]
 fn an_isolated_contact_has_its_restitution_and_duration() {
-    // Springs and dampers so weak, and masses so far out, that the contact is all there is.
+    // Springs and dampers are so weak that only the contact acts.
     let rig = Rig { k1: 1e-12, k2: 1e-12, c1: 0.0, c2: 0.0, gap: 0.0, ..Rig::thesis() };
     let (mass, speed) = (rig.reduced_mass(), 0.3);
     let start = State { x1: -1e-3, v1: speed, ..State::REST };
@@ -190,8 +190,8 @@ fn an_isolated_contact_has_its_restitution_and_duration() {
     };
     for r in [1.0, 0.9, 0.5, 0.2, 0.05] {
         let (found, duration, impact) = rebound(Law::kelvin_voigt(1e5, r, mass).unwrap());
-        // The springs change the speed by 1e-12 N/m · 30 mm · 0.1 s/m₁ = 2e-14 m/s; integrated contacts err
-        // by 1e-13 a step.
+        // The springs change the speed by 1e-12 N/m · 30 mm · 0.1 s/m₁ = 2e-14 m/s; integrated contacts have
+        // errors of 1e-13 a step.
         assert!((found - r).abs() < 1e-11, "{r} {found}");
         let expected = conversion::duration(conversion::damping_ratio(r).unwrap(), 1e5, mass);
         assert!((duration - expected).abs() < 1e-12, "{r} {duration} {expected}");
@@ -205,13 +205,13 @@ fn an_isolated_contact_has_its_restitution_and_duration() {
     }
     let (found, duration, _) = rebound(Law::Hertz { stiffness: 1e8 });
     assert!((found - 1.0).abs() < 1e-11);
-    // δ of the end falls at the speed v: 1e-13 of the deepest point over it.
+    // At its end δ falls at the speed v: the error is 1e-13 of the largest indentation over v.
     assert!((duration / conversion::hertz_duration(1e8, mass, speed) - 1.0).abs() < 1e-11);
 }
 
 #[test]
 fn hertz_agrees_with_a_plain_integration() {
-    // The same equations by plain steps of the integrator from a contact's beginning, forces and all.
+    // The same equations, integrated in plain steps from the beginning of a contact, with all forces.
     let rig = Rig::thesis();
     let law = Law::Hertz { stiffness: 1e8 };
     let start = State { x1: 1e-3, v1: 0.4, x2: 0.0, v2: 0.1 };
@@ -234,7 +234,7 @@ fn hertz_agrees_with_a_plain_integration() {
     }
     motion.advance(0.02, &mut |_| {}).unwrap();
     let s = motion.state();
-    // Some hundred steps of 1e-13 each.
+    // Some hundred steps with errors of 1e-13 each.
     for (found, expected) in [s.x1, s.v1, s.x2, s.v2].iter().zip(plain.y()) {
         assert!((found - expected).abs() < 1e-11, "{s:?} {:?}", plain.y());
     }
@@ -248,7 +248,7 @@ fn a_wall_is_a_very_heavy_mass() {
         let first = impacts(Compliant::new(&wall, &sine(0.5, 9.0), law, State::REST, 0.0).unwrap(), 10);
         let second = impacts(Compliant::new(&heavy, &sine(0.5, 9.0), law, State::REST, 0.0).unwrap(), 10);
         for (a, b) in first.iter().zip(&second) {
-            // The heavy mass gives way by J t/m₂ = 1e-13 m, enlarged from impact to impact.
+            // The heavy mass moves by J t/m₂ = 1e-13 m, amplified from impact to impact.
             assert!((a.time - b.time).abs() < 1e-9, "{a:?} {b:?}");
         }
     }
@@ -258,10 +258,10 @@ fn a_wall_is_a_very_heavy_mass() {
 
 #[test]
 fn pressed_masses_stay_together_until_they_part() {
-    // Gap −0.5 mm: at rest the springs press the masses together, and a small force leaves them so.
+    // Gap −0.5 mm: at rest the springs press the masses together, and under a small force they stay so.
     let rig = Rig { gap: -5e-4, ..Rig::thesis() };
     for law in LAWS {
-        // Rest: both springs and the contact bear the same force.
+        // Equilibrium: both springs and the contact have the same force.
         let mut depth = 0.0;
         let mut start = State::REST;
         for _ in 0..50 {
@@ -301,7 +301,7 @@ fn kicks_and_pulses_change_the_momentum() {
     let mut motion = Compliant::new(&rig, &pulse, LAWS[0], State::REST, 0.0).unwrap();
     let mut switches = 0;
     motion.advance(0.2, &mut |piece| switches += usize::from(piece.event == Event::Switch)).unwrap();
-    // It begins and ends.
+    // The pulse begins and ends.
     assert_eq!(switches, 2);
     // (F/k)(cos ω(t − w) − cos ωt).
     let exact = ((omega * 0.19).cos() - (omega * 0.2).cos()) / rig.k1;
@@ -320,7 +320,7 @@ fn cutting_a_motion_changes_nothing_and_impossible_ones_are_refused() {
         }
         let (a, b) = (whole.state(), cut.state());
         assert_eq!(whole.time(), cut.time());
-        // Cut contacts are integrated with other steps, each of 1e-13.
+        // Interrupted contacts are integrated with other steps, each with an error of 1e-13.
         assert!((a.x1 - b.x1).abs() < 1e-11 && (a.v2 - b.v2).abs() < 1e-9, "{law:?} {a:?} {b:?}");
         assert!(whole.advance(0.5, &mut |_| {}).is_err());
         assert!(whole.advance(f64::NAN, &mut |_| {}).is_err());

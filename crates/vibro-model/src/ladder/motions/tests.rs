@@ -24,7 +24,7 @@ fn asked(restitution: f64, force: f64, frequency: f64, history: Option<Direction
     choose(&scene, frequency, &question).unwrap()
 }
 
-/// The thesis' rig by its impact speed, without a history.
+/// Choice for the thesis' rig by its impact speed, without a history.
 fn speeds(restitution: f64, force: f64, frequency: f64, stiffness: f64) -> Choice {
     let scene = Scene {
         rig: Rig { restitution, ..Rig::thesis() },
@@ -35,8 +35,8 @@ fn speeds(restitution: f64, force: f64, frequency: f64, stiffness: f64) -> Choic
     choose(&scene, frequency, &Question::new(Observable::ImpactSpeed)).unwrap()
 }
 
-/// Impacts of a rig in the second half of the last of `stations` (Hz, cycles), integrated from rest through
-/// all of them.
+/// Number of impacts in the second half of the last of `stations` (Hz, cycles), by numerical integration from
+/// rest through all of them.
 fn impacts_at_the_end(rig: &Rig, force: f64, stations: &[(f64, f64)]) -> usize {
     let mut y = [0.0; 4];
     let mut phase = 0.0;
@@ -66,7 +66,7 @@ fn impacts_at_the_end(rig: &Rig, force: f64, stations: &[(f64, f64)]) -> usize {
             let Some((t, before)) = hit else { break };
             now += t;
             y = before;
-            // Roundings may leave the masses overlapping; they part from contact.
+            // Rounding may leave the masses overlapping: this puts them just apart.
             y[0] = y[2] + rig.gap * (1.0 - 1e-12);
             let impulse = (1.0 + rig.restitution) * (y[1] - y[3]).max(0.0) / (1.0 / rig.m1 + 1.0 / rig.m2);
             y[1] -= impulse / rig.m1;
@@ -80,8 +80,8 @@ fn impacts_at_the_end(rig: &Rig, force: f64, stations: &[(f64, f64)]) -> usize {
 
 #[test]
 fn impacts_that_a_rising_frequency_keeps_are_followed() {
-    // At 6.8 Hz every orbit with one impact a cycle is unstable, the motion without impacts is possible, and
-    // from rest it is met; but led up from 5.5 Hz, where the masses must meet, the impacts last.
+    // At 6.8 Hz every orbit with one impact a cycle is unstable, and the motion without impacts is possible
+    // and reached from rest; but in a sweep up from 5.5 Hz, where the masses must meet, the impacts persist.
     let rig = Rig { restitution: 0.7, ..Rig::thesis() };
     let mut stations: Vec<(f64, f64)> = (0..13).map(|i| (5.5 + 0.1 * f64::from(i), 60.0)).collect();
     stations.push((6.8, 600.0));
@@ -91,9 +91,9 @@ fn impacts_that_a_rising_frequency_keeps_are_followed() {
     let up = asked(0.7, 0.05, 6.8, Some(Direction::Up));
     assert!(up.chosen.is_some_and(|m| m >= Model::Restitution), "{:?}", up.findings);
     assert!(!up.rung(Model::Linear).valid);
-    // A falling frequency comes from where nothing strikes.
+    // A sweep down starts where there are no impacts.
     assert_eq!(asked(0.7, 0.05, 6.8, Some(Direction::Down)).chosen, Some(Model::Linear));
-    // Without the history nothing says which.
+    // Without a history the motion is not determined.
     let open = asked(0.7, 0.05, 6.8, None);
     assert_eq!((open.chosen, open.needs.as_slice()), (None, &[Need::History][..]));
     assert!(open.motions.iter().any(|m| !m.stable));
@@ -103,20 +103,20 @@ fn impacts_that_a_rising_frequency_keeps_are_followed() {
 
 #[test]
 fn a_motion_that_repeats_nothing_is_on_no_orbit() {
-    // Nearly the same speed and amplitudes as the orbit, whose largest multiplier is 1.0000, but no pattern.
+    // Nearly the speed and amplitudes of the orbit, whose largest multiplier is 1.0000, but not periodic.
     let choice = asked(0.98, 0.1, 7.0, Some(Direction::Up));
     let closed = choice.rung(Model::ClosedForm);
     assert!(!closed.valid && closed.reasons.iter().any(|r| r.code == "other-motion"), "{closed:?}");
-    // What is compared is no longer the answer: that is as near as the tolerance.
+    // The answers agree within the tolerance, so only the comparison of states tells the motions apart.
     let (orbit, motion) = (closed.answer.unwrap(), choice.rung(Model::Restitution).answer.unwrap());
     assert!((orbit[0] / motion[0] - 1.0).abs() < 0.02, "{orbit:?} {motion:?}");
     assert!(choice.chosen != Some(Model::ClosedForm));
-    // Where the motion is on its orbit, it is found.
+    // A motion on an orbit is recognised.
     let on = asked(0.98, 0.5, 10.98, None);
     assert!(on.rung(Model::ClosedForm).valid, "{:?}", on.findings);
 }
 
-/// Impacts of the thesis' rig from a state at phase 0, in 240 cycles after 3000.
+/// Number of impacts of the thesis' rig from a state at phase 0, in 240 cycles after 3000.
 fn impacts_from(restitution: f64, force: f64, frequency: f64, state: State) -> usize {
     let rig = Rig { restitution, ..Rig::thesis() };
     let mut motion = Simulation::from_state(&rig, &Sine { force, frequency }, state, 0.0).unwrap();
@@ -130,9 +130,9 @@ fn impacts_from(restitution: f64, force: f64, frequency: f64, state: State) -> u
 
 #[test]
 fn motions_that_strike_less_than_once_a_cycle_are_warned_of() {
-    // None strikes once a cycle, and from rest nothing strikes. At 32.98 Hz an orbit of 4 cycles is stable;
-    // at 12.97 Hz and at ν 2.6 one of 2 cycles has lost its stability by a flip, and patterns of 8 and of
-    // 4 cycles lie round it.
+    // There is no motion with one impact a cycle, and from rest there are no impacts. At 32.98 Hz an orbit of
+    // 4 cycles is stable; at 12.97 Hz and at ν 2.6 an orbit of 2 cycles is unstable by a flip, and patterns
+    // of 8 and of 4 cycles lie around it.
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     assert!(impacts_from(0.7, 0.3, 12.9701, state) > 100);
     for (restitution, force, frequency, pattern) in
@@ -140,7 +140,7 @@ fn motions_that_strike_less_than_once_a_cycle_are_warned_of() {
     {
         assert_eq!(impacts_from(restitution, force, frequency, State::REST), 0);
         let open = asked(restitution, force, frequency, None);
-        // From rest nothing strikes, which is what is answered.
+        // The answer is the motion from rest, without impacts.
         assert_eq!((open.chosen, open.needs.len()), (Some(Model::Linear), 0), "{:?}", open.findings);
         let patterns: Vec<(String, bool)> =
             open.motions.iter().map(|m| (m.pattern.to_string(), m.rare)).collect();
@@ -151,7 +151,7 @@ fn motions_that_strike_less_than_once_a_cycle_are_warned_of() {
         let fell = asked(restitution, force, frequency, Some(Direction::Down));
         assert_eq!(fell.chosen, Some(Model::Linear), "{:?}", fell.findings);
     }
-    // What was not looked for is said, once.
+    // The search for other motions is reported, once.
     let linear = asked(0.7, 0.05, 13.5986, None);
     assert_eq!(linear.chosen, Some(Model::Linear));
     let searched = ["other-motions-searched", "search-cut"];
@@ -182,7 +182,7 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
     assert_eq!((open.chosen, open.needs.as_slice()), (None, &[Need::History][..]), "{:?}", open.findings);
     let soft = open.motions.last().unwrap();
     assert_eq!((soft.model, soft.pattern.to_string().as_str()), (Model::KelvinVoigt, "1/1"));
-    // From rest the largest and the smallest x₁ of a cycle, from states at many instants.
+    // Reference: the largest and the smallest x₁ of a cycle, from rest, from states at many instants.
     let law = scene.spring(529_320.0).unwrap();
     let mut motion = Compliant::new(&rig, &excitation, law, State::REST, 0.0).unwrap();
     motion.advance(2000.0 / 17.196, &mut |_| {}).unwrap();
@@ -199,8 +199,8 @@ fn a_contact_that_leads_from_rest_to_another_motion_asks_for_the_history() {
 
 #[test]
 fn one_motion_is_read_alike_from_wherever_it_starts() {
-    // Started beside an orbit, at the phase of its impact, cycles that begin there hold both impacts of 2/2,
-    // or other ones of 5/6.
+    // Cycles that begin at the phase of an impact, as at a start near an orbit, hold both impacts of 2/2, or
+    // other impacts of 5/6.
     for (restitution, frequency, cycles, pattern) in
         [(0.97, 5.85, 2, "2/2"), (0.9, 13.700_000_000_000_001, 6, "5/6")]
     {
@@ -209,11 +209,11 @@ fn one_motion_is_read_alike_from_wherever_it_starts() {
         motion.run(6000.0 / frequency, |_| {}).unwrap();
         let fastest = fastest(&mut motion, cycles);
         let mean = fastest.iter().sum::<f64>() / fastest.len() as f64;
-        // The fastest of all counts too much where cycles begin elsewhere.
+        // The fastest impact would count too often if cycles began elsewhere.
         assert!(fastest.iter().any(|v| v / mean > 1.1), "{fastest:?}");
         let choice = speeds(restitution, 0.9, frequency, 1e8);
         let [only] = choice.motions.as_slice() else { panic!("{:?}", choice.motions) };
-        // Settled to a fiftieth of the tolerance.
+        // Settled to 2 % of the tolerance.
         assert_eq!(only.pattern.to_string(), pattern);
         assert!((only.answer[0] / mean - 1.0).abs() < 4e-4, "{only:?} {mean}");
         assert!(choice.chosen.is_some() && choice.followed.is_some_and(|f| f.states == f.of));
@@ -239,7 +239,7 @@ fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
     let mut motions = Motions::new(&stage).unwrap();
     let rare = |motions: &Motions| motions.known.iter().map(|m| m.rare).collect::<Vec<_>>();
     assert_eq!((rare(&motions), &motions.on), (vec![false, true], &CurrentMotion::Free));
-    // What would be read of a contact that comes to it.
+    // The reading of a compliant contact that reaches it from rest.
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     let mut motion = Simulation::from_state(&scene.rig, &excitation, state, 0.0).unwrap();
     let from_rest = MotionReader::new(&scene.rig, 13.5986, &question).read(&mut motion).unwrap();
@@ -250,7 +250,7 @@ fn a_motion_that_a_contact_comes_to_from_rest_is_not_rare() {
 
 #[test]
 fn states_that_were_not_followed_are_counted() {
-    // Hardly damped, a motion takes thousands of cycles to settle.
+    // With little damping a motion takes thousands of cycles to settle.
     let at = |damping: f64| {
         let rig = Rig { c1: damping, c2: damping, restitution: 0.98, ..Rig::thesis() };
         let excitation = Some(Excitation::Sine(Sine { force: 0.9, frequency: 9.0 }));

@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 use vibro_math::Noise;
 use vibro_math::runge_kutta::{Dop853, Integrator, Tolerance};
 
-/// Values x ← ρx + noise, uniform noise: an autoregression whose mean of n has the variance σ²(1 + ρ)/(1 −
-/// ρ)/n.
+/// Values x ← ρx + noise with uniform noise: an autoregression; the mean of n values has the variance
+/// σ²(1 + ρ)/(1 − ρ)/n.
 fn correlated(seed: u64, n: usize, rho: f64) -> Vec<[f64; 2]> {
     let mut noise = Noise::new(seed);
     let mut even = || noise.uniform() - 0.5;
@@ -30,9 +30,9 @@ fn correlated(seed: u64, n: usize, rho: f64) -> Vec<[f64; 2]> {
 
 #[test]
 fn a_standard_error_covers_what_it_should() {
-    // Of 1000 means of 32 values with a correlation of 0.3 about 5 % lie farther than two standard errors
-    // from the truth: with estimated errors 8 ± 1 %. Taken as independent, √(1.3/0.7) = 1.36 times as
-    // narrow, 15 % do.
+    // Of 1000 means of 32 values with a correlation of 0.3, about 5 % should be farther than two standard
+    // errors from the true mean; with estimated errors it is 8 ± 1 %. If the values counted as independent,
+    // the errors would be smaller by √(1.3/0.7) = 1.36, and 15 % would be outside.
     let far = |rho: f64| {
         let outside = |seed: u64| {
             let found = mean(&correlated(seed, 32, rho), true);
@@ -45,10 +45,10 @@ fn a_standard_error_covers_what_it_should() {
 
 #[test]
 fn many_means_of_one_motion_are_not_told_apart() {
-    // Twenty pairs in each of 500 questions. With two standard errors that are known, 1 − 0.954²⁰ = 61 % of
-    // them have a pair that is told apart. Estimated ones are never narrower than those of independent
-    // values, and often wider: fewer have, but more than a quarter. A hundredth, 5 ± 2.2, may have where
-    // all comparisons are counted.
+    // 500 sets of twenty pairs. With two known standard errors, 1 − 0.954²⁰ = 61 % of the sets have a pair
+    // that differs. Estimated errors are never smaller than those of independent values, and often larger:
+    // fewer sets have one, but more than a quarter. With `APART`, which counts all comparisons, 1 % of the
+    // sets (5 ± 2.2) may have one.
     let question = Question { tolerance: 1e-4, ..Question::new(Observable::Fundamental) };
     let told = |errors: f64| {
         let pair = |seed: u64| {
@@ -72,17 +72,17 @@ fn a_drift_is_told_from_scatter() {
         };
         (1..=1000).filter(|seed| one(*seed)).count()
     };
-    // Φ(−2.5) = 0.6 % of independent values; a rise over all of five standard deviations (0.29 each) hides
-    // from none.
+    // Φ(−2.5) = 0.6 % of independent values; a total rise of ten standard deviations (0.29 each) is always
+    // detected.
     assert!(told(0.0, 0.0) < 15, "{}", told(0.0, 0.0));
     assert_eq!(told(0.0, 5.0 * 0.29 / 32.0 * 2.0), 1000);
-    // Of few values as well: a straight line of six has the ratio 5/17.5.
+    // Few values suffice: a straight line of six has the ratio 5/17.5.
     let line: Vec<[f64; 2]> = (0..6).map(|i| [f64::from(i); 2]).collect();
     assert!(drifts(&line) && !drifts(&[[1.0; 2]; 6]));
 }
 
-/// First time in s at which x₁ of mass 1 alone, from rest, reaches the gap: by an integrator that shares
-/// nothing with the flights.
+/// First time in s at which x₁ of mass 1 alone, from rest, reaches the gap: by numerical integration,
+/// independent of the flights.
 fn first_touch(rig: &Rig, sine: &Sine, until: f64) -> f64 {
     let omega = TAU * sine.frequency;
     let rate = |t: f64, y: &[f64; 2]| {
@@ -102,16 +102,16 @@ fn first_touch(rig: &Rig, sine: &Sine, until: f64) -> f64 {
 
 #[test]
 fn a_slow_growth_towards_the_gap_is_not_the_end() {
-    // Hardly damped at its resonance: the amplitude A(1 − e^{−bt}) with A 1.3 mm passes the gap of 1 mm only
-    // after 1900 cycles, in which no impact is seen and every impact speed is 0.
+    // Little damping at resonance: the amplitude A(1 − e^{−bt}) with A = 1.3 mm exceeds the gap of 1 mm only
+    // after 1900 cycles. Until then there is no impact, and every impact speed is 0.
     let rig = Rig { c1: 1e-3, c2: 1e-3, ..Rig::thesis() };
     let sine = Sine { force: 4.272_235_95e-5, frequency: 5.230_365_15 };
     let found = no_impact(&rig, &Excitation::Sine(sine)).unwrap();
     let decay = rig.c1 / (2.0 * rig.m1);
     let closed = -(1.0 - rig.gap / found.largest).ln() / decay;
     let touched = first_touch(&rig, &sine, 2.0 * closed);
-    // The amplitude grows by bA a second: a cycle earlier or later, and what the detuning of a damped
-    // resonance leaves.
+    // The amplitude grows by bA a second: the tolerance covers a cycle more or less, and the detuning of a
+    // damped resonance.
     assert!((touched / closed - 1.0).abs() < 0.01 && touched * sine.frequency > 1800.0, "{touched} {closed}");
     let question = Question::new(Observable::ImpactSpeed);
     let clearance = Some(rig.gap - found.largest);
@@ -119,7 +119,7 @@ fn a_slow_growth_towards_the_gap_is_not_the_end() {
     let mut motion = Simulation::new(&rig, &sine).unwrap();
     let reading = reader.read(&mut motion).unwrap();
     assert!(f64::from(reading.cycles) > touched * sine.frequency && reading.speed > 0.0, "{reading:?}");
-    // The state alone tells it too: without the clearance it goes on just as long.
+    // The state alone is enough: without the clearance the reading lasts as long.
     let blind =
         MotionReader::new(&rig, sine.frequency, &question).read(&mut Simulation::new(&rig, &sine).unwrap());
     assert!(f64::from(blind.unwrap().cycles) > touched * sine.frequency);
@@ -138,14 +138,14 @@ fn a_motion_that_ends_a_thousandth_beyond_the_gap_does_not_settle_without_impact
     };
     let over = read(1.001);
     assert!(over.speed > 0.0 || over.end == Settling::Under, "{over:?}");
-    // Clear of the gap it does, in the time in which e^{−bt} falls to the part asked for.
+    // Well below the gap the motion settles, when e^{−bt} has fallen to the required part.
     let under = read(0.5);
     assert!(under.end == Settling::Settled && under.speed == 0.0, "{under:?}");
 }
 
 #[test]
 fn a_pattern_that_no_block_holds_whole_is_read_whole() {
-    // Four impacts in eight cycles, in blocks of sixty: their speeds by hand.
+    // Four impacts in eight cycles, in blocks of sixty cycles: the reference speeds are read directly.
     let (rig, sine) = (Rig::thesis(), Sine { force: 0.3, frequency: 12.9701 });
     let state = State { x1: -4e-3, v1: 0.3, x2: -1e-3, v2: -0.2 };
     let start = Simulation::from_state(&rig, &sine, state, 0.0).unwrap();
@@ -159,16 +159,16 @@ fn a_pattern_that_no_block_holds_whole_is_read_whole() {
     motion.run(until, |leg| speeds.extend(leg.impact().map(|i| i.approach_velocity))).unwrap();
     assert_eq!(speeds.len(), 4);
     let mean = speeds.iter().sum::<f64>() / 4.0;
-    // Settled to a fiftieth of the tolerance.
+    // Settled to 2 % of the tolerance.
     assert!((reading.answer.value[0] / mean - 1.0).abs() < 2e-5, "{} {mean}", reading.answer.value[0]);
-    // A block alone holds four cycles too many: off by up to a fifteenth of the spread.
+    // A block holds four cycles more than whole patterns: its error is up to a fifteenth of the spread.
     assert!(speeds.iter().any(|v| (v / mean - 1.0).abs() > 0.05), "{speeds:?}");
 }
 
 #[test]
 fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
-    // Nine impacts in thirteen cycles: thirteen blocks of sixty hold whole patterns, more than the twelve of
-    // a brief reading.
+    // Nine impacts in thirteen cycles: whole patterns need thirteen blocks of sixty cycles, more than the
+    // twelve of a brief reading.
     let (rig, frequency) = (Rig { restitution: 0.664_347_826_087, ..Rig::thesis() }, 14.235_294_117_647);
     let mut motion = Simulation::new(&rig, &Sine { force: 0.9, frequency }).unwrap();
     motion.run(6000.0 / frequency, |_| {}).unwrap();
@@ -178,8 +178,8 @@ fn a_pattern_longer_than_a_brief_reading_is_read_to_its_end() {
     assert_eq!((reading.end, reading.regime.to_string().as_str()), (Settling::Settled, "9/13"));
     let speeds = fastest(&mut motion, 13);
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
-    // Settled to a fiftieth of the tolerance.
+    // Settled to 2 % of the tolerance.
     assert!((reading.answer.value[0] / mean - 1.0).abs() < 4e-4, "{reading:?} {mean}");
-    // No more than three means of thirteen blocks need.
+    // At most as many cycles as three means over thirteen blocks need.
     assert_eq!(reading.cycles, 15 * 60);
 }

@@ -1,4 +1,4 @@
-//! Energy balances in every kind of excitation, with sticking and without.
+//! Energy balance under every kind of excitation, with and without lasting contact.
 
 use super::*;
 use crate::excitation::{Impulses, Part, Pulses, Sines};
@@ -8,8 +8,8 @@ fn energy(rig: &Rig, s: &State) -> f64 {
     (rig.m1 * s.v1.powi(2) + rig.k1 * s.x1.powi(2) + rig.m2 * s.v2.powi(2) + rig.k2 * s.x2.powi(2)) / 2.0
 }
 
-/// Follows a motion to `until` and compares what force, dampers, impacts and kicks put in with the change of
-/// energy; returns the largest energy met, and the events.
+/// Follows a motion to `until` (s) and compares the energy from force, dampers, impacts and kicks with the
+/// change of energy; returns the events.
 fn balance(mut motion: Simulation, force: impl Fn(f64) -> f64, kick: f64, until: f64) -> Vec<Event> {
     let rig = *motion.rig();
     let start = energy(&rig, &motion.state());
@@ -20,8 +20,8 @@ fn balance(mut motion: Simulation, force: impl Fn(f64) -> f64, kick: f64, until:
         let leg = motion.fly(until).unwrap();
         // Composite Gauss-Legendre with three points on 128 panels.
         let panel = leg.duration / 128.0;
-        // Sixth order: (h·ω)⁷ of a leg, below 1e-13 of its energy for legs under a period of the fastest
-        // term.
+        // Sixth order: the error (h·ω)⁷ of a leg is below 1e-13 of its energy for legs shorter than a period
+        // of the fastest term.
         assert!(leg.duration < 0.5);
         let node = 0.6_f64.sqrt() / 2.0;
         let mut quadrature = |power: &dyn Fn(f64) -> f64| {
@@ -43,7 +43,7 @@ fn balance(mut motion: Simulation, force: impl Fn(f64) -> f64, kick: f64, until:
             Event::Impact(impact) => {
                 let lost = 1.0 - rig.restitution.powi(2);
                 put_in -= rig.reduced_mass() * lost * impact.approach_velocity.powi(2) / 2.0;
-                // A chatter's last bounces are left out, with their energy.
+                // The last bounces of a chatter are not simulated: their energy is lost as well.
                 let after = motion.state().approach();
                 if after == 0.0 {
                     put_in -= rig.reduced_mass() * (rig.restitution * impact.approach_velocity).powi(2) / 2.0;
@@ -56,7 +56,7 @@ fn balance(mut motion: Simulation, force: impl Fn(f64) -> f64, kick: f64, until:
             }
             _ => {}
         }
-        // A leg goes on from where the one before ended.
+        // A leg starts where the previous one ended.
         let first = leg.state(0.0);
         assert!((first.x1 - before.x1).abs() < 1e-15 && (first.v2 - before.v2).abs() < 1e-14);
         events.push(leg.event);
@@ -77,7 +77,7 @@ fn impact(event: &Event) -> bool {
     matches!(event, Event::Impact(_))
 }
 
-/// Rigs that bounce, that stick at once and that chatter.
+/// Rigs that bounce, that stick at the first impact, and that chatter.
 fn rigs() -> [Rig; 4] {
     let rig = Rig { c1: 0.4, ..Rig::thesis() };
     [
@@ -122,7 +122,7 @@ fn energy_balances_under_impulses() {
         for (impulse, frequency) in [(0.009, 5.7), (-0.005, 4.1), (0.02, 3.3)] {
             let train = Excitation::Impulse(Impulses { impulse, frequency });
             let events = balance(Simulation::new(&rig, &train).unwrap(), |_| 0.0, impulse, 8.0);
-            // One at the start, then one a cycle.
+            // One kick at the start, then one a cycle.
             assert_eq!(count(&events, |e| *e == Event::Kick), 1 + (8.0 * frequency) as usize);
             sticks += count(&events, |e| *e == Event::Stick);
             impacts += count(&events, impact);

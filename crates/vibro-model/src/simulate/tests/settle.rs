@@ -1,4 +1,4 @@
-//! Random rigs from rest against the closed form and its verdicts.
+//! Simulations of random rigs from rest, compared with the closed form and its verdicts.
 
 use super::*;
 use crate::orbit::Orbit;
@@ -21,7 +21,7 @@ fn random(noise: &mut Noise) -> (Rig, Sine) {
     (rig, Sine { force: between(0.1, 1.0), frequency })
 }
 
-/// Follows `motion` for so many cycles and takes the impulses of the last eight.
+/// Follows `motion` for `cycles` and returns the impulses (N s) of the next eight cycles.
 fn last(motion: &mut Simulation, cycles: f64) -> Vec<f64> {
     let period = 1.0 / motion.frequency();
     motion.run(motion.time() + cycles * period, |_| {}).unwrap();
@@ -47,8 +47,8 @@ fn two_hundred_random_rigs_settle_where_the_closed_form_is_real_and_nowhere_else
         match real[..] {
             [orbit] if !found.no_impact.possible => {
                 let radius = orbit.spectral_radius().unwrap();
-                // A disturbance must fall to 1e-12 within some thousand cycles; close to grazing or a border
-                // it does not.
+                // A disturbance must decay to 1e-12 within some thousand cycles; close to grazing or to a
+                // stability limit it does not.
                 if radius > 0.99 || orbit.validity.grazing_distance < 1e-5 {
                     continue;
                 }
@@ -58,7 +58,7 @@ fn two_hundred_random_rigs_settle_where_the_closed_form_is_real_and_nowhere_else
                     settled += 1;
                     continue;
                 }
-                // Another motion lives beside it: from nearby it must still come home.
+                // From rest another motion is reached: a start near the orbit must still settle on it.
                 elsewhere += 1;
                 let mut state = orbit.state(orbit.period() / 2.0);
                 state.v2 += 1e-6;
@@ -68,7 +68,7 @@ fn two_hundred_random_rigs_settle_where_the_closed_form_is_real_and_nowhere_else
                 assert!(on(orbit, &impulses), "{rig:?} {sine:?}: {} for {impulses:?}", orbit.impulse);
             }
             [] => {
-                // None is real: neither from rest nor from beside it does the motion stay on one.
+                // No orbit is real: the motion from rest does not settle on any.
                 not += 1;
                 let impulses = last(&mut motion, 1000.0);
                 for orbit in found.orbits.iter().filter(|o| o.validity.exists) {

@@ -1,4 +1,4 @@
-//! Mass 2 as a wall: what a huge mass on a huge spring tends to, and what a mass pressed against it does.
+//! Mass 2 as a wall: the limit of a huge mass on a huge spring, and masses pressed against it.
 
 use crate::excitation::{Excitation, Pulses, Sine};
 use crate::flow::State;
@@ -10,14 +10,14 @@ use crate::simulate::Simulation;
 const WALL: Rig =
     Rig { m1: 0.125, m2: f64::INFINITY, k1: 135.0, k2: 0.0, c1: 0.1, c2: 0.0, gap: 1e-4, restitution: 0.2 };
 
-/// Events with their times, and the last state.
+/// Events other than impacts with their times (s), and the last state.
 fn events(rig: &Rig, excitation: &Excitation, until: f64) -> (Vec<(Event, f64)>, State) {
     let mut motion = Simulation::new(rig, excitation).unwrap();
     let mut found = Vec::new();
     motion
         .run(until, |leg| {
             let event = match leg.event {
-                // Only what it is, and when.
+                // Impacts are left out.
                 Event::Impact(_) => return,
                 other => other,
             };
@@ -35,12 +35,12 @@ fn a_mass_pressed_against_a_wall_is_let_go_where_the_force_is_that_of_its_spring
             let sine = Sine { force: 0.5, frequency: 0.8 };
             let (found, state) = events(&rig, &sine.into(), 5.0);
             let releases: Vec<f64> = found.iter().filter(|e| e.0 == Event::Release).map(|e| e.1).collect();
-            // F cos ωt = k₁Δ.
+            // Release where F cos ωt = k₁Δ.
             let first = (rig.k1 * gap / sine.force).acos() / sine.omega();
             assert_eq!(releases.len(), 4, "{gap} {restitution}: {found:?}");
             for (n, time) in releases.iter().enumerate() {
                 let exact = first + n as f64 / sine.frequency;
-                // Roundings of a force of 0.5 N that falls with 2.5 N/s.
+                // Rounding of a force of 0.5 N that falls at 2.5 N/s.
                 assert!((time - exact).abs() < 1e-14, "{gap} {restitution}: {time} {exact}");
             }
             assert_eq!((state.x2, state.v2), (0.0, 0.0));
@@ -60,8 +60,8 @@ fn a_wall_is_the_limit_of_a_huge_mass_on_a_huge_spring() {
             let ((ours, a), (theirs, b)) = (events(&rig, &excitation, 3.0), events(&huge, &excitation, 3.0));
             assert_eq!(ours.len(), theirs.len(), "{gap} {ours:?} {theirs:?}");
             for (one, other) in ours.iter().zip(&theirs) {
-                // The huge spring gives way by F/k₂ = 5e-11 m (7e-9 N of the other), and its force is rounded
-                // to 8εk₂Δ = 2e-8 N of a force that falls with 2.5 N/s.
+                // The huge spring moves by F/k₂ = 5e-11 m (7e-9 N of the other spring), and its force is
+                // rounded to 8εk₂Δ = 2e-8 N, where the contact force falls at 2.5 N/s.
                 assert!(one.0 == other.0 && (one.1 - other.1).abs() < 1e-7, "{one:?} {other:?}");
             }
             assert!((a.x1 - b.x1).abs() < 1e-7 && (a.v1 - b.v1).abs() < 1e-5, "{a:?} {b:?}");
@@ -84,7 +84,7 @@ fn a_wall_stays_where_it_is() {
 fn a_pulse_that_ends_within_a_chatter_lets_go_at_once() {
     let rig = Rig { restitution: 0.7, ..WALL };
     let pulse = |width| Excitation::Pulse(Pulses { force: 0.5, width, frequency: 0.5 });
-    // Where a chatter is summed, under a pulse that lasts.
+    // A chatter with a computed end, under a pulse that continues.
     let mut motion = Simulation::new(&rig, &pulse(1.9)).unwrap();
     let mut within = None;
     motion
@@ -96,13 +96,13 @@ fn a_pulse_that_ends_within_a_chatter_lets_go_at_once() {
         .unwrap();
     let (start, duration) = within.unwrap();
     let end = start + 0.5 * duration;
-    // Without the pulse the spring draws mass 1 off the wall.
+    // After the pulse the spring pulls mass 1 off the wall.
     let mut motion = Simulation::new(&rig, &pulse(end)).unwrap();
     let mut found = Vec::new();
     motion.run(end + duration, |leg| found.push((leg.event, leg.start + leg.duration))).unwrap();
     let n = found.iter().position(|e| e.0 == Event::Switch && e.1 > 0.0).unwrap();
     assert!((found[n].1 - end).abs() < 1e-15, "{found:?}");
-    // Nothing is pressed any more: no rest, no later release.
+    // Nothing presses mass 1 any more: there is no lasting contact, and no later release.
     let rests = |e: &(Event, f64)| matches!(e.0, Event::Stick | Event::Release);
     assert!(!found[n + 1..].iter().any(rests), "{:?}", &found[n..]);
 }
