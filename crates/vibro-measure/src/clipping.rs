@@ -129,8 +129,8 @@ fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f6
             let own = row(*i);
             let off = SURE * sigma * (own.dot(&kept.solve(&own)) * repeats).sqrt();
             let over = side(*i) * (p.dot(&own) - y(*i)) - off;
-            // Probability that a value at or beyond this end lies within its step; it is small where the sine
-            // goes beyond.
+            // Probability that a value at this end or beyond lies within the step of the end; small where the
+            // sine goes beyond.
             -(1.0 - above((0.5 - over) / noise) / above((-0.5 - over) / noise).max(1e-300)).max(1e-12).ln()
         };
         at.iter().filter(|i| values[**i] == **end).map(ratio).sum::<f64>() > RATIO * repeats

@@ -34,9 +34,9 @@ const KNOWN: f64 = 0.3;
 /// Modes of the free decay that a record holds.
 ///
 /// # Errors
-/// If the trace is not evenly sampled, its band is none, it holds too few periods, no mode stands out of the
-/// noise, or the strongest line does not decay: a motion that is driven, grows, or was not seen for long
-/// enough.
+/// If the trace is not evenly sampled, the band is impossible, the record holds too few periods, no mode is
+/// above the noise, or the strongest line does not decay: a motion that is driven, grows, or was not seen for
+/// long enough.
 pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
     let rate = trace.sampling_rate()?;
     if let Some((low, high)) = options.band.filter(|(low, high)| !(*low >= 0.0 && low < high)) {

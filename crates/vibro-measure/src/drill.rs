@@ -1,9 +1,9 @@
 //! Hammer drills: a laser on the striker or the bit, and a pulse once a turn of the crank.
 //!
-//! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and
+//! The velocity is the signal of the laser times its sensitivity over cos α, α the angle between beam and
 //! motion. Edges of the reference cut the record into turns; phases are parts of a turn after the edge, which
 //! for a pulse at the upper end of the piston's stroke is the phase after top dead centre. Without a
-//! reference the turns run from impact to impact. Beside the channels a record takes 25 bytes a sample.
+//! reference the turns run from impact to impact. Besides the channels a record takes 25 bytes a sample.
 //!
 //! ```
 //! use vibro_measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, drill};
@@ -192,9 +192,9 @@ pub fn drill_each(
     Ok(result)
 }
 
-/// Standard uncertainty in m of a stroke from its two losses: what smoothing takes off, and the travel
-/// between an impact, which reverses the mass at once, and the nearer sample. `reach` in m/s is the largest
-/// velocity of the record.
+/// Standard uncertainty in m of a stroke from its two losses: the smoothing, and the travel between an
+/// impact, which reverses the mass at once, and the nearer sample. `reach` in m/s is the largest velocity of
+/// the record.
 fn lacking(blunted: &[f64], groups: &[Group], reach: f64, rate: f64) -> f64 {
     let corner = |group: &Group| {
         // An unknown velocity is no more than the largest of the record.

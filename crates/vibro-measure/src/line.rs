@@ -13,7 +13,7 @@ pub struct SubLine {
     pub position_std: Option<f64>,
     /// Amplitude without scalloping loss, in the unit of the spectrum.
     pub amplitude: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the amplitude, in the same unit.
     pub amplitude_std: Option<f64>,
 }
 

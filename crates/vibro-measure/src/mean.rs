@@ -86,7 +86,7 @@ impl Mean {
         let squares: f64 = (1..=count)
             .map(|j| {
                 let weight = |t: usize| (step * j as f64 * (t as f64 + 0.5)).cos();
-                // The cosines sum to 0, so the mean changes nothing; without it less is rounded.
+                // The cosines sum to 0, so subtracting the mean changes only the rounding, for the better.
                 let c: f64 = values.iter().enumerate().map(|(t, x)| (x - value) * weight(t)).sum();
                 2.0 / n as f64 * (c * c)
             })

@@ -188,7 +188,7 @@ fn damping_that_changes_with_amplitude_has_no_uncertainty() {
     assert!(zeta.len() > 1 && zeta.is_sorted() && zeta[zeta.len() - 1] > 2.0 * zeta[0], "{zeta:?}");
 }
 
-/// A record a hundred times as long as its motion is seen: it is cut before further modes are sought, and the
+/// A record a hundred times as long as its motion is seen is cut before further modes are searched, and the
 /// second mode is found all the same.
 #[test]
 fn bounces_in_a_long_record_are_cut_to_the_first() {

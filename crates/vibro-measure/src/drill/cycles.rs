@@ -101,7 +101,7 @@ impl Cycles {
         Cycles { rate, points: vec![RunningMoments::default(); points], ..Cycles::default() }
     }
 
-    /// Averages a turn. Phases beside a sample that was not measured are left out.
+    /// Averages a turn. Phases next to a sample that was not measured are left out.
     pub fn average(&mut self, values: &[f64], states: &[State], number: usize, turn: Turn) -> Cycle<'_> {
         let Turn { start, end } = turn;
         self.row.clear();

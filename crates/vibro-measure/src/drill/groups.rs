@@ -42,19 +42,19 @@ pub struct Impact {
     pub group: usize,
     /// Time from the first sample, in s.
     pub time: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the time, in s.
     pub time_std: f64,
     /// Part of the turn after its beginning, 0 to 1.
     pub phase: f64,
-    /// Standard uncertainty of the phase.
+    /// Standard uncertainty of the phase, in turns.
     pub phase_std: f64,
     /// Velocity right before the contact, in m/s.
     pub before: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of this velocity, in m/s.
     pub before_std: f64,
     /// Velocity right after the contact, in m/s.
     pub after: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of this velocity, in m/s.
     pub after_std: f64,
     /// Whether samples of the fits or of the contact are over-range: then the speeds are too small, and the
     /// impact is in no mean.
@@ -87,7 +87,7 @@ impl Offset {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Group {
-    /// Impacts.
+    /// Number of impacts.
     pub n: usize,
     /// Impacts of the group that are over-range: they are in no mean, unless all are.
     pub clipped: usize,
@@ -96,9 +96,9 @@ pub struct Group {
     /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the
     /// turn.
     pub phase: Estimate,
-    /// Mean velocity before, in m/s.
+    /// Mean velocity right before the contact, in m/s.
     pub before: Estimate,
-    /// Mean velocity after, in m/s.
+    /// Mean velocity right after the contact, in m/s.
     pub after: Estimate,
     /// Mean kinetic energy before, in J, where the mass is known.
     pub energy: Option<Estimate>,
@@ -106,7 +106,7 @@ pub struct Group {
     pub energy_given: Option<Estimate>,
     /// Sum of the speeds of separation over sum of the speeds of approach.
     pub restitution: Option<Estimate>,
-    /// What was found of this group alone.
+    /// Findings of this group alone.
     #[serde(skip)]
     pub(super) findings: Vec<Finding>,
     /// Whether velocities or phase change so slowly that uncertainties may be too small.

@@ -13,7 +13,8 @@ use super::{Impact, TurnsFrom, turns};
 use crate::residuals::Whiteness;
 use vibro_record::median;
 
-/// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
+/// Most impacts in a turn: one at the front and one at the rear, and as many again where a turn holds two
+/// cycles of the machine.
 const MOST: usize = 4;
 /// Smallest jump that counts, over the largest of its turn, and over the median of these largest jumps.
 const PART: f64 = 0.25;

@@ -40,7 +40,7 @@ pub enum AngleOrigin {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Beam {
-    /// Velocity of the motion over velocity along the beam, 1/cos α.
+    /// Velocity of the motion over that along the beam, 1/cos α.
     pub factor: f64,
     /// Relative change of velocities for one degree of error in the angle: tan α · π/180.
     pub per_degree: f64,
@@ -106,8 +106,8 @@ pub enum Corner {
 }
 
 impl Smoothing {
-    /// Kind and corner for an average at `points` phases of turns of `turn` seconds, `rate` samples a second;
-    /// `None` where nothing is smoothed.
+    /// Kind of low-pass and corner in Hz, for an average at `points` phases of turns of `turn` seconds,
+    /// `rate` samples a second; `None` without smoothing.
     ///
     /// ```
     /// use vibro_measure::drill::{Corner, Smoothing};

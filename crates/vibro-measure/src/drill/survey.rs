@@ -7,9 +7,9 @@ use vibro_record::{Error, Result, median};
 /// State of a sample after faults were bridged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// As it was measured.
+    /// Measured.
     Good,
-    /// As it was measured, but at the end of the range: over-range.
+    /// Measured, but at the end of the range: over-range.
     Clipped,
     /// A straight line over a fault.
     Bridged,
@@ -27,9 +27,9 @@ impl State {
 /// Number of faults found, and of the samples they cover.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct FaultCount {
-    /// Drop-outs: stretches of missing or of equal values.
+    /// Number of drop-outs: stretches of missing or of equal values.
     pub dropouts: usize,
-    /// Spikes: one to three outliers, or a burst of 8 to 48.
+    /// Number of spikes: one to three outliers, or a burst of 8 to 48.
     pub spikes: usize,
     /// Samples bridged by a straight line.
     pub bridged: usize,
@@ -244,7 +244,7 @@ pub(super) struct ChannelStatistics {
 }
 
 impl ChannelStatistics {
-    /// Of all values; missing ones are NaN.
+    /// Statistics of all values; missing ones are NaN.
     pub fn of(values: &[f64]) -> ChannelStatistics {
         let (low, high) = range(values);
         let steps = || values.windows(2).map(|w| (w[1] - w[0]).abs());

@@ -135,7 +135,7 @@ impl Background {
         let power = |part: &[f64]| 0.5 * part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
         let lowest = quantile(envelope.chunks(stretch).map(power), QUIETEST).sqrt();
         // Where impacts ring until the next one, σ contains the ringing, and the quietest stretches show the
-        // noise. They count where they are so much quieter that it is no chance.
+        // noise. They are used where they are below half of σ, which chance does not give.
         let part = if lowest < 0.5 * self.sigma { lowest / self.sigma } else { 1.0 };
         let (sigma, level) = (part * self.sigma, (0.5 * PI).sqrt() * part * self.sigma);
         Background { level, sigma: (2.0 - 0.5 * PI).sqrt() * sigma, reach: part * self.reach - level }
@@ -234,7 +234,8 @@ mod levels {
         assert!((found.sigma / 0.1 - 1.0).abs() < 0.15, "{found:?}");
     }
 
-    /// Noise of a third of a converter's step: most samples are the level, and what is beside it no impact.
+    /// Noise of a third of a converter's step: most samples are the level, and those one step away are no
+    /// impact.
     #[test]
     fn the_last_digit_of_a_converter_is_no_impact() {
         let (mut noise, step) = (Noise::new(8), 1.0 / 2048.0);

@@ -312,14 +312,14 @@ fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
 pub struct ImpactsOptions {
     /// Height of the lowest impact over the median height; 1/8 where `None`.
     pub threshold: Option<f64>,
-    /// Pause in s that separates two impacts. Default: from the pauses of the trace.
+    /// Shortest pause in s between two impacts. Default: from the pauses of the trace.
     pub refractory: Option<f64>,
     /// Band in Hz to which the trace is filtered first, without delay. Default: all of it.
     pub band: Option<(f64, f64)>,
     /// Whether impacts are searched in the envelope, which joins the swings of a ringing structure. Default
     /// false.
     pub envelope: bool,
-    /// Whether mains hum stays. Default: it is removed.
+    /// Whether mains hum stays in the trace. Default: it is removed.
     pub keep_hum: bool,
     /// One recorded pulse with the shape of all. Default: the average of the pulses.
     pub shape: Option<Trace>,

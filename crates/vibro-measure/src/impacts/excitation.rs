@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn impacts_that_repeat_nothing_are_irregular() {
-        // Steps that grow by the golden ratio repeat nothing, at a rate of one a cycle.
+        // Shifts that follow the golden ratio repeat nothing, at a rate of one impact a cycle.
         let cycles: Vec<f64> =
             (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k * k) * 0.618_034).fract()).collect();
         assert_eq!(locking(&cycles, &(0..60).collect::<Vec<_>>(), 1e-3), Locking::Irregular);

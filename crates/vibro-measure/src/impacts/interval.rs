@@ -193,8 +193,7 @@ const ACCIDENTS: f64 = 0.4;
 /// counts as one.
 ///
 /// An interval below half of the median ends with an extra impact; one above 1.5 medians lacks impacts. Where
-/// intervals scatter as far as that, or too many are odd, neither can be told, and every interval counts as
-/// one.
+/// intervals scatter as far as that, or too many are odd, both are unknown, and every interval counts as one.
 pub fn count(times: &[f64], steps: &[f64], complete: bool) -> CountedImpacts {
     let typical = median(steps);
     let off: Vec<f64> = steps.iter().map(|d| (d - typical).abs()).collect();

@@ -10,7 +10,7 @@ use vibro_record::median;
 pub struct Onset {
     /// Time at which the rising flank passes half its height, in samples.
     pub time: f64,
-    /// Its standard uncertainty from the noise, in samples; NaN where it is not known.
+    /// Standard uncertainty of the time from the noise, in samples; NaN where it is not known.
     pub std: f64,
     /// Height over the background, in the unit of the trace.
     pub height: f64,
