@@ -1,12 +1,12 @@
-//! Steps of a sweep that allow an answer: one bad record loses only itself.
+//! Keeps the steps of a sweep that can be evaluated: a bad record loses only itself.
 
 use std::path::PathBuf;
 use vibro_record::{Error, Finding, Result};
 
-/// The steps that allow an answer, in order, and a finding for each other one.
+/// The results of the steps that can be evaluated, in order, and a finding for each other step.
 ///
 /// # Errors
-/// That of the first step, with its name, where none allows an answer.
+/// The error of the first step, with its name, where no step can be evaluated.
 pub(crate) fn answered<T>(
     steps: impl IntoIterator<Item = (PathBuf, Result<T>)>,
 ) -> Result<(Vec<T>, Vec<Finding>)> {

@@ -11,12 +11,12 @@ pub(crate) fn normal_beyond(a: f64) -> f64 {
     Normal::standard().pdf(a) / Normal::standard().sf(a)
 }
 
-/// P(χ² > x) for so many degrees of freedom; NaN for none.
+/// P(χ² > x) for `free` degrees of freedom; NaN for 0.
 pub(crate) fn chi_squared_above(x: f64, free: usize) -> f64 {
     ChiSquared::new(free as f64).map_or(f64::NAN, |chance| chance.sf(x))
 }
 
-/// The value that χ² of so many degrees of freedom stays below with this probability; NaN for none.
+/// Quantile of χ² with `free` degrees of freedom at this probability; NaN for 0 degrees.
 ///
 /// ```
 /// // Abramowitz & Stegun, table 26.8.
@@ -27,12 +27,12 @@ pub fn chi_squared_at(probability: f64, free: usize) -> f64 {
     ChiSquared::new(free as f64).map_or(f64::NAN, |chance| chance.inverse_cdf(probability))
 }
 
-/// The value that Student's t of so many degrees of freedom stays below with this probability; NaN for none.
+/// Quantile of Student's t with `free` degrees of freedom at this probability; NaN for 0 degrees.
 pub(crate) fn student_at(probability: f64, free: usize) -> f64 {
     StudentsT::new(0.0, 1.0, free as f64).map_or(f64::NAN, |chance| chance.inverse_cdf(probability))
 }
 
-/// The value that a standard normal variable stays below with this probability.
+/// Quantile of the standard normal distribution at this probability.
 pub(crate) fn normal_at(probability: f64) -> f64 {
     Normal::standard().inverse_cdf(probability)
 }

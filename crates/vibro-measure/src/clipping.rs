@@ -1,14 +1,14 @@
-//! Samples that an instrument's range cut off.
+//! Finds samples that are clipped at the ends of an instrument's range.
 
 use crate::chance::normal_beyond;
 use nalgebra::{Matrix3, Vector3};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Samples at either end of the range of the values. Of a sine of this period in samples, in few steps of the
-/// converter, those that it passes. Of another signal, where some stay there longer than any crest of this
-/// period stays within a step, or where more lie at the end than a crest lets lie there beside those a step
-/// away.
+/// Places of clipped samples, which lie at the largest or the smallest value. For a sine of this `period` in
+/// samples with noise of few converter steps, an end is clipped where the fitted sine goes beyond it. For
+/// another signal an end is clipped where samples rest on it longer than a crest of this period stays within
+/// three steps, or where more samples lie at the end than a crest puts there beside those one step away.
 pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
@@ -21,7 +21,7 @@ pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
     sorted.sort_by(f64::total_cmp);
     let steps = sorted.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0);
     let step = steps.clone().fold(f64::INFINITY, f64::min);
-    // Values that do not repeat were not rounded.
+    // Values that hardly ever repeat were not rounded.
     let rounded = (steps.count() as f64) < UNROUNDED * values.len() as f64;
     if let Some(ends) = passed(values, period, step, &repeated) {
         return (0..values.len()).filter(|i| ends.contains(&values[*i])).collect();
@@ -29,7 +29,7 @@ pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
     let crest = |run: usize| 0.5 * (high - low) * (1.0 - (PI * (run as f64 / period).min(0.5)).cos());
     let rests = |end: f64| {
         let runs = values.chunk_by(|a, b| a == b).filter(|run| run[0] == end && run.len() > 1);
-        // Far more than the half step by which rounding moves a value.
+        // Three steps are far more than the half step by which rounding moves a value.
         runs.into_iter().any(|run| crest(run.len() - 1) > 3.0 * step)
     };
     let crowds = |end: f64| {
@@ -37,42 +37,43 @@ pub fn clipped(values: &[f64], period: f64) -> Vec<usize> {
         let near = |v: &&f64| (**v - end).abs() <= 1.5 * step;
         let (at, near) = (at(end) as f64, values.iter().filter(near).count() as f64);
         let beside = near - at;
-        // Under the crest of a sine of rounded values 2.4 times as many lie in the last step as in the one
-        // before, and chance adds to that: of the difference from three times as many, whose variance is
-        // at + 9 beside, four standard deviations.
+        // The crest of a rounded sine puts 2.4 times as many samples in the last step as in the one before.
+        // More than three times as many are clipped, with four standard deviations for chance: at − 3 beside
+        // has the variance at + 9 beside.
         if rounded { at > 3.0 * beside + 4.0 * (at + 9.0 * beside).sqrt() } else { at > 2.0 }
     };
     let ends: Vec<f64> = repeated.into_iter().filter(|end| rests(*end) || crowds(*end)).collect();
     (0..values.len()).filter(|i| ends.contains(&values[*i])).collect()
 }
 
-/// Of values that were not rounded more than this part differ.
+/// Number of different values over all, below which values are rounded.
 const UNROUNDED: f64 = 0.8;
 
-/// Steps of the converter of which the residuals of a sine are noise of it.
+/// Largest standard deviation of the residuals of a sine, in converter steps: with more, the values are no
+/// sine with little noise.
 const NOISE: f64 = 3.0;
-/// Residuals in steps of no sine in few of them, before what is cut off is allowed for: of 2000 steps that
-/// are cut at 97 %, 20.
+/// Standard deviation of the residuals in steps, above which the fit gives up. It is larger than [`NOISE`],
+/// as the first round does not allow for clipping: a sine of 2000 steps clipped at 97 % then has 20.
 const FAR: f64 = 100.0;
-/// Smallest standard deviation of the noise in steps, and of what a fit of rounded values is off by.
+/// Smallest standard deviation of the noise in steps: a fit of rounded values is off by as much.
 const LEAST: f64 = 0.05;
-/// Phases that are told apart: errors of rounding depend on the phase, and repeat with it, but for noise,
-/// which leaves e^(−2π²σ²) of that (Widrow & Kollár, Quantization Noise, 2008).
+/// Number of phases that are distinguished. Errors of rounding depend on the phase and repeat with it; noise
+/// of σ steps leaves e^(−2π²σ²) of this (Widrow & Kollár, Quantization Noise, 2008).
 const PHASES: usize = 1024;
-/// Harmonics of half of what an end hides, in steps, move no crest past it.
+/// Largest harmonic of the residuals, in steps, apart from noise: half of what an end hides, so that it moves
+/// no crest past an end.
 const SLIGHT: f64 = 0.25;
-/// Most rounds: each leaves of the error the part of the samples that lie at the ends.
+/// Most rounds: each reduces the error to the part of the samples that lie at the ends.
 const ROUNDS: usize = 30;
-/// Standard uncertainties of the sine by which it may be too high.
+/// Standard uncertainties by which the sine is lowered before it may go beyond an end.
 const SURE: f64 = 3.0;
-/// A likelihood ratio above 10⁶ comes by chance in fewer than one of 10⁶ cases (Markov); a dozen values may
-/// be the end.
+/// Least logarithm of the likelihood ratio of a clipped end, ln 10⁶: chance exceeds it in fewer than one of
+/// 10⁶ cases (Markov), and a dozen values may be the end.
 const RATIO: f64 = 13.8;
 
-/// Ends that a sine passes: there samples would lie beyond if nothing cut them off. The sine is that of all
-/// samples, of which those at the ends say only that it was there or beyond, whether cut off or not (Tobin,
-/// Econometrica 26 (1958) 24, by expectation and maximization). `None` where the values are no sine in few
-/// steps of noise.
+/// Ends that the fitted sine goes beyond, so that samples there are clipped. The fit uses all samples; those
+/// at an end state only that the sine was there or beyond (Tobin, Econometrica 26 (1958) 24, by expectation
+/// and maximization). `None` where the values are no sine with noise of few steps.
 fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f64>> {
     let n = values.len();
     let centre = 0.5 * (ends[0] + ends[ends.len() - 1]);
@@ -121,14 +122,15 @@ fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f6
     if sigma > NOISE || [2.0, 3.0].into_iter().any(|k| harmonic(k) > shown) {
         return None;
     }
-    // Where the other samples do not determine a sine, nothing is known of it at the ends.
+    // Without the samples at the ends the others may not determine a sine: then no end is clipped.
     let Some(kept) = normal(&kept).cholesky() else { return Some(Vec::new()) };
     let passes = |end: &&f64| {
         let ratio = |i: &usize| {
             let own = row(*i);
             let off = SURE * sigma * (own.dot(&kept.solve(&own)) * repeats).sqrt();
             let over = side(*i) * (p.dot(&own) - y(*i)) - off;
-            // Of what is there or beyond, the part that lies within its step.
+            // Probability that a value at this end or beyond lies within the step of the end; small where the
+            // sine goes beyond.
             -(1.0 - above((0.5 - over) / noise) / above((-0.5 - over) / noise).max(1e-300)).max(1e-12).ln()
         };
         at.iter().filter(|i| values[**i] == **end).map(ratio).sum::<f64>() > RATIO * repeats
@@ -136,9 +138,9 @@ fn passed(values: &[f64], period: f64, step: f64, ends: &[f64]) -> Option<Vec<f6
     Some(ends.iter().filter(passes).copied().collect())
 }
 
-/// What P(x > z) of N(0, 1) is at most, where z is above 0: e^(−z²/2)/2. A value just below its end counts by
-/// it for more than by the probability, with which one of 4000 cut sines is not found, of a cut that rounding
-/// almost hides.
+/// Upper bound e^(−z²/2)/2 of P(x > z) of N(0, 1) for z above 0. It weighs a value just inside its end more
+/// than the exact probability does. With the exact one, one of 4000 clipped sines is missed: a cut that
+/// rounding almost hides.
 fn above(z: f64) -> f64 {
     let beyond = 0.5 * (-0.5 * z * z).exp();
     if z > 0.0 { beyond } else { 1.0 - beyond }
@@ -164,7 +166,7 @@ mod tests {
         assert!(clipped(&[1.0; 50], 10.0).is_empty());
     }
 
-    /// Of two sines a crest is cut for a sample or two: too short to tell by its length.
+    /// The crests of a sum of two sines are cut for a sample or two: too short to see by their length.
     #[test]
     fn sums_of_fast_sines_are_clipped_where_many_samples_share_the_end() {
         let sum = |i: i32| {
@@ -179,13 +181,13 @@ mod tests {
         }
     }
 
-    /// A sine in steps of the converter, with noise; cut off at this part of its amplitude where there is
-    /// one.
+    /// A sine in steps of the converter, with noise; with `cut`, clipped at this part of its amplitude.
+    /// Returns its samples and its period.
     fn stepped(noise: &mut Noise, amplitude: f64, cut: Option<f64>) -> (Vec<f64>, f64) {
         let periods = noise.between(8.0, 200.0);
         let exact = noise.between(0.0, 1.0) < 0.5;
         let whole = |noise: &mut Noise, low: f64, high: f64| noise.between(low, high).floor();
-        // Half of them sample a few phases again and again.
+        // Half of the sines sample a few phases again and again.
         let period = if exact {
             whole(noise, 8.0, 100.0) / whole(noise, 1.0, 4.0)
         } else {
@@ -200,9 +202,9 @@ mod tests {
         ((0..((periods * period) as usize).max(200)).map(value).collect(), period)
     }
 
-    /// Of so many good sines those that are called clipped, and of those that are cut off at 97 % those that
-    /// are not: where the cut is no more than rounding hides, and changes 4 % of the samples, and where
-    /// 256 phases tell the amplitude to 0.29·√(3/256) = 0.03 steps.
+    /// Seeds of whole sines that are called clipped, and of sines clipped at 97 % that are missed. Misses
+    /// count from 20 steps of amplitude on, where the cut exceeds what rounding hides, where it changes 4 %
+    /// of the samples, and where 256 phases give the amplitude to 0.29·√(3/256) = 0.03 steps.
     fn wrong(draws: u64) -> (Vec<u64>, Vec<u64>) {
         let draw = |seed: u64, cut: Option<f64>, least: f64| {
             let mut noise = Noise::new(seed);

@@ -3,7 +3,7 @@
 use super::jump::{Jump, Point, known};
 use std::collections::BTreeMap;
 
-/// Two points of a curve, and their weights in its logarithm between them.
+/// Two points of a curve, and their weights in its interpolated logarithm.
 type Between = [(usize, f64); 2];
 
 /// The points between which `f` lies in a rising curve; `None` outside.
@@ -28,7 +28,7 @@ pub(super) fn at(curve: &[Point], f: f64) -> Option<f64> {
 pub struct Crossing {
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Its standard uncertainty in Hz; `None` where that of an amplitude is not known.
+    /// Standard uncertainty of the frequency in Hz; `None` where that of an amplitude is not known.
     pub frequency_std: Option<f64>,
     /// Whether the second curve is the larger one above.
     pub second_above: bool,
@@ -37,9 +37,9 @@ pub struct Crossing {
 /// Where two curves over frequency cross. Each is given by its points in any order;
 /// between its points it is a straight line in the logarithm, but not across a jump of its own.
 ///
-/// The uncertainty is that of the amplitudes, carried through the interpolation. Where the curves change
-/// places at a jump, the crossing is that jump: it lies anywhere between the points beside it with equal
-/// chance.
+/// The uncertainty is propagated from the amplitudes through the interpolation. Where the curves change
+/// places at a jump, the crossing is that jump: it lies anywhere between the two points of the jump with
+/// equal probability.
 pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) -> Vec<Crossing> {
     first.sort_by(|a, b| a.0.total_cmp(&b.0));
     second.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -48,7 +48,7 @@ pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) 
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup();
 
-    // The points of both curves behind a frequency. Within a jump of its own a curve has no value.
+    // The points of both curves around a frequency. Within a jump of its own a curve has no value.
     let places = |f: f64| -> Option<[Between; 2]> {
         let places = [between(&first, f)?, between(&second, f)?];
         let within = |(curve, [a, b]): (&&Vec<Point>, &Between)| {
@@ -56,7 +56,7 @@ pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) 
         };
         (!curves.iter().zip(&places).any(within)).then_some(places)
     };
-    // Frequency, logarithm of second over first, and where both come from.
+    // Frequency, logarithm of second over first curve, and the points of both.
     let ratios: Vec<_> = frequencies
         .into_iter()
         .filter_map(|f| Some((f, (at(&second, f)? / at(&first, f)?).ln(), places(f)?)))
@@ -69,7 +69,7 @@ pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) 
             let (low, high) = (&w[0], &w[1]);
             let (width, turn) = (high.0 - low.0, low.1 - high.1);
             let second_above = high.1 > 0.0;
-            // A jump belongs to the stretch that holds more than half of its step: both masses seldom have
+            // A jump belongs to the stretch that holds more than half of its width: both masses seldom have
             // quite the same frequencies.
             let spans = jumps.iter().map(Jump::span);
             let own = spans.filter(|j| j.1.min(high.0) - j.0.max(low.0) > 0.5 * (j.1 - j.0));
@@ -77,11 +77,11 @@ pub fn crossings(mut first: Vec<Point>, mut second: Vec<Point>, jumps: &[Jump]) 
                 let frequency_std = Some((jump.1 - jump.0) / f64::sqrt(12.0));
                 return Crossing { frequency: f64::midpoint(jump.0, jump.1), frequency_std, second_above };
             }
-            // Slopes of the crossing over the two logarithms.
+            // Derivatives of the crossing by the two logarithms.
             let slopes = [-width * high.1 / (turn * turn), width * low.1 / (turn * turn)];
             let mut variance = 0.0;
             for (which, curve) in curves.iter().enumerate() {
-                // One point may stand behind both.
+                // One point may enter both ends: its parts add up before they are squared.
                 let mut parts = BTreeMap::new();
                 for (slope, points) in [(slopes[0], low.2[which]), (slopes[1], high.2[which])] {
                     for (i, weight) in points.into_iter().filter(|p| p.1 != 0.0) {

@@ -1,9 +1,9 @@
-//! Free decays, behind a release or a blow: natural frequency and damping of each mode.
+//! Free decays, after a release or a blow: natural frequency and damping of each mode.
 //!
-//! The motion is a sum of damped sines. Each is fitted to the lines around it, with what the ends of the
-//! record do to these in the model (damped.rs); the strongest line of what is left gives the next sine, and
-//! all are fitted again (J. Li, P. Stoica, IEEE Trans. Signal Process. 44 (1996) 281, the method RELAX, for
-//! damped sines). Noise is that which is left of the lines beside a sine.
+//! The motion is a sum of damped sines. Each is fitted to the lines around it; the model contains the leakage
+//! from the ends of the record (damped.rs). The strongest line of the residual gives the next sine, and all
+//! are fitted again (J. Li, P. Stoica, IEEE Trans. Signal Process. 44 (1996) 281, the method RELAX, for
+//! damped sines). The residual of the lines beside a sine is its noise.
 
 mod damped;
 mod result;
@@ -21,22 +21,22 @@ use usable::{Usable, usable};
 use vibro_record::code;
 use vibro_record::{Error, Finding, Result, Trace};
 
-/// Part of the strongest amplitude from which on a steady line is named.
+/// Least amplitude of a steady line that is reported, over the strongest amplitude.
 const SEEN: f64 = 0.01;
-/// Largest number of stretches, and the decay of one.
+/// Largest number of stretches, and the least decay within one, in natural logarithms.
 const STRETCHES: (usize, f64) = (5, 1.2);
-/// How often the levels of a steady mode may seem to change.
+/// Probability with which the levels of a mode of constant damping seem to change.
 const CHANGED: f64 = 1e-3;
-/// Relative standard uncertainty of its damping ratio below which a stretch counts: the ratio is then more
-/// than three of them above 0.
+/// Largest relative standard uncertainty of the damping ratio of a stretch that counts: the ratio is then
+/// more than three of them above 0.
 const KNOWN: f64 = 0.3;
 
 /// Modes of the free decay that a record holds.
 ///
 /// # Errors
-/// If the trace is not evenly sampled, its band is none, it holds too few periods, no mode stands out of the
-/// noise, or the strongest line does not decay: a motion that is driven, grows, or was not seen for long
-/// enough.
+/// If the trace is not evenly sampled, the band is impossible, the record holds too few periods, no mode is
+/// above the noise, or the strongest line does not decay: a motion that is driven, grows, or was not seen for
+/// long enough.
 pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
     let rate = trace.sampling_rate()?;
     if let Some((low, high)) = options.band.filter(|(low, high)| !(*low >= 0.0 && low < high)) {
@@ -58,10 +58,10 @@ pub fn decay(trace: &Trace, options: &DecayOptions) -> Result<DecayResult> {
                 .setting("band")
         })?;
         let loss = group.sines[m].decay;
-        // As long as the strongest mode is seen, and no longer.
+        // The part is as long as the strongest mode is seen, and no longer.
         let wanted = (part.start + (part.len() as f64 * ENOUGH / loss.max(0.1)) as usize).min(limit);
         let change = wanted.max(part.start + 3 * block) as f64 - part.end as f64;
-        // A tenth is not worth another fit.
+        // A change of less than a tenth is not worth another fit.
         if loss > 0.0 && lengths > 0 && change.abs() > 0.1 * part.len() as f64 {
             part.end = (part.end as f64 + change) as usize;
             lengths -= usize::from(!found.is_long());
@@ -123,7 +123,7 @@ impl Sines {
                 modes[strongest] = modes[strongest].clone().without_uncertainty();
                 findings.push(found.number("frequency", modes[strongest].frequency.value));
             }
-            // What is not known of a mode is not known of its decrement.
+            // A mode without an uncertainty leaves its decrement without one.
             if let (None, Some(decrement)) = (modes[strongest].zeta.std, &mut decrement) {
                 decrement.std = None;
             }
@@ -145,7 +145,7 @@ impl Sines {
         })
     }
 
-    /// What to say where the strongest line does not decay.
+    /// The refusal where the strongest line does not decay.
     fn steady(&self, group: &SineGroup, m: usize) -> Error {
         let Damped { periods, decay, .. } = group.sines[m];
         let lost = -(-decay).exp_m1();
@@ -162,9 +162,10 @@ impl Sines {
             .setting("band")
     }
 
-    /// The strongest mode in stretches of equal length, and what their amplitudes say of its damping.
+    /// The strongest mode in stretches of equal length, and its damping ratio from the decrement of their
+    /// amplitudes.
     fn levels(&self, part: &[f64], start: f64, unit: &'static str) -> (Vec<Level>, Option<Estimate>) {
-        // Beside others it is not known so well as to be followed alone.
+        // A mode fitted together with others is not known well enough to be followed alone.
         let alone = self.strongest().filter(|(group, _)| group.sines.len() == 1);
         let Some(own) = alone.map(|(group, m)| group.sines[m]) else { return (Vec::new(), None) };
         let stretches =
@@ -183,7 +184,7 @@ impl Sines {
                 ..(centre + LINES.0 as usize + 2).min(spectrum.len() - 1);
             let group = SineGroup::fit(&spectrum, range.clone(), n, &starts).ok()?;
             let mode = mode(&group, 0, n, self.rate, unit);
-            // Another mode that is there when this is over is not this one.
+            // A fit that has left these lines has found another mode.
             let own = range.contains(&(group.sines[0].periods.max(0.0) as usize));
             let known = own && mode.zeta.std.is_some_and(|std| std < KNOWN * mode.zeta.value);
             known.then(|| Level { start: start + (i * n) as f64 / self.rate, mode })

@@ -1,9 +1,9 @@
 //! Hammer drills: a laser on the striker or the bit, and a pulse once a turn of the crank.
 //!
-//! The velocity is what the laser shows times its sensitivity over cos α, α the angle between beam and
+//! The velocity is the signal of the laser times its sensitivity over cos α, α the angle between beam and
 //! motion. Edges of the reference cut the record into turns; phases are parts of a turn after the edge, which
 //! for a pulse at the upper end of the piston's stroke is the phase after top dead centre. Without a
-//! reference the turns run from impact to impact. Beside the channels a record takes 25 bytes a sample.
+//! reference the turns run from impact to impact. Besides the channels a record takes 25 bytes a sample.
 //!
 //! ```
 //! use vibro_measure::drill::{AngleOrigin, Beam, DrillOptions, Edge, Slices, drill};
@@ -53,9 +53,9 @@ use train::TurnImpacts;
 use turns::{Turn, Turns};
 use vibro_record::{Error, Finding, Result, median};
 
-/// Turns that are drawn as they were measured.
+/// Turns of the excerpt, which is drawn as measured.
 const DRAWN: usize = 3;
-/// Parts of a record whose turns are not known.
+/// Parts into which a record without known turns is cut for the search for impacts.
 const PARTS: usize = 16;
 
 /// Channels of one record.
@@ -71,14 +71,14 @@ pub struct Slices<'a> {
 /// Measures the turns and impacts of a drill; `still` is the velocity channel without motion.
 ///
 /// # Errors
-/// If the parameters cannot be; if the velocity is constant or missing, or the same as the reference; if the
-/// reference has no whole turn between its edges, or without a reference the impacts no common period; if a
-/// handle allows no exposure.
+/// If the parameters are impossible; if the velocity is constant or missing, or the same as the reference; if
+/// the reference has no whole turn between its edges, or without a reference the impacts have no common
+/// period; if a handle allows no exposure.
 pub fn drill(record: &Slices<'_>, options: &DrillOptions, still: Option<&[f64]>) -> Result<Drill> {
     drill_each(record, options, still, &mut |_| Ok(()))
 }
 
-/// As [`drill`], and hands out each turn of the average, resampled.
+/// As [`drill`], and passes each turn of the average, resampled, to `each`.
 ///
 /// # Errors
 /// As [`drill`], and if `each` fails.
@@ -123,7 +123,7 @@ pub fn drill_each(
     let (mut stroke, drift) = (Mean::of(&cycles.stroke), Mean::of(&cycles.drift));
     let (speed, speed_wanders) = turns.speed(rate, edge);
     let period = 1.0 / speed.value;
-    // What lies beyond the range is missing from the mean.
+    // Largest error of the mean from over-range: each clipped sample lacks at most the whole range.
     let beyond = faults.clipped as f64 / velocity.len() as f64 * (survey.high - survey.low);
     let offset = Offset::of(&drift, period, beyond);
     let around: Vec<f64> = velocity.iter().map(|v| v - offset.value).collect();
@@ -136,7 +136,7 @@ pub fn drill_each(
     stroke.std = stroke.std.map(|std| std.hypot(lacking(&cycles.blunted, &groups, reach, rate)));
     let strongest = groups.first();
     let speeds: Vec<f64> = whole.iter().map(|t| rate / (t.end - t.start)).collect();
-    // Where speeds are too small, so is what they add up to: no uncertainty is stated.
+    // Over-range makes speeds too small, and displacements with them: no uncertainty is stated.
     let metres = |mean: Mean, method| {
         let known = mean.std.filter(|_| faults.clipped == 0);
         Estimate::new(mean.value, known, "m", mean.n, method).with_relative(options.clock)
@@ -192,12 +192,12 @@ pub fn drill_each(
     Ok(result)
 }
 
-/// Standard uncertainty in m of what a stroke lacks, where no velocity is beyond `reach` in m/s: what
-/// smoothing takes off, and what the mass covers between an impact, which turns it round at once, and the
-/// nearer sample.
+/// Standard uncertainty in m of a stroke from its two losses: the smoothing, and the travel between an
+/// impact, which reverses the mass at once, and the nearer sample. `reach` in m/s is the largest velocity of
+/// the record.
 fn lacking(blunted: &[f64], groups: &[Group], reach: f64, rate: f64) -> f64 {
     let corner = |group: &Group| {
-        // Where a velocity is not known, it is no more than the largest of the record.
+        // An unknown velocity is no more than the largest of the record.
         let known = |v: f64| if v.is_nan() { reach } else { v.abs() };
         let [before, after] = [&group.before, &group.after].map(|v| known(v.value));
         if before + after > 0.0 { before * after / (before + after) / rate } else { 0.0 }
@@ -206,8 +206,8 @@ fn lacking(blunted: &[f64], groups: &[Group], reach: f64, rate: f64) -> f64 {
     (Mean::of(blunted).value.abs() + corners) / f64::sqrt(3.0)
 }
 
-/// The reference, where the turns come from one; if there are a rate, and a velocity and a reference that
-/// differ.
+/// Checks that there are a rate, a velocity and a reference that differ. Returns the reference, where the
+/// turns come from one.
 fn check<'a>(record: &Slices<'a>, options: &DrillOptions) -> Result<Option<&'a [f64]>> {
     let rate = record.rate;
     if !(rate.is_finite() && rate > 0.0) {
@@ -227,10 +227,10 @@ fn check<'a>(record: &Slices<'a>, options: &DrillOptions) -> Result<Option<&'a [
     }
 }
 
-/// What tells the turns, in samples of the velocity.
+/// Edges or impacts that begin the turns, in samples of the velocity.
 struct Marks {
     at: Vec<f64>,
-    /// Standard uncertainty of each.
+    /// Standard uncertainty of each, in samples.
     std: f64,
     /// Whether edges rise within one sample.
     sharp: bool,
@@ -239,13 +239,13 @@ struct Marks {
 }
 
 impl Marks {
-    /// What became of them.
+    /// Numbers of edges found, missing and false.
     fn count(&self, turns: &Turns, rate: f64) -> Pulses {
         let (edges, extra) = (self.at.len(), turns.extra + self.others);
         Pulses { edges, missing: turns.missing, extra, pauses: turns.pauses, std: self.std / rate }
     }
 
-    /// Edges of a reference in the clock of the velocity, which comes `delay` samples late.
+    /// Edges of a reference, in samples of the velocity, which is late by `delay` samples.
     fn of_reference(
         reference: &[f64],
         velocity: &[f64],
@@ -253,7 +253,7 @@ impl Marks {
         delay: f64,
     ) -> Result<Marks> {
         let (low, high) = levels(reference).unwrap_or((f64::NAN, f64::NAN));
-        // A stated level stands in the middle; the nearer of both levels gives the height.
+        // A stated level is the middle of the edge; the nearer of the two levels gives the height.
         let middle = options.level.unwrap_or(0.5 * (low + high));
         let half = (middle - low).min(high - middle);
         let mut edges = Edges::of(reference, (middle - half, middle + half), options.edge);
@@ -265,11 +265,11 @@ impl Marks {
         Ok(Marks { std, sharp: edges.sharp, others: 0, at: edges.at })
     }
 
-    /// The impacts that follow each other by the period of their pattern.
+    /// The impacts that follow each other at the period of their pattern.
     fn of_impacts(velocity: &[f64], states: &[State], options: &DrillOptions, rate: f64) -> Result<Marks> {
         // A turn is half the record at most.
         options.check_turn(0.5 * velocity.len() as f64 / rate)?;
-        // The largest of each part of the record decides which others count there.
+        // The largest jump of each part of the record decides which others count there.
         let part = velocity.len() as f64 / PARTS as f64;
         let parts = (0..PARTS).map(|k| (k, Turn { start: part * k as f64, end: part * (k + 1) as f64 }));
         let jumps = Jumps::of(velocity, states, options.lengths(rate), parts, None);
@@ -278,8 +278,8 @@ impl Marks {
     }
 }
 
-/// Some turns in the middle as they were measured: their first sample, velocity and reference, which is
-/// earlier by `delay` samples.
+/// Some turns in the middle of the record, as measured: their first sample, velocity and reference. The
+/// reference is `delay` samples earlier.
 fn excerpt(turns: &[Turn], velocity: &[f64], reference: &[f64], delay: f64) -> (usize, Vec<f64>, Vec<f64>) {
     let first = turns.len().saturating_sub(DRAWN) / 2;
     let shown = &turns[first..(first + DRAWN).min(turns.len())];
@@ -311,8 +311,8 @@ mod tests {
             let found = drill(&Slices { rate, channels: vec![&volts, &pulse] }, &options, None).unwrap();
             let stroke = &found.displacement.stroke;
             let (off, std) = (stroke.value / truth - 1.0, stroke.std.unwrap() / truth);
-            // The corner lies within a sample or the smoothing of it: (1.3 · 4.2/5.5) m/s of 1/40 kHz is 0.2
-            // % of the stroke.
+            // The true peak lies within a sample or the width of the smoothing: (1.3 · 4.2/5.5) m/s times
+            // 1/40 kHz is 0.2 % of the stroke.
             assert!(off.abs() < 2.5 * std && std < 0.01, "{smoothing:?}: {off:.2e} ± {std:.2e}");
         }
     }

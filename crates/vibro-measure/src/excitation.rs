@@ -1,5 +1,5 @@
-//! The excitation frequency of each step of a sweep, from its force spectrum (the job of the thesis'
-//! sineswpf).
+//! The excitation frequency of each step of a sweep, from its force spectrum, as the thesis' script sineswpf
+//! finds it.
 
 use super::line::{SubLine, deviation, interpolate};
 use super::noise;
@@ -14,8 +14,8 @@ pub struct Excitation {
     pub file: String,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Its standard uncertainty in Hz; `None` where it is not known, as where another line near by bends
-    /// this one.
+    /// Standard uncertainty of the frequency in Hz; `None` where it is not known, as beside another line that
+    /// shifts this one.
     pub std: Option<f64>,
     /// Force amplitude in N; `None` where the frequency was given.
     pub force: Option<f64>,
@@ -23,16 +23,16 @@ pub struct Excitation {
     pub force_std: Option<f64>,
 }
 
-/// How far the largest line must stand above the median of its neighbourhood to be taken for the excitation.
+/// Least height of the largest line over the noise around it, to be the excitation.
 const ABOVE_FLOOR: f64 = 8.0;
 
 /// Excitation of every step, in the order of the sweep.
 ///
-/// The largest line of the force spectrum, interpolated below the line distance; 0 Hz, the line beside it and
-/// lines below `fmin` (Hz) are skipped, so an offset of the force does no harm.
+/// The largest line of the force spectrum, interpolated between lines. 0 Hz, the lines beside it and lines
+/// below `fmin` (Hz) are skipped, so an offset of the force does no harm.
 ///
 /// # Errors
-/// If a force spectrum is zero, holds no line above its noise, or has its largest line at the end of the base
+/// If a force spectrum is zero, has no line above its noise, or has its largest line at the end of the base
 /// band.
 pub fn excitations(sweep: &Sweep, fmin: f64) -> Result<Vec<Excitation>> {
     each(sweep, fmin)?.into_iter().collect()
@@ -74,11 +74,10 @@ pub(crate) fn each(sweep: &Sweep, fmin: f64) -> Result<Vec<Result<Excitation>>> 
     Ok(sweep.points.iter().map(one).collect())
 }
 
-/// The largest local maximum from `first` on, interpolated; what an offset spreads beside line 0 is passed
-/// over.
+/// The largest local maximum from line `first` on, interpolated. Lines that an offset spreads beside line 0
+/// are skipped.
 fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::Result<SubLine, String> {
-    // The main lobe of an offset is as wide as the window has terms; of an unknown window the widest is
-    // feared.
+    // The main lobe of an offset is as wide as the window has terms; an unknown window counts as the widest.
     let lobe = window.unwrap_or(Window::FlatTop).coefficients().len() + 1;
     let (cut, first) = (first > lobe, first.max(lobe));
     let n = force.len();
@@ -91,7 +90,8 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     if force[k] == 0.0 {
         return Err("the force spectrum is zero".into());
     }
-    // The lines of an offset end with its lobe, where nobody has cut off what is larger.
+    // An offset ends with its lobe. A higher line here belongs to a sine nearer to 0 Hz, unless a cut-off
+    // excludes that sine.
     if !cut && force[first] > force[k] {
         return Err(format!(
             "the lines below line {first}, where a sine cannot be told from an offset, are higher than any above"
@@ -112,14 +112,16 @@ fn largest(force: &[f64], window: Option<Window>, first: usize) -> std::result::
     Ok(bent(found, force, k, window.zip(floor)))
 }
 
-/// Lines may differ from the shape of a sine by so many standard deviations of a component of the noise.
+/// Largest deviation of lines from the shape of a sine that noise explains, in standard deviations of one
+/// component.
 const BY_NOISE: f64 = 5.0;
-/// Beyond this part of the amplitude, what stands beside a sine is no small error.
+/// Largest deviation from the shape of a sine, over its amplitude, whose effect can be stated as an
+/// uncertainty.
 const SMALL: f64 = 0.02;
 
-/// A line around `k` that has not the shape of one steady sine, by more than noise, as where it drifts or
-/// another stands beside it: what is off tilts the three lines and lifts them by its part of their height,
-/// about; where that is much, how far they are off is not known.
+/// Widens the uncertainty of a line around `k` that deviates from the shape of one steady sine by more than
+/// noise, as where it drifts or another sine is near. The deviation shifts position and amplitude by about
+/// its part of the height. Where it is large, no uncertainty is stated.
 pub(crate) fn bent(line: SubLine, magnitudes: &[f64], k: usize, seen: Option<(Window, f64)>) -> SubLine {
     let off = seen.and_then(|(window, floor)| {
         deviation(magnitudes, k, 2, window).filter(|off| *off > BY_NOISE * floor)
@@ -155,7 +157,7 @@ mod tests {
         force[6] = 1.5 * force[5];
         assert!(force[6] < force[3]);
         assert!(largest(&force, Some(Window::Hann), 0).unwrap_err().contains("below line 3"));
-        // Whoever has cut that off wants the other.
+        // A cut-off above that sine selects the other line.
         assert!(largest(&force, Some(Window::Hann), 5).is_ok());
     }
 
@@ -184,15 +186,14 @@ mod tests {
                     })
                     .collect();
                 let found = largest(&lines, Some(window), 0).unwrap();
-                // An offset falls on a line, where no window has side lobes: only rounding of the shape is
-                // left.
+                // An offset falls on a line, so no window has side lobes on the others: only rounding of the
+                // shape remains.
                 assert!((found.position - 110.4).abs() < 1e-9, "{window:?} {offset}: {}", found.position);
             }
         }
     }
 
-    /// Lines of the ripple of a floor, a sine, and another of half its height `apart` lines beside it, in
-    /// phase.
+    /// A noise floor with ripple, a sine, and another of half its height `apart` lines away, in phase.
     fn pair(apart: f64) -> Vec<f64> {
         (0..401)
             .map(|k| {

@@ -7,16 +7,17 @@ use std::f64::consts::TAU;
 use vibro_record::{Error, Finding, Result};
 use vibro_signal::filter::{Analogue, Filter};
 
-/// Corners of the band limitation in Hz and their quality (ISO 5349-1:2001, table A.1, where it is
-/// printed as 0.71; its table A.2 was made with 1/√2).
+/// Corners of the band limitation in Hz (ISO 5349-1:2001, table A.1).
 const BAND: [f64; 2] = [6.310, 1258.9];
+/// Quality of both corners. Table A.1 prints 0.71; table A.2 of the standard was made with 1/√2.
 const BAND_Q: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Transition from acceleration to velocity in Hz, and its quality (the same table).
+/// Transition from acceleration to velocity in Hz (the same table).
 const TRANSITION: f64 = 15.915;
+/// Quality of the transition (the same table).
 const TRANSITION_Q: f64 = 0.64;
 /// Lowest sampling rate in Hz: four times the upper corner, so that the weighting has room to fall.
 const LOWEST_RATE: f64 = 4.0 * 1258.9;
-/// Duration in s over which the scatter of the vibration is taken: six periods of the lower corner.
+/// Length in s of the parts whose scatter gives the uncertainty: six periods of the lower corner.
 const SPAN: f64 = 1.0;
 /// Duration in s after which the weighting has settled: its slowest pole falls by e^(−π √2 · 6.31 · t), e⁻¹⁴
 /// in this time.
@@ -42,19 +43,20 @@ fn analogue() -> [Analogue; 3] {
 
 /// One axis of a handle, weighted; the half second in which the weighting settles is left out.
 struct WeightedAxis {
-    /// Mean square, and that of each whole second.
+    /// Mean square in m²/s⁴.
     mean_square: f64,
+    /// Mean square of each whole second.
     seconds: Vec<f64>,
     /// Largest weighted value.
     peak: f64,
     /// Largest unweighted deviation from the mean.
     unweighted_peak: f64,
-    /// Time in s that counts.
+    /// Evaluated duration in s.
     duration: f64,
 }
 
 /// Weights accelerations. Each section of the filter is transformed bilinearly so that it is exact at its own
-/// corner. It begins as if the first value had been there for ever: an offset of the sensor is no shock.
+/// corner. The filter starts settled at the first value, so that an offset of the sensor is no shock.
 ///
 /// # Errors
 /// If the rate is below four times the upper corner of the weighting.
@@ -97,7 +99,7 @@ impl WeightedAxis {
     }
 }
 
-/// Records shorter than this in s are unlikely to be reliable (ISO 5349-2:2001, 5.4.1).
+/// Records shorter than this, in s, are unlikely to be reliable (ISO 5349-2:2001, 5.4.1).
 const SHORT: f64 = 8.0;
 
 /// Exposure of a hand.
@@ -116,16 +118,16 @@ pub struct Exposure {
     pub crest_factor: f64,
     /// Largest unweighted deviation of any axis from its mean, in m/s².
     pub unweighted_peak: f64,
-    /// What must be known with these numbers.
+    /// Findings: limits of these numbers.
     pub findings: Vec<Finding>,
 }
 
-/// Exposure from one to three axes of a handle, in m/s² at `rate` samples a second; `hours` of it a day.
+/// Exposure from one to three axes of a handle, in m/s² at `rate` samples a second, for `hours` a day.
 ///
-/// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties are
-/// those of the scatter from second to second (Müller 2007, as for turns of a drill), for `a_hv` of the sum
-/// of squares over the axes, since they rise and fall together; there are none below four seconds. Neither
-/// calibration nor mounting are in them.
+/// `a_hv` = √(Σ `a_hw²`) and A(8) = `a_hv` √(T/8 h) (ISO 5349-1:2001, equations 1 and 2). Uncertainties come
+/// from the scatter from second to second (Müller 2007, as for turns of a drill). That of `a_hv` uses the sum
+/// of squares over the axes, since they rise and fall together. Below four seconds there are none. They
+/// contain neither calibration nor mounting.
 ///
 /// # Errors
 /// If there is no axis or there are more than three, a rate that is too low, a duration that is not above 0
@@ -141,7 +143,7 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
     if total <= 0.0 {
         return Err(Error::refused("the handle does not vibrate: its acceleration does not change"));
     }
-    // Of y = x²: u_x = u_y/(2x).
+    // Uncertainty of a root x of y = x²: u_x = u_y/(2x).
     let root = |square: f64, mean: &Mean, method| {
         let rms = square.sqrt();
         Estimate::new(rms, mean.std.map(|s| s / (2.0 * rms)), "m/s²", mean.n, method)
@@ -177,7 +179,7 @@ pub fn exposure(rate: f64, handles: &[&[f64]], hours: Option<f64>) -> Result<Exp
     })
 }
 
-/// Hours a day of an exposure.
+/// Checks the hours a day of an exposure.
 ///
 /// # Errors
 /// If they are not above 0 and at most 24.

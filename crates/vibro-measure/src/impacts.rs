@@ -1,8 +1,8 @@
 //! Impacts in a trace: a contact circuit, or any signal that jumps at each of them.
 //!
-//! One pipeline: [`detect`] removes mains hum and times each burst above the noise once, ringing included,
-//! below a sample; [`impacts`] numbers the impacts, missed and doubled ones allowed for, fits their mean
-//! interval, and compares them with the excitation. What was assumed and what is doubtful is in
+//! One pipeline: [`detect`] removes mains hum and times each burst above the noise once, its ringing
+//! included, to less than a sample. [`impacts`] numbers the impacts, allowing for missed and doubled ones,
+//! fits their mean interval, and compares them with the excitation. Assumptions and doubts are in
 //! [`Impacts::findings`].
 
 mod background;
@@ -38,7 +38,7 @@ pub const REGULAR: f64 = 0.05;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Impacts {
-    /// Impacts that were found.
+    /// Number of impacts found.
     pub n: usize,
     /// Mean time between impacts in s, missed ones counted.
     pub interval: Estimate,
@@ -48,25 +48,26 @@ pub struct Impacts {
     pub median_interval: f64,
     /// Standard deviation of the intervals between neighbours that miss none, in s; null for fewer than two.
     pub spread: Option<f64>,
-    /// Serial correlation of neighbouring intervals, less what a pattern repeats: −0.5 where onsets are
-    /// noisy, 0 where intervals jitter.
+    /// Serial correlation of neighbouring intervals, without the part that a pattern repeats: −0.5 where
+    /// onsets are noisy, 0 where intervals jitter.
     pub serial_correlation: Option<f64>,
-    /// Impacts after which the intervals repeat, where they are unlike within that pattern; null where there
-    /// is none.
+    /// Number of impacts after which the intervals repeat, where they differ within that pattern; null where
+    /// there is no pattern.
     pub pattern: Option<usize>,
-    /// Impacts that should stand in intervals that are several of the others.
+    /// Number of impacts missing from intervals that are several times the others.
     pub missed: usize,
-    /// Impacts that follow another within less than half an interval, or cut one of a pattern in two.
+    /// Number of impacts that follow another within less than half an interval, or split an interval of a
+    /// pattern.
     pub doubled: usize,
     /// Frequency of the excitation in Hz, as given or from the reference channel.
     pub excitation: Option<f64>,
     /// Impacts per excitation cycle; null where no fraction fits or no excitation is known.
     pub per_cycle: Option<PerCycle>,
-    /// Frequency in Hz by which the impacts miss the fraction that they come near to; null where they keep
-    /// it, come near none, or no excitation is known.
+    /// Frequency in Hz by which the impacts miss the fraction of the excitation that they come near to; null
+    /// where they keep it, come near none, or no excitation is known.
     pub beat: Option<Estimate>,
-    /// Whether impacts repeat: a fraction fits, or without an excitation, intervals spread by less than 5 %,
-    /// or about those of a pattern. Two impacts do not show it.
+    /// Whether impacts repeat: a fraction fits; or, without an excitation, intervals spread by less than 5 %
+    /// about their mean, or about those of a pattern. Two impacts do not show it.
     pub regular: bool,
     /// Phases of the impacts of the pattern, in excitation cycles; empty where there is no pattern.
     pub phases: Vec<Phase>,
@@ -80,13 +81,13 @@ pub struct Impacts {
     pub phase: Vec<f64>,
     /// Mains hum that was removed.
     pub hum: Option<Hum>,
-    /// What was done to the trace, and what is doubtful.
+    /// Changes made to the trace, and doubts.
     pub findings: Vec<Finding>,
 }
 
-/// Finds the impacts of `trace`, their mean interval, and what they repeat. Where the whole record shows
-/// none, or loses most in its noise, and no option says how to look for them: in what rises at once, as the
-/// sound of an impact does, or in the envelope of the octave in which they ring.
+/// Finds the impacts of `trace`, their mean interval, and the pattern that they repeat. Where the whole
+/// record shows none or loses most in its noise, and no option states how to search, it searches further:
+/// sudden rises, as the sound of an impact has, then the envelope of the octave in which the impacts ring.
 ///
 /// # Errors
 /// Where the trace has no sampling rate, missing or equal values, or fewer than two impacts; where the
@@ -103,7 +104,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     if shown || !open {
         return whole;
     }
-    // All that rises at once.
+    // Every sudden rise counts.
     let all = |sounds: &[Sound], _: f64, _: f64| Ok(((0..sounds.len()).collect(), Vec::new()));
     let sounding = detect_among(trace, options, Some(&all));
     let sounding = sounding.and_then(|detected| of_detected(trace, options, detected)).ok();
@@ -114,7 +115,7 @@ pub fn impacts(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     }
 }
 
-/// Whether the record swings: an envelope shows no swings, and that of two modes that beat looks like
+/// Whether the record swings as a vibration does. An envelope hides it: that of two beating modes looks like
 /// impacts.
 fn rings(trace: &Trace) -> bool {
     let level = average(&trace.values);
@@ -122,14 +123,14 @@ fn rings(trace: &Trace) -> bool {
     trace.sampling_rate().is_ok_and(|rate| Swings::of(&values, rate, &[], 0.0).is_some())
 }
 
-/// Whether impacts that were sought beside the common way are steady and beyond doubt.
+/// Whether the impacts of such a further search are regular, mostly complete and without a doubt.
 fn repeats(found: &Impacts) -> bool {
     let steady = found.spread.is_some_and(|spread| spread < REGULAR * found.median_interval);
     let sure = found.findings.iter().all(|f| f.severity < Severity::Doubt);
     steady && sure && MISSING * found.missed < found.n
 }
 
-/// The impacts of the octave in which they repeat best.
+/// The impacts of the octave whose frequency of impacts has the smallest relative uncertainty.
 fn ringing(trace: &Trace, options: &ImpactsOptions) -> Option<Impacts> {
     let inside = |band: (f64, f64)| {
         if !bands::is_impulsive(trace, band) {
@@ -145,19 +146,19 @@ fn ringing(trace: &Trace, options: &ImpactsOptions) -> Option<Impacts> {
     each.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }
 
-/// Sounds that show that they repeat: seven intervals within 5 % of their median, of which chance brings one
-/// in ten there.
+/// Fewest sudden rises that show that they repeat: seven intervals within 5 % of their median, where chance
+/// brings one in ten.
 const ENOUGH: usize = 8;
 
-/// Of so many impacts of a band fewer than one is missing.
+/// Impacts that must be found for each one missed.
 const MISSING: usize = 4;
 
-/// As [`impacts`], with these options alone.
+/// As [`impacts`], without a further search.
 fn impacts_so(trace: &Trace, options: &ImpactsOptions) -> Result<Impacts> {
     of_detected(trace, options, detect(trace, options)?)
 }
 
-/// The mean interval of impacts that were detected, and what they repeat.
+/// The mean interval of detected impacts, and the pattern that they repeat.
 fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> Result<Impacts> {
     let Detected { mut times, mut heights, onset_std, hum, mut findings, method, resolution, .. } = detected;
     if !options.complete && options.refractory.is_none() {
@@ -178,12 +179,12 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
             .setting("threshold")
     })?;
     findings.extend(fitted.wanders.then(|| Finding::caution("intervals-drift")));
-    // First and last onset lie each anywhere within a sample. Where the interval is near a whole number of
-    // samples all lie alike between theirs: the scatter of the intervals does not show it, and no number
-    // of impacts averages it.
+    // First and last onset each lie anywhere within a sample. If the interval is near a whole number of
+    // samples, all onsets lie alike between samples: the scatter of the intervals does not show this error,
+    // and no number of impacts averages it out.
     let intervals = counted.index.last().copied().unwrap_or(0) as f64;
     let sampled = resolution.map_or(0.0, |step| step / (6f64.sqrt() * intervals));
-    // The shifts of the places of a pattern are fitted with the interval.
+    // The shift of each place of a pattern is fitted too, and costs a degree of freedom.
     let free = |parameters: usize| even.len().saturating_sub(parameters) as f64;
     let widened = (free(2) / free(1 + pattern.unwrap_or(1))).sqrt();
     let mostly_missed = counted.missed > times.len();
@@ -229,7 +230,8 @@ fn of_detected(trace: &Trace, options: &ImpactsOptions, detected: Detected) -> R
     Ok(answer)
 }
 
-/// Takes bursts that repeat impacts at fixed delays out of these, or says that they may be such.
+/// Removes bursts that follow impacts at fixed delays, as echoes do. Where that is not sure, they stay with a
+/// finding.
 fn without_echoes(times: &mut Vec<f64>, heights: &mut Vec<f64>, findings: &mut Vec<Finding>) {
     let Some(echoes) = echoes(times, heights) else { return };
     let n = echoes.places.len();
@@ -245,7 +247,7 @@ fn without_echoes(times: &mut Vec<f64>, heights: &mut Vec<f64>, findings: &mut V
     }
 }
 
-/// The refusal of bursts in which no period is: what was done already is no advice.
+/// The refusal of bursts without a period; its advice leaves out what the options already do.
 fn without_period(n: usize, options: &ImpactsOptions) -> Error {
     let refused = Error::refused(format!("{n} bursts whose intervals are irregular: no period is in them"));
     match (options.band, options.envelope) {
@@ -261,26 +263,26 @@ fn without_period(n: usize, options: &ImpactsOptions) -> Error {
     }
 }
 
-/// A pause that counts echoes with their impact, over the longest delay.
+/// Pause that counts echoes with their impact, over their longest delay.
 const PAUSE: f64 = 1.2;
 
-/// Fewest intervals that show that they are irregular.
+/// Fewest intervals that can show that they are irregular.
 const TELLING: usize = 12;
 
-/// Part of the intervals off every multiple of their median from which on they are irregular: of intervals at
-/// random nine in ten are, and a few of them come near by chance.
+/// Part of the intervals off every multiple of their median, above which they are irregular. Nine in ten
+/// random intervals are off, and in short records somewhat fewer.
 const SCATTERED: f64 = 0.85;
 
-/// Whether no more intervals lie near a multiple of their median than chance brings there: within 5 % on
-/// either side lies one in ten.
+/// Whether no more intervals lie near a multiple of their median than by chance: within 5 % on either side
+/// lies one in ten.
 fn irregular(steps: &[f64]) -> bool {
     let median = median(steps);
     let off = |step: &&f64| ((*step / median).round().max(1.0) - *step / median).abs() > REGULAR;
     steps.len() >= TELLING && steps.iter().filter(off).count() as f64 > SCATTERED * steps.len() as f64
 }
 
-/// Standard deviation of the intervals between neighbours without a missed impact between them; `None` of
-/// fewer than two.
+/// Standard deviation in s of the intervals between neighbours without a missed impact between them; `None`
+/// for fewer than two.
 fn spread(times: &[f64], counted: &CountedImpacts) -> Option<f64> {
     let pairs = times.windows(2).zip(counted.index.windows(2));
     let single: Vec<f64> = pairs.filter(|(_, k)| k[1] - k[0] == 1).map(|(t, _)| t[1] - t[0]).collect();

@@ -1,10 +1,10 @@
-//! What the thesis' scripts sineswpf, sinesw, sinesw3 and timeav gave, mistakes included, so that old results
-//! can be checked.
+//! Results of the thesis' scripts sineswpf, sinesw, sinesw3 and timeav, mistakes included, to check old
+//! results.
 //!
 //! They are wrong in known ways: the largest line may be 0 Hz, frequencies and amplitudes are read on the
 //! line, and the first and last search windows are open on one side; timeav takes the mean interval of all
-//! that is higher than a quarter of one early peak. Use [`super::excitation`], [`super::waterfall`],
-//! [`super::response`] and [`super::impacts`] for answers.
+//! peaks higher than a quarter of one early peak. Use [`super::excitation`], [`super::waterfall`],
+//! [`super::response`] and [`super::impacts`] instead.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -14,7 +14,7 @@ use vibro_record::{Error, Place, Result, Sweep, SweepPoint, Trace};
 /// as given.
 ///
 /// # Errors
-/// Where two lines are equally large the script stops, and so does this.
+/// Where two lines are equally large: there the script stops, too.
 pub fn excitation(sweep: &Sweep) -> Result<Vec<f64>> {
     let one = |point: &SweepPoint| {
         if let Some(given) = point.given {
@@ -42,11 +42,11 @@ pub fn rounded(excitation: &[f64]) -> Vec<f64> {
     excitation.iter().map(|f| format!("{f:7.4}").trim().parse().unwrap_or(*f)).collect()
 }
 
-/// Length of a name in a hand-over file of the script.
+/// Length of a name in a hand-over file of the script, in characters.
 const NAME: usize = 11;
 
 /// The hand-over file: number of points, lines, base band, frequencies, then all names without a separator,
-/// as the script wrote them; names that are not 11 characters long stand one a line.
+/// as the script wrote them; names that are not 11 characters long are written one a line.
 pub fn hand_over<P: AsRef<Path>>(lines: usize, base_band: f64, excitation: &[f64], names: &[P]) -> String {
     let mut text = String::new();
     for number in [excitation.len() as f64, lines as f64, base_band].iter().chain(excitation) {
@@ -84,12 +84,13 @@ pub fn response(sweep: &Sweep) -> Result<Vec<(f64, f64)>> {
     Ok((0..x.len()).map(|i| (x[i], largest(i))).collect())
 }
 
-/// What timeav printed of a contact trace.
+/// Output of timeav for a contact trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactTimes {
     /// Local maxima that rise from above 0.
     pub maxima: usize,
-    /// Times of those above the height rule, in s; the first sample counts as one sampling interval, not 0.
+    /// Times in s of the maxima above a quarter of the first big one; the first sample counts as one sampling
+    /// interval, not 0.
     pub times: Vec<f64>,
     /// (last − first)/(k − 1) in s; NaN of one peak, as 0/0.
     pub interval: f64,
@@ -99,8 +100,8 @@ pub struct ContactTimes {
 
 /// timeav: local maxima that rise from above 0 and are higher than a quarter of the first big one.
 ///
-/// Its own test of "big" is not kept with its outputs; the larger of the first two maxima reproduces all of
-/// them.
+/// The script's own test of "big" is not kept with its outputs; the larger of the first two maxima reproduces
+/// all of them.
 ///
 /// # Errors
 /// Where the file has a header, the trace no sampling rate or no maximum: the script stopped there.

@@ -1,4 +1,4 @@
-//! Answers from records: every number an [`Estimate`].
+//! Measures quantities in records; every result is an [`Estimate`].
 //!
 //! ```
 //! use vibro_measure::restitution::{Measured, Train, restitution};

@@ -1,4 +1,4 @@
-//! A spectral line below the line distance: frequency and amplitude of a sine between lines.
+//! Frequency and amplitude of a sine between the lines of a spectrum.
 
 use vibro_math::border;
 use vibro_record::Window;
@@ -7,27 +7,27 @@ use vibro_signal::window::{line_shape, noise_correlation};
 /// A sine found in a magnitude spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SubLine {
-    /// Position in lines: whole part the nearest line, rest from interpolation.
+    /// Position in lines: the largest line plus the interpolated distance from it.
     pub position: f64,
-    /// Its standard uncertainty in lines; `None` where the noise is not known or the window is not.
+    /// Standard uncertainty of the position in lines; `None` where the noise or the window is not known.
     pub position_std: Option<f64>,
-    /// Amplitude, free of scalloping.
+    /// Amplitude without scalloping loss, in the unit of the spectrum.
     pub amplitude: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the amplitude, in the same unit.
     pub amplitude_std: Option<f64>,
 }
 
-/// Noise can push a sine this far from its largest line, in lines; never beyond a whole one.
+/// Largest distance of a sine from its largest line, in lines: noise can push it that far, but never a whole
+/// line.
 const LIMIT: f64 = 0.99;
 
 /// Frequency and amplitude of the sine whose largest line is `k`, from three magnitudes.
 ///
-/// For a window with a main lobe of four lines or more, the distance δ from line `k` solves
-/// (m₊ − m₋)/(m₋ + 2m₀ + m₊) = (W(1−δ) − W(1+δ))/(W(1+δ) + 2W(δ) + W(1−δ)), which for Hann is δ = 2(m₊ −
-/// m₋)/(m₋ + 2m₀ + m₊) (T. Grandke, IEEE Trans. Instrum. Meas. 32 (1983) 350, in its three-line form); both
-/// are exact for a clean sine in a long record. Without a window the larger neighbour alone is used, δ =
-/// m₊/(m₀ + m₊) (Rife & Vincent 1970). With `window` unknown a parabola through the log magnitudes stands in,
-/// and no uncertainty is given.
+/// For a window with a main lobe of four lines or more, the distance δ from line `k` solves (m₊ − m₋)/(m₋ +
+/// 2m₀ + m₊) = (W(1−δ) − W(1+δ))/(W(1+δ) + 2W(δ) + W(1−δ)), which for Hann is δ = 2(m₊ − m₋)/(m₋ + 2m₀ + m₊)
+/// (T. Grandke, IEEE Trans. Instrum. Meas. 32 (1983) 350, in its three-line form); both are exact for a clean
+/// sine in a long record. Without a window the larger neighbour alone is used, δ = m₊/(m₀ + m₊) (Rife &
+/// Vincent 1970). An unknown `window` leaves a parabola through the log magnitudes, without an uncertainty.
 ///
 /// `noise` is the standard deviation of one component of a line. `None` if `k` has no neighbour on a side or
 /// the lines there are missing or zero.
@@ -44,9 +44,10 @@ pub fn interpolate(
     }
     let (delta, amplitude) = window.map_or_else(|| log_parabola(lines), |window| solve(lines, window));
     let known = window.zip(noise).filter(|(window, noise)| {
-        // At the limit the lines have not the shape of one sine, and slopes mean nothing. Without a window
-        // noise may choose the wrong neighbour: then no small uncertainty is true. The difference of two
-        // lines has √2 of the noise, of which 6 are more than four.
+        // At the limit the lines do not have the shape of one sine, and derivatives mean nothing. Without a
+        // window noise may choose the wrong neighbour, and a small uncertainty would be wrong: the difference
+        // of two lines has √2 of the noise, so 6 times the noise is more than four of its standard
+        // deviations.
         delta.abs() < LIMIT && (*window != Window::Rectangular || (right - left).abs() >= 6.0 * noise)
     });
     let [position_std, amplitude_std] =
@@ -60,9 +61,9 @@ fn three(magnitudes: &[f64], k: usize) -> Option<[f64; 3]> {
     lines.iter().all(|m| m.is_finite()).then_some(lines)
 }
 
-/// The largest deviation of the lines within `reach` of line `k` from the shape of the sine that the three in
-/// the middle show: what noise, another sine near by, the sine's own image at the ends of the band or a wrong
-/// window add. `None` as in [`interpolate`].
+/// The largest deviation of the lines within `reach` of line `k` from the shape of the sine through the three
+/// in the middle. Noise, another sine near by, the sine's own image at the ends of the band, or a wrong
+/// window cause it. `None` as in [`interpolate`].
 pub fn deviation(magnitudes: &[f64], k: usize, reach: usize, window: Window) -> Option<f64> {
     let lines = three(magnitudes, k)?;
     let (delta, amplitude) = solve(lines, window);
@@ -124,7 +125,7 @@ fn spread(weights: [f64; 3], window: Window) -> f64 {
     variance.sqrt()
 }
 
-/// Distance from the middle line, and amplitude.
+/// Distance of a sine from the middle line, in lines, and its amplitude.
 fn solve(lines: [f64; 3], window: Window) -> (f64, f64) {
     let [left, middle, right] = lines;
     let delta = match window {
@@ -144,9 +145,10 @@ fn solve(lines: [f64; 3], window: Window) -> (f64, f64) {
     (delta, dot(weights, lines) / dot(weights, shapes(window, delta)))
 }
 
-/// First-order propagation of the noise of three correlated lines.
+/// Standard uncertainties of distance and amplitude: first-order propagation of the noise of three correlated
+/// lines.
 fn propagate(lines: [f64; 3], window: Window, noise: f64) -> [f64; 2] {
-    // A step that is small against the line and large against rounding.
+    // A step small against the line and large against rounding.
     let step = 1e-6 * lines[1];
     let mut slopes = [[0.0; 3]; 2];
     for i in 0..3 {

@@ -1,24 +1,24 @@
-//! Means and medians; the mean of values in a row that may depend on those before.
+//! Arithmetic means, and the mean of a serially correlated sequence with its uncertainty.
 
 use crate::residuals::student;
 use std::f64::consts::PI;
 
 /// Fewest values whose scatter gives a standard uncertainty.
 const FEWEST: usize = 4;
-/// Most cosines: more gain nothing, the uncertainty of the variance is 26 % then.
+/// Most cosines: the variance then has an uncertainty of 26 %, and more cosines gain little.
 const MOST: usize = 30;
-/// Part of the density by neighbours alone, which many values tell, that the few cosines may be below by
-/// chance.
+/// Least spectral density from the few cosines over that from neighbours alone, which rests on all values:
+/// chance explains a smaller one.
 const LEAST: f64 = 0.6;
-/// Standard deviations that independent values are within in 99 % of cases, on one side.
+/// One-sided 99 % quantile of the normal distribution, in standard deviations.
 const SURE: f64 = 2.33;
-/// Where the density over the cosines is below this part of that at frequency 0, an uncertainty may be too
-/// small by a third or more.
+/// Mean density over the cosines, over that at frequency 0, below which an uncertainty may be too small by a
+/// third or more.
 const STEEP: f64 = 0.5;
-/// Largest dependence on the value before that is reckoned with.
+/// Largest correlation of neighbours that is corrected for: at 1 the correction is infinite.
 const CLOSEST: f64 = 0.97;
 
-/// Arithmetic mean; NaN of none.
+/// Arithmetic mean; NaN where there is no value.
 pub(crate) fn average(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -44,22 +44,22 @@ pub(crate) fn mixture(estimates: &[(f64, f64, f64)]) -> (f64, f64) {
 
 /// A mean and its standard uncertainty.
 ///
-/// Values that follow each other are rarely independent: speed and stroke of a machine wander. The variance
-/// of their mean is taken from the slowest changes that the values show, their projections on K cosines
-/// `c_j = √(2/n) Σ x_t cos(πj(t − ½)/n)`, j = 1 to K, of t = 1 to n: each has the spectral density near zero
-/// frequency as its variance, so that `Σ c_j²/(K n)` is the variance of the mean with K degrees of freedom
-/// (U. Müller, J. Econometrics 141 (2007) 1331). K is 1.2 n^0.4, from 3 to 30: few enough that the density
-/// hardly changes over them where neighbours are correlated moderately. The standard uncertainty is that of
-/// Student's distribution ([`student`]).
+/// Neighbouring values are rarely independent: speed and stroke of a machine wander. The variance of their
+/// mean is taken from their slowest changes, the projections on K cosines `c_j = √(2/n) Σ x_t cos(πj(t −
+/// ½)/n)`, j = 1 to K, of t = 1 to n. Each projection has the spectral density near zero frequency as its
+/// variance, so that `Σ c_j²/(K n)` is the variance of the mean with K degrees of freedom (U. Müller, J.
+/// Econometrics 141 (2007) 1331). K is 1.2 n^0.4, from 3 to 30: few enough that the density hardly changes
+/// over them where neighbours are correlated moderately. The standard uncertainty is that of Student's
+/// distribution ([`student`]).
 ///
-/// Where values depend on the one before by ρ the density falls over the cosines, to the part (1 − ρ)²/(1 −
-/// 2ρ cos ω + ρ²) of that at frequency 0; the variance is divided by the mean of these parts (prewhitening
-/// with a first-order model, D. Andrews and J. Monahan, Econometrica 60 (1992) 953), ρ from the serial
-/// correlation r, whose bias −(1 + 3r)/n is added (M. Kendall, Biometrika 41 (1954) 403). The few cosines may
-/// be small by chance: unless values surely depend inversely on those beside them, the variance is no less
-/// than 0.6 of what γ₀ and a negative γ₁ give. ± 1.96 standard uncertainties hold the truth in 95 to 97 % of
-/// sequences that are independent, in 93 % of 20 values or more up to ρ = 0.6; at ρ = 0.9 in 83 % of 20, 89 %
-/// of 60 and 94 % of 300. `wanders` tells of sequences in which the uncertainty may be too small.
+/// Where neighbours have the correlation ρ, the density falls over the cosines, to the part (1 − ρ)²/(1 − 2ρ
+/// cos ω + ρ²) of that at frequency 0. The variance is divided by the mean of these parts (prewhitening with
+/// a first-order model, D. Andrews and J. Monahan, Econometrica 60 (1992) 953); ρ is the serial correlation
+/// r, corrected for its bias −(1 + 3r)/n (M. Kendall, Biometrika 41 (1954) 403). The few cosines may be small
+/// by chance: unless neighbours are clearly anticorrelated, the variance is at least 0.6 of what γ₀ and a
+/// negative γ₁ give. ± 1.96 standard uncertainties cover the truth in 95 to 97 % of independent sequences, in
+/// 93 % of 20 values or more up to ρ = 0.6; at ρ = 0.9 in 83 % of 20, 89 % of 60 and 94 % of 300. `wanders`
+/// marks sequences whose uncertainty may be too small.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mean {
     /// Arithmetic mean; NaN where there is no value.
@@ -68,13 +68,13 @@ pub(crate) struct Mean {
     pub std: Option<f64>,
     /// Number of values.
     pub n: usize,
-    /// Whether values wander so slowly that the uncertainty may be too small.
+    /// Whether the values drift so slowly that the uncertainty may be too small.
     pub wanders: bool,
 }
 
 impl Mean {
-    /// Mean of values in the order of time, as a sequence without gaps; the caller leaves out what is
-    /// missing.
+    /// Mean of values in the order of time, taken as a sequence without gaps; the caller leaves out missing
+    /// ones.
     pub fn of(values: &[f64]) -> Mean {
         let n = values.len();
         let value = average(values);
@@ -86,7 +86,7 @@ impl Mean {
         let squares: f64 = (1..=count)
             .map(|j| {
                 let weight = |t: usize| (step * j as f64 * (t as f64 + 0.5)).cos();
-                // The cosines sum to 0; the mean is taken away so that it leaves no rounding.
+                // The cosines sum to 0, so subtracting the mean changes only the rounding, for the better.
                 let c: f64 = values.iter().enumerate().map(|(t, x)| (x - value) * weight(t)).sum();
                 2.0 / n as f64 * (c * c)
             })
@@ -104,9 +104,9 @@ impl Mean {
     }
 }
 
-/// Spectral density at frequency 0 of `n` values, by the sums of their squares about the mean and of the
-/// products of neighbours, where only neighbours depend on each other, γ₀ + 2γ₁, a positive γ₁ left out; 0
-/// where they surely depend inversely, as the times between edges do.
+/// Spectral density at frequency 0 of `n` values where only neighbours are correlated: γ₀ + 2γ₁, a positive
+/// γ₁ left out. `squares` is the sum of squares about the mean, `products` that of products of neighbours. 0
+/// where neighbours are clearly anticorrelated, as times between edges are.
 fn density(squares: f64, products: f64, n: f64) -> f64 {
     if products < -SURE * squares / n.sqrt() {
         return 0.0;
@@ -114,9 +114,9 @@ fn density(squares: f64, products: f64, n: f64) -> f64 {
     ((squares + 2.0 * products.min(0.0)) / n).max(0.0)
 }
 
-/// Mean density over `count` cosines as a part of that at frequency 0, of a chain as correlated as the
-/// values; at most 1. And whether independent values are as correlated in more than 1 % of cases: r of them
-/// is about −1/n ± 1/√n.
+/// Mean density over `count` cosines, over that at frequency 0, of a first-order chain as correlated as the
+/// values; at most 1. And whether independent values are as correlated in more than 1 % of cases: their r is
+/// about −1/n ± 1/√n.
 fn part(squares: f64, products: f64, n: f64, count: usize) -> (f64, bool) {
     let r = if squares > 0.0 { products / squares } else { 0.0 };
     let rho = (r + (1.0 + 3.0 * r) / n).clamp(0.0, CLOSEST);
@@ -127,7 +127,7 @@ fn part(squares: f64, products: f64, n: f64, count: usize) -> (f64, bool) {
     ((1..=count).map(density).sum::<f64>() / count as f64, r + 1.0 / n < SURE / n.sqrt())
 }
 
-/// Cosines for `n` values.
+/// Number of cosines for `n` values.
 fn cosines(n: usize) -> usize {
     ((1.2 * (n as f64).powf(0.4)).round() as usize).clamp(3, MOST).min(n.saturating_sub(1))
 }
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
     use vibro_math::Noise;
 
-    /// `n` values of unit variance, each `rho` times the one before and something new.
+    /// `n` values of unit variance, each `rho` times the one before plus new noise.
     fn chain(noise: &mut Noise, n: usize, rho: f64) -> Vec<f64> {
         let mut x = noise.normal();
         let new = (1.0 - rho * rho).sqrt();
@@ -170,8 +170,8 @@ mod tests {
         assert_eq!(Mean::of(&[0.1; 50]).std.map(|s| s < 1e-16), Some(true));
     }
 
-    /// Parts of 2000 sequences, seed `n`, of which ± 1.96 standard uncertainties hold the true mean 0, and
-    /// which are said to wander, in %.
+    /// Parts of 2000 sequences, seed `n`, in %: whose ± 1.96 standard uncertainties cover the true mean 0,
+    /// and that are reported to wander.
     fn coverage(n: usize, rho: f64) -> (f64, f64) {
         let mut noise = Noise::new(n as u64);
         let (mut inside, mut told) = (0, 0);
@@ -204,9 +204,9 @@ mod tests {
             // Independent values seem to wander in 1 % of cases, which scatters by 0.2 %; four times that.
             assert!(rho > 0.0 || told < 1.9, "n = {n}: {told} %");
         }
-        // Where 20 or 60 values hold only one or six times what a chain of 0.9 remembers, its correlation is
-        // known too badly: that is stated, 83 % and 89 %, and most of them are said to wander. 2000
-        // sequences scatter by 0.8 %, four times that.
+        // 20 or 60 values span too few correlation lengths of a chain of 0.9 to show its correlation: the
+        // coverage is the stated 83 % and 89 %, and most sequences are reported to wander. The part of 2000
+        // sequences scatters by 0.8 %, four times that.
         for (n, stated) in [(20, 83.0), (60, 89.0)] {
             let (part, told) = coverage(n, 0.9);
             assert!((part - stated).abs() < 3.2 && told > 50.0, "n = {n}: {part} %, {told} %");

@@ -1,9 +1,9 @@
 //! Modes of frequency response functions: natural frequency, damping ratio and modal constant.
 //!
-//! The answer is a rational fit in the complex plane, local to each peak: modes of viscous damping and two
-//! residual terms for what lies below and above, in the kind of the function itself (a receptance times iω
-//! for a mobility, −ω² for an accelerance). Beside it stand the largest line, the half-power bandwidth and
-//! the circle fit, to be compared.
+//! The result is a rational fit in the complex plane, local to each peak: modes of viscous damping and two
+//! residual terms for the modes below and above, in the kind of the function itself (a receptance times iω
+//! for a mobility, −ω² for an accelerance). The largest line, the half-power bandwidth and the circle fit are
+//! given for comparison.
 
 mod classical;
 mod leakage;
@@ -30,12 +30,12 @@ type Fitted = (PeakGroup, Rational);
 
 /// Finds the modes of a frequency response function.
 ///
-/// Each peak that stands a factor of two above its valleys is a candidate; peaks too near each other to be
-/// parted are fitted together, and modes of other groups are subtracted before the last fit of a group. The
-/// modes of a band that is given are then fitted together to all its lines, where that explains them.
+/// Each peak a factor of two above its valleys is a candidate. Peaks too near each other to be separated are
+/// fitted together, and modes of other groups are subtracted before the last fit of a group. With a band, its
+/// modes are then fitted together to all its lines, where that explains the lines.
 ///
 /// # Errors
-/// If the band is not one, holds no peak or fewer lines than the parameters of a mode, or no line can be
+/// If the band is impossible, holds no peak or fewer lines than the parameters of a mode, or no line can be
 /// used.
 pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult> {
     let least = options.least_coherence.unwrap_or(0.5);
@@ -49,7 +49,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     findings.extend(lines.magnitude_only.then(|| Finding::doubt("modal-magnitudes-only")));
     let (mut fits, mut unsupported, mut failed) = (Vec::new(), Vec::new(), None);
     let groups = groups(&lines, options.band)?;
-    // A coherence tells that the function was averaged, and not how.
+    // A coherence shows that the function was averaged, but not how.
     let unsaid = lines.window.is_none() && lines.coherence.is_some() && !options.from_blows;
     let unsaid = unsaid && !averaging(&mut lines, &groups);
     for mut group in groups {
@@ -86,8 +86,7 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
                 .hint("longer records, for five lines or more in the peak; check the sign of the phase"),
         });
     }
-    // The highest peaks that are no modes are told one by one; many more are noise, of which each says
-    // nothing.
+    // The highest peaks without a mode keep a finding each. Further ones are noise, and share one finding.
     let odd = |found: &Finding| found.get("frequency").filter(|_| found.code == "modal-peak-unsupported");
     let height = |f: &f64| lines.values[lines.frequency.partition_point(|line| line < f)].norm();
     let mut at: Vec<f64> = findings.iter().filter_map(odd).collect();
@@ -105,11 +104,11 @@ pub fn modal(measured: &Measured, options: &ModalOptions) -> Result<ModalResult>
     Ok(ModalResult { modes, findings })
 }
 
-/// Most lines that a finding names.
+/// Most peaks without a mode that are named.
 const NAMED: usize = 8;
 
-/// The modes of all groups but one. What no peak of its group supports may be a mode of the one, and is left
-/// out.
+/// The modes of all groups but group `at`. A mode that no peak of its own group supports may belong to group
+/// `at`, and is left out.
 fn poles_beside(lines: &Measured, fits: &[Fitted], at: usize) -> Vec<Pole> {
     let sound = |(group, fit): &Fitted| {
         let modes = fit.modes.clone().into_iter().zip(fit.sound(lines, &group.peaks));
@@ -165,7 +164,7 @@ mod tests {
         let result = found(&two(), &ModalOptions { mass: Some(0.125), ..ModalOptions::default() });
         assert_eq!(result.modes.len(), 2, "{result:?}");
         for (mode, (f, zeta)) in result.modes.iter().zip([(80.3, 0.01), (210.7, 0.004)]) {
-            // The other mode is taken away, up to what its own fit leaves: one part in 1e5 of a bandwidth.
+            // The other mode is subtracted up to the error of its own fit: one part in 1e5 of a bandwidth.
             assert!((mode.frequency.value - f).abs() < 1e-5 * f * zeta, "{mode:?}");
             assert!((mode.zeta.value / zeta - 1.0).abs() < 1e-5, "{mode:?}");
             assert!((mode.modal_constant.value / 2.0 - 1.0).abs() < 1e-4, "{mode:?}");
@@ -176,7 +175,7 @@ mod tests {
             assert!((of_k / (2.0 * of_f) - 1.0).abs() < 1e-9);
         }
         // A mode of bandwidth 1.6 Hz has seven lines on 270° of its circle. That circle is exact but for the
-        // other mode's part.
+        // part of the other mode.
         let circle = result.modes[0].by.iter().find(|b| b.method == "circle fit").unwrap();
         assert!((circle.frequency.value - 80.3).abs() < 0.02, "{circle:?}");
         assert!((circle.zeta.as_ref().unwrap().value / 0.01 - 1.0).abs() < 0.02, "{circle:?}");
@@ -203,7 +202,7 @@ mod tests {
             assert!(circle.modal_constant.as_ref().is_none_or(|c| c.value * a > 0.0), "{circle:?}");
         }
         assert_eq!(result.modes.len(), 2);
-        // A quarter of a turn is neither.
+        // A phase of 90° has no sign.
         measured.values.iter_mut().for_each(|v| *v *= Complex64::i());
         let result = found(&measured, &ModalOptions::default());
         assert!(says(&result, "modal-constant-no-sign"), "{result:?}");
@@ -238,8 +237,7 @@ mod tests {
         assert!(result.modes[0].zeta.std.is_some() && result.modes[0].stiffness.is_some(), "{result:?}");
     }
 
-    /// An exponential window shifts all poles: the function is taken at iω + σ, and so are the modes that are
-    /// made here.
+    /// An exponential window shifts all poles: the function is taken at iω + σ, as the modes are here.
     #[test]
     fn the_decay_of_an_exponential_window_is_taken_off() {
         let (own, zeta, decay, measured) = (500.0, 0.01, 3.0, two());
@@ -258,7 +256,7 @@ mod tests {
         assert!((circle.zeta.as_ref().unwrap().value / zeta - 1.0).abs() < 0.02, "{circle:?}");
         assert!(says(&result, "modal-window-decay"), "{:?}", result.findings);
         let without = found(&measured, &ModalOptions::default());
-        // ζ + σ/ωᵣ, to the square of that.
+        // Uncorrected, ζ + σ/ωᵣ is found, up to the square of that.
         assert!((without.modes[0].zeta.value / (zeta + decay / own) - 1.0).abs() < 1e-3);
         // As an accelerance, whose constant the correction changes by 2e-4, and its uncertainty by as much.
         let s = |f: &f64| Complex64::new(decay, std::f64::consts::TAU * f);

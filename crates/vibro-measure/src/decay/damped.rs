@@ -1,8 +1,8 @@
 //! Lines of damped sines, and their fit.
 //!
-//! The transform of a damped sine over a finite part is a geometric sum: no window is needed, and what the
-//! ends of the part do to the lines is in the model. A fit reads the lines around a few sines only, where
-//! noise is white enough, whatever colour it has elsewhere.
+//! The transform of a damped sine over a finite part is a geometric sum: no window is needed, and the leakage
+//! from the ends of the part is in the model. A fit reads only the lines around a few sines, where noise is
+//! white enough, whatever colour it has elsewhere.
 
 use crate::residuals::{Whiteness, student};
 use nalgebra::{DMatrix, DVector, SVD};
@@ -17,11 +17,11 @@ use vibro_signal::fft::Transform;
 /// One sine Re(c e^((−d + 2πiκ) t/T)) over a part of duration T.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damped {
-    /// Periods κ in the part: its place between the lines.
+    /// Periods κ in the part, thus its position in lines.
     pub periods: f64,
-    /// What it loses over the part: it ends at e^(−d).
+    /// Decay d over the part: the amplitude ends at e^(−d) of its beginning.
     pub decay: f64,
-    /// Its amplitude c at the beginning.
+    /// Complex amplitude c at the beginning, in the unit of the record.
     pub amplitude: Complex64,
 }
 
@@ -31,7 +31,7 @@ impl Damped {
         self.of(exponentials(self.periods, self.decay, k, n))
     }
 
-    /// A line of these exponentials.
+    /// A line of the sine, from the lines of its two exponentials.
     fn of(&self, [own, image]: [Complex64; 2]) -> Complex64 {
         self.amplitude * own + self.amplitude.conj() * image
     }
@@ -42,21 +42,21 @@ impl Damped {
         (self.amplitude * (Complex64::new(-self.decay, TAU * self.periods) * t).exp()).re
     }
 
-    /// Half of the lines between which half of its power lies, at least one line.
+    /// Half-width at half power, in lines; at least 1.
     pub fn width(&self) -> f64 {
         (self.decay.abs() / TAU).max(1.0)
     }
 
-    /// Lines on either side that it is fitted to.
+    /// Number of lines on either side to which the sine is fitted.
     pub fn reach(&self) -> f64 {
         LINES.0.max(LINES.1 * self.width())
     }
 }
 
-/// Lines that are fitted on either side of a sine at least, and in parts of its width.
+/// Lines that are fitted on either side of a sine: least number, and number in half-widths of the sine.
 pub const LINES: (f64, f64) = (8.0, 6.0);
 
-/// The lines of a part as [`Damped::line`] has them.
+/// The lines of a part, scaled as in [`Damped::line`].
 pub fn lines(part: &[f64]) -> Vec<Complex64> {
     let n = part.len();
     Transform::new(n).forward(part).iter().map(|line| line * (2.0 / n as f64)).collect()
@@ -84,13 +84,13 @@ fn less_one(z: Complex64) -> Complex64 {
 
 /// Parameters of a sine: periods, decay, real and imaginary part of the amplitude.
 pub const OWN: usize = 4;
-/// Those of what else is there, a straight line over frequency.
+/// Parameters of the background under the sines, a complex straight line over frequency.
 const REST: usize = 4;
 
 /// Sines that were fitted together to some lines.
 #[derive(Debug, Clone)]
 pub struct SineGroup {
-    /// The lines.
+    /// The fitted lines.
     pub lines: Range<usize>,
     /// The sines, in the order of their starts.
     pub sines: Vec<Damped>,
@@ -99,7 +99,7 @@ pub struct SineGroup {
 }
 
 impl SineGroup {
-    /// Fits sines to `lines` of a spectrum of `n` samples, from their periods and decays.
+    /// Fits sines to `lines` of a spectrum of `n` samples, starting from these periods and decays.
     ///
     /// # Errors
     /// If the lines do not determine the sines.
@@ -117,7 +117,7 @@ impl SineGroup {
         }
         let largest = scale.iter().skip(2).copied().fold(f64::MIN_POSITIVE, f64::max);
         scale.extend([largest; REST]);
-        // A difference quotient moves one parameter: the exponentials of all other sines are those of before.
+        // A difference quotient moves one parameter, so the exponentials of all other sines are kept.
         let known = RefCell::new(vec![([f64::NAN; 2], Vec::new()); starts.len()]);
         let residuals = |p: &[f64], out: &mut [f64]| {
             let (rest, mut known) = (&p[p.len() - REST..], known.borrow_mut());
@@ -144,7 +144,7 @@ impl SineGroup {
         Ok(SineGroup { lines, sines, fit, widening })
     }
 
-    /// Standard uncertainty of what depends on the parameters of sine `m` with this gradient.
+    /// Standard uncertainty of a function of the parameters of sine `m` with this gradient.
     pub fn std(&self, m: usize, gradient: [f64; OWN]) -> f64 {
         let at =
             |i: usize, j: usize| gradient[i] * gradient[j] * self.fit.covariance(OWN * m + i, OWN * m + j);
@@ -166,7 +166,7 @@ fn beside(rest: &[f64], place: f64) -> Complex64 {
     Complex64::new(rest[0] + place * rest[2], rest[1] + place * rest[3])
 }
 
-/// All parameters, the linear ones by least squares at the periods and decays given.
+/// Starting values of all parameters: the given periods and decays, the linear ones by least squares.
 fn start(spectrum: &[Complex64], range: &Range<usize>, n: usize, starts: &[(f64, f64)]) -> Result<Vec<f64>> {
     let (rows, columns) = (2 * range.len(), 2 * starts.len() + REST);
     if rows <= OWN * starts.len() + REST {
@@ -224,7 +224,7 @@ mod tests {
         let spectrum: Vec<Complex64> = (0..100).map(|k| truth.iter().map(|s| s.line(k, n)).sum()).collect();
         let group = SineGroup::fit(&spectrum, 30..52, n, &[(40.0, 2.0), (41.5, 2.0)]).unwrap();
         for (found, truth) in group.sines.iter().zip(&truth) {
-            // The Jacobian is one of central differences, and steps end below 1e-8 of a line.
+            // The Jacobian is of central differences, and steps end below 1e-8 of a line.
             assert!((found.periods - truth.periods).abs() < 1e-6 && (found.decay - truth.decay).abs() < 1e-5);
         }
         assert!(SineGroup::fit(&spectrum, 38..42, n, &[(40.0, 2.0), (41.5, 2.0)]).is_err());

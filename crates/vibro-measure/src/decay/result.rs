@@ -1,15 +1,15 @@
-//! What is asked of a free decay, and what it answers.
+//! Options and results of the analysis of a free decay.
 
 use crate::Estimate;
 use serde::Serialize;
 use vibro_record::Finding;
 
-/// What is known of a decay beside its record.
+/// Options of the analysis of a free decay.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DecayOptions {
-    /// Band in Hz in which modes are looked for. Default: all lines.
+    /// Band in Hz in which modes are searched. Default: all lines.
     pub band: Option<(f64, f64)>,
-    /// Number of modes. Default: all that stand out of the noise.
+    /// Number of modes. Default: all above the noise.
     pub modes: Option<usize>,
 }
 
@@ -31,7 +31,7 @@ pub struct DecayMode {
 pub struct Level {
     /// Beginning of the stretch in s.
     pub start: f64,
-    /// The mode as fitted to this stretch alone, its amplitude that at the beginning.
+    /// The mode as fitted to this stretch alone; its amplitude is that at the beginning of the stretch.
     #[serde(flatten)]
     pub mode: DecayMode,
 }
@@ -41,7 +41,7 @@ pub struct Level {
 pub struct DecayResult {
     /// Beginning of the part that was used, in s.
     pub start: f64,
-    /// Its end in s.
+    /// End of the part in s.
     pub end: f64,
     /// End of the record in s.
     pub last: f64,
@@ -52,9 +52,9 @@ pub struct DecayResult {
     /// Damping ratio of the strongest mode from the logarithmic decrement between the first and the last
     /// level.
     pub decrement: Option<Estimate>,
-    /// What was left out, and what makes numbers doubtful.
+    /// Findings: what was left out, and doubts.
     pub findings: Vec<Finding>,
-    /// Time in s, record and modes together over the part, for a figure.
+    /// Time in s, record, and sum of the modes over the part, for a figure.
     #[serde(skip)]
     pub curves: [Vec<f64>; 3],
 }

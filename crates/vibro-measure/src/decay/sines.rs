@@ -1,4 +1,4 @@
-//! The sines of a part of a record, the strongest first (Li & Stoica 1996, RELAX).
+//! Finds the damped sines of a part of a record, the strongest first (Li & Stoica 1996, RELAX).
 
 use super::damped::{Damped, OWN, SineGroup, lines};
 use super::result::DecayOptions;
@@ -9,42 +9,44 @@ use num_complex::Complex64;
 use std::ops::Range;
 use vibro_record::median;
 
-/// Most sines of one record, those that do not decay with them.
+/// Most sines of one part, steady ones included.
 pub(super) const MOST: usize = 12;
-/// Most lines that stand out and are no mode.
+/// Most lines above the noise that no sine fits; then the search ends.
 const ODD: usize = 8;
-/// How often the largest line of pure noise may pass for a mode.
+/// Probability with which the largest line of pure noise passes for a mode.
 const BY_CHANCE: f64 = 1e-4;
-/// F of four more parameters to be worth them, at a chance of about 1e-4.
+/// Least F ratio of a further sine, which has four parameters: chance exceeds it in about 1e-4 of cases.
 const WORTH: f64 = 10.0;
-/// Two sines nearer than so many half-widths of the wider one are one that does not decay as a mode does.
+/// Least distance of two sines in half-widths of the wider one. Nearer ones describe one motion that does not
+/// decay as a mode does.
 const PARTED: f64 = 1.5;
-/// Decay over the part, in natural logarithms: later there is nothing to be learnt.
+/// Decay of the strongest mode over a part, in natural logarithms, after which further samples add nothing.
 pub(super) const ENOUGH: f64 = 6.0;
-/// A part so many times as long as its strongest mode is seen is cut before others are sought: its lines, of
-/// which a mode has thousands, say no more.
+/// A part this many times as long as its strongest mode is seen is cut before other modes are searched: a
+/// mode then has thousands of lines, which add nothing.
 const LONG: f64 = 4.0;
-/// Standard uncertainties by which a decay has to be above nothing.
+/// Standard uncertainties by which a decay must exceed 0.
 const SURE: f64 = 3.0;
-/// Fall of what is left from block to block where a contact ends.
+/// Least fall of the residual from one block to the next at the end of a contact.
 const FALL: f64 = 6.0;
-/// Lines on either side that belong to a broad mode.
+/// Lines on either side whose median is the height of a broad mode.
 const BROAD: usize = 4;
 
 /// Sines of a part.
 pub struct Sines {
     pub n: usize,
     pub rate: f64,
-    /// Lines at which modes are asked for; sines elsewhere are fitted, so that they do not pass for these.
+    /// Lines in which modes are searched. Sines elsewhere are fitted, too, so that they do not pass for modes
+    /// here.
     band: Range<usize>,
     pub groups: Vec<SineGroup>,
-    /// Lines that stand out and are no mode beside those that are known.
+    /// Lines above the noise that no sine beside the known ones fits.
     pub odd: Vec<usize>,
 }
 
 impl Sines {
-    /// Finds the sines of a part, the strongest first; no more than that one where the part is much too long
-    /// for it, and more than `least` samples, or where it does not decay.
+    /// Finds the sines of a part, the strongest first. It stops after the strongest where the part is much
+    /// too long for it, and longer than [`LONG`] times `least` samples, or where it does not decay.
     pub fn of(part: &[f64], rate: f64, options: &DecayOptions, least: usize) -> Sines {
         let n = part.len();
         let mean = average(part);
@@ -56,7 +58,7 @@ impl Sines {
         let mut sines = Sines { n, rate, band: band.clone(), groups: Vec::new(), odd: Vec::new() };
         let beside = [1..band.start, band.end..all.end];
         let ranges = [(&band, options.modes), (&beside[0], None), (&beside[1], None)];
-        // What stood out beside a sine while another one was not known yet is looked at again.
+        // The second pass tries lines again that no sine fitted while another sine was still unknown.
         for _ in 0..2 {
             sines.odd.clear();
             for (range, wanted) in ranges.iter().filter(|(range, _)| !range.is_empty()) {
@@ -77,7 +79,7 @@ impl Sines {
             }
             sines.settle(&spectrum);
         }
-        // What still stands out beside a sine was not asked for, or is none.
+        // A line still above the noise beside a sine is beyond the stated number of modes, or is no sine.
         let rest = sines.rest(&spectrum, None);
         let beside = |k: &usize| sines.groups.iter().any(|group| group.lines.contains(k));
         let left: Vec<usize> = sines.next(&rest, band.clone()).into_iter().filter(beside).collect();
@@ -85,7 +87,7 @@ impl Sines {
         sines
     }
 
-    /// Fits each group again without the sines of all others.
+    /// Fits each group again, twice, with the sines of all others subtracted.
     fn settle(&mut self, spectrum: &[Complex64]) {
         for at in (0..self.groups.len()).cycle().take(2 * self.groups.len()) {
             let rest = self.rest(spectrum, Some(at));
@@ -114,7 +116,8 @@ impl Sines {
         self.asked().filter(|(group, m)| decays(group, *m)).count()
     }
 
-    /// The sine that moves most over the whole part; what does not decay counts as if it did.
+    /// The sine with the largest amplitude over decay, thus the most motion over the part. A steady sine
+    /// counts with the decay [`ENOUGH`].
     pub fn strongest(&self) -> Option<(&SineGroup, usize)> {
         let size = |(group, m): &(&SineGroup, usize)| {
             let sine = &group.sines[*m];
@@ -123,19 +126,19 @@ impl Sines {
         self.asked().max_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
-    /// Whether the strongest mode is over long before the part is.
+    /// Whether the strongest mode has decayed long before the part ends.
     pub fn is_long(&self) -> bool {
         self.strongest().is_some_and(|(group, m)| decays(group, m) && group.sines[m].decay > LONG * ENOUGH)
     }
 
-    /// Whether the strongest sine does not decay, and none of a line this high can be stronger: a sine is as
-    /// high as its line.
+    /// Whether the strongest sine does not decay, and is so much larger than a `line` of this height that no
+    /// further sine can be stronger.
     fn is_steady(&self, line: f64) -> bool {
         let steady = self.strongest().filter(|(group, m)| !decays(group, *m));
         steady.is_some_and(|(group, m)| group.sines[m].amplitude.norm() > 2.0 * ENOUGH * line)
     }
 
-    /// What is left of the lines without the sines of all groups but one.
+    /// The lines after subtraction of the sines of all groups but one.
     fn rest(&self, spectrum: &[Complex64], but: Option<usize>) -> Vec<Complex64> {
         let others = self.groups.iter().enumerate().filter(|(i, _)| Some(*i) != but);
         let sines: Vec<&Damped> = others.flat_map(|(_, group)| &group.sines).collect();
@@ -145,18 +148,20 @@ impl Sines {
         spectrum.iter().enumerate().map(left).collect()
     }
 
-    /// The largest line that stands out of those around it.
+    /// The largest line in `band` that stands out from those around it.
     fn next(&self, rest: &[Complex64], band: Range<usize>) -> Option<usize> {
         let sizes: Vec<f64> = rest.iter().map(|line| line.norm()).collect();
         let mut tops: Vec<usize> =
             band.clone().filter(|k| sizes[*k] >= sizes[k - 1] && sizes[*k] >= sizes[k + 1]).collect();
         tops.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
-        // Rayleigh: one of so many lines of noise passes t standard deviations with a chance of n e^(−t²/2).
+        // Rayleigh: the largest of n lines of noise exceeds t standard deviations with a probability of n
+        // e^(−t²/2).
         let visible = (2.0 * (band.len().max(1) as f64 / BY_CHANCE).ln()).sqrt();
         let above = |k: usize, size: f64, reach: usize| {
             noise::around(&sizes, k, reach, None).is_none_or(|floor| size > visible * floor)
         };
-        // Of a mode that is over long before the others the lines nearby are its own, and as high as it.
+        // A mode that decays long before the others is broad: the lines near its largest are its own, and as
+        // high. Their median is compared with lines farther away.
         let wide = |k: usize| {
             let near = &sizes[k.saturating_sub(BROAD)..(k + BROAD + 1).min(sizes.len())];
             above(k, median(near), noise::REACH.max(k / 2))
@@ -166,7 +171,8 @@ impl Sines {
         tops.into_iter().filter(|k| !known(k)).take(MOST).find(seen)
     }
 
-    /// Adds the sine of a line, fitted together with those near it.
+    /// Adds the sine of line `top`, fitted together with those near it; a line that no sine fits is noted as
+    /// odd.
     fn add(&mut self, spectrum: &[Complex64], rest: &[Complex64], top: usize) {
         let power = |k: usize| rest[k].norm_sqr();
         let half = |k: &usize| power(*k) > 0.5 * power(top);
@@ -192,7 +198,7 @@ impl Sines {
                 best = Some(group);
             }
         }
-        // A mode that turns out broader is fitted to all of its lines.
+        // A mode that turns out broader is fitted again, to all of its lines.
         let best = best.map(|group| {
             let wider = range(&group.sines, rest.len());
             if wider.len() > 2 * group.lines.len() {
@@ -220,8 +226,8 @@ impl Sines {
         }
     }
 
-    /// Samples at the beginning of a part in which something else acts, as the contact of a blow: what is
-    /// left falls at once behind it.
+    /// Samples at the beginning of a part in which another force acts, as in the contact of a blow: the
+    /// residual falls at once after it.
     pub fn contact(&self, part: &[f64], block: usize) -> Option<usize> {
         let left = self.left(part);
         let levels = levels(&left, block);
@@ -232,7 +238,7 @@ impl Sines {
         (0..levels.len().saturating_sub(1).min(3)).find(contact).map(|b| (b + 1) * block)
     }
 
-    /// What the sines leave of a part.
+    /// Residual of a part: its samples less all sines.
     pub fn left(&self, part: &[f64]) -> Vec<f64> {
         let sines: Vec<&Damped> = self.groups.iter().flat_map(|group| &group.sines).collect();
         let sum = |i: usize| sines.iter().map(|sine| sine.sample(i, self.n)).sum::<f64>();
@@ -240,7 +246,7 @@ impl Sines {
     }
 }
 
-/// Lines to which sines are fitted together, of so many.
+/// Range of lines, among `all`, to which these sines are fitted together.
 fn range(sines: &[Damped], all: usize) -> Range<usize> {
     let ends = |sign: f64| sines.iter().map(move |s| s.periods + sign * s.reach());
     let low = ends(-1.0).fold(f64::INFINITY, f64::min).max(1.0) as usize;
@@ -248,7 +254,7 @@ fn range(sines: &[Damped], all: usize) -> Range<usize> {
     low..high.max(low + 2 * OWN * (sines.len() + 1)).min(all - 1)
 }
 
-/// Whether a sine surely decays.
+/// Whether the decay of a sine is above 0 by more than its uncertainty explains.
 pub fn decays(group: &SineGroup, m: usize) -> bool {
     group.sines[m].decay > SURE * group.std(m, [0.0, 1.0, 0.0, 0.0])
 }

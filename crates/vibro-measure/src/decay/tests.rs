@@ -2,7 +2,7 @@ use super::*;
 use crate::synthetic::trace;
 use vibro_math::Noise;
 
-/// Samples of 1 kHz: modes (frequency, damping ratio, amplitude, phase) from sample `onset` on, and white
+/// Samples at 1 kHz: modes (frequency, damping ratio, amplitude, phase) from sample `onset` on, and white
 /// noise.
 fn record(
     n: usize,
@@ -28,8 +28,8 @@ fn off(estimate: &Estimate, truth: f64) -> f64 {
     (estimate.value - truth) / estimate.std.unwrap()
 }
 
-/// Stated intervals hold the truth as often as they say, over damping ratios from 0.003 to 0.1 and noise of
-/// 0.1 to 3 % of the amplitude.
+/// Stated intervals cover the truth as often as they state, over damping ratios from 0.003 to 0.1 and noise
+/// of 0.1 to 3 % of the amplitude.
 #[test]
 fn intervals_hold_the_truth_as_often_as_stated() {
     let mut normal = Noise::new(7);
@@ -45,7 +45,7 @@ fn intervals_hold_the_truth_as_often_as_stated() {
         };
         assert_eq!(found.modes.len(), 1, "{f} {zeta} {sigma}: {:?}", found.findings);
         let mode = &found.modes[0];
-        // One in some hundred seems to change its damping with its size, by chance.
+        // In one of some hundred records the damping seems to change with amplitude, by chance.
         if mode.zeta.std.is_none() {
             refused += 1;
             continue;
@@ -109,7 +109,7 @@ fn a_mode_that_is_over_long_before_another_is_found() {
         let modes = [(30.0, 0.004, 1.0, 0.5), (90.0, zeta, 2.0, -1.0)];
         let values = record(6000, 700, &modes, 0.003, &mut normal);
         check(&found(values.clone()).unwrap(), &modes);
-        // In a band around it, no level is that of the other.
+        // In a band around the fast mode, no level is that of the slow one.
         let only = DecayOptions { band: Some((60.0, 120.0)), modes: None };
         let only = decay(&trace(values), &only).unwrap();
         check(&only, &modes[1..]);
@@ -169,7 +169,8 @@ fn a_motion_that_does_not_decay_is_refused() {
     assert!(usage(&DecayOptions { band: None, modes: Some(0) }).contains("0 modes"));
 }
 
-/// Coulomb friction: amplitude falls by as much in every swing, and faster and faster in parts of itself.
+/// Coulomb friction: the amplitude falls by the same amount in every swing, so its relative decay gets
+/// faster.
 #[test]
 fn damping_that_changes_with_amplitude_has_no_uncertainty() {
     let (mut x, mut v, w, mut normal) = (1.0f64, 0.0f64, TAU * 20.0, Noise::new(2));
@@ -187,7 +188,7 @@ fn damping_that_changes_with_amplitude_has_no_uncertainty() {
     assert!(zeta.len() > 1 && zeta.is_sorted() && zeta[zeta.len() - 1] > 2.0 * zeta[0], "{zeta:?}");
 }
 
-/// A record a hundred times as long as its motion is seen: it is cut before further modes are sought, and the
+/// A record a hundred times as long as its motion is seen is cut before further modes are searched, and the
 /// second mode is found all the same.
 #[test]
 fn bounces_in_a_long_record_are_cut_to_the_first() {
@@ -199,7 +200,7 @@ fn bounces_in_a_long_record_are_cut_to_the_first() {
         values.iter_mut().zip(again).for_each(|(v, more)| *v += 0.7 * more);
     }
     check(&found(values.clone()).unwrap(), &modes);
-    // Hum that is stronger than all of them leaves nothing to be sought.
+    // A hum stronger than all modes ends the search.
     let hum = |i: usize| 3.0 * (TAU * 0.05 * i as f64).cos();
     let why = found(values.iter().enumerate().map(|(i, v)| v + hum(i)).collect()).unwrap_err();
     assert!(why.to_string().contains("does not decay"), "{why}");

@@ -8,31 +8,33 @@ use vibro_record::{Error, Finding, Result, Scaling, Trace, Window, code, upper_m
 use vibro_signal::fft::Transform;
 use vibro_signal::spectrum;
 
-/// Blocks that are looked at, if they are there; at least half of them.
+/// Fewest blocks of the evaluated part, where the record has them; with fewer than half of them it is
+/// refused.
 const FEWEST: usize = 6;
-/// Rise above the largest of so many blocks before it that makes a block the beginning of something new.
+/// A block begins a new motion where its level exceeds the largest of the blocks before by this factor.
 const RISE: f64 = 2.0;
+/// Number of blocks before it with which a block is compared.
 const BEFORE: usize = 5;
-/// Samples that a block has at least.
+/// Fewest samples of a block.
 const SHORTEST: usize = 8;
 /// Periods of the strongest line in a block.
 const PERIODS: f64 = 2.0;
-/// At its end the motion has fallen to this part of its largest, or into the noise.
+/// Level of the motion over its largest, at which it ends; noise may end it earlier.
 const LEFT: f64 = 2.5e-3;
-/// Level of the noise, in parts of its own, at which motion is lost in it.
+/// Level over that of the noise, below which motion is lost in it.
 const LOST: f64 = 1.3;
-/// Lines on either side that a line has to stand out of, at least.
+/// Fewest lines on either side with which a line is compared.
 const LEAST: usize = 8;
-/// Largest lines that are compared.
+/// Number of the largest lines that are compared.
 const MOST: usize = 80;
 /// Lines below the first of these hold the mean and its drift.
 const LOWEST: usize = 3;
 
 /// Where motion decays, and how long it stays in view.
 pub struct Usable {
-    /// First sample behind the onset, and one behind the last that holds motion.
+    /// Samples from the onset, or from the end of clipping, to a third beyond the visible motion.
     pub part: Range<usize>,
-    /// Samples of a few periods of the strongest line.
+    /// Length of a block in samples: two periods of the strongest line, or more.
     pub block: usize,
     /// Sample up to which no other motion begins.
     pub limit: usize,
@@ -68,7 +70,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     let mut sorted = levels.clone();
     sorted.sort_by(f64::total_cmp);
     let gone = (LOST * sorted[sorted.len() / 10]).max(LEFT * levels[top]);
-    // Two modes that beat come and go alike; what is new rises above all that was just before.
+    // The levels of beating modes fall and rise, too; a new motion exceeds all blocks just before it.
     let new = |b: &usize| {
         let before = &levels[b.saturating_sub(BEFORE).max(top + 1)..*b];
         levels[*b] > gone.max(RISE * before.iter().copied().fold(0.0, f64::max))
@@ -90,7 +92,7 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
         );
         start = behind;
     }
-    // What is a third longer than what is seen lets the noise be known.
+    // A part a third longer than the visible motion shows the noise.
     let seen = (last * block).saturating_sub(start) * 4 / 3;
     let end = (start + seen.max(FEWEST * block)).min(limit);
     if end < start + FEWEST * block / 2 {
@@ -106,13 +108,13 @@ pub fn usable(trace: &Trace, rate: f64, band: Option<(f64, f64)>) -> Result<Usab
     Ok(Usable { part: start..end, block, limit, findings })
 }
 
-/// The line among these that stands out most of those around it.
+/// The line among these that stands out most from those around it.
 ///
 /// # Errors
 /// If none of them is a maximum.
 fn strongest(lines: &[f64], among: Range<usize>) -> Result<usize> {
-    // Drift is high where all lines are, however steep: a mode stands out of the lines from half to twice its
-    // frequency.
+    // Drift raises all lines at low frequency. A mode stands out from the lines between half and twice its
+    // own frequency.
     let over = |k: &usize| {
         let (from, to) = ((k / 2).min(k.saturating_sub(LEAST)).max(1), (2 * k).max(k + LEAST));
         let mut around = lines[from..to.min(lines.len())].to_vec();
@@ -138,7 +140,7 @@ pub fn levels(values: &[f64], block: usize) -> Vec<f64> {
     values.chunks_exact(block).map(level).collect()
 }
 
-/// The record with the lines of a band only.
+/// The record filtered to the lines of a band.
 fn within(values: &[f64], band: Range<usize>) -> Vec<f64> {
     let transform = Transform::new(values.len());
     let mut lines = transform.forward(values);

@@ -1,5 +1,4 @@
-//! Turns over their phase: the time-synchronous average, the displacement, and the bandwidth that the motion
-//! needs.
+//! Turns over their phase: time-synchronous average, displacement, and bandwidth of the motion.
 
 use super::survey::State;
 use super::turns;
@@ -39,9 +38,9 @@ pub struct Phases {
 /// acceleration to speed and of largest jerk to acceleration: medians over the turns.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bandwidth {
-    /// Acceleration against speed, in Hz.
+    /// Frequency from acceleration and speed, in Hz.
     pub f1: f64,
-    /// Jerk against acceleration, in Hz.
+    /// Frequency from jerk and acceleration, in Hz.
     pub f2: f64,
     /// Half the sampling rate, in Hz.
     pub nyquist: f64,
@@ -52,7 +51,7 @@ pub struct Bandwidth {
     /// Largest jerk in m/s³.
     pub jerk: f64,
     /// Whether f₂ is within a factor of two of a quarter of the sampling rate, the most that differences of
-    /// samples can show: then it is the sampling that was measured.
+    /// samples can show: then it describes the sampling, not the motion.
     pub sampling_limited: bool,
 }
 
@@ -78,31 +77,31 @@ impl RunningMoments {
     }
 }
 
-/// Turns as they come.
+/// Sums over the turns of a record, added one by one.
 #[derive(Debug, Default)]
 pub(super) struct Cycles {
     /// Samples a second.
     rate: f64,
     points: Vec<RunningMoments>,
     row: Vec<f64>,
-    /// Largest speed, acceleration and jerk of each turn, in samples.
+    /// Largest speed, acceleration and jerk of each turn, with the sample as the unit of time.
     tops: [Vec<f64>; 3],
     /// Peak-to-peak displacement of each turn, in m.
     pub stroke: Vec<f64>,
-    /// How much more it is where the velocity is not smoothed, in m.
+    /// Loss of stroke of each turn by the smoothing of the velocity, in m.
     pub blunted: Vec<f64>,
-    /// Displacement left over at the end of each turn, in m; it was taken away evenly before the stroke was
+    /// Displacement at the end of each turn, in m; it is removed evenly over the turn before the stroke is
     /// taken.
     pub drift: Vec<f64>,
 }
 
 impl Cycles {
-    /// Turns that are averaged at `points` phases, the first at the edge that begins the turn.
+    /// Sums at `points` phases of a turn, the first at the edge that begins it; `rate` in Hz.
     pub fn new(rate: f64, points: usize) -> Cycles {
         Cycles { rate, points: vec![RunningMoments::default(); points], ..Cycles::default() }
     }
 
-    /// Averages a turn. Phases beside a sample that was not measured are left out.
+    /// Averages a turn. Phases next to a sample that was not measured are left out.
     pub fn average(&mut self, values: &[f64], states: &[State], number: usize, turn: Turn) -> Cycle<'_> {
         let Turn { start, end } = turn;
         self.row.clear();
@@ -121,7 +120,8 @@ impl Cycles {
         Cycle { number, time, speed, velocity: &self.row }
     }
 
-    /// Takes the largest changes of the same turn: central differences of measured samples.
+    /// Takes the largest speed, acceleration and jerk of the same turn, from central differences of measured
+    /// samples.
     pub fn differentiate(&mut self, values: &[f64], states: &[State], turn: Turn) {
         let mut top = [0.0f64; 3];
         for i in (turn.start.ceil() as usize).max(1)..turn.end.ceil() as usize {
@@ -134,7 +134,7 @@ impl Cycles {
         self.tops.iter_mut().zip(top).for_each(|(all, top)| all.push(top));
     }
 
-    /// Integrates the same turn, `smooth` and as it is.
+    /// Integrates the same turn, from the smoothed and from the measured velocity.
     pub fn integrate(&mut self, smooth: &[f64], values: &[f64], turn: Turn) {
         if let Some((stroke, drift)) = self.path(smooth, turn) {
             self.stroke.push(stroke);
@@ -143,8 +143,8 @@ impl Cycles {
         }
     }
 
-    /// Stroke and drift of a turn: trapezoids from edge to edge; the mean velocity of the turn is what
-    /// drifts.
+    /// Stroke and drift of a turn in m, by trapezoids from edge to edge. The drift is removed as a constant
+    /// velocity before the stroke is taken.
     fn path(&self, values: &[f64], turn: Turn) -> Option<(f64, f64)> {
         let Turn { start, end } = turn;
         let (first, last) = (turns::value(values, start)?, turns::value(values, end)?);
@@ -162,7 +162,7 @@ impl Cycles {
         Some((high - low, x))
     }
 
-    /// What was averaged; NaN where there is no value.
+    /// The average over the turns; NaN where a phase has no value.
     pub fn phases(&self) -> Phases {
         let n = self.points.len() as f64;
         let mean = |p: &RunningMoments| if p.n == 0 { f64::NAN } else { p.mean };
@@ -173,7 +173,7 @@ impl Cycles {
         }
     }
 
-    /// What bandwidth the motion needs.
+    /// Bandwidth that the motion needs.
     pub fn bandwidth(&self) -> Bandwidth {
         let rate = self.rate;
         let [speed, acceleration, jerk] = self.tops.each_ref().map(median);
@@ -185,12 +185,12 @@ impl Cycles {
     }
 }
 
-/// Part of the sampling rate from which on a motion is limited by it: of a sine of eight samples a period a
-/// first difference over two samples is 10 % below the derivative, a second difference 5 %.
+/// Least f₂ over the sampling rate where sampling limits it: of a sine of eight samples a period a first
+/// difference over two samples is 10 % below the derivative, a second difference 5 %.
 const LIMITED: f64 = 0.125;
 
-/// Displacement over the phase of a turn of `period` seconds, from velocities at equal phases: its mean is 0,
-/// and so is what it gains over a turn.
+/// Displacement in m over the phase of a turn of `period` seconds, from velocities in m/s at equal phases.
+/// Its mean is 0, and so is its gain over a turn.
 pub(super) fn displacement(velocity: &[f64], period: f64) -> Vec<f64> {
     let (drift, step) = (average(velocity), period / velocity.len().max(1) as f64);
     let (mut x, mut path) = (0.0, Vec::with_capacity(velocity.len()));

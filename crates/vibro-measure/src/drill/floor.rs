@@ -8,7 +8,7 @@ use vibro_signal::welch::Welch;
 
 /// Samples of a segment: lines 12.5 Hz apart at 102.4 kHz.
 const SEGMENT: usize = 8192;
-/// Lines over which levels are averaged to tell the bands, on both sides.
+/// Lines on each side over which levels are averaged to find the bands; also the least width of a band.
 const SMOOTH: usize = 8;
 
 /// Motion and noise over frequency.
@@ -18,7 +18,7 @@ pub struct NoiseFloor {
     pub frequency: Vec<f64>,
     /// Level of the motion in dB: RMS of a line against 1 m/s.
     pub motion: Vec<f64>,
-    /// Level of the record without motion.
+    /// Level of the record without motion, in dB likewise.
     pub noise: Vec<f64>,
     /// Margin in dB that the motion must have.
     pub margin: f64,
@@ -29,7 +29,7 @@ pub struct NoiseFloor {
 }
 
 /// RMS value of each line, from the line after 0 Hz on, and their equivalent noise bandwidth in lines: Hann
-/// window, half overlap. Missing samples are passed over. `None` if the signal is shorter than a segment or
+/// window, half overlap. Missing samples are left out. `None` if the signal is shorter than a segment or
 /// constant.
 fn lines(mut values: Vec<f64>, rate: f64) -> Option<(Vec<f64>, f64)> {
     values.retain(|v| v.is_finite());
@@ -89,7 +89,7 @@ mod tests {
         assert!(NoiseFloor::new(short, noise.clone(), rate, 10.0).is_none());
         let floor = NoiseFloor::new(motion, noise, rate, 10.0).unwrap();
         assert_eq!(floor.frequency[499], 500.0);
-        // 2/√2 m/s, noise adds nothing that is seen: 40 dB and more below.
+        // 2/√2 m/s; noise, 40 dB and more below, adds nothing visible.
         assert!((floor.motion[499] - 20.0 * 2f64.sqrt().log10()).abs() < 0.01);
         // Power of uniform noise, 1e-4/12, over 4096 lines, a line 1.5 wide; 46 segments scatter by 0.7 dB a
         // line, the mean of 3000 lines by 0.02 dB.

@@ -1,4 +1,4 @@
-//! Impacts that belong together, those of one direction: their means and their restitution.
+//! Groups of impacts of one direction: their means and their restitution.
 
 use super::parabola::LackOfFit;
 use super::{DrillOptions, TurnsFrom};
@@ -9,27 +9,28 @@ use std::f64::consts::TAU;
 use vibro_record::Finding;
 use vibro_record::code;
 
-/// Bias of a mean, in standard uncertainties, that leaves ± 1.96 of them a coverage of 94 %.
+/// Largest bias of a mean, in standard uncertainties, that is ignored: ±1.96 of them then still cover 94 %.
 const BIAS: f64 = 0.3;
-/// The square of the sum of n unit vectors over n that one in twenty sets of random directions exceeds (J.
-/// Zar, Biostatistical Analysis, 1999, section 27.1: Rayleigh's test).
+/// Least square of the sum of n unit vectors over n for phases with a direction: one in twenty sets of random
+/// directions exceeds it (J. Zar, Biostatistical Analysis, 1999, section 27.1: Rayleigh's test).
 const DIRECTED: f64 = 3.0;
-/// A velocity of approach is known from 0 by this many times its uncertainty.
+/// Least velocity of approach over its uncertainty for a restitution; a slower approach is consistent with 0.
 const CLEAR: f64 = 6.0;
-/// Impacts that begin their turns are there but for rounding.
+/// Largest phase in turns, from rounding, of impacts that begin their turns.
 const ROUNDING: f64 = 1e-6;
-/// Part of the speed at an impact that an offset of the velocity may be.
+/// Largest offset of the velocity over the speed at an impact that an instrument has.
 const LARGEST: f64 = 0.1;
 /// Findings about the velocities at impacts.
 const OF_VELOCITIES: [&str; 3] = ["drill-lack-of-fit", "drill-not-striking", "drill-restitution-impossible"];
-/// Times the largest velocity of a record that a parabola, continued to the middle of a contact, may give.
+/// Largest velocity that a parabola, continued to the middle of a contact, may give, over the largest of the
+/// record.
 const EXTRAPOLATED: f64 = 1.3;
-/// Part of their mean distance within which an impact follows another one closely: of impacts at random
+/// Largest distance, over the mean one, at which an impact follows another closely: of impacts at random
 /// phases 3 % do.
 const CLOSE: f64 = 0.25;
-/// Part of the impacts that follow closely by accident.
+/// Largest part of the impacts that follow another closely by accident; more are ringing.
 const ACCIDENTS: f64 = 0.1;
-/// Standard uncertainties beyond which a restitution outside 0 to 1 is no chance.
+/// Standard uncertainties beyond which a restitution outside 0 to 1 is impossible, not chance.
 const BEYOND: f64 = 2.0;
 
 /// One impact.
@@ -37,31 +38,31 @@ const BEYOND: f64 = 2.0;
 pub struct Impact {
     /// Turn, counted from 0 among the whole turns.
     pub cycle: usize,
-    /// Its place among the groups of the result, the strongest 0.
+    /// Number of its group in the result; 0 is the strongest.
     pub group: usize,
     /// Time from the first sample, in s.
     pub time: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the time, in s.
     pub time_std: f64,
     /// Part of the turn after its beginning, 0 to 1.
     pub phase: f64,
-    /// Standard uncertainty of the phase.
+    /// Standard uncertainty of the phase, in turns.
     pub phase_std: f64,
-    /// Velocity before, in m/s.
+    /// Velocity right before the contact, in m/s.
     pub before: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of this velocity, in m/s.
     pub before_std: f64,
-    /// Velocity after, in m/s.
+    /// Velocity right after the contact, in m/s.
     pub after: f64,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of this velocity, in m/s.
     pub after_std: f64,
     /// Whether samples of the fits or of the contact are over-range: then the speeds are too small, and the
     /// impact is in no mean.
     pub clipped: bool,
 }
 
-/// Mean velocity over turns in m/s, which velocities at impacts are counted from: a mass that comes back each
-/// turn has none, so it is an offset of the instrument, or the machine moves as a whole.
+/// Mean velocity over turns in m/s, subtracted from the velocities at impacts. A mass that returns each turn
+/// has none: it is an offset of the instrument, or the machine moves as a whole.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Offset {
     pub value: f64,
@@ -69,8 +70,8 @@ pub(super) struct Offset {
 }
 
 impl Offset {
-    /// From the drift over a turn, in m, and its time in s; `beyond` is what over-range may have taken from
-    /// the mean, in m/s.
+    /// From the mean drift over a turn in m and the time of a turn in s. `beyond` is the largest error of the
+    /// mean from over-range, in m/s.
     pub fn of(drift: &Mean, period: f64, beyond: f64) -> Offset {
         if !drift.value.is_finite() {
             return Offset { value: 0.0, std: None };
@@ -81,24 +82,23 @@ impl Offset {
 
 /// Impacts of one direction, by the sign of the jump of the velocity, and their means.
 ///
-/// A striker that hits the bit in front and is caught behind has two groups; means over both would be those
-/// of no impact. The first group is the strongest: that with the largest sum of squared jumps over the
-/// record.
+/// A striker that hits the bit in front and is caught behind has two groups; a mean over both would describe
+/// no impact. The first group is the strongest: it has the largest sum of squared jumps over the record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Group {
-    /// Impacts.
+    /// Number of impacts.
     pub n: usize,
-    /// Those of them that are over-range: they are in no mean, unless there are no others.
+    /// Impacts of the group that are over-range: they are in no mean, unless all are.
     pub clipped: usize,
-    /// Impacts for one turn measured: 1 where there is one in each.
+    /// Impacts per measured turn: 1 where each turn has one.
     pub share: f64,
     /// Mean phase in turns after the edge, on the circle; no uncertainty where impacts come all round the
     /// turn.
     pub phase: Estimate,
-    /// Mean velocity before, in m/s.
+    /// Mean velocity right before the contact, in m/s.
     pub before: Estimate,
-    /// Mean velocity after, in m/s.
+    /// Mean velocity right after the contact, in m/s.
     pub after: Estimate,
     /// Mean kinetic energy before, in J, where the mass is known.
     pub energy: Option<Estimate>,
@@ -106,7 +106,7 @@ pub struct Group {
     pub energy_given: Option<Estimate>,
     /// Sum of the speeds of separation over sum of the speeds of approach.
     pub restitution: Option<Estimate>,
-    /// What was found of this group alone.
+    /// Findings of this group alone.
     #[serde(skip)]
     pub(super) findings: Vec<Finding>,
     /// Whether velocities or phase change so slowly that uncertainties may be too small.
@@ -114,9 +114,9 @@ pub struct Group {
     pub(super) wanders: bool,
 }
 
-/// Groups of impacts found in `turns` turns, the strongest first; each impact gets its group. Velocities are
-/// counted from the `offset`. `residuals` are those of their fits, which end `gap` samples from the middle of
-/// the contact.
+/// Groups of impacts found in `turns` turns, the strongest first; sets the group of each impact. Velocities
+/// are already without the `offset`. `residuals` are those of the fits, which end `gap` samples from the
+/// middle of the contact.
 pub(super) fn groups(
     impacts: &mut [Impact],
     residuals: &[[Vec<f64>; 2]],
@@ -149,8 +149,8 @@ pub(super) fn groups(
 }
 
 impl Group {
-    /// Adds what is not known of the offset, which all impacts share; nothing is known where it is more than
-    /// an instrument has.
+    /// Adds the uncertainty of the offset, which all impacts share. Where the offset is larger than an
+    /// instrument has, no uncertainty is stated.
     fn allowing(mut self, offset: &Offset) -> Group {
         let (before, after) = (self.before.value, self.after.value);
         let doubted = offset.value.abs() > LARGEST * before.abs().max(after.abs());
@@ -158,7 +158,7 @@ impl Group {
         let add = |estimate: &mut Estimate, by: f64| {
             estimate.std = estimate.std.filter(|_| !doubted).map(|std| std.hypot(by));
         };
-        // m v of the energy ½ m v².
+        // Derivative m v of the energy ½ m v².
         let momentum = self.energy.as_ref().map_or(0.0, |e| 2.0 * e.value / before);
         self.energy.iter_mut().for_each(|e| add(e, momentum * unknown));
         self.energy_given.iter_mut().for_each(|e| add(e, momentum * (1.0 - after / before) * unknown));
@@ -170,8 +170,8 @@ impl Group {
         self
     }
 
-    /// The same without velocities where the fits lead beyond what the record has, `reach` in m/s: they are
-    /// no parabolas.
+    /// The group without velocities where those of the fits exceed the largest of the record, `reach` in m/s,
+    /// by far: the motion beside these contacts is no parabola.
     pub(super) fn within(mut self, reach: f64) -> Group {
         let largest = self.before.value.abs().max(self.after.value.abs());
         if largest.is_nan() || largest <= EXTRAPOLATED * reach {
@@ -182,16 +182,17 @@ impl Group {
             (estimate.value, estimate.std) = (f64::NAN, None);
         }
         (self.restitution, self.phase.std) = (None, None);
-        // What is said of these velocities is said of nothing.
+        // Findings about the dropped velocities go with them.
         self.findings.retain(|found| !OF_VELOCITIES.contains(&found.code.as_ref()));
         let found = Finding::doubt("drill-velocity-impossible").number("velocity", largest);
         self.findings.push(found.number("reach", reach));
         self
     }
 
-    /// Means over impacts with the residuals of their fits; `front`: they go towards the struck mass.
+    /// Means over impacts and the residuals of their fits. With `front` the impacts go towards the struck
+    /// mass.
     fn new(members: &[(&Impact, &[Vec<f64>; 2])], front: bool, gap: usize, options: &DrillOptions) -> Group {
-        // The means are of impacts that the instrument could follow, unless it could follow none.
+        // Over-range impacts are left out of the means, unless all are over-range.
         let clipped = members.iter().filter(|(i, _)| i.clipped).count();
         let used = |i: &Impact| clipped == members.len() || !i.clipped;
         let (own, residuals): (Vec<&Impact>, Vec<&[Vec<f64>; 2]>) =
@@ -205,7 +206,7 @@ impl Group {
         }
         let mut bias = |side: usize, name, mean: &Mean| {
             let fits: Vec<&[f64]> = residuals.iter().map(|r| r[side].as_slice()).collect();
-            // A mean that is moved by less than its scatter leaves open keeps its uncertainty.
+            // A bias well below the standard uncertainty of the mean leaves that uncertainty as it is.
             let lack = LackOfFit::of(&fits, gap);
             let moved = lack.filter(|l| mean.std.is_some_and(|std| l.bias > BIAS * std));
             findings.extend(moved.map(|LackOfFit { residual, bias }| {
@@ -220,7 +221,7 @@ impl Group {
         if rings > 0 {
             findings.push(Finding::doubt("drill-ringing").count("n", rings).count("all", own.len()));
         }
-        // By how much the biases of both velocities move what changes by these parts of them.
+        // Bias of a quantity whose derivatives by the velocities before and after are `parts`.
         let moved = |parts: [f64; 2]| (parts[0] * bias[0]).hypot(parts[1] * bias[1]);
         let estimate = |mean: Mean, parts, unit, method| {
             let std = mean.std.filter(|_| !open).map(|std| std.hypot(moved(parts)));
@@ -229,7 +230,7 @@ impl Group {
         let energy = |squares: &dyn Fn(&Impact) -> f64, parts: [f64; 2], method| {
             options.mass.map(|m| estimate(mean(&|i| 0.5 * m * squares(i)), parts.map(|v| m * v), "J", method))
         };
-        // Along the circle from the point opposite to the mean direction.
+        // Count phases from the point opposite to the mean direction, so that the mean does not wrap.
         let vectors = own.iter().map(|i| (TAU * i.phase).sin_cos());
         let (sin, cos) = vectors.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
         let from = f64::atan2(sin, cos) / TAU - 0.5;
@@ -266,13 +267,13 @@ impl Group {
     }
 }
 
-/// How many impacts follow another one closely, where that is no accident: a velocity that rings has several
-/// jumps an impact.
+/// Number of impacts that follow another one closely; 0 where accidents explain them. A velocity that rings
+/// has several jumps an impact.
 fn followed(impacts: &[&Impact]) -> usize {
     let ([first, .., last], gaps) = (impacts, impacts.windows(2).map(|w| w[1].time - w[0].time)) else {
         return 0;
     };
-    // A turn that has none, as in a pause, has no distance.
+    // Turns with an impact; a turn without one, as in a pause, does not count in the distance.
     let turns = 1 + impacts.windows(2).filter(|w| w[1].cycle > w[0].cycle).count();
     let period = (last.time - first.time) / last.cycle.saturating_sub(first.cycle).max(1) as f64;
     let distance = period * turns as f64 / impacts.len() as f64;
@@ -281,14 +282,14 @@ fn followed(impacts: &[&Impact]) -> usize {
 }
 
 /// R = Σ(v₂⁺ − v₁⁺)/Σv₁⁻ with v₂⁺ = m₁(v₁⁻ − v₁⁺)/m₂ from the balance of momentum, the struck mass at rest
-/// before (W. J. Stronge, Impact Mechanics, 2000, section 2.4); without a struck mass, or away from it (not
-/// `front`), v₂⁺ = 0. The mean of the quotients would weigh slow impacts most. The uncertainty is that of the
-/// mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one (delta method); `moved` is by how much
-/// the biases of the velocities before and after move what changes by parts of them.
+/// before (W. J. Stronge, Impact Mechanics, 2000, section 2.4). Without a struck mass, or away from it (not
+/// `front`), v₂⁺ = 0. A mean of the quotients would weigh slow impacts most. The uncertainty is that of the
+/// mean of (v₂⁺ − v₁⁺ − R v₁⁻)/mean(v₁⁻), which is the propagated one (delta method). `moved` gives the bias
+/// of a quantity from its derivatives by the velocities before and after.
 ///
-/// There is none where the approach is consistent with 0, as that of a bit, which is struck; nor where it
-/// would be negative or above 1 by more than its uncertainty explains. Without an uncertainty nothing is
-/// explained, and a value above 1 stays.
+/// No restitution is given where most approaches are consistent with 0, as those of a bit, which is struck;
+/// nor where it is negative or above 1 by more than its uncertainty explains. Without an uncertainty, a value
+/// above 1 stays.
 fn restitution(
     impacts: &[&Impact],
     front: bool,

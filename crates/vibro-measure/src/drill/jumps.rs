@@ -1,8 +1,8 @@
 //! Impacts as jumps of a velocity.
 //!
 //! On both sides of the contact the velocity is fitted by a parabola; both are continued to the middle of the
-//! contact, where the measured velocity passes half way between them. That is the impact as an instant: the
-//! speeds right before and after hold for the balance of momentum. A straight line would be more precise in
+//! contact, where the measured velocity passes half way between them. The impact is so treated as an instant:
+//! the speeds right before and after it fit the balance of momentum. A straight line would be more precise in
 //! noise but wrong where the drive accelerates the striker: over 0.5 ms of a 7.5 m/s stroke at 50 Hz by 0.04
 //! m/s.
 
@@ -13,13 +13,16 @@ use super::{Impact, TurnsFrom, turns};
 use crate::residuals::Whiteness;
 use vibro_record::median;
 
-/// Most impacts in a turn: two, in front and behind, where two pulses of a turn are counted as one.
+/// Most impacts in a turn: one at the front and one at the rear, and as many again where a turn holds two
+/// cycles of the machine.
 const MOST: usize = 4;
-/// Smaller jumps count down to this part of the largest of a turn, and of the median turn.
+/// Smallest jump that counts, over the largest of its turn, and over the median of these largest jumps.
 const PART: f64 = 0.25;
-/// Part of the height of a jump that lies between two samples where the jump takes no longer than one.
+/// Part of the height of a jump that lies between two neighbouring samples, above which the jump takes no
+/// longer than one sample.
 const AT_ONCE: f64 = 0.8;
-/// A jump must be this many times its own uncertainty: of some thousand places a turn none is one by chance.
+/// Least height of a jump over its uncertainty: a turn has some thousand places, and chance reaches it at
+/// none.
 const CLEAR: f64 = 6.0;
 
 /// A jump, kept until all are known.
@@ -27,12 +30,13 @@ const CLEAR: f64 = 6.0;
 struct Jump {
     cycle: usize,
     turn: Turn,
-    /// Place in samples.
+    /// Place of the impact in samples.
     at: f64,
-    /// Before and after.
+    /// Fits before and after the contact.
     sides: [Parabola; 2],
-    /// Step between the samples around the place, and the part of it that lies before.
+    /// Step between the two samples around the place, in the unit of the velocity.
     step: f64,
+    /// Part of the interval between these two samples that lies before the place.
     share: f64,
     clipped: bool,
 }
@@ -50,18 +54,18 @@ pub(super) struct Jumps<'a> {
     /// Samples from the end of a fit to the middle of the contact.
     pub gap: usize,
     length: usize,
-    /// Samples before the beginning of a turn in which an impact belongs to it.
+    /// Samples before the beginning of a turn in which an impact still belongs to that turn.
     lead: f64,
     found: Vec<Jump>,
     largest: Vec<f64>,
-    /// Turns whose impact lies in a fault of the velocity.
+    /// Number of turns whose impact lies in a fault of the velocity.
     pub hidden: usize,
 }
 
 impl<'a> Jumps<'a> {
-    /// Jumps in these numbered turns, or in parts of a record whose turns are not known: contacts take
-    /// `contact` samples at most, fits reach over `fit` samples on both sides. Where impacts begin the
-    /// turns, the one that begins a turn belongs to it, however early it is found.
+    /// Jumps in these numbered turns, or in parts of a record whose turns are not known. Contacts take
+    /// `contact` samples at most; fits use `fit` samples on each side. Where impacts begin the turns, the
+    /// impact that begins a turn belongs to it, even if it is found a little earlier.
     pub fn of(
         values: &'a [f64],
         states: &'a [State],
@@ -79,7 +83,7 @@ impl<'a> Jumps<'a> {
         jumps
     }
 
-    /// Looks for so many jumps at most.
+    /// Searches a turn for `most` jumps at most, the largest step first.
     fn search(&mut self, cycle: usize, turn: Turn, most: usize) {
         let (start, end) = (turn.start - self.lead, turn.end - self.lead);
         let (from, to) = (start.ceil() as usize, end.ceil() as usize);
@@ -110,13 +114,13 @@ impl<'a> Jumps<'a> {
         self.largest.extend(largest);
     }
 
-    /// Samples of the means whose difference is looked at first.
+    /// Number of samples of each of the two means whose difference shows candidates.
     fn averaged(&self) -> usize {
         (self.length / 4).max(3)
     }
 
-    /// Difference between the mean behind and the mean before a sample, the contact left out; 0 at the ends
-    /// of the record.
+    /// Difference between the means after and before sample `i`, without the samples of the contact; 0 at the
+    /// ends of the record.
     fn step(&self, i: usize) -> f64 {
         let m = self.averaged();
         let mean = |from: usize| Some(self.values.get(from..from + m)?.iter().sum::<f64>() / m as f64);
@@ -130,7 +134,7 @@ impl<'a> Jumps<'a> {
         self.states.get(near).is_some_and(|s| s.iter().any(|s| !s.measured()))
     }
 
-    /// The jump near a sample; its fits are taken three times so that they stand around the crossing.
+    /// The jump near a sample. The fits are made three times, each time around the latest crossing.
     fn refine(&self, cycle: usize, turn: Turn, near: usize) -> Option<Jump> {
         let (values, states) = (self.values, self.states);
         let mut at = near as f64;
@@ -165,7 +169,7 @@ impl<'a> Jumps<'a> {
     }
 
     /// All impacts in the order of time, at `rate` samples a second, with reference edges of standard
-    /// uncertainty `edge` samples; and what their fits leave.
+    /// uncertainty `edge` samples; and the residuals of their fits.
     pub fn finish(mut self, rate: f64, edge: f64) -> (Vec<Impact>, Vec<[Vec<f64>; 2]>) {
         let typical = median(&self.largest);
         self.found.retain(|j| j.height() >= PART * typical);
@@ -180,7 +184,7 @@ impl<'a> Jumps<'a> {
         let impact = |j: &Jump| {
             let [before, after] = [0, 1].map(|k| noise[k].1 * j.sides[k].leverage);
             let length = j.turn.end - j.turn.start;
-            // Before the turn begins there is only the impact that begins it.
+            // An impact found before its turn begins is the one that begins it.
             let phase = ((j.at - j.turn.start) / length).max(0.0);
             // The crossing lies between two samples; the level that is crossed is the mean of both values.
             let weight = (1.0 - j.share).powi(2) + j.share * j.share;
@@ -213,8 +217,8 @@ mod tests {
     use super::*;
     use vibro_math::Noise;
 
-    /// A velocity of 2000 m/s² and a bend up to an impact at `at`, then −1.5 m/s with 1000 m/s²; the contact
-    /// takes 6 samples.
+    /// A velocity that rises with 2000 m/s² and a bend to 7.5 m/s at the impact at sample `at`, then −1.5 m/s
+    /// with 1000 m/s²; the contact takes 6 samples.
     fn trace(at: f64) -> Vec<f64> {
         let dt = 1e-5;
         let before = |s: f64| 7.5 + 2000.0 * s + 1e5 * s * s;

@@ -1,4 +1,4 @@
-//! What must be known of a drill's record, and how it is taken.
+//! Options for a drill's record: what must be stated, and how the record is evaluated.
 
 use super::Edge;
 use crate::exposure::check_hours;
@@ -6,17 +6,18 @@ use serde::{Deserialize, Serialize};
 use vibro_record::{Error, Result};
 use vibro_signal::filter::Filter;
 
-/// More pulses in a turn than any encoder on a crank gives.
+/// Largest number of pulses in a turn: more than any encoder on a crank gives.
 const MOST_PULSES: usize = 10_000;
-/// More phases than any record fills.
+/// Largest number of phases of the average: more than any record fills.
 const MOST_POINTS: usize = 100_000;
-/// Cosine of 89°: nearer to square a tenth of a degree changes the velocity by a tenth.
+/// Smallest cosine of the angle between beam and motion, that of 89°: there a tenth of a degree changes the
+/// velocity by a tenth.
 const SQUARE: f64 = 0.0175;
-/// Harmonics of the speed that the low-pass chosen from the data lets through at least, however few phases
-/// the average has: at the tenth, (10/50)⁴ = 0.2 % of the amplitude are missing then, of a stroke still less.
+/// Lowest corner of the low-pass chosen from the data, over the speed, however few phases the average has.
+/// The tenth harmonic then lacks (10/50)⁴ = 0.2 % of its amplitude, a stroke still less.
 const HARMONICS: f64 = 50.0;
-/// Largest corner as a part of the sampling rate: from there on differences of samples show too little:
-/// at a quarter of it a central difference gives 2/π of a slope.
+/// Highest corner over the sampling rate. Differences of samples show too little above it: at a quarter of
+/// the rate a central difference gives 2/π of a slope.
 const HIGHEST: f64 = 0.25;
 
 /// From where the angle of the beam is counted.
@@ -29,7 +30,7 @@ pub enum AngleOrigin {
     Axis,
 }
 
-/// A beam that sees v cos α of a velocity v, α the angle between beam and motion.
+/// A laser beam that measures v cos α of a velocity v, α the angle between beam and motion.
 ///
 /// ```
 /// use vibro_measure::drill::{AngleOrigin, Beam};
@@ -39,7 +40,7 @@ pub enum AngleOrigin {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Beam {
-    /// Velocity of the motion over velocity along the beam, 1/cos α.
+    /// Velocity of the motion over that along the beam, 1/cos α.
     pub factor: f64,
     /// Relative change of velocities for one degree of error in the angle: tan α · π/180.
     pub per_degree: f64,
@@ -49,8 +50,8 @@ impl Beam {
     /// A beam at `degrees`, counted `from` the normal or from the axis of the motion.
     ///
     /// # Errors
-    /// If the angle is not between 0° and 90°, or the beam stands square to the motion and sees nothing of
-    /// it.
+    /// If the angle is not between 0° and 90°, or the beam is within 1° of square to the motion, of which it
+    /// then sees nothing.
     pub fn new(degrees: f64, from: AngleOrigin) -> Result<Beam> {
         if !(0.0..=90.0).contains(&degrees) {
             let found = format!("a beam angle of {degrees}°");
@@ -66,8 +67,8 @@ impl Beam {
     }
 }
 
-/// How the velocity is smoothed before it is averaged and integrated. Impacts and bandwidth are always taken
-/// from the velocity as it was measured.
+/// How the velocity is smoothed before it is averaged and integrated. Impacts and bandwidth always come from
+/// the velocity without smoothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Smoothing {
     /// A zero-phase low-pass as in [`Smoothing::LowPass`] whose corner comes from the data: half as many
@@ -84,7 +85,7 @@ pub enum Smoothing {
     Exponential(f64),
 }
 
-/// What tells the turns.
+/// Where the turns come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TurnsFrom {
@@ -105,8 +106,8 @@ pub enum Corner {
 }
 
 impl Smoothing {
-    /// Kind and corner for an average at `points` phases of turns of `turn` seconds, `rate` samples a second;
-    /// `None` where nothing is smoothed.
+    /// Kind of low-pass and corner in Hz, for an average at `points` phases of turns of `turn` seconds,
+    /// `rate` samples a second; `None` without smoothing.
     ///
     /// ```
     /// use vibro_measure::drill::{Corner, Smoothing};
@@ -139,15 +140,15 @@ impl Corner {
     }
 }
 
-/// Parameters of [`super::drill`]. There is no default for those of which a wrong guess gives a plausible
-/// wrong answer.
+/// Parameters of [`super::drill`]. Parameters whose wrong guess would give a plausible wrong answer have no
+/// default.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrillOptions {
     /// Velocity along the beam in m/s for one unit of the velocity channel.
     pub sensitivity: f64,
     /// The beam.
     pub beam: Beam,
-    /// What tells the turns. Pulses, edge, level and delay are those of a reference.
+    /// Where the turns come from. Pulses, edge, level and delay are those of a reference.
     pub turns_from: TurnsFrom,
     /// Pulses of the reference in a turn.
     pub pulses_per_turn: usize,
@@ -155,9 +156,9 @@ pub struct DrillOptions {
     pub edge: Edge,
     /// Level of the edge in the unit of the reference. Default: the middle of its two levels.
     pub level: Option<f64>,
-    /// Mass of what is measured, in kg: gives energies.
+    /// Mass of the measured part, in kg: gives energies.
     pub mass: Option<f64>,
-    /// Mass of what it strikes, in kg, at rest before: gives the restitution.
+    /// Mass of the struck part, in kg, at rest before the impact: gives the restitution.
     pub struck_mass: Option<f64>,
     /// Longest duration of a contact in s. Default 0.2 ms.
     pub contact: f64,
@@ -170,25 +171,25 @@ pub struct DrillOptions {
     pub delay: f64,
     /// Phases of the average. Default 720.
     pub points: usize,
-    /// Of average and displacement. Default a zero-phase low-pass, see [`Smoothing::Phases`].
+    /// Smoothing of average and displacement. Default a zero-phase low-pass, see [`Smoothing::Phases`].
     pub smoothing: Smoothing,
     /// Highest frequency in Hz that the instrument passes.
     pub instrument: Option<f64>,
-    /// Margin in dB by which motion must stand above the noise floor. Default 10 dB.
+    /// Margin in dB by which the motion must exceed the noise floor. Default 10 dB.
     pub margin: f64,
-    /// Hours a day of the exposure of a hand.
+    /// Exposure of a hand in hours a day.
     pub hours: Option<f64>,
     /// Relative standard uncertainty of the sampling rate. Default 0.
     pub clock: f64,
 }
 
 impl DrillOptions {
-    /// Samples of a contact and of a fit beside it.
+    /// Lengths of a contact and of a fit beside it, in samples.
     pub(super) fn lengths(&self, rate: f64) -> (f64, f64) {
         (self.contact * rate, self.fit * rate)
     }
 
-    /// Everything that has no default; the rest takes its default.
+    /// Options from the parameters without a default; the others take their defaults.
     pub fn new(sensitivity: f64, beam: Beam, pulses_per_turn: usize, edge: Edge) -> DrillOptions {
         DrillOptions {
             sensitivity,
@@ -221,7 +222,7 @@ impl DrillOptions {
     /// Checks every number.
     ///
     /// # Errors
-    /// With the first one that cannot be as its setting.
+    /// If a number is impossible; the error names the setting of the first.
     pub fn check(&self) -> Result<()> {
         let (low_pass, smoothing) = match self.smoothing {
             Smoothing::LowPass(corner) => (Some(corner), None),
@@ -259,7 +260,7 @@ impl DrillOptions {
         check_hours(self.hours)
     }
 
-    /// Checks what must fit into a turn of `turn` seconds.
+    /// Checks that contact and fit are no longer than half a turn of `turn` seconds.
     pub(super) fn check_turn(&self, turn: f64) -> Result<()> {
         for (key, time) in [("contact", self.contact), ("fit", self.fit)] {
             if time > 0.5 * turn {
@@ -289,7 +290,7 @@ mod tests {
             // One rounding in the angle, amplified by tan 80° = 6.
             assert!((a.factor / b.factor - 1.0).abs() < 1e-14);
         }
-        // 3 % a degree where the factor is 2.
+        // 3 % per degree where the factor is 2.
         assert!((Beam::new(30.0, AngleOrigin::Normal).unwrap().per_degree - 0.0302).abs() < 1e-4);
     }
 

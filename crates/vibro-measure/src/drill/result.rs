@@ -1,4 +1,4 @@
-//! What a drill's record gave, and what a person should know of it.
+//! Result of a drill's record, and its findings.
 
 use super::{
     Bandwidth, Beam, ChannelStatistics, Corner, DrillOptions, FaultCount, Group, Impact, NoiseFloor, Phases,
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use vibro_record::Finding;
 use vibro_record::code;
 
-/// Everything found in a record.
+/// Result of a drill's record.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Drill {
@@ -19,44 +19,46 @@ pub struct Drill {
     pub speed: Estimate,
     /// Standard deviation of the speed from turn to turn, in Hz.
     pub speed_variation: f64,
-    /// Whole turns.
+    /// Number of whole turns.
     pub cycles: usize,
-    /// Turns in the average: whole, and with no part of the velocity lost.
+    /// Number of turns in the average: whole, and with no part of the velocity lost.
     pub averaged: usize,
-    /// What tells the turns.
+    /// Where the turns come from.
     pub turns_from: TurnsFrom,
     /// The reference, or the impacts that begin the turns.
     pub reference: Pulses,
     /// Every impact.
     pub impacts: Vec<Impact>,
-    /// Impacts by direction and phase, the strongest group first.
+    /// Impacts by direction, the strongest group first.
     pub groups: Vec<Group>,
-    /// Mean velocity before the impacts of the strongest group; so are all means down to the restitution.
+    /// Mean velocity before the impacts of the strongest group, in m/s. All means down to the restitution are
+    /// of that group.
     pub before: Option<Estimate>,
-    /// Mean velocity after the impacts.
+    /// Mean velocity after the impacts, in m/s.
     pub after: Option<Estimate>,
     /// Mean phase of the impacts in turns after the edge.
     pub phase: Option<Estimate>,
-    /// Mean kinetic energy before the impacts.
+    /// Mean kinetic energy before the impacts, in J.
     pub energy: Option<Estimate>,
-    /// Mean energy that the impacts take out of the mass.
+    /// Mean energy that the impacts take out of the mass, in J.
     pub energy_given: Option<Estimate>,
-    /// Restitution from the balance of momentum; without a struck mass that of a struck mass that does not
+    /// Restitution from the balance of momentum; without a stated struck mass, that mass is taken not to
     /// move.
     pub restitution: Option<Estimate>,
-    /// Turns whose impact lies in a drop-out.
+    /// Number of turns whose impact lies in a fault of the velocity.
     pub hidden: usize,
-    /// Impacts whose fits reach the end of the range; they are in no mean unless there are no others.
+    /// Number of impacts whose fits reach the end of the range; they are in no mean unless there are no
+    /// others.
     pub clipped: usize,
-    /// Velocity over the phase.
+    /// Mean velocity over the phase.
     pub average: Phases,
     /// Displacement over the phase.
     pub displacement: Displacement,
-    /// Drop-outs of the velocity.
+    /// Number of drop-outs of the velocity.
     pub dropouts: usize,
     /// Drop-outs and spikes, and the samples bridged, lost and clipped.
     pub faults: FaultCount,
-    /// How fast the motion changes.
+    /// Bandwidth of the motion, and whether the sampling can follow.
     pub bandwidth: Bandwidth,
     /// Motion against the noise of the instrument, where a record without motion was given.
     pub noise_floor: Option<NoiseFloor>,
@@ -66,26 +68,26 @@ pub struct Drill {
     pub beam: Beam,
     /// Smoothing of average and displacement; `None` where it was switched off.
     pub smoothing: Option<Corner>,
-    /// Speed of each turn in Hz, for the picture of it.
+    /// Speed of each turn in Hz, for its plot.
     #[serde(skip)]
     pub speeds: Vec<f64>,
     /// Time of the beginning of each turn in s.
     #[serde(skip)]
     pub times: Vec<f64>,
-    /// Velocity, as it was measured, of a few turns in the middle.
+    /// Measured velocity of a few turns in the middle, in m/s.
     #[serde(skip)]
     pub excerpt: Vec<f64>,
-    /// The reference beside it.
+    /// The reference of the same turns.
     #[serde(skip)]
     pub excerpt_reference: Vec<f64>,
-    /// Time of its first sample in s, and sampling interval.
+    /// Time of the first sample of these turns, and sampling interval, in s.
     #[serde(skip)]
     pub excerpt_time: (f64, f64),
-    /// What was found, assumed or left out.
+    /// Findings: doubts, assumptions and what was left out.
     pub findings: Vec<Finding>,
 }
 
-/// Edges of the reference, or impacts in its place.
+/// Numbers of edges of the reference, or of impacts in its place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pulses {
     /// Edges found.
@@ -107,24 +109,24 @@ pub struct Displacement {
     pub value: Vec<f64>,
     /// Mean peak-to-peak displacement of a turn.
     pub stroke: Estimate,
-    /// Mean displacement left at the end of a turn, which was taken away.
+    /// Mean displacement at the end of a turn, which was removed.
     pub drift: Estimate,
 }
 
-/// A displacement that drifts by more than this part of the stroke in a turn has an offset, or the machine
-/// moves.
+/// Largest drift in a turn over the stroke; above it the velocity has an offset, or the machine moves.
 const DRIFTING: f64 = 0.1;
-/// Relative change of velocities for a degree of error in the beam angle that is worth a word.
+/// Relative change of velocities for one degree of error in the beam angle, above which a finding is added.
 const STEEP: f64 = 0.005;
 
-/// Part of a velocity without an uncertainty that a mean over turns changes without a word.
+/// Largest part of a velocity without an uncertainty by which the removed mean may change it without a
+/// finding.
 const SMALL: f64 = 0.01;
 
-/// One turn in so many may have no impact without a word.
+/// One turn in this many may lack an impact without a finding.
 const FEW: usize = 10;
 
-/// Of a result and its velocity; `sharp`: edges of the reference rise within one sample; `still`: a noise
-/// floor was asked for.
+/// Findings on a result and its velocity. `sharp`: edges of the reference rise within one sample; `still`: a
+/// noise floor was requested.
 pub(super) fn findings(
     d: &Drill,
     options: &DrillOptions,

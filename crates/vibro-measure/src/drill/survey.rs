@@ -1,15 +1,15 @@
-//! What a channel looks like: extremes, levels, noise; and the faults of a laser vibrometer: drop-outs and
-//! speckle spikes, found and bridged; over-range, found.
+//! Statistics of a channel: extremes, levels, noise. Faults of a laser vibrometer: drop-outs and speckle
+//! spikes are found and bridged, over-range is found.
 
 use std::ops::Range;
 use vibro_record::{Error, Result, median};
 
-/// What is known of a repaired sample.
+/// State of a sample after faults were bridged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// As it was measured.
+    /// Measured.
     Good,
-    /// As it was measured, but at the end of the range: over-range.
+    /// Measured, but at the end of the range: over-range.
     Clipped,
     /// A straight line over a fault.
     Bridged,
@@ -27,46 +27,46 @@ impl State {
 /// Number of faults found, and of the samples they cover.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
 pub struct FaultCount {
-    /// Drop-outs: stretches of missing or of equal values.
+    /// Number of drop-outs: stretches of missing or of equal values.
     pub dropouts: usize,
-    /// Spikes: outliers of one to three samples, and bursts of them of up to 48.
+    /// Number of spikes: one to three outliers, or a burst of 8 to 48.
     pub spikes: usize,
     /// Samples bridged by a straight line.
     pub bridged: usize,
     /// Samples in drop-outs that were too long to be bridged.
     pub lost: usize,
-    /// Samples that stand at the largest or smallest value: over-range.
+    /// Samples at the largest or smallest value of the channel: over-range.
     pub clipped: usize,
 }
 
-/// Neighbours that tell a drop-out in a motion from a signal at rest.
+/// Samples on each side of equal values: most of them differ around a drop-out, and are equal in a signal at
+/// rest.
 const AROUND: usize = 16;
 /// Longest speckle spike in samples.
 const SPIKE: usize = 3;
-/// Shortest burst of outliers in samples: fewer do not tell independent values from a motion.
+/// Shortest burst of outliers in samples: fewer random values cannot be told from a motion.
 const SHORT_BURST: usize = 8;
 /// Longest burst of outliers in samples: a dark speckle that passes within half a millisecond at 100 kHz.
 const BURST: usize = 48;
-/// Mean square of the second differences over that of the first: 3 of values that know nothing of each
-/// other, and 1.6 of a sine at a fifth of the sampling rate, below which structures ring.
+/// Mean square of the second differences over that of the first, above which samples are a burst. Independent
+/// values have 3; a sine has 1.6 at 0.22 of the sampling rate, and structures ring below that.
 const ROUGH: f64 = 1.6;
-/// Each third of a burst has at least this part of the mean square of all: of ringing that falls below the
-/// height of a spike the last third has less.
+/// Least mean square of each third of a burst over that of the whole. Ringing that decays below the height of
+/// a spike has less in its last third.
 const LAST_PART: f64 = 0.2;
-/// A spike stands this many times as far off the line between its neighbours as the signal changes there.
+/// Least distance of a spike from the line between its neighbours, over the change of the signal there.
 const APART: f64 = 4.0;
-/// Part of the height of a spike by which its first sample leaves the one before it, at least. The line
-/// between the neighbours covers an eighth of it at most, half of 1/[`APART`]; a burst may begin lower.
+/// Least step onto the first sample of a spike, over the height of a spike. A short spike has 7/8 at least,
+/// since the line between its neighbours covers half of 1/[`APART`]; a burst may begin lower.
 const ABRUPT: f64 = 0.7;
-/// Samples on both sides of a spike that must be calm: an impact is followed by ringing.
+/// Samples on each side of a spike that must be calm: after an impact they ring.
 const CALM: usize = 4;
-/// A spike stands this many standard deviations of the noise off its neighbours, which normal noise never
-/// does.
+/// Least height of a spike in standard deviations of the noise, which normal noise never reaches.
 const SPIKE_NOISE: f64 = 10.0;
-/// … and this part of the range of the channel; smaller ones move neither impacts nor averages.
+/// Least height of a spike over the range of the channel; smaller ones move neither impacts nor averages.
 const SPIKE_RANGE: f64 = 0.02;
-/// An extreme nearer to the median than this part of the reach is where the signal rests, not the end of the
-/// range.
+/// An extreme nearer to the median than this part of the larger excursion is the signal at rest, not the end
+/// of the range.
 const RAIL: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,13 +77,13 @@ enum FaultKind {
 }
 
 /// Bridges the drop-outs and spikes of a velocity by straight lines, except those longer than `longest`
-/// samples, and says what is known of each sample.
+/// samples. Returns the state of each sample and the number of faults.
 ///
-/// A *drop-out* is a stretch of missing values, or of equal values longer than chance gives, entered or left
-/// by a step amid neighbours that move; a *spike* is one to three samples that stand off both neighbours
-/// while these agree, or a burst of 8 to 48 that jump from each to the next between calm ends, which an
-/// impact in it may part; *over-range* are two or more samples at the largest or smallest value, entered or
-/// left by a step. Neither a turning point of a coarsely digitised signal nor an impact is a fault.
+/// A *drop-out* is a stretch of missing values, or of more equal values than chance gives, entered or left by
+/// a step amid neighbours that move. A *spike* is one to three samples far from both neighbours while these
+/// agree, or a burst of 8 to 48 that jump from each to the next between calm ends; the two ends may lie
+/// before and after an impact. *Over-range* is two or more samples at the largest or smallest value, entered
+/// or left by a step. Neither a turning point of a coarsely digitised signal nor an impact is a fault.
 pub(super) fn repair(
     values: &mut [f64],
     survey: &ChannelStatistics,
@@ -116,11 +116,11 @@ pub(super) fn repair(
     (states, count)
 }
 
-/// A velocity as it was measured.
+/// A measured velocity that is searched for faults.
 struct Velocity<'a> {
     raw: &'a [f64],
     survey: &'a ChannelStatistics,
-    /// Least height of a spike.
+    /// Least height of a spike, in the unit of the velocity.
     height: f64,
 }
 
@@ -139,12 +139,12 @@ impl Velocity<'_> {
         all
     }
 
-    /// The fault that begins at sample `i`, and the sample behind it.
+    /// The fault that begins at sample `i`, and the first sample after it.
     fn fault(&self, i: usize) -> Option<(FaultKind, usize)> {
         let v = self.raw[i];
         let before = i.checked_sub(1).map(|k| self.raw[k]);
         if before == Some(v) {
-            // Judged where it began.
+            // Equal values are judged at the first of them.
             return None;
         }
         let same = |x: &&f64| **x == v || !(x.is_finite() || v.is_finite());
@@ -160,13 +160,13 @@ impl Velocity<'_> {
         }
     }
 
-    /// What a stretch of equal values is.
+    /// The fault that equal values from `i` up to `end` are; `None` where they belong to the signal.
     fn flat(&self, i: usize, end: usize) -> Option<FaultKind> {
         let ChannelStatistics { low, high, median, quantum, longest_by_chance } = *self.survey;
         let v = self.raw[i];
         let before = &self.raw[i.saturating_sub(AROUND)..i];
         let after = &self.raw[end..(end + AROUND).min(self.raw.len())];
-        // More than one step of the converter, whatever rounding makes of a value.
+        // More than one step of the converter, with a margin for rounding.
         let step = |x: Option<&f64>| x.is_some_and(|x| (x - v).abs() > 1.5 * quantum);
         if !(step(before.last()) || step(after.first())) {
             return None;
@@ -180,8 +180,8 @@ impl Velocity<'_> {
         (end - i >= longest_by_chance && 2 * equal <= all).then_some(FaultKind::Dropout)
     }
 
-    /// The sample behind those that stand off the line between their neighbours, while the signal there is
-    /// calm: one to three, or a burst.
+    /// The first sample after a spike that begins at `i`: one to three samples, or a burst, far from the line
+    /// between their neighbours while the signal there is calm.
     fn spike(&self, i: usize) -> Option<usize> {
         let a = self.raw[i - 1];
         let spread = |x: f64, around: &[f64]| around.iter().map(|y| (x - y).abs()).fold(0.0, f64::max);
@@ -200,8 +200,8 @@ impl Velocity<'_> {
         })
     }
 
-    /// Whether these samples jump from one to the next and stand off the samples at both ends, which an
-    /// impact may have parted. Ringing behind an impact falls towards its end, a burst does not.
+    /// Whether these samples jump from one to the next and lie far from the samples at both ends, between
+    /// which an impact may lie. Ringing after an impact decays, a burst does not.
     fn is_burst(&self, burst: Range<usize>) -> bool {
         let (a, b) = (self.raw[burst.start - 1], self.raw[burst.end]);
         let off = |v: &f64| (v - a).abs().min((v - b).abs()).powi(2);
@@ -214,13 +214,14 @@ impl Velocity<'_> {
         let steps = |values: &[f64]| values.windows(2).map(|w| w[1] - w[0]).collect::<Vec<f64>>();
         let square = |steps: &[f64]| steps.iter().map(|d| d * d).sum::<f64>() / steps.len() as f64;
         let first = steps(values);
-        // A drop-out holds its value.
+        // Steps of 0 belong to a drop-out, which holds its value.
         let held = first.iter().filter(|step| **step == 0.0).count();
         2 * held < first.len() && square(&steps(&first)) > ROUGH * square(&first)
     }
 }
 
-/// Groups whose extremes show the levels of a pulse, however short its pulses are.
+/// Most groups of samples whose extremes are sorted for the threshold. Extremes keep the levels of pulses
+/// shorter than a group.
 const GROUPS: usize = 1 << 14;
 /// Median of |x| of a normal distribution of unit variance.
 const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
@@ -237,20 +238,20 @@ pub(super) struct ChannelStatistics {
     /// Smallest step between neighbours that is not 0: the resolution, where the channel was digitised
     /// coarsely.
     pub quantum: f64,
-    /// Number of equal neighbours that chance does not give in the whole channel (once in a thousand such
-    /// channels).
+    /// Fewest equal samples in a row that are a drop-out: chance gives them in one of a thousand such
+    /// channels. 4 to 64.
     pub longest_by_chance: usize,
 }
 
 impl ChannelStatistics {
-    /// Of all values; missing ones are NaN.
+    /// Statistics of all values; missing ones are NaN.
     pub fn of(values: &[f64]) -> ChannelStatistics {
         let (low, high) = range(values);
         let steps = || values.windows(2).map(|w| (w[1] - w[0]).abs());
         let quantum = steps().filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
         let n = values.len().max(1) as f64;
         let equal = steps().filter(|d| *d == 0.0).count() as f64;
-        // One more than was seen: none among a few thousand does not mean never.
+        // One more than was seen: none among a few thousand does not prove a probability of 0.
         let p = ((equal + 1.0) / (n + 1.0)).min(0.999);
         let needed = ((1e-3 / n).ln() / p.ln()).ceil() + 1.0;
         ChannelStatistics {
@@ -263,8 +264,8 @@ impl ChannelStatistics {
     }
 }
 
-/// Standard deviation of white noise on a smooth signal: second differences of noise scatter √6 as much, and
-/// their median is not moved by the few places where the signal is not smooth.
+/// Standard deviation of white noise on a smooth signal. Second differences scatter √6 as much as the noise;
+/// the few places where the signal is not smooth do not move their median.
 pub(super) fn noise(values: &[f64]) -> f64 {
     median(values.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs())) / (NORMAL_MEDIAN * 6f64.sqrt())
 }
@@ -295,18 +296,18 @@ pub(crate) fn levels(values: &[f64]) -> Option<(f64, f64)> {
 /// Part of the distance of two levels within which a value is on one of them.
 const AT_LEVEL: f64 = 0.1;
 
-/// A pulse stands on its two levels for more than this part of the time; a sine is within [`AT_LEVEL`] of the
-/// medians of its halves for a quarter.
+/// A pulse is on one of its two levels for more than this part of the time; a sine is within [`AT_LEVEL`] of
+/// the medians of its halves for a quarter.
 const PULSED: f64 = 0.8;
-/// Turns of a shaft are as long as their neighbours within this part; what vibrates crosses its middle at any
+/// Largest median change from one turn of a shaft to the next, over a turn. Edges of a vibration come at any
 /// distance.
 const UNEVEN: f64 = 0.2;
 
-/// Refuses what is no reference: the velocity in its place, or a vibration. The `reference` comes with its
-/// two levels, `edges` are its edges in samples.
+/// Refuses a reference that is no pulse: the velocity in its place, or a vibration. The `reference` comes
+/// with its two levels; `edges` are its edges in samples.
 ///
 /// # Errors
-/// If the reference does not stand on two levels, while the velocity does or the edges are uneven.
+/// If the reference does not rest on two levels, while the velocity does or the edges are uneven.
 pub(crate) fn check_pulses(
     velocity: &[f64],
     (reference, stands): (&[f64], (f64, f64)),
@@ -401,8 +402,8 @@ mod tests {
             raw[*at..at + n].iter_mut().for_each(|v| *v = random.between(-6.0, 6.0));
         }
         let (values, states, count) = repaired(&raw);
-        // Of samples between −6 and 6 m/s within the height of a spike, 0.36 m/s, of the motion are 6 %:
-        // those at an end of a burst stay, and do no harm.
+        // Of values between −6 and 6 m/s, 6 % lie within the height of a spike, 0.36 m/s, of the motion. At
+        // an end of a burst they stay, and do no harm.
         let all: usize = bursts.iter().map(|b| b.1).sum();
         assert!(count.bridged <= all && count.bridged > 9 * all / 10, "{count:?} of {all}");
         assert_eq!(states.iter().filter(|s| **s == State::Bridged).count(), count.bridged);
@@ -417,7 +418,7 @@ mod tests {
         // Without noise a coarse sine stands still at its turning points.
         let (_, _, count) = repaired(&signal(60_000, 0.005, 0.0));
         assert_eq!(count, FaultCount::default());
-        // A step down within two samples, ringing behind it, and rest before.
+        // A step down within two samples, ringing after it, and rest before.
         let mut raw = signal(20_000, 0.0, 0.02);
         for (k, v) in raw[10_000..10_400].iter_mut().enumerate() {
             *v -= 9.0;
@@ -447,8 +448,8 @@ mod tests {
             let begun = std::time::Instant::now();
             let (_, _, count) = repaired(&raw);
             assert_eq!((count.dropouts, count.spikes, count.clipped), (0, 0, 0), "{jump}");
-            // 8 ms in a program that is not optimised; a search for the beginning of the rest from each
-            // sample took 100 times that.
+            // Takes 8 ms without optimisation; searching the beginning of the rest from each sample took 100
+            // times as long.
             assert!(begun.elapsed().as_secs_f64() < 2.0, "{:?}", begun.elapsed());
         }
     }

@@ -7,35 +7,36 @@ use vibro_record::{Error, Result, median};
 const FEWEST: usize = 5;
 /// Most impacts of one direction in a period of the pattern.
 const PATTERN: f64 = 8.0;
-/// No impact counts more than this many times the median one: the strongest may be a fault of the instrument.
+/// Largest strength of an impact in the search, over the median strength: the strongest may be a fault of the
+/// instrument.
 const OUTLIER: f64 = 2.0;
-/// An impact repeats where another comes one period later within this part of it, and this part of the
-/// typical interval.
+/// An impact repeats where another comes one period later, within this part of the period …
 const NEAR: f64 = 0.1;
+/// … and within this part of the median interval.
 const BETWEEN: f64 = 0.25;
-/// Standard deviations of chance that are taken off an agreement: many lags are tried.
+/// Standard deviations of chance that are subtracted from an agreement, as many lags are tried.
 const CHANCE: f64 = 2.0;
-/// Agreement from which impacts have a common period: of trains at random one in a hundred agrees so well.
+/// Least agreement of a common period: one in a hundred trains at random reaches it.
 const COMMON: f64 = 0.4;
-/// A multiple of the period agrees as well as the period: the first lag that agrees nearly as well as the
-/// best is taken.
+/// The period is the first lag with this part of the best agreement: multiples of the period agree as well.
 const FIRST: f64 = 0.9;
-/// Neighbours in a train are whole periods apart within this part of one; beyond so many, the machine paused.
+/// Neighbours in a train are whole periods apart, within this part of a period.
 const UNEVEN: f64 = 0.2;
+/// Neighbours more than this many periods apart lie before and after a pause of the machine.
 const PAUSE: f64 = 4.0;
 
-/// The impacts that tell the turns, in samples.
+/// The impacts that begin the turns, in samples.
 pub(super) struct TurnImpacts {
     pub at: Vec<f64>,
-    /// Root mean square of the standard uncertainties of their instants.
+    /// Root mean square of the standard uncertainties of their instants, in samples.
     pub std: f64,
     /// Further impacts of the same direction, which begin no turn.
     pub others: usize,
 }
 
 impl TurnImpacts {
-    /// Of all impacts of a record sampled `rate` times a second, those of the stronger direction that follow
-    /// each other by their period.
+    /// Selects, from all impacts of a record sampled `rate` times a second, those of the stronger direction
+    /// that follow each other by their period.
     ///
     /// # Errors
     /// If there are too few, or they have no common period.
@@ -71,9 +72,9 @@ impl TurnImpacts {
     }
 }
 
-/// How much of the strength of the events (instant, strength) comes again one `lag` later, beyond what as
-/// many at random would (below 0 by chance, near 1 where all of many does); and the median time to those that
-/// come again.
+/// Part of the strength of the events (instant, strength) that comes again one `lag` later, beyond that of as
+/// many at random: near 1 where all of many do, below 0 by chance. And the median time in samples to those
+/// that come again.
 fn agreement(events: &[(f64, f64)], lag: f64) -> (f64, f64) {
     let (first, last) = (events[0].0, events[events.len() - 1].0);
     let reach = (NEAR * lag).min(BETWEEN * median(events.windows(2).map(|e| e[1].0 - e[0].0)));
@@ -94,11 +95,11 @@ fn agreement(events: &[(f64, f64)], lag: f64) -> (f64, f64) {
     ((again / all - chance - CHANCE * scatter) / (1.0 - chance), median(times))
 }
 
-/// The shortest time after which the pattern of events comes again; `None` where none does.
+/// The shortest time in samples after which the pattern of events comes again; `None` where none does.
 fn period(events: &[(f64, f64)]) -> Option<f64> {
     let steps = || events.windows(2).map(|e| e[1].0 - e[0].0).filter(|step| *step > 0.0);
     let shortest = steps().fold(f64::INFINITY, f64::min);
-    // The mean: of bursts the median is that within them.
+    // The mean interval, since the median of impacts in bursts is that within the bursts.
     let mean = (events[events.len() - 1].0 - events[0].0) / (events.len() - 1) as f64;
     let longest = (PATTERN * mean).min(0.5 * (events[events.len() - 1].0 - events[0].0));
     let grid = std::iter::successors(Some(shortest), |lag| Some(lag * (1.0 + 0.5 * NEAR)));
@@ -106,7 +107,7 @@ fn period(events: &[(f64, f64)]) -> Option<f64> {
         grid.take_while(|lag| *lag < longest * (1.0 + NEAR)).map(|lag| agreement(events, lag)).collect();
     let best = tried.iter().fold(0.0f64, |best, lag| best.max(lag.0));
     let first = tried.into_iter().find(|lag| lag.0 >= FIRST * best)?;
-    // Once more around the median.
+    // Repeat at the median time between events that come again.
     let (agreed, period) = agreement(events, first.1);
     (agreed > COMMON).then_some(period)
 }
@@ -117,7 +118,7 @@ fn chain(events: &[(f64, f64)], period: f64) -> Vec<usize> {
     // For each event the strength of the best chain that ends with it, and the event before.
     let mut best: Vec<(f64, Option<usize>)> = Vec::with_capacity(events.len());
     let better = |a: (f64, Option<usize>), b: (f64, Option<usize>)| if b.0 > a.0 { b } else { a };
-    // The best chain before a pause, and the first event behind it.
+    // The best chain before a pause, and the first event after it.
     let (mut paused, mut recent) = ((0.0, None), 0);
     for (at, strength) in events {
         let steps = |k: usize| (at - events[k].0) / period;
@@ -161,7 +162,7 @@ mod tests {
         TurnImpacts::of(&of.into_iter().map(impact).collect::<Vec<_>>(), 1.0)
     }
 
-    /// Impacts −7 ± 0.3 of 60 turns, the first 1000 long, the last 6 % more, ± 1 %.
+    /// Impacts of −7 ± 0.3 in 60 turns; the first turn takes 1000 samples, the last 6 % more, each ± 1 %.
     fn slowing(noise: &mut Noise) -> Vec<(f64, f64)> {
         let mut at = 300.0;
         let mut next = |k: u32| {
@@ -183,10 +184,10 @@ mod tests {
             let with: Vec<(f64, f64)> = (0..8).map(wrong).chain(kept.iter().copied()).collect();
             let found = train(with).unwrap();
             let same = found.at.iter().filter(|at| truth.contains(at)).count();
-            // One where an impact is missing may stand for it, and the strong one for its neighbour.
+            // A false impact may replace a missing one, and the strong one its neighbour.
             assert!(same + 1 >= truth.len() && found.at.len() <= same + 2 && found.std == 0.5);
-            // A catch behind, in the other direction; a second impact a turn as strong; one half a turn later
-            // and weaker.
+            // A catch at the rear, in the other direction; a second impact a turn as strong; one half a turn
+            // later and weaker.
             for (part, jump) in [(0.5, 6.0), (0.3, -7.0), (0.5, -4.5)] {
                 let second = whole.iter().map(|e| (e.0 + 1000.0 * part, jump));
                 let found = train(whole.iter().copied().chain(second).collect()).unwrap();

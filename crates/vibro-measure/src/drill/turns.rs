@@ -1,4 +1,4 @@
-//! Where a sampled signal crosses a level; edges of a reference signal; the turns between them: which are
+//! Crossings of a level in a sampled signal; edges of a reference signal; the turns between them: which are
 //! whole, how fast, how evenly.
 
 use super::survey::State;
@@ -7,35 +7,35 @@ use crate::mean::Mean;
 use vibro_math::border;
 use vibro_record::{Error, Result, median};
 
-/// Neighbours on each side whose median is the expected interval: a machine that runs up changes little over
+/// Intervals on each side whose median is the expected interval: a machine that runs up changes little over
 /// them.
 const AROUND: usize = 15;
-/// An interval shorter than this part of the expected one ends in a false edge; one longer than the second
-/// lacks edges.
+/// An interval shorter than this part of the expected one ends in a false edge.
 const SHORT: f64 = 0.6;
+/// An interval longer than this many expected ones lacks edges.
 const LONG: f64 = 1.5;
-/// Beyond this many intervals the machine stood still, and edges cannot be counted on.
+/// An interval longer than this many expected ones is a pause: edges are not counted across it.
 const PAUSE: f64 = 4.0;
 
-/// One turn, from an edge to the edge that is as many pulses later as there are in a turn.
+/// One turn: from an edge to the edge one turn of pulses later.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turn {
     /// First edge, in samples from the first sample of the record.
     pub start: f64,
-    /// Last edge.
+    /// Last edge, in samples likewise.
     pub end: f64,
 }
 
 impl Turn {
-    /// Whether no sample of it is lost.
+    /// Whether no sample of the turn is lost.
     pub fn is_measured(self, states: &[State]) -> bool {
         !states[self.start as usize..=self.end.ceil() as usize].contains(&State::Lost)
     }
 }
 
-/// Edges with their places in an even series: a pick-up misses pulses and catches sparks.
+/// Edges numbered as an even series, since a pick-up misses pulses and catches sparks.
 pub(crate) struct Numbered {
-    /// Place and time of each edge; a pause begins a new run.
+    /// Number and time in samples of each edge; a pause begins a new run.
     pub runs: Vec<Vec<(usize, f64)>>,
     /// Missing edges.
     pub missing: usize,
@@ -44,8 +44,8 @@ pub(crate) struct Numbered {
 }
 
 impl Numbered {
-    /// Numbers edges, each by the median interval around it. Of two edges within an interval the one farther
-    /// from where the edge before lets it be expected is ignored.
+    /// Numbers each edge by the median interval around it. Of two edges within an interval, the one farther
+    /// from its expected place is ignored.
     pub fn new(edges: &[f64]) -> Numbered {
         let intervals: Vec<f64> = edges.windows(2).map(|e| e[1] - e[0]).collect();
         let (mut missing, mut extra) = (0, 0);
@@ -71,7 +71,7 @@ impl Numbered {
     }
 }
 
-/// Intervals in a time of so many expected ones.
+/// Number of intervals in a time of `ratio` expected intervals.
 fn steps(ratio: f64) -> usize {
     if ratio > LONG { ratio.round() as usize } else { 1 }
 }
@@ -85,13 +85,13 @@ pub(super) struct Turns {
     pub missing: usize,
     /// False edges, which are ignored.
     pub extra: usize,
-    /// Stretches without an edge in which the machine stood still, or the reference was lost.
+    /// Stretches without an edge: the machine stood still, or the reference was lost.
     pub pauses: usize,
 }
 
 impl Turns {
-    /// Turns of `pulses` edges each. With several pulses a pause loses which of them comes first: then the
-    /// longest stretch between pauses is all that is taken.
+    /// Turns of `pulses` edges each. With several pulses, a pause loses which pulse is the first of a turn:
+    /// then only the longest stretch between pauses is used.
     ///
     /// # Errors
     /// If there are fewer edges than a turn needs, or no whole turn between them.
@@ -127,13 +127,12 @@ impl Turns {
         Ok(Turns { whole, missing, extra, pauses: runs.len() - 1 })
     }
 
-    /// Turns a second at `rate` samples a second, the inverse of the mean duration of a turn; and whether the
-    /// durations change so slowly that its uncertainty may be too small.
+    /// Speed in turns a second at `rate` samples a second: the inverse of the mean duration of a turn. Also
+    /// whether the durations drift so slowly that the uncertainty may be too small.
     ///
-    /// The standard uncertainty is that of the mean of durations that may depend on each other ([`Mean`]),
-    /// and of the uncertainty `edge` of an edge, in samples: durations that follow each other share their
-    /// edges, so only the first and the last edge of each stretch without a gap count. `None` for fewer
-    /// than four turns.
+    /// The standard uncertainty combines that of a mean of serially correlated durations ([`Mean`]) and the
+    /// uncertainty `edge` of an edge, in samples. Neighbouring durations share their edges, so only the first
+    /// and the last edge of each stretch without a gap count. `None` for fewer than four turns.
     pub fn speed(&self, rate: f64, edge: f64) -> (Estimate, bool) {
         let durations: Vec<f64> = self.whole.iter().map(|t| t.end - t.start).collect();
         let mean = Mean::of(&durations);
@@ -155,22 +154,22 @@ pub enum Edge {
     Falling,
 }
 
-/// Part of the height by which the signal must pass the middle on both sides before an edge counts: ringing
-/// of a pick-up stays below.
+/// Part of the pulse height by which the signal must pass the middle on both sides before an edge counts:
+/// ringing of a pick-up is smaller.
 const HYSTERESIS: f64 = 0.2;
 
-/// Margins of the hysteresis on both sides of the middle that an edge passes between two samples where it
-/// tells no place between them: three fifths of the height.
+/// Margins of the hysteresis on both sides of the middle that a sharp edge passes between two samples: three
+/// fifths of the height. The samples then give no place between them.
 const SHARP: f64 = 1.5;
 
-/// Edges of a reference signal, and what is known of their times.
+/// Edges of a reference signal, and how well their times are known.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Edges {
     /// Places in samples from the first.
     pub at: Vec<f64>,
-    /// Whether most edges rise within one sample, so that nothing between samples is known.
+    /// Whether most edges rise between two samples, so that their places in between are unknown.
     pub sharp: bool,
-    /// Mean rise a sample at the edges.
+    /// Mean step between the samples around an edge, in the unit of the signal.
     slope: f64,
 }
 
@@ -184,7 +183,7 @@ impl Edges {
         let sign = if edge == Edge::Rising { 1.0 } else { -1.0 };
         let (middle, margin) = (0.5 * (low + high), HYSTERESIS * (high - low).abs());
         let (mut at, mut sharp, mut slopes) = (Vec::new(), 0, 0.0);
-        // First and last crossing of an edge, and the samples around the last.
+        // First and last crossing of an edge, and the samples on both sides of the last.
         let (mut armed, mut crossed) = (false, None::<(f64, f64, f64, f64)>);
         for (i, step) in signal.windows(2).enumerate() {
             let (from, to) = (sign * (step[0] - middle), sign * (step[1] - middle));
@@ -213,7 +212,7 @@ impl Edges {
     /// Standard uncertainty of an edge in samples, where the reference carries noise of standard deviation
     /// `noise`.
     pub fn std(&self, noise: f64) -> f64 {
-        // Two samples share the crossing; over a sample's length their mean square weight is 2/3.
+        // A crossing at s between two samples weighs them 1 − s and s; (1 − s)² + s² has the mean 2/3.
         let variance = if self.slope > 0.0 { 2.0 / 3.0 * (noise / self.slope).powi(2) } else { 0.0 };
         (variance + if self.sharp { 1.0 / 12.0 } else { 0.0 }).sqrt()
     }
@@ -242,7 +241,7 @@ pub(super) fn between(values: &[f64], i: usize, level: f64) -> Option<f64> {
         return Some(i as f64 + a / (a - b));
     };
     let four = four.map(|v| v - level);
-    // A change of sign between 0 and 1 is certain.
+    // The cubic passes through both samples, so it changes its sign between 0 and 1.
     Some(i as f64 + border(0.0, 1.0, |s| cubic(four, s) * a > 0.0))
 }
 
@@ -276,18 +275,18 @@ mod tests {
         edges.extend((0..5).map(|k| 9000.0 + f64::from(k) * 100.0));
         let turns = Turns::new(&edges, 1).unwrap();
         assert_eq!((turns.missing, turns.extra, turns.pauses), (1, 1, 1));
-        // 39 intervals less the two at the missing edge, and 4 behind the pause.
+        // 39 intervals less the two at the missing edge, and 4 after the pause.
         assert_eq!(turns.whole.len(), 37 + 4);
         assert!(turns.whole.iter().all(|t| t.end - t.start == 100.0));
         let speed = turns.speed(5000.0, 0.1).0;
         // Three stretches without a gap, each with two edges.
         let std = 50.0 * 6f64.sqrt() * 0.1 / 41.0 / 100.0;
         assert!(speed.value == 50.0 && (speed.std.unwrap() / std - 1.0).abs() < 1e-12, "{speed:?}");
-        // Two pulses a turn: the turns at the missing edge are lost, the pairs stay as they were, and behind
-        // the pause nobody knows which pulse is the first of a turn.
+        // Two pulses a turn: the turns at the missing edge are lost, the others keep their edges. After the
+        // pause it is unknown which pulse is the first of a turn.
         let pairs = Turns::new(&edges, 2).unwrap();
         assert!(pairs.whole.iter().all(|t| t.end - t.start == 200.0 && t.start % 200.0 == 0.0));
-        // 19 pairs less the two that meet at the missing edge; 2 behind the pause are left out.
+        // 19 pairs less the two that meet at the missing edge; 2 after the pause are left out.
         assert_eq!(pairs.whole.len(), 17);
     }
 
@@ -331,7 +330,8 @@ mod tests {
 
     #[test]
     fn false_edges_anywhere_in_a_turn_are_passed_over() {
-        // Turns of 100 with their third in each place but one half: 148 turns, as without the false edges.
+        // Turns of 100 samples with false edges in any part of a turn but its middle: 149 turns, as without
+        // them.
         for part in [0.05, 0.2, 0.45, 0.55, 0.65, 0.7, 0.8, 0.95] {
             let mut edges: Vec<f64> =
                 (0..150).map(|k| f64::from(k) * 100.0 + f64::from(k * k % 7) * 0.1).collect();
@@ -347,7 +347,7 @@ mod tests {
             );
             assert!(turns.whole.iter().all(|t| (t.end - t.start - 100.0).abs() < 0.7), "{part}");
         }
-        // A false edge at 1.45 where the edge at 1 is missing.
+        // A false edge 0.45 turns after a missing one.
         let mut edges: Vec<f64> = (0..40).map(|k| f64::from(k) * 100.0).collect();
         edges[21] = 2145.0;
         let turns = Turns::new(&edges, 1).unwrap();

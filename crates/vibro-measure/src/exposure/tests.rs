@@ -30,8 +30,7 @@ const TABLE: [(i32, f64); 25] = [
 ];
 
 fn steady(rate: f64, f: f64) -> f64 {
-    // The slowest pole settles with e^(−π·6.31/0.71·t): after 2 s nothing of it is left; whole periods
-    // follow.
+    // The slowest pole settles with e^(−π·6.31/0.71·t), to nothing after 2 s; whole periods follow.
     let settle = (2.0 * rate) as usize;
     let n = ((20.0 * f).round().max(20.0) / f * rate).round() as usize;
     let values: Vec<f64> = (0..settle + n).map(|i| (TAU * f * i as f64 / rate).sin()).collect();
@@ -85,8 +84,7 @@ fn an_offset_changes_nothing_that_vibrates() {
     let of = |values: &[f64]| exposure(rate, &[values], None).unwrap();
     let plain = of(&wave);
     let offset = of(&wave.iter().map(|v| v + 500.0).collect::<Vec<f64>>());
-    // Roundings of 500 beside 30, and what is left of the offset's start, e⁻¹⁴ of what the first sample
-    // differs by: nothing.
+    // Roundings of 500 beside 30; the transient of the first sample has decayed to e⁻¹⁴.
     assert!((offset.a_hv.value / plain.a_hv.value - 1.0).abs() < 1e-9);
     assert!((offset.crest_factor / plain.crest_factor - 1.0).abs() < 1e-9);
     assert!((offset.unweighted_peak / plain.unweighted_peak - 1.0).abs() < 1e-9);

@@ -1,22 +1,21 @@
-//! Level and noise of a trace between its impacts, and its bursts with the ringing that each impact leaves
-//! behind.
+//! Level and noise of a trace between its impacts; its bursts, each with the ringing after an impact.
 
 use std::f64::consts::PI;
 use std::ops::Range;
 use vibro_record::lanes::{Survey, survey};
 use vibro_record::{median, quantile};
 
-/// An impact rises above what is left of the ringing before it by this factor.
+/// Least height of an impact over the remaining ringing of the one before.
 const RISE: f64 = 2.0;
 /// Ratio of one candidate decay time to the one before.
 const STEP: f64 = 1.25;
-/// Numbers of bursts that differ by less than this part are the same.
+/// Relative difference up to which two numbers of bursts count as equal.
 const SAME: f64 = 0.02;
 
-/// Bursts of samples further than `reach` from 0, one an impact, joined over pauses of up to `pause` samples;
-/// without `pause`, a burst goes on until something rises above the envelope of its ringing. Then there is
-/// also the factor by which the decay that is assumed of the ringing may change without another number of
-/// bursts.
+/// Bursts of samples further than `reach` from 0, one an impact. With `pause`, stretches that follow within
+/// `pause` samples are joined. Without it, a burst goes on until something rises above the envelope of its
+/// ringing; the second value is then the factor by which the assumed decay of the ringing may change without
+/// changing the number of bursts.
 pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<usize>>, Option<f64>) {
     let runs = runs(values, reach);
     let (firsts, stable) = match pause {
@@ -31,8 +30,9 @@ pub fn bursts(values: &[f64], reach: f64, pause: Option<usize>) -> (Vec<Range<us
     (firsts.iter().zip(ends).map(whole).collect(), stable)
 }
 
-/// Stretches of samples beyond the noise. One that rises again from a valley, as an envelope does that rings
-/// until the next impact, is parted there; each part ends where it has fallen as far as an impact rises.
+/// Stretches of samples beyond the noise limit `reach`. A stretch that rises again from a valley, as an
+/// envelope does that rings until the next impact, is split there; each part ends where it has fallen from
+/// its peak by the factor [`RISE`].
 fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
     let beyond: Vec<usize> = (0..values.len()).filter(|i| values[*i].abs() > reach).collect();
     let mut found: Vec<Range<usize>> = Vec::new();
@@ -60,15 +60,15 @@ fn runs(values: &[f64], reach: f64) -> Vec<Range<usize>> {
     found
 }
 
-/// Runs that begin an impact if ringing decays by e in `decay` samples at least: those that rise above an
-/// envelope which follows every peak and falls with that time. What follows within the same time is the
-/// impact's own rise.
+/// Runs that begin an impact, if ringing decays by e in `decay` samples at least: they rise above an envelope
+/// that follows every peak and falls with that time. Runs that follow within the same time belong to the rise
+/// of the impact.
 fn firsts(values: &[f64], runs: &[Range<usize>], decay: f64) -> Vec<usize> {
     let keep = (-1.0 / decay).exp();
     let (mut envelope, mut at) = (0.0f64, 0);
     let mut found: Vec<usize> = Vec::new();
     for (j, run) in runs.iter().enumerate() {
-        // The flank that leads up to a run is its own, and nothing that rings.
+        // The rising flank before a run belongs to the run, not to the ringing before it.
         let rises = |i: &usize| values[i - 1].abs() < values[*i].abs();
         let foot = (at + 1..=run.start).rev().take_while(rises).last().unwrap_or(run.start);
         for v in &values[at..foot] {
@@ -85,11 +85,11 @@ fn firsts(values: &[f64], runs: &[Range<usize>], decay: f64) -> Vec<usize> {
     found
 }
 
-/// Impacts for the decay whose choice matters least, and the factor over which it does not matter.
+/// Impacts for the assumed decay whose choice matters least, and the factor over which it does not matter.
 ///
-/// The envelope follows each peak of the ringing, so that it need not fall as slowly as the ringing does:
-/// from a few half waves on, and up to the pause between impacts, the number of bursts stays the same. A
-/// decay that first parts bursts as it should far beyond the half waves belongs to a rest in the record.
+/// The envelope follows each peak of the ringing, so it may fall faster than the ringing does. For decays
+/// from a few half waves up to the pause between impacts, the number of bursts is the same. A number that
+/// first appears far beyond the half waves belongs to a rest in the record, and is not taken.
 fn most_stable(values: &[f64], runs: &[Range<usize>]) -> (Vec<usize>, Option<f64>) {
     // Length of a half wave, or of a pulse: half of all samples beyond the noise lie in runs no longer.
     let mut lengths: Vec<usize> = runs.iter().flat_map(|r| vec![r.len(); r.len()]).collect();
@@ -116,7 +116,7 @@ fn most_stable(values: &[f64], runs: &[Range<usize>]) -> (Vec<usize>, Option<f64
 /// Level and noise between impacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Background {
-    /// Its level.
+    /// Median of the quiet samples, in the unit of the trace.
     pub level: f64,
     /// Standard deviation of its noise.
     pub sigma: f64,
@@ -126,23 +126,26 @@ pub struct Background {
 }
 
 impl Background {
-    /// That of the envelope of the same samples, less their level: the noise of an envelope has Rayleigh's
-    /// distribution, whose mean is √(π/2)σ and whose variance (2 − π/2)σ², and which passes a limit zσ by
-    /// the same bound. Samples of an envelope lie `apart` where they depend little on each other.
+    /// Background of the envelope of the same samples less their level. The noise of an envelope has
+    /// Rayleigh's distribution: its mean is √(π/2)σ, its variance (2 − π/2)σ², and it exceeds zσ with the
+    /// same bounded probability. Samples of the envelope that lie `apart` samples apart depend little on each
+    /// other.
     pub fn of_envelope(self, envelope: &[f64], apart: f64) -> Background {
         let stretch = ((STRETCH * apart) as usize).max(1);
         let power = |part: &[f64]| 0.5 * part.iter().map(|v| v * v).sum::<f64>() / part.len() as f64;
         let lowest = quantile(envelope.chunks(stretch).map(power), QUIETEST).sqrt();
-        // What rings until the next impact leaves no quiet half: its valleys are no lower than the noise.
+        // Where impacts ring until the next one, σ contains the ringing, and the quietest stretches show the
+        // noise. They are used where they are below half of σ, which chance does not give.
         let part = if lowest < 0.5 * self.sigma { lowest / self.sigma } else { 1.0 };
         let (sigma, level) = (part * self.sigma, (0.5 * PI).sqrt() * part * self.sigma);
         Background { level, sigma: (2.0 - 0.5 * PI).sqrt() * sigma, reach: part * self.reach - level }
     }
 }
 
-/// Independent samples of a stretch, and the part of all stretches that are quiet: of 4 in noise (χ² of 8
-/// degrees of freedom) a tenth has σ below 0.66 of its value, so that half of it is no chance.
+/// Independent samples of an envelope in a stretch whose mean square is taken.
 const STRETCH: f64 = 4.0;
+/// Part of the stretches that are quiet. Of 4 samples in noise (χ² of 8 degrees of freedom) a tenth has σ
+/// below 0.66 of its value, so that half of it is no chance.
 const QUIETEST: f64 = 0.1;
 
 /// Lower quartile of |N(0, 1)|.
@@ -179,7 +182,7 @@ pub fn background(values: &[f64]) -> Background {
     found
 }
 
-/// A range of so many steps of the converter, or more, is no digital trace.
+/// Least range of a trace, in steps of the converter, that is not digital.
 const FINE: f64 = 32.0;
 
 /// Smallest step between neighbouring values that differ; `None` where all are the same.
@@ -231,7 +234,8 @@ mod levels {
         assert!((found.sigma / 0.1 - 1.0).abs() < 0.15, "{found:?}");
     }
 
-    /// Noise of a third of a converter's step: most samples are the level, and what is beside it no impact.
+    /// Noise of a third of a converter's step: most samples are the level, and those one step away are no
+    /// impact.
     #[test]
     fn the_last_digit_of_a_converter_is_no_impact() {
         let (mut noise, step) = (Noise::new(8), 1.0 / 2048.0);
@@ -242,7 +246,7 @@ mod levels {
         // Noise of a third of a step reaches two of them.
         assert!(found.reach > 2.5 * step && found.reach < 8.0 * step, "{found:?}");
         assert_eq!(bursts(&values, found.reach, None).0.len(), 5);
-        // A switch has two values, and both are what they are.
+        // A switch has two values and no noise.
         let switch: Vec<f64> = (0..1000).map(|i| if i % 100 < 3 { 5.0 } else { 0.0 }).collect();
         assert!(background(&switch).reach < 0.1);
     }

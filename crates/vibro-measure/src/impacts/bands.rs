@@ -1,5 +1,5 @@
-//! Bands in which impacts ring, where the whole of a record shows none: a resonance that each excites, above
-//! hum, shafts and noise.
+//! Bands in which impacts ring, for records that as a whole show none: a resonance that each impact excites,
+//! above hum, shafts and noise.
 
 use crate::mean::average;
 use vibro_record::{Finding, Result, Trace};
@@ -9,19 +9,19 @@ use vibro_signal::filter::Filter;
 const ORDER: usize = 4;
 /// Highest corner as a part of half the sampling rate: the filter needs room for its flank.
 const HIGHEST: f64 = 0.9;
-/// Bands are an octave wide, half an octave apart: so many of them.
+/// Number of bands, each an octave wide and half an octave below the one before.
 const BANDS: i32 = 10;
-/// Kurtosis of a band from which on it has impacts in it: that of noise is 3, of a tone that comes and goes
-/// as a sine 2.9 or less (J. Antoni, Mech. Syst. Signal Process. 20 (2006) 282).
+/// Least kurtosis of a band with impacts: that of noise is 3, of a tone that comes and goes as a sine 2.9 or
+/// less (J. Antoni, Mech. Syst. Signal Process. 20 (2006) 282).
 const IMPULSIVE: f64 = 3.5;
 
-/// Octaves in Hz below half the `rate`, the highest first.
+/// Octaves in Hz below half the `rate` in Hz, the highest first.
 pub fn octaves(rate: f64) -> impl Iterator<Item = (f64, f64)> {
     let high = move |k: i32| 0.5 * HIGHEST * rate * 2f64.powf(-0.5 * f64::from(k));
     (0..BANDS).map(high).map(|high| (0.5 * high, high))
 }
 
-/// The values between both corners in Hz, without delay.
+/// The values filtered to the band between both corners in Hz, without delay.
 ///
 /// # Errors
 /// As those of [`Filter`].
@@ -37,7 +37,7 @@ pub fn is_impulsive(trace: &Trace, band: (f64, f64)) -> bool {
     moment(4) > IMPULSIVE * moment(2).powi(2)
 }
 
-/// What was done to find impacts.
+/// Finding that impacts were searched in this band.
 pub fn chosen((low, high): (f64, f64)) -> Finding {
     Finding::caution("impacts-in-band").number("low", low).number("high", high)
 }

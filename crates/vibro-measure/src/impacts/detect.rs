@@ -1,4 +1,4 @@
-//! Impacts of a trace: bursts above the noise, timed below a sample.
+//! Detects the impacts of a trace: bursts above the noise, timed to less than a sample.
 
 use super::background::{Background, background, bursts};
 use super::bands::within;
@@ -16,14 +16,15 @@ use vibro_record::units::notation::{counted, quantity, shortest};
 use vibro_record::{Error, Finding, Result, Trace, median};
 use vibro_signal::envelope::envelope;
 
-/// Lowest impact as a part of the median one.
+/// Height of the lowest impact over the median height of all bursts.
 const THRESHOLD: f64 = 0.125;
-/// The number of impacts must not change while the assumed decay of their ringing does by this factor.
+/// The assumed decay of the ringing must be able to change by this factor without changing the number of
+/// impacts.
 const STABLE: f64 = 2.0;
-/// Standard deviations of the noise by which the median height must exceed the noise limit: below them one
-/// impact in 700 or more is lost by chance.
+/// Standard deviations of the noise by which the median height must exceed the noise limit: below that chance
+/// loses one impact in 700 or more.
 const LOST: f64 = 3.0;
-/// A pulse that swings both ways is inverted where it is deeper than high by this factor.
+/// A trace is inverted where the median depth of its pulses exceeds their median height by this factor.
 const INVERTED: f64 = 1.2;
 
 /// Impacts of a trace: when and how high.
@@ -38,14 +39,14 @@ pub struct Detected {
     pub onset_std: Option<f64>,
     /// Mains hum that was removed.
     pub hum: Option<Hum>,
-    /// How long an impact lasts, in s, where the trace comes back from each without swinging to the other
-    /// side, as a force does.
+    /// Duration of an impact in s; only where the trace returns from each without swinging to the other side,
+    /// as a force does.
     pub contact: Option<Estimate>,
-    /// What was done to the trace, and what is doubtful.
+    /// Changes made to the trace, and doubts.
     pub findings: Vec<Finding>,
     /// How the impacts were timed.
     pub(super) method: &'static str,
-    /// Time in s within which each onset may lie anywhere; `None` where samples on the flanks tell.
+    /// Interval in s within which each onset may lie anywhere; `None` where samples on the flanks show it.
     pub(super) resolution: Option<f64>,
 }
 
@@ -58,8 +59,8 @@ pub fn detect(trace: &Trace, options: &ImpactsOptions) -> Result<Detected> {
     detect_among(trace, options, None)
 }
 
-/// Chooses impacts among sounds in the order of their times, given with the noise limit and the median
-/// height: their places, and findings.
+/// Chooses the impacts among sounds, which come in the order of time, by the noise limit and the median
+/// height. Returns their places and findings.
 pub type Choose<'a> = &'a dyn Fn(&[Sound], f64, f64) -> Result<(Vec<usize>, Vec<Finding>)>;
 
 /// A sound that may be an impact.
@@ -67,11 +68,11 @@ pub type Choose<'a> = &'a dyn Fn(&[Sound], f64, f64) -> Result<(Vec<usize>, Vec<
 pub struct Sound {
     /// When it begins, in s.
     pub time: f64,
-    /// Its largest distance from the background.
+    /// Its largest distance from the background, in the unit of the trace.
     pub height: f64,
 }
 
-/// As [`detect`]; with `choose`, whatever rises at once may be an impact, and that chooses those that are.
+/// As [`detect`]. With `choose`, every sudden rise is a candidate, and `choose` selects the impacts.
 pub(crate) fn detect_among(
     trace: &Trace,
     options: &ImpactsOptions,
@@ -79,8 +80,8 @@ pub(crate) fn detect_among(
 ) -> Result<Detected> {
     let rate = check(trace, options)?;
     let unit = trace.meta.unit.symbol();
-    // A force, a switch, or the voltage of a sensor. Levels of sound have one sign, too, and last longer than
-    // a contact.
+    // A force, a switch or the voltage of a sensor shows the contact itself. Sound levels have one sign, too,
+    // but last longer than a contact.
     let is_force = matches!(trace.meta.quantity, Quantity::Force | Quantity::Voltage) && !options.envelope;
     let mut findings = Vec::new();
     let (mut values, quiet, hum) = cleared(trace, options, rate, &mut findings)?;
@@ -105,7 +106,7 @@ pub(crate) fn detect_among(
     let low = all.len() - bursts.len();
     let ignored = Finding::note("low-bursts-ignored").count("n", low).number("level", least);
     findings.extend((low > 0).then(|| ignored.name("unit", unit)));
-    // An envelope does not swing, and bounces are sought in a band where the whole record does not.
+    // An envelope does not swing. Bounces are searched in a band only where the whole record does not swing.
     let swings =
         !options.envelope && if choose.is_none() { are_close(&bursts) } else { options.band.is_none() };
     if swings && let Some(swings) = Swings::of(&values, rate, &bursts, quiet.reach) {
@@ -140,7 +141,7 @@ pub(crate) fn detect_among(
     }
     let mut std = median(each.iter().map(|o| o.std)) / rate;
     if sharp {
-        // Anywhere within a sample (JCGM 100:2008, 4.3.7).
+        // An onset anywhere within a sample has a uniform distribution (JCGM 100:2008, 4.3.7).
         let within = 1.0 / (12f64.sqrt() * rate);
         findings.push(Finding::caution("onset-within-sample").number("std", within));
         std = std.hypot(within);
@@ -158,8 +159,7 @@ pub(crate) fn detect_among(
     })
 }
 
-/// The values without mains hum and level, or the envelope of these; their noise, and the hum that was
-/// removed.
+/// The values without mains hum and level, or their envelope; their background, and the removed hum.
 fn cleared(
     trace: &Trace,
     options: &ImpactsOptions,
@@ -181,8 +181,9 @@ fn cleared(
     Ok((values, quiet, hum))
 }
 
-/// The refusal of so few impacts above the noise limit. What to try depends on whether `lower` ones were
-/// ignored, a shorter pause parts those that were `joined`, and a band is chosen already.
+/// The refusal of fewer than two impacts above the noise limit. The hint depends on whether bursts were
+/// ignored as too low (`lower`), a shorter pause separates more (`joined`), or a band is chosen already
+/// (`banded`).
 fn too_few(
     n: usize,
     values: &[f64],
@@ -210,14 +211,15 @@ fn too_few(
     }
 }
 
-/// A pulse lasts as long as it is above this part of its height, or above the noise where that is more.
+/// A pulse lasts as long as it exceeds this part of its height, or the noise limit where that is higher.
 const FOOT: f64 = 0.1;
-/// What swings back by this part of its height or more rings, and is no force of a contact.
+/// A pulse that swings back by this part of its height rings, and is no contact force.
 const BACK: f64 = 0.2;
 
-/// How long an impact lasts, the median of all. A pulse that is above the part p of its height for a time w
-/// lasts w where its flanks are steep, and πw/(π − 2 asin p) where it is half a sine: anywhere between them.
-/// Slower impacts of round bodies last longer: all that were seen are as likely.
+/// Duration of an impact in s, the median of all. A pulse that is above the part p of its height for a time w
+/// lasts w where its flanks are steep, and πw/(π − 2 asin p) where it is half a sine: the truth is anywhere
+/// between. Slow impacts of round bodies last longer, so the durations seen widen the uncertainty as a
+/// uniform distribution.
 fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f64) -> Option<Estimate> {
     let bounds = |burst: &Range<usize>| {
         let peak = burst.clone().max_by(|a, b| values[*a].total_cmp(&values[*b]))?;
@@ -229,7 +231,8 @@ fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f6
         let beside = before.saturating_sub(width)..(behind + width).min(values.len());
         let rings = values[beside].iter().any(|v| *v < -(BACK * height).max(quiet.reach));
         let cross = |out: usize, on: usize| (level - values[out]) / (values[on] - values[out]);
-        // A pulse begins and ends between samples: its foot lies above no chord from the sample before.
+        // A pulse begins and ends between samples. At its foot the flank lies below the straight line between
+        // two samples, so that line gives the longest duration.
         let inner = (width as f64 - 1.0) / rate;
         let outer = inner + (2.0 - cross(before, before + 1) - cross(behind, behind - 1)) / rate;
         let half = 1.0 - (level / height).min(1.0).asin() / FRAC_PI_2;
@@ -246,11 +249,13 @@ fn contact(values: &[f64], bursts: &[Range<usize>], quiet: &Background, rate: f6
     Some(Estimate::new(0.5 * (least + most), Some(std), "s", all.len(), "time above a tenth of the height"))
 }
 
-/// A contact is open below this part of its height and closed above that one.
+/// A contact is open below this part of its height.
 const OPEN: f64 = 0.2;
+/// A contact is closed above this part of its height.
 const CLOSED: f64 = 0.8;
 
-/// Contacts of two levels that open and close again within an impact; what swings below its level rings.
+/// Finding on contacts of two levels that open and close again within an impact. A burst that swings below
+/// the background rings, and does not count.
 fn chatter(values: &[f64], bursts: &[Range<usize>], rate: f64) -> Option<Finding> {
     let again = |burst: &Range<usize>| {
         let values = &values[burst.start.saturating_sub(1)..burst.end];
@@ -297,7 +302,7 @@ fn recorded(pulse: &Trace, rate: f64) -> Result<PulseShape> {
     })
 }
 
-/// Largest value of each burst, of −`values` with a `sign` of −1.
+/// Largest value of each burst, or of its negative with a `sign` of −1; at least 0.
 fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
     bursts.iter().map(|b| values[b.clone()].iter().map(|v| sign * v).fold(0.0, f64::max)).collect()
 }
@@ -305,18 +310,18 @@ fn heights(values: &[f64], bursts: &[Range<usize>], sign: f64) -> Vec<f64> {
 /// How impacts are found.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImpactsOptions {
-    /// Lowest impact as a part of the median one; 1/8 where `None`.
+    /// Height of the lowest impact over the median height; 1/8 where `None`.
     pub threshold: Option<f64>,
-    /// Pause in s that separates two impacts. Default: from the pauses of the trace.
+    /// Shortest pause in s between two impacts. Default: from the pauses of the trace.
     pub refractory: Option<f64>,
     /// Band in Hz to which the trace is filtered first, without delay. Default: all of it.
     pub band: Option<(f64, f64)>,
-    /// Whether impacts are sought in the envelope, which the ringing of a structure does not part. Default
+    /// Whether impacts are searched in the envelope, which joins the swings of a ringing structure. Default
     /// false.
     pub envelope: bool,
-    /// Whether mains hum stays. Default: it is removed.
+    /// Whether mains hum stays in the trace. Default: it is removed.
     pub keep_hum: bool,
-    /// One recorded pulse of the shape that all have. Default: the average of the pulses.
+    /// One recorded pulse with the shape of all. Default: the average of the pulses.
     pub shape: Option<Trace>,
     /// Whether no impact is missed and none is too many, however uneven the intervals. Default false.
     pub complete: bool,
@@ -326,7 +331,7 @@ pub struct ImpactsOptions {
     pub reference: Option<Vec<f64>>,
 }
 
-/// Checks options and trace, and gives the sampling rate in Hz.
+/// Checks options and trace. Returns the sampling rate in Hz.
 pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
     let rate = trace.sampling_rate()?;
     if let Some(threshold) = options.threshold.filter(|t| !(0.0..1.0).contains(t)) {
@@ -356,7 +361,7 @@ pub(super) fn check(trace: &Trace, options: &ImpactsOptions) -> Result<f64> {
     Ok(rate)
 }
 
-/// Refuses missing values: an impact, or the begin of a cycle, may stand in any of them.
+/// Refuses missing values: any of them may hide an impact or the beginning of a cycle.
 fn no_gaps(trace: &Trace, values: &[f64], name: &str) -> Result<()> {
     let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
     let (Some(first), Some(last)) = (missing.first(), missing.last()) else { return Ok(()) };

@@ -6,28 +6,28 @@ use vibro_record::median;
 
 /// Longest delay of an echo of a room in s: a way of 14 m.
 const LONGEST: f64 = 0.04;
-/// An echo is quieter than its impact by this factor or more.
+/// Largest height of an echo over that of its impact.
 pub const QUIETER: f64 = 0.8;
-/// Delays that differ by less, in s, are one delay.
+/// Largest difference of two delays that count as one, in s.
 const SAME: f64 = 3e-4;
-/// Part of the impacts with any echo that have one of this delay, at least.
+/// Least part of the impacts followed by any quieter burst that have one at this delay.
 const MOST: f64 = 0.6;
-/// Part of the impacts that something else precedes by the same delay, at most: in a train of uneven heights
-/// most do.
+/// Largest part of the impacts that another burst precedes by the same delay: in a train of uneven heights
+/// most are.
 const FEW: f64 = 0.2;
 /// Fewest impacts with an echo.
 const ENOUGH: usize = 4;
-/// Intervals between impacts that scatter more than delays by this factor are another thing than these: an
-/// echo keeps its delay however a machine jitters.
+/// Least scatter of the intervals between impacts, over that of the delays, for sure echoes: an echo keeps
+/// its delay however a machine jitters.
 const APART: f64 = 4.0;
-/// Quieter bursts behind each within [`LONGEST`] from which on chance alone has one at any delay before more
-/// than [`FEW`] of the impacts: no delay tells an echo then.
+/// Most quieter bursts after each within [`LONGEST`], on average. With more, chance alone puts one at any
+/// delay before more than [`FEW`] of the impacts, and no delay shows an echo.
 const CROWD: f64 = FEW * LONGEST / (2.0 * SAME);
 
 /// Bursts that repeat impacts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Echoes {
-    /// Their places, in order.
+    /// Their places in the list of bursts, in order.
     pub places: Vec<usize>,
     /// Longest of their delays in s.
     pub delay: f64,
@@ -35,9 +35,9 @@ pub struct Echoes {
     pub sure: bool,
 }
 
-/// Echoes among bursts with their times in s and heights; `None` where none repeats. Delay by delay, the most
-/// frequent first: a quieter burst follows most of the others by it, and hardly anything precedes these by
-/// it.
+/// Echoes among bursts with their times in s and heights; `None` where no delay repeats. Delays are tried
+/// from the most frequent on: a quieter burst must follow most of the others at that delay, and hardly any of
+/// these may have a burst before it at the same delay.
 pub fn echoes(times: &[f64], heights: &[f64]) -> Option<Echoes> {
     let mut impact = vec![true; times.len()];
     let (mut longest, mut off) = (0.0, Vec::new());
@@ -58,8 +58,8 @@ pub fn echoes(times: &[f64], heights: &[f64]) -> Option<Echoes> {
     (longest > 0.0).then(|| Echoes { places: of(false), delay: longest, sure })
 }
 
-/// Bursts, quieter ones that follow them within the longest delay, and the delays in s; `None` where these
-/// are a crowd.
+/// Bursts, quieter ones that follow them within the longest delay, and the delays in s; `None` where there
+/// are too many.
 fn pairs(times: &[f64], heights: &[f64]) -> Option<Vec<(usize, usize, f64)>> {
     let mut all = Vec::new();
     for (second, time) in times.iter().enumerate() {
@@ -74,8 +74,8 @@ fn pairs(times: &[f64], heights: &[f64]) -> Option<Vec<(usize, usize, f64)>> {
     Some(all)
 }
 
-/// A delay of many `pairs`, sorted by it, and the bursts that are quieter there, if most of the others that
-/// quieter ones follow have one.
+/// A delay that many `pairs`, sorted by delay, share, and the quieter bursts of these pairs. Most bursts that
+/// quieter ones follow must have one at this delay.
 fn repeated(times: &[f64], impact: &[bool], pairs: &[(usize, usize, f64)]) -> Option<(f64, BTreeSet<usize>)> {
     let near =
         |at: f64| pairs.partition_point(|p| p.2 < at - SAME)..pairs.partition_point(|p| p.2 <= at + SAME);

@@ -1,4 +1,5 @@
-//! Impacts against their excitation: phases, the fraction that they keep, or the beat by which they miss it.
+//! Impacts against their excitation: their phases, the fraction of impacts per cycle that they keep, or the
+//! beat by which they miss it.
 
 use super::interval::CountedImpacts;
 use super::interval::interval;
@@ -14,9 +15,9 @@ use vibro_record::{Error, Finding, Result, median};
 /// doubling).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct PerCycle {
-    /// Impacts…
+    /// Number of impacts in the pattern.
     pub impacts: usize,
-    /// … in this many excitation cycles.
+    /// Number of excitation cycles in the pattern.
     pub cycles: usize,
 }
 
@@ -27,12 +28,12 @@ pub struct Phase {
     pub mean: f64,
     /// Circular standard deviation of single impacts, in cycles.
     pub spread: f64,
-    /// Impacts behind it.
+    /// Number of impacts in the mean.
     pub n: usize,
 }
 
-/// Adds to `answer` how the impacts go with the excitation; nothing where none is known. The record begins at
-/// `start` in s and has a sampling `rate` in Hz.
+/// Adds to `answer` the relation of the impacts to the excitation; nothing where no excitation is known. The
+/// record begins at `start` in s and has a sampling `rate` in Hz.
 ///
 /// # Errors
 /// As [`Reference::new`].
@@ -48,7 +49,7 @@ pub fn compare(
             let Reference { missing, extra, .. } = reference;
             let odd = Finding::caution("reference-edges").count("missing", missing).count("extra", extra);
             answer.findings.extend((missing + extra > 0).then_some(odd));
-            // First and last edge lie each anywhere within a sample.
+            // First and last edge each lie anywhere within a sample.
             let [first, last] = reference.ends();
             let part = 1.0 / (6f64.sqrt() * (last.1 - first.1));
             let at = answer.times.iter().map(|t| reference.counted((t - start) * rate)).collect();
@@ -58,7 +59,7 @@ pub fn compare(
         (None, None) => return Ok(()),
     };
     let kept: Vec<f64> = counted.kept.iter().map(|i| at[*i]).collect();
-    // Samples, too, leave the interval unsure.
+    // The interval between impacts adds its own uncertainty.
     let part = part.hypot(answer.interval.std.map_or(0.0, |std| std / answer.interval.value));
     let locking = locking(&kept, &counted.index, part);
     answer.excitation = Some(frequency);
@@ -81,35 +82,35 @@ pub fn compare(
                     .number("beat", beat),
             );
         }
-        // Two impacts do not show what they follow.
+        // Two impacts cannot show a fraction.
         Locking::Irregular if kept.len() < 3 => {}
         Locking::Irregular => answer.findings.push(Finding::caution("no-fraction-fits")),
     }
     Ok(())
 }
 
-/// A multiple of a fraction counts where its places scatter by less than this part of what those of the
-/// fraction do.
+/// A multiple of a fraction, as 2/2 of 1/1, counts where its phases scatter by less than this part of the
+/// scatter about the fraction itself.
 const DOUBLED: f64 = 0.5;
-/// Most impacts and cycles of a pattern.
+/// Most impacts, and most cycles, of a pattern.
 const LARGEST: usize = 8;
-/// A pattern repeats where n impacts take m cycles within this part of a cycle (root mean square).
+/// Largest scatter of a pattern in cycles (root mean square): of n impacts about m cycles, and of each phase.
 const REPEATS: f64 = 0.1;
-/// A fraction that is kept agrees with the rate within so many standard uncertainties.
+/// Largest distance of a kept fraction from the rate, in standard uncertainties.
 const AGREES: f64 = 3.0;
-/// Fractions within this part of them from the rate are candidates.
+/// Largest relative distance from the rate of a fraction that is a candidate.
 const FITS: f64 = 0.02;
 
-/// Standard uncertainty in Hz of a frequency that is stated: anywhere within half a unit of its last digit.
+/// Standard uncertainty in Hz of a stated frequency: anywhere within half a unit of its last digit.
 fn last_digit(frequency: f64) -> f64 {
     let decimals = frequency.to_string().split_once('.').map_or(0, |(_, decimals)| decimals.len());
     0.5 * 10f64.powi(-(decimals as i32)) / 3f64.sqrt()
 }
 
-/// How impacts go with the excitation.
+/// Relation of the impacts to the excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Locking {
-    /// They repeat with it.
+    /// They keep this fraction of impacts per cycle.
     Locked(PerCycle),
     /// They come close to a fraction, but slip by this many impacts a cycle of the excitation (negative: too
     /// few).
@@ -118,13 +119,13 @@ enum Locking {
     Irregular,
 }
 
-/// Whether impacts repeat the simplest fraction n/m of impacts per cycle, up to 8/8, that is near their rate:
-/// 2/2 where 1/1 does not repeat.
+/// The simplest fraction n/m of impacts per cycle, up to 8/8, that is near the rate of the impacts and that
+/// they keep: 2/2 where 1/1 does not repeat.
 ///
-/// `cycles` are the times of the impacts counted in excitation cycles, `index` their places in the series
-/// without missed ones. A fraction holds where it agrees with the rate, the ratio of both frequencies being
-/// known to this `part` of itself, and every place of the pattern keeps its phase within [`REPEATS`]: what is
-/// merely near a fraction wanders through all phases.
+/// `cycles` are the times of the impacts in excitation cycles, `index` their numbers in the train, with gaps
+/// for missed ones. `part` is the relative standard uncertainty of the ratio of both frequencies. Impacts
+/// keep a fraction that agrees with their rate where every place of the pattern keeps its phase within
+/// [`REPEATS`]; impacts merely near a fraction wander through all phases.
 fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
     let Some(step) = interval(cycles, index).filter(|s| s.mean > 0.0) else {
         return Locking::Irregular;
@@ -148,10 +149,10 @@ fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
     let widest = |f: PerCycle| phases(cycles, index, f).iter().map(|p| p.spread).fold(0.0, f64::max);
     let holds = |f: &&PerCycle| {
         let spread = widest(**f);
-        // 2/2 is no 1/1 seen twice: its places differ by more than they scatter.
+        // 2/2 is not 1/1 seen twice: its phases differ by more than they scatter.
         let same = |r: &&PerCycle| r.impacts * f.cycles == f.impacts * r.cycles && r.impacts < f.impacts;
         let single = fractions.iter().find(same).is_none_or(|r| spread <= DOUBLED * widest(*r));
-        // Beside that, rounding of counted cycles.
+        // The last term allows for rounding of the counted cycles.
         let agrees = slip(f).abs() <= AGREES * own.max(rate * part) + 1e-9 * rate;
         spread <= REPEATS && single && agrees
     };
@@ -166,9 +167,9 @@ fn locking(cycles: &[f64], index: &[usize], part: f64) -> Locking {
 struct Reference {
     /// Cycle that each rising edge begins, and its place in samples; at least two.
     edges: Vec<(usize, f64)>,
-    /// Edges that are not there.
+    /// Number of missing edges.
     missing: usize,
-    /// Edges that should not be there; they are passed over.
+    /// Number of false edges, which are ignored.
     extra: usize,
 }
 
@@ -198,7 +199,7 @@ impl Reference {
         [self.edges[0], self.edges[self.edges.len() - 1]]
     }
 
-    /// Position `t` in samples, counted in cycles; beyond the first and last edge by the mean cycle.
+    /// Converts the position `t` in samples to cycles; beyond the first and last edge by the mean cycle.
     fn counted(&self, t: f64) -> f64 {
         let after = self.edges.partition_point(|e| e.1 <= t);
         let [first, last] = self.ends();
@@ -217,8 +218,8 @@ impl Reference {
     }
 }
 
-/// Phases of the places of a pattern: circular mean and standard deviation (Mardia 1972) on a circle of its
-/// cycles.
+/// Phases of the places of a pattern in cycles: circular mean and standard deviation (Mardia 1972) on a
+/// circle of all cycles of the pattern.
 fn phases(cycles: &[f64], index: &[usize], pattern: PerCycle) -> Vec<Phase> {
     let length = pattern.cycles as f64;
     let phase = |place: usize| {
@@ -271,7 +272,7 @@ mod tests {
 
     #[test]
     fn impacts_that_repeat_nothing_are_irregular() {
-        // Steps that grow by the golden ratio repeat nothing, at a rate of one a cycle.
+        // Shifts that follow the golden ratio repeat nothing, at a rate of one impact a cycle.
         let cycles: Vec<f64> =
             (0..60).map(|k| f64::from(k) + 0.8 * (f64::from(k * k) * 0.618_034).fract()).collect();
         assert_eq!(locking(&cycles, &(0..60).collect::<Vec<_>>(), 1e-3), Locking::Irregular);
@@ -289,8 +290,8 @@ mod tests {
             assert_eq!(near, one);
             assert!((15.0 * slip - (frequency - 15.0)).abs() < 1e-9, "{slip}");
         }
-        // A slip of 0.1 cycle in all is within a tenth of a cycle: whether it is one depends on how well the
-        // excitation is known.
+        // A slip of 0.1 cycle over the record is within a tenth of a cycle: whether it counts as slip depends
+        // on how well the excitation is known.
         let slow: Vec<f64> = (0..150).map(|k| 1.0007 * f64::from(k)).collect();
         assert_eq!(locking(&slow, &index, 1e-3), Locking::Locked(one));
         assert!(matches!(locking(&slow, &index, 1e-5), Locking::Drifting(..)));
@@ -310,8 +311,8 @@ mod tests {
             .collect();
         let found = Reference::new(&sine).unwrap();
         assert_eq!((found.edges.len(), found.missing, found.extra), (10, 0, 0));
-        // The ripple moves a crossing of slope 0.063 a sample by 0.05/0.063 = 0.8 samples at most; ten of
-        // them 1.6/9.
+        // The ripple moves a crossing of slope 0.063 a sample by 0.05/0.063 = 0.8 samples at most; the mean
+        // of nine cycles by 1.6/9.
         assert!((found.mean_cycle() - 100.0).abs() < 0.18, "{:?}", found.edges);
         assert!((found.counted(found.edges[3].1 + 50.0) - 3.5).abs() < 0.02);
         assert!(Reference::new(&[0.0; 9]).is_err());

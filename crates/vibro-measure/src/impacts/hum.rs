@@ -15,28 +15,28 @@ pub struct Hum {
     pub frequency: f64,
     /// Amplitude of the fundamental, in the unit of the trace.
     pub amplitude: f64,
-    /// Harmonics that were fitted, the fundamental counted.
+    /// Number of fitted harmonics, the fundamental included.
     pub harmonics: usize,
 }
 
 /// Highest harmonic that is fitted.
 const HARMONICS: usize = 7;
-/// Mains frequencies stay within this of their nominal value, in Hz.
+/// Largest deviation of a mains frequency from its nominal value, in Hz.
 const TOLERANCE: f64 = 0.5;
 /// Mains frequencies wander, so longer records are fitted in pieces of this length, in s.
 const PIECE: f64 = 10.0;
-/// Impacts that come this much faster than the hum are fitted by none of its harmonics.
+/// Frequency of impacts over that of the hum, above which none of its harmonics fits the impacts.
 const FASTER: f64 = 1.5 * HARMONICS as f64;
-/// The noise between impacts must fall to this part of what it was, or it was no hum.
+/// Largest noise between impacts after the removal of hum, over that before; with more it was no hum.
 const WORTH: f64 = 0.8;
 
 /// Removes the hum from `values` in a `unit`, sampled at `rate` in Hz, where there is any that matters, and
-/// gives it.
+/// returns it.
 ///
 /// Each piece of at least five cycles is fitted by least squares with bisquare weights (Beaton and Tukey
-/// 1974), so impacts do not count; nothing is removed where that does not lower the noise between impacts by
-/// a fifth. Where impacts come as often as the hum or half as often, a sine with its harmonics fits them as
-/// well: the hum stays, and a finding says so.
+/// 1974), so impacts do not count. Nothing is removed where that lowers the noise between impacts by less
+/// than a fifth. Where impacts come as often as the hum or half as often, a sine with its harmonics fits them
+/// as well: the hum stays, and a finding reports it.
 pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<Finding>) -> Option<Hum> {
     let piece = (PIECE * rate).min(values.len() as f64) as usize;
     if (piece as f64) < 0.1 * rate || piece < 32 {
@@ -44,7 +44,7 @@ pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<
     }
     let mut cleaned = values.to_vec();
     let mut hums: Vec<Hum> = Vec::new();
-    // What is shorter than a piece goes with the last one.
+    // A remainder shorter than a piece joins the last piece.
     let pieces = values.len() / piece;
     for k in 0..pieces {
         let end = if k + 1 == pieces { values.len() } else { (k + 1) * piece };
@@ -70,8 +70,8 @@ pub fn remove(values: &mut [f64], (rate, unit): (f64, &str), findings: &mut Vec<
     Some(found)
 }
 
-/// Bursts a second in what remains without the hum, from the median of their distances. What follows a burst
-/// within a `pause` in s is its ringing.
+/// Bursts a second in the values without hum, from the median of their distances. Bursts that follow another
+/// within a `pause` in s are its ringing.
 fn burst_rate(cleaned: &[f64], rate: f64, pause: f64) -> Option<f64> {
     let found = background(cleaned);
     let centred: Vec<f64> = cleaned.iter().map(|v| v - found.level).collect();
@@ -81,7 +81,8 @@ fn burst_rate(cleaned: &[f64], rate: f64, pause: f64) -> Option<f64> {
     (steps.len() > 1).then(|| rate / median(&steps))
 }
 
-/// The sine that lowers the noise most, and its samples without the offset.
+/// The mains sine with its harmonics that fits best, and its samples without the offset; `None` where it does
+/// not lower the noise enough.
 fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
     let before = background(values);
     let limit = 3.0 * before.sigma;
@@ -93,8 +94,8 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
         .flat_map(|nominal| (-steps..=steps).map(move |k| nominal + TOLERANCE * k as f64 / steps as f64))
         .map(|f| (f, power(&limited, f / rate)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    // A sine of amplitude 2√power/n has half its square of the variance; a tenth cannot lower the noise by a
-    // fifth.
+    // A sine of amplitude A = 2√power/n adds A²/2 to the variance; less than a tenth of it cannot lower the
+    // noise by a fifth.
     let n = values.len() as f64;
     if 2.0 * power / n < 0.1 * limited.iter().map(|v| v * v).sum::<f64>() {
         return None;
@@ -105,7 +106,7 @@ fn fitted(values: &[f64], rate: f64) -> Option<(Hum, Vec<f64>)> {
     (background(&after).sigma < WORTH * before.sigma).then_some((hum, model))
 }
 
-/// Squared amplitude of the sine of `f` cycles a sample.
+/// Squared magnitude of the Fourier sum at `f` cycles a sample; a sine has the amplitude 2√power/n.
 fn power(values: &[f64], f: f64) -> f64 {
     let turn = Complex64::cis(-TAU * f);
     let (mut z, mut sum) = (Complex64::ONE, Complex64::ZERO);
@@ -116,7 +117,7 @@ fn power(values: &[f64], f: f64) -> f64 {
     sum.norm_sqr()
 }
 
-/// Weighted linear fits at a frequency that a Gauss-Newton step refines with each change of the weights.
+/// Weighted linear fits; after each, a Gauss-Newton step refines the frequency, and the weights change.
 fn refined(values: &[f64], mut frequency: f64, rate: f64, harmonics: usize) -> Option<(Hum, Vec<f64>)> {
     let mut weights = vec![1.0; values.len()];
     let mut found: Option<(DVector<f64>, Vec<f64>)> = None;

@@ -6,14 +6,14 @@
 //! 1935). s = 0 gives the straight line through (index, time), σ = 0 the telescoping mean `(t_last −
 //! t_first)/(n − 1)`.
 //!
-//! The ratio r = s/σ is not known, and few intervals say little about it: T̂ and its variance are averaged
-//! over it, weighted with the restricted likelihood (Patterson and Thompson 1971) and a prior: jitter alone
-//! with a probability of 3/4, otherwise r half-Cauchy with scale 1/2 (Gelman 2006). The variance is the mean
-//! of the variances and the variance of the means; each is that of a Student distribution of n − 2 degrees of
-//! freedom, as the scale of Σ is estimated too.
+//! The ratio r = s/σ is not known, and few intervals say little about it. T̂ and its variance are therefore
+//! averaged over r, weighted with the restricted likelihood (Patterson and Thompson 1971) and a prior: jitter
+//! alone with a probability of 3/4, otherwise r half-Cauchy with scale 1/2 (Gelman 2006). The variance is the
+//! mean of the variances plus the variance of the means. Each variance is that of a Student distribution of n
+//! − 2 degrees of freedom, as the scale of Σ is estimated too.
 //!
-//! Of intervals ±1.96 u, these parts in per cent hold T (2000 simulated records each, standard error 0.6 or
-//! less):
+//! Coverage of the true T by the intervals ±1.96 u, in per cent (2000 simulated records each, standard error
+//! 0.6 or less):
 //!
 //! | n  | r = 0 | 0.1 | 0.3 | 1 | 3 | ∞ |
 //! |----|-------|-----|-----|---|---|---|
@@ -21,35 +21,35 @@
 //! | 20 | 100 | 100 | 99.9 | 97.6 | 95.8 | 95.2 |
 //! | 60 | 100 | 99.2 | 93.2 | 94.6 | 96.7 | 96.2 |
 //!
-//! Where no jitter is there, u is some three times what a straight line would state, at any n: jitter of r =
-//! 7/n, which n impacts hardly show, more than doubles the uncertainty of a straight line.
+//! Without jitter, u is about three times the uncertainty of a straight line, at any n. The margin is needed:
+//! jitter of r = 7/n, which n impacts hardly show, more than doubles the uncertainty of a straight line.
 //!
 //! Neither noise of the onsets nor jitter makes neighbouring intervals positively correlated; a speed that
-//! wanders does. Where they are, u is not less than the standard uncertainty of the mean of values that
-//! depend on those before (Müller 2007). Of 60 intervals with a correlation of 0.3, 0.5 and 0.7 ±1.96 u then
-//! hold T in 93.8, 93.8 and 92.6 %, with 0.9 in 89 %, most of which are found to wander.
+//! wanders does. Where they are, u is at least the standard uncertainty of the mean of serially correlated
+//! values (Müller 2007). For 60 intervals with a correlation of 0.3, 0.5 and 0.7, ±1.96 u then covers T in
+//! 93.8, 93.8 and 92.6 %; with 0.9 in 89 %, and most of these are reported to wander.
 
 use crate::mean::{Mean, average, mixture};
 use crate::residuals::widened;
 use std::f64::consts::FRAC_PI_2;
 use vibro_record::median;
 
-/// Interval and what disturbs it.
+/// Mean interval between impacts, with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Interval {
     /// Mean interval T in s.
     pub mean: f64,
-    /// Its standard uncertainty; NaN where two impacts only are there.
+    /// Standard uncertainty of the mean in s; NaN for only two impacts.
     pub std: f64,
     /// Serial correlation of neighbouring intervals: −1/2 for onset noise, 0 for jitter; NaN for fewer than
     /// four impacts.
     pub correlation: f64,
-    /// Whether intervals wander so slowly that the uncertainty may be too small.
+    /// Whether the intervals drift so slowly that `std` may be too small.
     pub wanders: bool,
 }
 
-/// The mean interval of `times` in s at increasing `indices`, of which those of missed impacts are left out.
+/// The mean interval of impacts at `times` in s. Their `indices` increase; missed impacts leave gaps in them.
 ///
 /// `None` for fewer than two.
 pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
@@ -72,28 +72,30 @@ pub fn interval(times: &[f64], indices: &[usize]) -> Option<Interval> {
     Some(Interval { mean, std: variance.sqrt().max(least), correlation, wanders })
 }
 
-/// Prior probability that intervals jitter and onsets carry no noise.
+/// Prior probability that intervals jitter and onsets carry no noise. A larger one widens the uncertainty of
+/// a train without jitter; a smaller one covers less where noise hides the jitter.
 const JITTER_ALONE: f64 = 0.75;
-/// Median of the ratio of jitter to onset noise where both may be.
+/// Prior median of the ratio of jitter to onset noise, where both are present.
 const SCALE: f64 = 0.5;
-/// Ratios between the least and the largest.
+/// Number of finite ratios above 0: this few average like thousands do, within 1 % of the uncertainty.
 const RATIOS: usize = 23;
-/// Beyond it onset noise does not show in the mean.
+/// Largest finite ratio: beyond it onset noise does not show in the mean.
 const LARGEST: f64 = 30.0;
-/// Ratios whose weight is below e to this beside the largest are left out.
+/// Logarithm of a ratio's weight over the largest weight, below which the ratio is left out.
 const NEGLIGIBLE: f64 = -9.0;
 
-/// Steps of the logarithm of the ratio that no record needs finer.
+/// Smallest step of the logarithm of the ratio; no record needs a finer one.
 const FINEST: f64 = 0.005;
 
-/// Fits with ratios of jitter to onset noise from 0 to ∞, those between evenly spaced in the logarithm where
-/// the likelihood is, which has the prior probability in it.
+/// Fits at ratios of jitter to onset noise from 0 to ∞. Finite ratios are spaced evenly in the logarithm,
+/// over the range in which the likelihood counts. Each likelihood includes the prior probability of its
+/// ratio.
 fn nodes(d: &[f64], m: &[f64]) -> Vec<Gls> {
     let node = |ratio: f64, prior: f64| {
         let fit = gls(d, m, ratio.atan());
         Gls { likelihood: prior.ln() + fit.likelihood, ..fit }
     };
-    // Below it the jitter does not show in the mean.
+    // Smallest ratio above 0: below it jitter does not show in the mean.
     let least = 0.3 / (m.iter().sum::<f64>() + 1.0);
     let below = |ratio: f64| (1.0 - JITTER_ALONE) * (ratio / SCALE).atan() / FRAC_PI_2;
     let (mut from, mut to) = (least.ln(), LARGEST.ln());
@@ -108,7 +110,7 @@ fn nodes(d: &[f64], m: &[f64]) -> Vec<Gls> {
         let counts = |n: &Gls| n.likelihood > highest + NEGLIGIBLE;
         let first = between.iter().position(counts).unwrap_or(0).saturating_sub(1);
         let last = (between.iter().rposition(counts).unwrap_or(RATIOS) + 1).min(RATIOS - 1);
-        // A long record knows its ratio well: it is looked at more closely.
+        // A long record has a narrow likelihood: narrow the range of ratios to it.
         if last - first > RATIOS / 2 || step < FINEST {
             break between;
         }
@@ -119,9 +121,9 @@ fn nodes(d: &[f64], m: &[f64]) -> Vec<Gls> {
     all
 }
 
-/// Correlation of intervals that follow each other, none of them over a missed impact: the mean product of
-/// neighbours over the variance. Without a gap that is the usual quotient of sums, whose neighbours are one
-/// fewer than its squares.
+/// Serial correlation of neighbouring intervals, none of them over a missed impact: the mean product of
+/// neighbouring deviations over the variance. Without a gap it is the usual quotient of sums, which has one
+/// product fewer than squares.
 fn correlation(d: &[f64], m: &[f64]) -> f64 {
     let single: Vec<f64> = d.iter().zip(m).filter(|(_, m)| **m == 1.0).map(|(d, _)| *d).collect();
     let (n, mean) = (single.len() as f64, average(&single));
@@ -137,19 +139,19 @@ struct Gls {
     mean: f64,
     /// 1/mᵀΣ⁻¹m for unit variance.
     cofactor: f64,
-    /// Scale of Σ.
+    /// Estimated variance factor of Σ, in s².
     variance: f64,
-    /// Restricted log-likelihood but for a constant.
+    /// Restricted log-likelihood, up to a constant.
     likelihood: f64,
 }
 
-/// Generalised least squares at one ratio of jitter to onset noise, in one pass down the bidiagonal factor of
-/// `Σ = LDLᵀ`.
+/// Generalised least squares at one ratio of jitter to onset noise, given as its arctangent `angle`; one pass
+/// down the bidiagonal factor of `Σ = LDLᵀ`.
 fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
     let (s2, sigma2) = (angle.sin().powi(2), angle.cos().powi(2));
     let (mut pivot, mut before) = (f64::INFINITY, (0.0, 0.0));
     let (mut mm, mut md, mut dd, mut log_det) = (0.0, 0.0, 0.0, 0.0);
-    // Least squares of deviations from a close value, so that long records lose no digits.
+    // Fit deviations from the median interval, so that long records lose no digits.
     let near = median(d.iter().zip(m).map(|(d, m)| d / m));
     for (d, m) in d.iter().zip(m) {
         let l = -sigma2 / pivot;
@@ -163,35 +165,35 @@ fn gls(d: &[f64], m: &[f64], angle: f64) -> Gls {
     }
     let free = d.len() as f64 - 1.0;
     let variance = ((dd - md * md / mm) / free).max(0.0);
-    // Below the rounding of the interval the variance says nothing of the ratio.
+    // A variance below the rounding of the interval carries no information on the ratio.
     let least = (f64::EPSILON * near).powi(2).max(f64::MIN_POSITIVE);
     let likelihood = -0.5 * (free * variance.max(least).ln() + log_det + mm.ln());
     Gls { mean: near + md / mm, cofactor: 1.0 / mm, variance, likelihood }
 }
 
-/// Which impacts count, and their indices in a series without missed ones.
+/// Impacts that count, numbered as if none were missed.
 pub struct CountedImpacts {
-    /// Impacts that count, by their place among all.
+    /// Impacts that count, as places in the list of all.
     pub kept: Vec<usize>,
-    /// Their indices; those of missed impacts are left out.
+    /// Their numbers in the train; missed impacts leave gaps.
     pub index: Vec<usize>,
-    /// Impacts that should stand in intervals that are several of the others.
+    /// Number of impacts missing from intervals of several times the median.
     pub missed: usize,
-    /// Impacts that follow another too soon.
+    /// Number of impacts that follow another too soon; they do not count.
     pub doubled: usize,
 }
 
-/// Robust standard deviations of the intervals beyond which one is no chance.
+/// Robust standard deviations from the median beyond which the length of an interval is not chance.
 const OUTSIDE: f64 = 5.0;
-/// As many odd intervals as this part of all are no accident, but belong to the motion: so are those of every
-/// second impact of a cycle.
+/// Largest part of odd intervals that passes for missed or doubled impacts. More belong to the motion: two
+/// impacts a cycle at uneven distances make half of the intervals odd.
 const ACCIDENTS: f64 = 0.4;
 
-/// Numbers the impacts at `times`, which are `steps` apart; with `complete` none is missed and none is too
-/// many.
+/// Numbers the impacts at `times` in s, whose intervals are `steps` in s. With `complete` every interval
+/// counts as one.
 ///
-/// An interval below half of the median ends with an impact too many, one beyond one and a half lacks
-/// impacts. Intervals that scatter as far as that say nothing of either: all count as they are.
+/// An interval below half of the median ends with an extra impact; one above 1.5 medians lacks impacts. Where
+/// intervals scatter as far as that, or too many are odd, both are unknown, and every interval counts as one.
 pub fn count(times: &[f64], steps: &[f64], complete: bool) -> CountedImpacts {
     let typical = median(steps);
     let off: Vec<f64> = steps.iter().map(|d| (d - typical).abs()).collect();
@@ -219,15 +221,16 @@ pub fn count(times: &[f64], steps: &[f64], complete: bool) -> CountedImpacts {
 
 /// Intervals are alike where they differ by less than this part of the shorter.
 const ALIKE: f64 = 0.1;
-/// Most impacts of a pattern, and how often it must be seen.
+/// Most impacts in one round of a pattern.
 const LONGEST: usize = 8;
+/// Fewest rounds of a pattern in a record.
 const SEEN: usize = 3;
-/// One unlike interval in each round of p makes 2/p of all neighbours unlike; so much of that is enough at
-/// the ends of a record.
+/// One unlike interval in a round of p makes 2/p of all neighbours unlike. A pattern needs this part of that
+/// number, as the ends of a record may lack one.
 const UNLIKE: f64 = 0.8;
 
-/// Impacts after which all intervals repeat though they are unlike in between, as those of two impacts a
-/// cycle are; `None` where there is no such number.
+/// Number of impacts after which all intervals repeat although neighbours differ, as for two impacts a cycle;
+/// `None` where there is no such number.
 pub fn pattern(steps: &[f64]) -> Option<usize> {
     let unlike = |lag: usize| {
         let pairs = steps.iter().zip(steps.iter().skip(lag));
@@ -238,7 +241,7 @@ pub fn pattern(steps: &[f64]) -> Option<usize> {
     (2..=LONGEST).take_while(|p| steps.len() >= SEEN * p).find(repeats)
 }
 
-/// Times without what their places in a pattern of `length` impacts shift them by: an even train.
+/// Times without the mean shift of each place in a pattern of `length` impacts: an even train.
 pub fn evened(times: &[f64], length: usize) -> Vec<f64> {
     let rounds: f64 = times.windows(length + 1).map(|w| w[length] - w[0]).sum();
     let interval = rounds / (length * (times.len() - length)) as f64;
@@ -298,11 +301,11 @@ mod tests {
 
     #[test]
     fn intervals_beside_a_missed_impact_are_no_neighbours() {
-        // Deviations from a mean of 1 of 0.1, 0.2, −0.1, −0.2, a gap before the third.
+        // Deviations 0.1, 0.2, −0.1 and −0.2 from a mean of 1, with a gap before the third.
         let d = [1.1, 1.2, 3.0, 0.9, 0.8];
         let m = [1.0, 1.0, 3.0, 1.0, 1.0];
-        // Products 0.02 and 0.02 over squares of 0.1 and three pairs for two; few roundings of numbers near
-        // 1.
+        // Products 0.02 and 0.02, squares of 0.1 in all, n − 1 = 3 over two pairs; few roundings of numbers
+        // near 1.
         assert!((correlation(&d, &m) - 0.04 / 0.1 * 3.0 / 2.0).abs() < 1e-13);
         assert!(correlation(&[1.1, 0.9, 2.0, 1.2], &[1.0, 1.0, 2.0, 1.0]).is_nan());
     }
@@ -371,11 +374,12 @@ mod tests {
                 let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
                 let (mean, plain_std) = plain(&d, &vec![1.0; n - 1], 4000);
                 let found = interval(&times, &(0..n).collect::<Vec<_>>()).unwrap();
-                // Intervals that chance has correlated have that of a mean of such values at least.
+                // Where chance correlates the intervals, the uncertainty is at least that of a mean of
+                // correlated values.
                 let least = if found.correlation > 0.0 { Mean::of(&d).std.unwrap() } else { 0.0 };
                 let std = plain_std.max(least);
-                // Half steps of the logarithm of the ratio, 0.2 or less, squared and over 24, and what lies
-                // at the ends.
+                // Error of the quadrature: half steps of the logarithm of the ratio, 0.2 or less, squared and
+                // over 24, and the ends that are cut off.
                 let case = format!("n {n}, seed {seed}, {onset} {jitter}: {found:?}, plain {mean} {std}");
                 assert!((found.mean - mean).abs() < 0.01 * plain_std, "{case}");
                 assert!((found.std / std - 1.0).abs() < 0.01, "{case}");
@@ -398,7 +402,7 @@ mod counts {
         assert_eq!(pattern(&[0.1; 30]), None);
         for seed in 0..500 {
             let mut noise = Noise::new(seed);
-            // One impact in five is missed by chance; then intervals of any length.
+            // First one impact in five missed by chance; then intervals of any length.
             let missing: Vec<f64> = (0..40).map(|_| if noise.uniform() < 0.2 { 0.2 } else { 0.1 }).collect();
             assert_eq!(pattern(&missing), None, "seed {seed}");
             let any: Vec<f64> = (0..40).map(|_| -noise.uniform().max(1e-9).ln()).collect();
@@ -410,12 +414,12 @@ mod counts {
     fn evened_times_are_even() {
         let times: Vec<f64> = (0..20).map(|i| 0.06 * i as f64 + [0.0, -0.03][i % 2]).collect();
         for (i, t) in evened(&times, 2).iter().enumerate() {
-            // The mean shift is left; numbers near 1, a few roundings.
+            // The mean shift of −0.015 remains; a few roundings of numbers near 1.
             assert!((t - (0.06 * i as f64 - 0.015)).abs() < 1e-14, "{t}");
         }
     }
 
-    /// A pattern that an accident breaks is none, and nothing is counted as missed for it.
+    /// One missing impact breaks a pattern: none is found, and no impact counts as missed.
     #[test]
     fn a_broken_pattern_misses_nothing() {
         let mut times: Vec<f64> =

@@ -1,4 +1,4 @@
-//! When each burst begins, below a sample: by its flank, or matched to the shape of all pulses.
+//! Onset of each burst, to less than a sample: from its flank, or matched to the shape of all pulses.
 
 use crate::mean::average;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
@@ -10,18 +10,18 @@ use vibro_record::median;
 pub struct Onset {
     /// Time at which the rising flank passes half its height, in samples.
     pub time: f64,
-    /// Its standard uncertainty from the noise, in samples; NaN where it is not known.
+    /// Standard uncertainty of the time from the noise, in samples; NaN where it is not known.
     pub std: f64,
-    /// Height over the background.
+    /// Height over the background, in the unit of the trace.
     pub height: f64,
 }
 
-/// A flank rises within one sample where both samples are within this part of the height of background and
-/// top.
+/// A flank is sharp where the samples before and after half height lie within this part of the height from
+/// background and top.
 const SHARP: f64 = 0.1;
-/// Fewer impacts than this are not averaged.
+/// Fewest impacts whose average pulse is used.
 const ENOUGH: usize = 8;
-/// So many pulses tell whether all are like their average: the share of them that is has a standard deviation
+/// Pulses of a trial whether all are like their average: the share of like ones then has a standard deviation
 /// of 3 %.
 const TELLING: usize = 256;
 
@@ -39,17 +39,17 @@ struct Lobe {
 
 /// Onsets of all bursts.
 pub struct Onsets {
-    /// One a burst that shows where it begins.
+    /// One for each burst whose beginning the record shows.
     pub each: Vec<Onset>,
     /// How they were timed.
     pub method: &'static str,
-    /// Whether most pulses rise within one sample: nothing is known of their times between samples.
+    /// Whether most pulses rise within one sample: their times between samples are then unknown.
     pub sharp: bool,
 }
 
-/// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`: from eight like
-/// pulses on each is matched to their average, or all to the shape that is known; otherwise each rising flank
-/// is interpolated at half its height.
+/// Onsets of the bursts of `values`, whose background has the level 0 and the noise `sigma`. With a known
+/// shape each pulse is matched to it; eight like pulses or more are matched to their average; otherwise each
+/// rising flank is interpolated at half its height.
 pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option<&PulseShape>) -> Onsets {
     let lobes: Vec<Lobe> = bursts.iter().filter_map(|b| lobe(values, b, sigma)).collect();
     let whole: Vec<&Lobe> = lobes.iter().filter(|l| l.onset.time.is_finite()).collect();
@@ -69,7 +69,7 @@ pub fn onsets(values: &[f64], bursts: &[Range<usize>], sigma: f64, known: Option
     Onsets { each, method, sharp }
 }
 
-/// By the average pulse; `None` where there are too few pulses, or most differ from their average.
+/// Onsets by the average pulse; `None` where there are too few pulses, or most differ from their average.
 fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Option<Vec<Onset>> {
     let widths: Vec<f64> = lobes.iter().map(|l| l.width).filter(|w| w.is_finite()).collect();
     if whole.len() < ENOUGH || widths.is_empty() {
@@ -77,14 +77,15 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
     }
     let width = median(&widths).max(1.0);
     let span = -2.0 * width.max(1.5)..1.5 * width.max(1.5);
-    // A flank before the record is expected where the others have theirs: a record may begin within an
-    // impact.
+    // Where a record begins within an impact, its flank is expected as long before the peak as the others
+    // have theirs.
     let rise = median(whole.iter().map(|l| l.peak as f64 - l.onset.time));
     let expected = |l: &Lobe| Onset { time: l.peak as f64 - rise, ..l.onset };
     let flanks: Vec<Onset> =
         lobes.iter().map(|l| if l.onset.time.is_finite() { l.onset } else { expected(l) }).collect();
     let near = |(m, flank): (&Option<Matched>, &Onset)| m.filter(|m| (m.time - flank.time).abs() < width);
-    // A pulse is alike where its residual is noise, or little beside its height.
+    // Residual of a pulse over the limit for a like one, the larger of twice the noise and a tenth of its
+    // height.
     let residual =
         |m: &Matched| (m.variance.sqrt() / (2.0 * sigma)).min(m.variance.sqrt() / (0.1 * m.height));
     let alike = |flanks: &[Onset]| {
@@ -93,13 +94,13 @@ fn by_average(values: &[f64], lobes: &[Lobe], whole: &[&Lobe], sigma: f64) -> Op
         let residuals = own.iter().map(|m| m.as_ref().map_or(f64::MAX, residual));
         (median(residuals) <= 1.0).then_some((matched, own))
     };
-    // Where a few are unlike their average the many are not matched.
+    // If a sample of the pulses differs from its average, spare the matching of all.
     if flanks.len() > TELLING {
         let few = (0..TELLING).map(|k| flanks[k * flanks.len() / TELLING]);
         alike(&few.collect::<Vec<Onset>>())?;
     }
     let (matched, own) = alike(&flanks)?;
-    // The noise from the residuals of all pulses, but for a few outliers.
+    // Noise variance from the residuals of all pulses, without a few outliers.
     let mut left: Vec<f64> = matched.iter().flatten().map(|m| m.variance).collect();
     let most = OUTLYING * median(&left);
     left.retain(|v| *v <= most);
@@ -130,9 +131,9 @@ fn lobe(values: &[f64], burst: &Range<usize>, sigma: f64) -> Option<Lobe> {
     let time = below as f64 + part;
     let near = SHARP * height;
     let sharp = values[below] < near && values[below + 1] > height - near;
-    // Noise of both neighbours and of the level; and what the place of the samples on a flank of p samples
-    // does: for half a sine the chord is off by (π/2p)² sin 30°/8 over a slope of 1.36/p, the highest
-    // sample by as much: 0.05/p, root mean square.
+    // Noise of both neighbours and of the level; and the error of the chord, which depends on where the
+    // samples lie on a flank of p samples. For half a sine the chord is off by (π/2p)² sin 30°/8 over a slope
+    // of 1.36/p, the highest sample by as much: 0.05/p, root mean square.
     let noise = sigma * (part.powi(2) + (1.0 - part).powi(2) + 0.25).sqrt() / slope;
     let std = noise.hypot(0.05 / (peak as f64 - time).max(0.5));
     let falls = (peak + 1..values.len()).find(under).map_or(f64::NAN, |above| {
@@ -155,7 +156,7 @@ pub struct Matched {
     pub variance: f64,
 }
 
-/// Variance of the residuals of a pulse, in medians of all, beyond which the pulse tells nothing of the
+/// Variance of the residuals of a pulse over the median of all, beyond which the pulse is left out of the
 /// noise.
 const OUTLYING: f64 = 4.0;
 
@@ -165,14 +166,15 @@ const KNOTS: usize = 48;
 const RECORDED: usize = 400;
 /// Most rounds of averaging and matching.
 const ROUNDS: usize = 20;
-/// Rounds end where no pulse moves further, in samples.
+/// Rounds end when no pulse moves by more than this, in samples.
 const CONVERGED: f64 = 1e-3;
 
 /// Pulses near `onsets`, each matched to their average shape over `span` in samples around them. Scale and
-/// origin are those of the heights and of the median time of the onsets. `None` where no average follows.
+/// origin are those of the heights and of the median time of the onsets. `None` where the pulses determine no
+/// average.
 pub fn averaged(values: &[f64], onsets: &[Onset], span: &Range<f64>) -> Option<Vec<Option<Matched>>> {
-    // Whole knots fill the span, no closer than samples: a shape that may bend from sample to sample follows
-    // any error of the times that depends on their fraction of a sample.
+    // Knots lie no closer than samples: a shape that may bend from sample to sample follows any error of the
+    // times that depends on their fraction of a sample.
     let knots = ((span.end - span.start).floor() as usize).clamp(4, KNOTS);
     let mut at: Vec<(f64, f64)> = onsets.iter().map(|o| (o.time, o.height)).collect();
     let mut matched = Vec::new();
@@ -201,7 +203,7 @@ pub fn averaged(values: &[f64], onsets: &[Onset], span: &Range<f64>) -> Option<V
     Some(matched)
 }
 
-/// Samples around a time.
+/// Samples of a record of `n` within `span` around a time, both in samples.
 fn samples(n: usize, time: f64, span: &Range<f64>) -> Range<usize> {
     let first = (time + span.start).ceil().max(0.0) as usize;
     let end = ((time + span.end).floor() + 1.0).clamp(0.0, n as f64) as usize;
@@ -218,8 +220,8 @@ pub struct PulseShape {
 }
 
 impl PulseShape {
-    /// Least squares through points (x, y) with so many `knots` in `span`; a slight penalty on curvature
-    /// decides where there are no points. `None` where the points decide nothing.
+    /// Least-squares spline through points (x, y) with `knots` intervals in `span`; a slight penalty on
+    /// curvature bridges stretches without points. `None` where the points do not determine it.
     pub fn through(points: &[(f64, f64)], span: &Range<f64>, knots: usize) -> Option<PulseShape> {
         let (start, step, n) = (span.start, (span.end - span.start) / knots as f64, knots + 3);
         let (mut normal, mut right) = (DMatrix::zeros(n, n), DVector::zeros(n));
@@ -258,7 +260,7 @@ impl PulseShape {
         PulseShape::through(&points, &span, (unit.len() - 1).clamp(4, RECORDED))
     }
 
-    /// Value and slope at `x`; beyond its ends it goes on straight, since a break there would keep a match
+    /// Value and slope at `x`. Beyond its ends the shape continues straight, since a break would keep a match
     /// from converging.
     pub fn at(&self, x: f64) -> (f64, f64) {
         let knots = self.coefficients.len() - 3;
@@ -367,9 +369,8 @@ mod shapes {
         let matched = averaged(&values, &onsets, &(-4.0..4.0)).unwrap();
         let off: Vec<f64> = matched.iter().zip(&times).map(|(m, t)| m.unwrap().time - t).collect();
         let mean = off.iter().sum::<f64>() / 20.0;
-        // Rounds end at moves of 1e-3 and each takes off about half of what is left; a spline of
-        // knots a sample apart errs by |s⁗|/384 = 3.8e-3 of the height, over slopes of 0.5, and pulses share
-        // most of that.
+        // Rounds end at moves of 1e-3, and each halves the remaining error; a spline of knots a sample apart
+        // errs by |s⁗|/384 = 3.8e-3 of the height, over slopes of 0.5, and pulses share most of that.
         assert!(off.iter().all(|o| (o - mean).abs() < 5e-3), "{off:?}");
     }
 }

@@ -1,20 +1,20 @@
-//! Where a sound rises at once, as an impact makes it: candidates for impacts among echoes, ringing and other
-//! sounds.
+//! Sudden rises of a sound, as impacts cause: candidates for impacts among echoes, ringing and other sounds.
 
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// A level rises at once where it grows by this factor from one span to the next.
+/// Least factor by which a level grows from one span to the next in a sudden rise.
 const RISE: f64 = 3.0;
-/// A sound exceeds the noise limit by this factor: what rings down through the limit rises above it again by
+/// Least height of a sound over the noise limit: ringing that falls through the limit rises above it again by
 /// chance.
 const CLEAR: f64 = 1.5;
 /// Span in s in which a level rises at once: longer than the contact of metals and hard plastics (below 1
 /// ms), than half a swing of a plate of 170 Hz or more, and than the loudest part of their sound.
 const SPAN: f64 = 3e-3;
 
-/// Stretches of a span that begin where a sound has risen to half of its largest value, which exceeds `reach`
-/// by [`CLEAR`], and all of the span before by [`RISE`] where that is no noise.
+/// Stretches of one span, each from where a sound has risen to half of its largest value. That value exceeds
+/// the noise limit `reach` by [`CLEAR`], and the largest of the span before by [`RISE`] where that is above
+/// the noise limit.
 pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
     let span = ((SPAN * rate) as usize).max(2);
     let ahead = largest_ahead(values, span);
@@ -24,7 +24,7 @@ pub fn rises(values: &[f64], reach: f64, rate: f64) -> Vec<Range<usize>> {
         // A record that begins loud begins within a sound, and not with an impact.
         let known = i.max(span / 4).min(values.len());
         let before = if i < span { largest(&values[..known]) } else { ahead[i - span] };
-        // What is below the noise limit is noise, and no sound that something rises from.
+        // A level below the noise limit is noise, not a sound to rise from.
         if ahead[i] <= CLEAR * reach || before > reach && ahead[i] <= RISE * before {
             i += 1;
             continue;
@@ -44,7 +44,7 @@ pub fn largest(values: &[f64]) -> f64 {
 /// Largest absolute value of the span that begins at each sample.
 fn largest_ahead(values: &[f64], span: usize) -> Vec<f64> {
     let mut all = vec![0.0; values.len()];
-    // Places of values that are larger than all behind them within the span, the largest first.
+    // Places of values larger than all values between sample `i` and them, the largest first.
     let mut kept: VecDeque<usize> = VecDeque::new();
     for i in (0..values.len()).rev() {
         while kept.back().is_some_and(|k| values[*k].abs() <= values[i].abs()) {

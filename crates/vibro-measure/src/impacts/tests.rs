@@ -57,8 +57,8 @@ fn impacts_of_every_second_cycle_keep_their_phase() {
     assert_eq!(measured.per_cycle, stated.per_cycle);
     assert!((measured.excitation.unwrap() - f).abs() < 1e-4);
     for found in [stated, measured] {
-        // Half height is passed within 1 ms = 0.015 cycles of the onset.
-        // The first edge decides which of two cycles counts as the first.
+        // Half height is passed within 1 ms = 0.015 cycles of the onset. The first edge decides which of two
+        // cycles counts as the first.
         assert!((found.phases[0].mean.fract() - 0.25).abs() < 0.016, "{:?}", found.phases);
         assert!(found.regular);
     }
@@ -182,9 +182,9 @@ fn two_impacts_are_not_regular() {
     assert!(!found.regular && has(&found, "one-interval") && !has(&found, "no-fraction-fits"), "{found:?}");
 }
 
-/// A contact circuit closes within one sample. Its interval is near a whole number of samples or not, its
-/// first edge anywhere: the truth lies in the interval that is stated, and a train that keeps the rate of the
-/// excitation does not drift.
+/// A contact circuit closes within one sample; its interval is near a whole number of samples or not, its
+/// first edge anywhere. The stated interval covers the truth, and a train at the rate of the excitation does
+/// not drift.
 #[test]
 fn edges_within_one_sample_leave_the_interval_unsure() {
     let (rate, n, seed) = (1000.0, 40, 21);
@@ -217,7 +217,7 @@ fn edges_within_one_sample_leave_the_interval_unsure() {
     }
     // Of 72 cases, 95 % but for two standard deviations of 1.8.
     assert!(inside * 100 >= cases * 90, "seed {seed}: {inside} of {cases}");
-    // What is wrong by more than the samples hide does drift, by a beat that is stated.
+    // An excitation wrong by more than the samples hide gives a drift with a stated beat.
     let mut values = vec![0.0; 4400];
     (0..n as usize).for_each(|k| values[200 + 100 * k..212 + 100 * k].fill(5.0));
     let options = ImpactsOptions { excitation: Some(10.1), keep_hum: true, ..ImpactsOptions::default() };
@@ -299,7 +299,7 @@ fn ticks_in_a_room_that_reverberates_are_counted_once() {
     assert!((found.interval.value - 0.5).abs() < 4.0 * std, "{:?}", found.interval);
 }
 
-/// Bursts at random, as of rain: no period is in them.
+/// Bursts at random, as of rain, have no period.
 #[test]
 fn what_has_no_period_is_refused() {
     let mut noise = Noise::new(1);
@@ -351,7 +351,7 @@ fn an_envelope_that_rings_until_the_next_impact_has_them_all() {
     }
 }
 
-/// What a refusal proposes is tried: with it the impacts are found.
+/// The hint of a refusal is tried: with it the impacts are found.
 #[test]
 fn the_hints_of_a_refusal_find_the_impacts() {
     let plain = ImpactsOptions::default();
@@ -376,7 +376,8 @@ fn the_hints_of_a_refusal_find_the_impacts() {
     let hiss = trace((0..25_600).map(|_| noise.normal()).collect(), 25_600.0);
     let why = impacts(&hiss, &beside).unwrap_err().to_string();
     assert!(why.contains("another band"), "{why}");
-    // A pause longer than the period joins all impacts; where there is one alone, no pause is at fault.
+    // A pause longer than the period joins all impacts. Where a record has one impact alone, the hint does
+    // not blame the pause.
     let long = ImpactsOptions { refractory: Some(0.1), ..plain.clone() };
     let why = impacts(&ringing(0.05, 0.0), &long).unwrap_err().to_string();
     assert!(why.contains("shorter pause"), "{why}");
@@ -410,11 +411,11 @@ fn echoes_are_no_impacts() {
             let found = impacts(&record, &ImpactsOptions::default()).unwrap();
             assert_eq!((found.n, found.missed, found.doubled), (40, 0, 0), "{echo}: {:?}", found.findings);
             let mean = (times[39] - times[0]) / 39.0;
-            // Half a swing of 2 kHz at either end.
+            // Four of the stated standard uncertainties.
             assert!((found.interval.value - 0.08).abs() < 4.0 * found.interval.std.unwrap(), "{mean}");
         }
-        // A machine that keeps its time may as well strike thrice: nothing is sure, and the pause that is
-        // named cures it.
+        // A machine without jitter may as well strike thrice: the result is in doubt, and the pause that the
+        // finding names removes the echoes.
         let (record, _) = echoing(9, 0.0, echo);
         let found = impacts(&record, &ImpactsOptions::default()).unwrap();
         let doubt = found.findings.iter().find(|f| f.code == "impacts-or-echoes");
@@ -481,7 +482,7 @@ fn the_fault_of_an_outer_race_is_found_in_the_band_in_which_it_rings() {
 }
 
 /// A free decay of 9.6 Hz from a pluck, at several rates and dampings: its swings are no impacts, however
-/// they are looked for.
+/// they are searched.
 #[test]
 fn the_swings_of_a_free_decay_are_no_impacts() {
     for (rate, zeta) in [(500.0, 0.01), (2000.0, 0.003), (2000.0, 0.03), (10_000.0, 0.02)] {
