@@ -58,7 +58,7 @@ pub(crate) struct Image {
 
 /// What is drawn over the images.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Mark {
+pub(crate) enum Element {
     /// A path.
     Shape { data: String, fill: Option<Rgb>, pen: Option<Pen> },
     /// A text.
@@ -68,7 +68,7 @@ pub(crate) enum Mark {
 /// What has been drawn so far, in order; images lie under everything else.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Canvas {
-    pub marks: Vec<Mark>,
+    pub elements: Vec<Element>,
     pub images: Vec<Image>,
 }
 
@@ -113,7 +113,7 @@ impl Canvas {
 
     fn shape(&mut self, data: String, fill: Option<Rgb>, pen: Option<Pen>) {
         if !data.is_empty() {
-            self.marks.push(Mark::Shape { data, fill, pen });
+            self.elements.push(Element::Shape { data, fill, pen });
         }
     }
 
@@ -137,7 +137,7 @@ impl Canvas {
     /// A text.
     pub fn text(&mut self, text: Text) {
         if !text.words.is_empty() {
-            self.marks.push(Mark::Text(text));
+            self.elements.push(Element::Text(text));
         }
     }
 }
@@ -151,12 +151,12 @@ pub(crate) enum Lettering {
     Outlines,
 }
 
-impl Mark {
-    fn element(&self, lettering: Lettering) -> String {
+impl Element {
+    fn written(&self, lettering: Lettering) -> String {
         match (self, lettering) {
-            (Mark::Shape { data, fill, pen }, _) => shape(data, *fill, *pen),
-            (Mark::Text(text), Lettering::Words) => text.words(),
-            (Mark::Text(text), Lettering::Outlines) => text.outlines(),
+            (Element::Shape { data, fill, pen }, _) => shape(data, *fill, *pen),
+            (Element::Text(text), Lettering::Words) => text.words(),
+            (Element::Text(text), Lettering::Outlines) => text.outlines(),
         }
     }
 }
@@ -226,7 +226,7 @@ pub(super) fn document(
     scale: f64,
     name: &str,
     images: &[Image],
-    (marks, lettering): (&[Mark], Lettering),
+    (elements, lettering): (&[Element], Lettering),
 ) -> String {
     const POINTS: f64 = 72.0 / 25.4;
     let [across, down, w, h] = [width * scale, height * scale, width * POINTS, height * POINTS].map(decimal);
@@ -245,7 +245,7 @@ pub(super) fn document(
         );
     }
     let family = font::FAMILY;
-    let body: String = marks.iter().map(|mark| mark.element(lettering)).collect();
+    let body: String = elements.iter().map(|element| element.written(lettering)).collect();
     let _ = writeln!(
         svg,
         "<g fill=\"none\" stroke-linejoin=\"round\" font-family=\"{family}\">\n{body}</g>\n</svg>"

@@ -19,8 +19,8 @@ impl Drawing {
     /// The picture as an SVG document with real text; it refers to nothing outside and has no ids, so that
     /// several can stand in one page.
     pub fn svg(&self) -> String {
-        let marks = (&*self.canvas.marks, Lettering::Words);
-        canvas::document(self.size, self.scale, &self.name, &self.canvas.images, marks)
+        let elements = (&*self.canvas.elements, Lettering::Words);
+        canvas::document(self.size, self.scale, &self.name, &self.canvas.images, elements)
     }
 }
 

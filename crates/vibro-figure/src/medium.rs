@@ -1,6 +1,6 @@
 //! What a figure is drawn for.
 
-use crate::canvas::Mark;
+use crate::canvas::Element;
 use crate::colour::{Rgb, SERIES};
 use crate::{Drawing, Figure, Heatmap};
 use resvg::tiny_skia::PremultipliedColorU8;
@@ -57,9 +57,9 @@ impl Drawing {
             let level = grey([colour.0, colour.1, colour.2]);
             *colour = Rgb(level, level, level);
         };
-        for mark in &mut self.canvas.marks {
-            match mark {
-                Mark::Shape { fill, pen, .. } => {
+        for element in &mut self.canvas.elements {
+            match element {
+                Element::Shape { fill, pen, .. } => {
                     if let Some(fill) = fill {
                         of(fill);
                     }
@@ -67,7 +67,7 @@ impl Drawing {
                         of(&mut pen.colour);
                     }
                 }
-                Mark::Text(text) => of(&mut text.colour),
+                Element::Text(text) => of(&mut text.colour),
             }
         }
         for image in &mut self.canvas.images {

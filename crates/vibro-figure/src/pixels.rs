@@ -37,8 +37,8 @@ impl Drawing {
             pixmap.draw_pixmap(0, 0, pixels.as_ref(), &paint, transform, None);
         }
         // Without the cell images, which lie under everything else. Texts are outlines of the bundled font.
-        let marks = (&*self.canvas.marks, Lettering::Outlines);
-        let text = canvas::document(self.size, 1.0, &self.name, &[], marks);
+        let elements = (&*self.canvas.elements, Lettering::Outlines);
+        let text = canvas::document(self.size, 1.0, &self.name, &[], elements);
         let tree = usvg::Tree::from_str(&text, &usvg::Options::default())
             .map_err(|e| refused(format!("cannot be turned into pixels: {e}")))?;
         let transform =

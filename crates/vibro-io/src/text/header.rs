@@ -42,7 +42,7 @@ pub struct Stated {
     /// Unit as written.
     pub unit: Option<String>,
     /// Factors of the values, other than 1.
-    pub scales: Vec<Scale>,
+    pub scales: Vec<StatedScale>,
     /// Window.
     pub window: Option<Window>,
     /// Channel name or title.
@@ -64,7 +64,7 @@ pub struct PerhapsRate {
 
 /// A factor of the values, as a head states it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scale {
+pub struct StatedScale {
     /// As it is written: with its key, but for a plain scale factor.
     pub said: String,
     /// Whether it takes the signal of a sensor to what it measures, or is a gain of that signal: values in a
@@ -304,7 +304,7 @@ fn keyed(key: &str, value: &str, stated: &mut Stated) {
 
 /// What a factor under its key says, where one of its numbers is not 1, or it is a quotient of units:
 /// `1 V/g`.
-fn scale(key: &str, value: &str) -> Option<Scale> {
+fn scale(key: &str, value: &str) -> Option<StatedScale> {
     let words: Vec<&str> = value.split([';', ' ']).map(str::trim).filter(|word| !word.is_empty()).collect();
     let first = number::either(words.first()?.trim_start_matches(['x', '×', '*']).as_bytes());
     let quotient = first.is_some() && words.iter().any(|word| word.contains('/'));
@@ -316,7 +316,7 @@ fn scale(key: &str, value: &str) -> Option<Scale> {
     let plain = matches!(key, "slope" | "scale factor" | "scaling factor");
     let said = if plain { value.to_owned() } else { format!("{key}: {value}") };
     let of_signal = quotient || OF_SIGNAL.split('|').any(|known| known == key);
-    states.then_some(Scale { said, of_signal })
+    states.then_some(StatedScale { said, of_signal })
 }
 
 /// Samples a second, as they are written, in Hz: `2 kS/s`, `100 samples/s`.
