@@ -135,7 +135,7 @@ fn respelt<T>(text: &str, mark: char, read: impl Fn(&str, char) -> Result<T, Kin
     meant.find(|meant| read(meant, mark).is_ok())
 }
 
-/// Units with which numbers are typed, and the power of ten that converts each to SI.
+/// Units with which numbers are typed, and the power of ten that converts each to the unit of its key.
 const UNITS: [(&str, i32); 17] = [
     ("k", 3),
     ("Hz", 0),
@@ -156,7 +156,7 @@ const UNITS: [(&str, i32); 17] = [
     ("m/s", 0),
 ];
 
-/// A number typed with its unit, in SI units, as the value of `key`.
+/// A number typed with its unit, in the unit of `key`.
 pub fn without_unit(key: &str, text: &str) -> Option<f64> {
     let meant = |(unit, decimals): &(&str, i32)| {
         // Converted by its text, so that no digit is lost.

@@ -26,8 +26,8 @@ pub struct Written<'a> {
 impl<'a> Written<'a> {
     /// Parses the text into keys and values.
     ///
+    /// # Errors
     /// If the text is no TOML: with its line, and what to write instead.
-    /// If it is no TOML, with its line and what can be written in place of it.
     pub fn parse(&self) -> Result<DeTable<'a>, Error> {
         DeTable::parse(self.text)
             .map(Spanned::into_inner)
